@@ -1,0 +1,333 @@
+"""The arm: the plant in PyBullet.  Read its state, give it a command."""
+
+from __future__ import annotations
+
+import tempfile
+from collections import deque
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .arrays import Array, locked
+from .commands import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State, still
+from .errors import Closed, ControllerError, OutOfRange
+from .model import Model
+from .plant import IDEAL, Plant
+from .quiet import quiet
+from .robot import Robot, Side, robot
+from .world import World
+
+with quiet():
+    import pybullet as bullet
+
+_JOINTS = list(range(7))
+_ZERO = [0.0] * 7
+
+
+class Arm:
+    """One of Baxter's arms in a world: seven bodies, motors with limits, and the plant's realism.
+
+    Attributes:
+        robot: Names and limits.
+        plant: How it differs from the textbook.
+        model: A model that knows of this plant's rotors and payload.
+        world: Where it stands.
+    """
+
+    def __init__(
+        self,
+        side: Side = "left",
+        plant: Plant = IDEAL,
+        seed: int = 0,
+        *,
+        q0: Any = None,
+        world: World | None = None,
+    ) -> None:
+        """Put an arm into a world, at rest.
+
+        Args:
+            side: "left" or "right".
+            plant: `IDEAL`, `BAXTER` or a `Plant` of your own.
+            seed: Of the measurement noise and of the ticks that come late.
+            q0: Joint angles at the start, shape (7,) in [rad]; None is Rethink's neutral pose.
+            world: Where to put it; None opens an empty world of its own.
+
+        Raises:
+            UnknownName: Baxter has no such arm.
+            JointLimitExceeded: q0 is outside the joints' range.
+        """
+        self.robot: Robot = robot(side)
+        self.plant = plant
+        self.model = Model(side, plant)
+        self.world = World() if world is None else world
+        self._random = np.random.default_rng(seed)
+        self._client = self.world.client
+        with quiet():
+            self._body: int = bullet.loadURDF(
+                _urdf_file(side, plant),
+                useFixedBase=True,
+                flags=bullet.URDF_USE_INERTIA_FROM_FILE,
+                physicsClientId=self._client,
+            )
+        for joint in range(-1, 7):
+            bullet.changeDynamics(
+                self._body,
+                joint,
+                linearDamping=0.0,
+                angularDamping=0.0,
+                jointDamping=0.0 if joint < 0 else plant.viscous[joint],
+                physicsClientId=self._client,
+            )
+        # The arm compensates its own weight, not what it carries.
+        self._own = Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
+        self._publish_every = whole_steps(plant.state_rate, self.world.dt, "plant.state_rate")
+        self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
+        self._stiction, self._viscous = list(plant.stiction), np.array(plant.viscous)
+        self._noise = np.array(plant.velocity_noise)
+        self.reset(q0)
+        self.world.add(self)
+
+    # What a controller may use
+
+    def state(self) -> State:
+        """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
+        if not self._publish_every:
+            return self.truth()
+        ready = self.world.t - self.plant.state_delay + 1e-9
+        while len(self._mail) > 1 and self._mail[1].t <= ready:
+            self._mail.popleft()
+        return self._mail[0]
+
+    def apply(self, command: Command) -> None:
+        """Follow ``command`` until the next one, or until the plant's command timeout.
+
+        Speeds and torques beyond the limits are cut to them, as the real arm does.
+
+        Args:
+            command: `JointPosition`, `JointVelocity` or `JointTorque`.
+
+        Raises:
+            ControllerError: It is no command.
+            JointLimitExceeded: A position outside the joints' range.
+        """
+        kind = type(command)
+        if kind is JointTorque:
+            wanted, limit = command.value, self._effort
+        elif kind is JointVelocity:
+            wanted, limit = command.value, self.robot.speed
+        elif kind is JointPosition:
+            wanted = self.model.within_limits(command.value, "JointPosition")
+            limit = None
+        else:
+            raise ControllerError(f"{command!r} is no command; give one of {_names()}")
+        self._wanted = wanted if limit is None else _cut(wanted, limit)
+        self._asked = wanted
+        if kind is not self._kind:
+            self._enter(kind)
+        self._fresh = True
+        self._commanded_at = self.world._steps
+
+    def stop(self) -> None:
+        """Come to rest and stay."""
+        self.apply(still())
+
+    def reset(self, q: Any = None) -> None:
+        """Put the arm at rest at ``q``, shape (7,) in [rad]; None is Rethink's neutral pose.
+
+        Raises:
+            JointLimitExceeded: A joint is out of its range.
+        """
+        q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
+        if self.world.client < 0:
+            raise Closed("this arm's world was closed; make a new Arm")
+        for i in _JOINTS:
+            bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
+        self._mail: deque[State] = deque([State(self.world.t, locked(np.array(q)), _rest())])
+        self._lagged = np.zeros(7)
+        self._total = np.zeros(7)
+        self._kind: type = type(None)
+        self.stop()
+
+    # What only the experimenter may use
+
+    def truth(self) -> State:
+        """The joints as they really are."""
+        q, dq, _, _ = zip(*self._read(), strict=True)
+        return State(self.world.t, locked(np.array(q)), locked(np.array(dq)))
+
+    @property
+    def torque(self) -> Array:
+        """What the motors gave in the last physics step, gravity compensation included.
+
+        Returns:
+            Shape (7,) in [N m].
+        """
+        if self._kind is JointTorque:
+            return self._total
+        return np.array([joint[3] for joint in self._read()])
+
+    @property
+    def saturated(self) -> bool:
+        """Whether a limit cut the command that the arm follows now."""
+        return self._wanted is not self._asked
+
+    def lost_ticks(self, ticks: int) -> list[bool]:
+        """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
+        if not self.plant.lost_ticks:
+            return [False] * ticks
+        return (self._random.random(ticks) < self.plant.lost_ticks).tolist()
+
+    def observe(self) -> tuple[State, State, Array]:
+        """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
+        rows = self._read()
+        q, dq, _, motor = zip(*rows, strict=True)
+        truth = State(self.world.t, locked(np.array(q)), locked(np.array(dq)))
+        torque = self._total if self._kind is JointTorque else np.array(motor)
+        return truth, self.state() if self._publish_every else truth, torque
+
+    # The machinery, once per physics step
+
+    def act(self) -> None:
+        """Set motors and torques for the next physics step; the world calls it."""
+        plant, steps = self.plant, self.world._steps
+        if self._publish_every and steps % self._publish_every == 0:
+            self._publish()
+        if (steps - self._commanded_at) * self.world.dt > plant.command_timeout:
+            self._hold()
+        if self._kind is JointTorque:
+            self._drive_torque()
+        elif self._kind is JointVelocity:
+            if plant.velocity_lag:
+                self._lagged += (self._wanted - self._lagged) * min(
+                    1.0, self.world.dt / plant.velocity_lag
+                )
+                self._spin(self._lagged)
+            elif self._fresh:  # PyBullet's motors keep their target
+                self._spin(self._wanted)
+        else:
+            q = np.array([joint[0] for joint in self._read()])
+            gain = min(plant.position_gain or np.inf, 1.0 / self.world.dt)
+            speed = self.robot.speed
+            self._spin(np.minimum(np.maximum(gain * (self._wanted - q), -speed), speed))
+        self._fresh = False
+
+    def _drive_torque(self) -> None:
+        if self._fresh or self.plant.gravity_compensation:
+            total = self._wanted
+            if self.plant.gravity_compensation:
+                q = np.array([joint[0] for joint in self._read()])
+                total = _cut(total + self._own.gravity(q), self._effort)
+            self._total = total
+            self._total_list = total.tolist()
+        bullet.setJointMotorControlArray(
+            self._body,
+            _JOINTS,
+            bullet.TORQUE_CONTROL,
+            forces=self._total_list,
+            physicsClientId=self._client,
+        )
+
+    def _spin(self, speeds: Array) -> None:
+        """Let the motors hold these speeds with whatever torque it takes, up to the limits."""
+        bullet.setJointMotorControlArray(
+            self._body,
+            _JOINTS,
+            bullet.VELOCITY_CONTROL,
+            targetVelocities=speeds.tolist(),
+            forces=self._effort_list,
+            physicsClientId=self._client,
+        )
+
+    def _enter(self, kind: type) -> None:
+        """Change the mode: in torque mode the motors' only duty is to be the dry friction."""
+        self._kind = kind
+        if kind is JointTorque:
+            bullet.setJointMotorControlArray(
+                self._body,
+                _JOINTS,
+                bullet.VELOCITY_CONTROL,
+                targetVelocities=_ZERO,
+                forces=self._stiction,
+                physicsClientId=self._client,
+            )
+        else:
+            self._lagged = np.array(self.truth().dq)
+
+    def _hold(self) -> None:
+        """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
+        if self._kind is JointPosition:
+            self._commanded_at = self.world._steps
+            return
+        q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
+        self.apply(JointPosition(q))
+
+    def _publish(self) -> None:
+        t, q, dq = self.truth()
+        noisy = dq + self._noise * self._random.standard_normal(7)
+        self._mail.append(State(t, q, locked(noisy)))
+        if len(self._mail) > 100:
+            self.state()
+            while len(self._mail) > 100:
+                self._mail.popleft()
+
+    def _read(self) -> Any:
+        if self.world.client < 0:
+            raise Closed("this arm's world was closed; make a new Arm")
+        return bullet.getJointStates(self._body, _JOINTS, physicsClientId=self._client)
+
+    def close(self) -> None:
+        """Close the world it stands in."""
+        self.world.close()
+
+    def __enter__(self) -> Arm:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __repr__(self) -> str:
+        return f"Arm({self.robot.side!r}, {self.plant.name})"
+
+
+def _cut(x: Array, limit: Array) -> Array:
+    """``x`` itself if it is within ±limit, else a copy that is."""
+    if (abs(x) <= limit).all():
+        return x
+    return np.minimum(np.maximum(x, -limit), limit)
+
+
+def _rest() -> Array:
+    return locked(np.zeros(7))
+
+
+def whole_steps(rate: float, dt: float, name: str) -> int:
+    """How many physics steps of ``dt`` [s] a period of ``rate`` [Hz] has; 0 for a rate of 0."""
+    if rate == 0.0:
+        return 0
+    steps = 1.0 / (rate * dt)
+    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
+        raise OutOfRange(
+            f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
+            f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
+        )
+    return round(steps)
+
+
+def _names() -> str:
+    return ", ".join(kind.__name__ for kind in COMMANDS)
+
+
+@cache
+def _urdf_file(side: str, plant: Plant) -> str:
+    """PyBullet reads only files: one for each kind of arm, gone with the process."""
+    path = Path(_folder().name) / f"{side}_{len(list(Path(_folder().name).iterdir()))}.urdf"
+    path.write_text(robot(side).urdf(plant))
+    return str(path)
+
+
+@cache
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory(prefix="labkit-")

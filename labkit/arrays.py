@@ -1,0 +1,119 @@
+"""Turn what came in into the array that the mathematics means, or say why not."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import NotFinite, OutOfRange, ShapeError, TypeMismatch
+
+Array = NDArray[np.float64]
+
+
+def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
+    """Read ``x`` as a finite float array of exactly this shape.
+
+    Nothing is broadcast, reshaped or squeezed: a (7, 1) column is not a vector of 7.
+
+    Args:
+        x: Anything NumPy reads as an array of numbers.  It is not modified.
+        shape: The shape it must have.
+        name: What to call it in the sentence, if it does not fit.
+
+    Returns:
+        ``x`` itself where it already fits, else a float64 copy; shape ``shape``.
+
+    Raises:
+        TypeMismatch: It is not made of real numbers.
+        ShapeError: The shape differs.
+        NotFinite: An entry is NaN or infinite.
+    """
+    a = x
+    if type(x) is not np.ndarray or x.dtype != np.float64:
+        a = _converted(x, shape, name)
+    if a.shape != shape:
+        raise ShapeError(name, shape, a.shape)
+    flat = a.ravel()
+    if not isfinite(flat.dot(flat)):  # one pass; only a suspicious array pays for the second
+        bad = np.flatnonzero(~np.isfinite(flat))
+        if bad.size:
+            raise NotFinite(
+                f"{name} holds {flat[bad[0]]} at index {_index(bad[0], shape)}; "
+                "look for a division by zero, a square root or arccos out of its range"
+            )
+    return a
+
+
+def as_vector(x: Any, n: int, name: str) -> Array:
+    """A read-only float vector of ``n`` numbers; a copy, so that the owner may go on writing.
+
+    Args:
+        x: Anything NumPy reads as a vector.
+        n: How many numbers.
+        name: What to call it in the sentence, if it does not fit.
+
+    Returns:
+        Shape (n,), read-only.
+    """
+    return locked(np.array(as_array(x, (n,), name)))
+
+
+def as_number(x: Any, name: str, *, above: float | None = None, least: float | None = None) -> float:
+    """Read ``x`` as one finite float.
+
+    Args:
+        x: A Python or NumPy number.
+        name: What to call it in the sentence, if it does not fit.
+        above: It must be greater than this.
+        least: It must be at least this.
+
+    Returns:
+        The number.
+
+    Raises:
+        TypeMismatch: It is not a number.
+        NotFinite: It is NaN or infinite.
+        OutOfRange: It is too small.
+    """
+    try:
+        value = float(x)
+    except (TypeError, ValueError):
+        raise TypeMismatch(f"{name} is {_short(x)}, expected one number") from None
+    if not isfinite(value):
+        raise NotFinite(f"{name} is {value}, expected a finite number")
+    if above is not None and not value > above:
+        raise OutOfRange(f"{name} is {value:g}, it must be greater than {above:g}")
+    if least is not None and not value >= least:
+        raise OutOfRange(f"{name} is {value:g}, it must be at least {least:g}")
+    return value
+
+
+def locked(a: Array) -> Array:
+    """The same array, made read-only."""
+    a.setflags(write=False)
+    return a
+
+
+def _converted(x: Any, shape: tuple[int, ...], name: str) -> Array:
+    try:
+        a = np.asarray(x)
+    except ValueError:  # rows of different lengths
+        raise TypeMismatch(f"{name} has rows of different lengths, expected {shape}") from None
+    if a.dtype.kind not in "fiub":
+        raise TypeMismatch(
+            f"{name} is {_short(x)}, expected {'x'.join(map(str, shape)) or 'one'} real numbers"
+        )
+    return a.astype(np.float64)
+
+
+def _short(x: Any) -> str:
+    text = repr(x)
+    return f"{text if len(text) < 40 else text[:37] + '...'} ({type(x).__name__})"
+
+
+def _index(flat: int, shape: tuple[int, ...]) -> str:
+    index = np.unravel_index(flat, shape)
+    return str(int(index[0])) if len(index) == 1 else str(tuple(map(int, index)))

@@ -1,0 +1,94 @@
+"""What went wrong, as a sentence: the value, the limit and the way out.
+
+Everything labkit raises derives from `LabkitError`, so a caller can catch one thing; each child is
+also the built-in exception that a Python programmer would expect, and keeps its evidence as
+attributes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+class LabkitError(Exception):
+    """Base class of all labkit errors."""
+
+
+class LabkitWarning(UserWarning):
+    """Something worth a second look that does not stop the work."""
+
+
+class ShapeError(LabkitError, ValueError):
+    """An array has not the shape that the mathematics asks for."""
+
+    def __init__(self, name: str, expected: tuple[int, ...], actual: tuple[int, ...]) -> None:
+        """Say which array, what was expected, what came, and how it is usually mended."""
+        self.name, self.expected, self.actual = name, expected, actual
+        super().__init__(f"{name} has shape {actual}, expected {expected}{_mend(expected, actual)}")
+
+
+def _mend(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
+    if len(expected) != 1:
+        return "; the transpose would fit" if actual == expected[::-1] else ""
+    n = expected[0]
+    if len(actual) == 2 and sorted(actual) == [1, n]:
+        return "; a vector in labkit is 1-D, so use .ravel() or write it without the extra brackets"
+    if actual == ():
+        return f"; a single number is not enough, give all {n}"
+    if len(actual) == 1:
+        return f"; give {n} numbers, not {actual[0]}"
+    return "; a matrix came where a vector belongs (was a * meant to be a @?)"
+
+
+class TypeMismatch(LabkitError, TypeError):
+    """A value cannot be read as the kind of thing that belongs there."""
+
+
+class NotFinite(LabkitError, ValueError):
+    """An array holds a NaN or an infinity."""
+
+
+class OutOfRange(LabkitError, ValueError):
+    """A number lies outside what it may be."""
+
+
+class JointLimitExceeded(OutOfRange):
+    """A joint angle lies outside the joint's range."""
+
+    def __init__(self, name: str, joint: str, value: float, lower: float, upper: float) -> None:
+        """Name the joint, the value and the range, all in radians."""
+        self.joint, self.value, self.lower, self.upper = joint, value, lower, upper
+        hint = "; angles are in radians, is this in degrees?" if abs(value) > 6.5 else ""
+        super().__init__(
+            f"{name}: joint {joint} at {value:.4g} rad is outside [{lower:.4g}, {upper:.4g}] rad{hint}"
+        )
+
+
+class UnknownName(LabkitError, KeyError):
+    """No thing of that name exists."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
+        """Name the thing that is missing, and those that exist."""
+        self.name, self.known = name, tuple(known)
+        super().__init__(f"no {kind} {name!r}; there is {', '.join(map(repr, self.known))}")
+
+    def __str__(self) -> str:  # KeyError would quote the whole sentence
+        return str(self.args[0])
+
+
+class Unreachable(LabkitError, ValueError):
+    """Inverse kinematics found no joint angles for a pose."""
+
+
+class ControllerError(LabkitError):
+    """A controller or a target gave something that the loop cannot use."""
+
+
+class Diverged(ControllerError):
+    """The closed loop ran away; the log up to that moment is kept as `log`."""
+
+    log: object = None
+
+
+class Closed(LabkitError, RuntimeError):
+    """The simulated world was closed and can no longer be used."""

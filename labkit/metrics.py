@@ -1,0 +1,145 @@
+r"""Numbers from a log: how well the arm followed, and at what price.
+
+An error is always target minus actual.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import se3
+from .arrays import Array
+from .errors import TypeMismatch
+from .model import Model
+from .motion import PoseSample
+from .run import Log
+
+
+def model_of(log: Log) -> Model:
+    """The model of the arm that made a log."""
+    return Model(log.side, log.plant)
+
+
+def joint_error(log: Log) -> Array:
+    """Target minus actual joint angles of a run after joint angles, shape (N, 7) in [rad].
+
+    Raises:
+        TypeMismatch: The run followed poses.
+    """
+    if isinstance(log.target, PoseSample) or log.target.position.shape[1] != log.q.shape[1]:
+        raise TypeMismatch("this run followed poses, not joint angles: ask for tip_error(log)")
+    return np.asarray(log.target.position - log.q)
+
+
+def tip_poses(log: Log, model: Model | None = None) -> Array:
+    """Where the tip was, `T_wt` at each tick, shape (N, 4, 4)."""
+    model = model or model_of(log)
+    return np.array([model.pose(q) for q in log.q])
+
+
+def target_poses(log: Log, model: Model | None = None) -> Array:
+    """Where the tip should have been, `T_wd` at each tick, shape (N, 4, 4)."""
+    if isinstance(log.target, PoseSample):
+        return log.target.pose
+    model = model or model_of(log)
+    joint_error(log)  # says so, if these are no joint angles
+    return np.array([model.pose(q) for q in log.target.position])
+
+
+def tip_error(log: Log, model: Model | None = None) -> Array:
+    """Target minus actual of the tip, world axes, shape (N, 6): [m], then [rad]."""
+    model = model or model_of(log)
+    T_wd, T_wt = target_poses(log, model), tip_poses(log, model)
+    turn = [se3.rotation_log(d[:3, :3] @ t[:3, :3].T) for d, t in zip(T_wd, T_wt, strict=True)]
+    return np.hstack([T_wd[:, :3, 3] - T_wt[:, :3, 3], np.array(turn)])
+
+
+def rms(error: Any) -> float:
+    """Root mean square of the length of a vector error, rows being instants.
+
+    Args:
+        error: Shape (N, n), or (N,).
+
+    Returns:
+        ``sqrt(mean(|e|^2))``, in the error's unit.
+    """
+    e = np.asarray(error, dtype=float)
+    return float(np.sqrt(np.mean(np.sum(e.reshape(len(e), -1) ** 2, axis=1))))
+
+
+def settling_time(t: Any, error: Any, tolerance: float) -> float:
+    """The time after which the error stays within a tolerance.
+
+    Args:
+        t: Times, shape (N,) in [s].
+        error: Shape (N, n), or (N,).
+        tolerance: Largest length of a settled error, in the error's unit.
+
+    Returns:
+        In [s] since the first row; infinite if it is still outside at the end.
+    """
+    e = np.asarray(error, dtype=float)
+    outside = np.flatnonzero(np.linalg.norm(e.reshape(len(e), -1), axis=1) > tolerance)
+    if not outside.size:
+        return 0.0
+    return float("inf") if outside[-1] == len(e) - 1 else float(t[outside[-1] + 1] - t[0])
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A run in a few numbers.
+
+    Attributes:
+        rms_mm: RMS position error of the tip, in [mm].
+        max_mm: Largest position error of the tip, in [mm].
+        max_deg: Largest orientation error, in [degrees].
+        rms_velocity_mm_s: RMS error of the tip's velocity, in [mm/s].
+        effort: RMS length of the motor torque, in [N m].
+        saturated: Share of the ticks in which a limit cut the command.
+        duration: In [s].
+    """
+
+    rms_mm: float
+    max_mm: float
+    max_deg: float
+    rms_velocity_mm_s: float
+    effort: float
+    saturated: float
+    duration: float
+
+    def __str__(self) -> str:
+        return (
+            f"RMS {self.rms_mm:.3g} mm, max {self.max_mm:.3g} mm and {self.max_deg:.3g} degrees, "
+            f"RMS torque {self.effort:.3g} N m, command cut {100 * self.saturated:.0f} % of the time"
+        )
+
+
+def summary(log: Log, model: Model | None = None) -> Summary:
+    """The usual numbers of a run."""
+    model = model or model_of(log)
+    e = tip_error(log, model)
+    off = np.linalg.norm(e[:, :3], axis=1)
+    return Summary(
+        rms_mm=1e3 * rms(e[:, :3]),
+        max_mm=1e3 * float(off.max()),
+        max_deg=float(np.degrees(np.linalg.norm(e[:, 3:], axis=1).max())),
+        rms_velocity_mm_s=1e3 * rms(velocity_error(log, model)),
+        effort=rms(log.tau),
+        saturated=float(log.saturated.mean()),
+        duration=float(log.t[-1]),
+    )
+
+
+def velocity_error(log: Log, model: Model | None = None) -> Array:
+    """Target minus actual velocity of the tip's origin, world axes, shape (N, 3) in [m/s]."""
+    model = model or model_of(log)
+    actual = np.array(
+        [model.tip_jacobian(q)[:3] @ dq for q, dq in zip(log.q, log.dq, strict=True)]
+    )
+    if isinstance(log.target, PoseSample):
+        return np.asarray(log.target.twist[:, :3] - actual)
+    pairs = zip(log.target.position, log.target.velocity, strict=True)
+    return np.array([model.tip_jacobian(q)[:3] @ dq for q, dq in pairs]) - actual

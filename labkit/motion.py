@@ -1,0 +1,186 @@
+r"""Motion: what a path, a time scaling and their composition say at one moment.
+
+A *path* is geometry, a curve in s from 0 to 1.  A *time scaling* is s(t).  A *trajectory* is the
+path on that schedule, by the chain rule (Lynch & Park, *Modern Robotics*, section 9.1).
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import accumulate
+from typing import Any, NamedTuple, Protocol, TypeVar
+
+import numpy as np
+
+from . import se3
+from .arrays import Array, as_array, as_number, locked
+from .errors import OutOfRange
+
+
+class Sample(NamedTuple):
+    """A curve of points (or of joint angles) at one place: its value and two derivatives.
+
+    Attributes:
+        position: Value, shape (n,) in [m] or [rad].
+        velocity: First derivative, shape (n,).
+        acceleration: Second derivative, shape (n,).
+    """
+
+    position: Array
+    velocity: Array
+    acceleration: Array
+
+
+class PoseSample(NamedTuple):
+    """A curve of tip poses at one place: its value and two derivatives, in world axes.
+
+    Attributes:
+        pose: Pose of the tip in the world, `T_wt`, shape (4, 4).
+        twist: Velocity of the tip's origin and angular velocity (v, w), world axes, shape (6,).
+        dtwist: Derivative of the twist, shape (6,).
+    """
+
+    pose: Array
+    twist: Array
+    dtwist: Array
+
+
+AnySample = Sample | PoseSample
+S_co = TypeVar("S_co", bound=AnySample, covariant=True)
+
+
+class Path(Protocol[S_co]):
+    """A curve in s, from 0 to 1."""
+
+    def __call__(self, s: float) -> S_co:
+        """Value and derivatives with respect to s."""
+
+
+class TimeScaling(Protocol):
+    """s(t), rising from 0 to 1 over `duration` seconds and at rest outside."""
+
+    @property
+    def duration(self) -> float:
+        """How long it lasts, in [s]."""
+
+    def __call__(self, t: float) -> tuple[float, float, float]:
+        """s, ds/dt and d2s/dt2 at time ``t`` [s]."""
+
+
+Target = Callable[[float], AnySample]
+"""What `run` follows: any function of time, in [s] since the run began."""
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """A path followed on a schedule; before its start and after its end it is at rest.
+
+    Attributes:
+        path: Curve in s.
+        scaling: s(t).
+    """
+
+    path: Path[Any]
+    scaling: TimeScaling
+
+    @property
+    def duration(self) -> float:
+        """How long it lasts, in [s]."""
+        return self.scaling.duration
+
+    def __call__(self, t: float) -> Any:
+        """The motion at time ``t`` [s], by the chain rule; of the path's kind of sample."""
+        s, ds, dds = self.scaling(t)
+        x, dx, ddx = at_s = self.path(s)
+        return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
+
+
+class Chain:
+    """Trajectories one after another.
+
+    At a joint the later trajectory speaks; each one starts and ends at rest, so the chain is smooth
+    in position and velocity.
+
+    Attributes:
+        parts: The trajectories, in order.
+        starts: When each begins, in [s].
+    """
+
+    def __init__(self, parts: Iterable[Any]) -> None:
+        """Join ``parts``, each with a `duration`, end to end.
+
+        Raises:
+            OutOfRange: There is none.
+        """
+        self.parts = tuple(parts)
+        if not self.parts:
+            raise OutOfRange("a Chain needs at least one trajectory")
+        *self.starts, self.duration = accumulate((p.duration for p in self.parts), initial=0.0)
+
+    def __call__(self, t: float) -> Any:
+        """The motion at time ``t`` [s]."""
+        i = max(0, bisect_right(self.starts, t) - 1)
+        return self.parts[i](t - self.starts[i])
+
+
+@dataclass(frozen=True, eq=False)
+class PosePath:
+    """A path of points with an orientation along it: fixed, or turned evenly from R_wt to R_goal.
+
+    The turn is the shortest one, at a constant rate in s (the geodesic of SO(3), Lynch & Park
+    section 9.2.1).
+
+    Attributes:
+        path: Path of the tip's origin, samples of shape (3,) in [m].
+        R_wt: Orientation of the tip at s = 0, shape (3, 3).
+        R_goal: Orientation at s = 1, shape (3, 3); None keeps `R_wt`.
+    """
+
+    path: Path[Sample]
+    R_wt: Array
+    R_goal: Array | None = None
+
+    def __post_init__(self) -> None:
+        R_wt = locked(np.array(se3.as_rotation(self.R_wt, "R_wt")))
+        object.__setattr__(self, "R_wt", R_wt)
+
+    @cached_property
+    def _turn(self) -> Array:
+        """The whole turn as a rotation vector, world axes, [rad]."""
+        if self.R_goal is None:
+            return locked(np.zeros(3))
+        return locked(se3.orientation_error(se3.as_rotation(self.R_goal, "R_goal"), self.R_wt))
+
+    def __call__(self, s: float) -> PoseSample:
+        """Pose and its derivatives with respect to s."""
+        p, dp, ddp = self.path(s)
+        T, twist, dtwist = np.eye(4), np.zeros(6), np.zeros(6)
+        T[:3, :3] = self.R_wt if self.R_goal is None else se3.rotation(s * self._turn) @ self.R_wt
+        T[:3, 3], twist[:3], twist[3:], dtwist[:3] = p, dp, self._turn, ddp
+        return PoseSample(T, twist, dtwist)
+
+
+class Hold:
+    """Stay where you are: a target that never moves.
+
+    Attributes:
+        duration: How long, in [s].
+    """
+
+    def __init__(self, place: Any, duration: float) -> None:
+        """Hold joint angles (n,) [rad], a point (3,) [m] or a pose (4, 4)."""
+        self.duration = as_number(duration, "duration", least=0.0)
+        x = np.array(place, dtype=float)
+        if x.ndim == 2:
+            T = locked(np.array(se3.as_pose(x, "place")))
+            self._sample: AnySample = PoseSample(T, locked(np.zeros(6)), locked(np.zeros(6)))
+        else:
+            x = locked(as_array(x, (x.size,), "place"))
+            self._sample = Sample(x, locked(np.zeros(x.size)), locked(np.zeros(x.size)))
+
+    def __call__(self, t: float) -> Any:
+        """The same sample, whatever the time."""
+        return self._sample

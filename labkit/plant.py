@@ -1,0 +1,77 @@
+"""The plant: how the simulated arm differs from the textbook's, as one frozen value.
+
+`IDEAL` is the textbook: exact state, no friction, commands obeyed at once, and gravity left to the
+controller.  `BAXTER` behaves as the real arm is known to (sources beside each number).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any
+
+from .arrays import as_vector
+
+
+@dataclass(frozen=True)
+class Plant:
+    """What the arm is like; every effect is off by default.
+
+    Attributes:
+        name: What figures and tables call it.
+        gravity_compensation: The arm itself adds the torque that holds it against gravity, in every
+            mode, as Baxter does; a torque controller then adds none.
+        armature: Rotor inertia about each joint's axis, shape (7,) in [kg m^2].
+        viscous: Viscous friction, shape (7,) in [N m s/rad].
+        stiction: Dry friction that a joint must overcome, shape (7,) in [N m].
+        payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].
+        velocity_lag: Time constant with which the velocity mode follows its command, in [s].
+        position_gain: How fast the position mode closes a gap, in [1/s]; 0 takes the whole gap in
+            one physics step, as far as speed and torque allow.
+        state_rate: How often the arm publishes its state, in [Hz]; 0 is every physics step.
+        state_delay: Age of a state when it arrives, in [s].
+        velocity_noise: Standard deviation of the measured joint speeds, shape (7,) in [rad/s].
+        lost_ticks: Share of the control ticks whose command comes too late to be used.
+        command_timeout: After this long without a command the arm holds its place, in [s].
+    """
+
+    name: str = "custom"
+    gravity_compensation: bool = False
+    armature: Any = 0.0
+    viscous: Any = 0.0
+    stiction: Any = 0.0
+    payload: float = 0.0
+    velocity_lag: float = 0.0
+    position_gain: float = 0.0
+    state_rate: float = 0.0
+    state_delay: float = 0.0
+    velocity_noise: Any = 0.0
+    lost_ticks: float = 0.0
+    command_timeout: float = 0.2
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if field.name in ("armature", "viscous", "stiction", "velocity_noise"):
+                value = (value,) * 7 if isinstance(value, int | float) else value
+                value = tuple(as_vector(value, 7, field.name).tolist())  # hashable, comparable
+                object.__setattr__(self, field.name, value)
+
+
+IDEAL = Plant(name="ideal")
+"""The textbook arm."""
+
+BAXTER = Plant(
+    name="baxter",
+    gravity_compensation=True,  # Rethink, "Gravity compensation": a channel of its own, always on
+    armature=(0.1, 0.1, 0.08, 0.08, 0.05, 0.05, 0.05),  # not published; the least that is stable
+    viscous=0.7,  # the URDF's <dynamics damping>
+    stiction=(1.0, 1.0, 0.8, 0.8, 0.3, 0.3, 0.3),  # plateaus of the report's torque figures
+    velocity_lag=0.03,
+    position_gain=20.0,
+    state_rate=100.0,  # Rethink's default joint_state_publish_rate
+    state_delay=0.004,  # four hops of a millisecond each
+    velocity_noise=(0.01, 0.01, 0.01, 0.01, 0.03, 0.03, 0.03),  # read off the report's figures
+    lost_ticks=0.02,
+)
+"""The arm as its users found it."""
+

@@ -1,0 +1,150 @@
+"""Baxter's data: names, limits, bodies, and the URDF text made from them.
+
+The numbers come from Rethink's URDF (see ``tools/make_urdf.py`` and ``data/LICENSE-baxter``).
+Plant and model are both built from the text that `Robot.urdf` writes, so they agree.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from math import atan2, hypot
+from typing import Any, Literal
+
+import numpy as np
+
+from .arrays import Array, locked
+from .errors import UnknownName
+from .plant import IDEAL, Plant
+
+Side = Literal["left", "right"]
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """One of Baxter's arms, as numbers.
+
+    Attributes:
+        side: "left" or "right".
+        joint_names: Seven names from shoulder to wrist.
+        lower: Lower joint limits, shape (7,) in [rad].
+        upper: Upper joint limits, shape (7,) in [rad].
+        speed: Speed limits, shape (7,) in [rad/s].
+        effort: Torque limits, shape (7,) in [N m].
+        neutral: Rethink's neutral pose, shape (7,) in [rad].
+        T_hand_tip: The gripper's tip in the last body, shape (4, 4).
+        T_hand_camera: The hand camera (z forward, x right of the image) there, shape (4, 4).
+        bodies: The seven bodies as they stand in the data file.
+    """
+
+    side: Side
+    joint_names: tuple[str, ...]
+    lower: Array
+    upper: Array
+    speed: Array
+    effort: Array
+    neutral: Array
+    T_hand_tip: Array
+    T_hand_camera: Array
+    bodies: tuple[dict[str, Any], ...]
+
+    def urdf(self, plant: Plant = IDEAL) -> str:
+        """The arm as seven bodies without fixed links, with the plant's rotors and payload.
+
+        A rotor is a flat disc on the joint's axis: A about the axis, A/2 across it, the least that
+        a rigid body can have (both physics engines refuse less).  The usual shorthand M + diag(A)
+        leaves out that a rotor is also carried round by the joints before its own; here it is.
+
+        Args:
+            plant: Its armature and payload are built in.
+
+        Returns:
+            URDF text; the joints have no damping and no friction, which belong to the arm.
+        """
+        parts = [f'<robot name="baxter_{self.side}_arm">', '<link name="base"/>']
+        parent = "base"
+        for i, body in enumerate(self.bodies):
+            mass, com, inertia = body["mass"], np.array(body["com"]), np.array(body["inertia"])
+            if i == 6 and plant.payload > 0.0:
+                mass, com, inertia = _with_point_mass(
+                    mass, com, inertia, plant.payload, self.T_hand_tip[:3, 3]
+                )
+            inertia = inertia + plant.armature[i] * np.diag([0.5, 0.5, 1.0])
+            moments, axes = np.linalg.eigh(inertia)  # principal axes: PyBullet keeps only those
+            if np.linalg.det(axes) < 0.0:
+                axes[:, 0] = -axes[:, 0]
+            xx, yy, zz = moments.tolist()
+            name, T = body["joint"], np.array(body["T_parent"])
+            lower, upper, speed, effort = (body[k] for k in ("lower", "upper", "speed", "effort"))
+            parts.append(
+                f'<link name="{name}_body"><inertial>'
+                f'<origin xyz="{_text(com)}" rpy="{_text(_rpy(axes))}"/><mass value="{float(mass)!r}"/>'
+                f'<inertia ixx="{xx!r}" iyy="{yy!r}" izz="{zz!r}" '
+                'ixy="0" ixz="0" iyz="0"/></inertial></link>'
+                f'<joint name="{name}" type="revolute"><parent link="{parent}"/>'
+                f'<child link="{name}_body"/><axis xyz="0 0 1"/>'
+                f'<origin xyz="{_text(T[:3, 3])}" rpy="{_text(_rpy(T[:3, :3]))}"/>'
+                f'<limit lower="{lower!r}" upper="{upper!r}" '
+                f'velocity="{speed!r}" effort="{effort!r}"/></joint>'
+            )
+            parent = f"{name}_body"
+        return "".join([*parts, "</robot>"])
+
+
+@cache
+def robot(side: str) -> Robot:
+    """The data of one arm.
+
+    Args:
+        side: "left" or "right".
+
+    Raises:
+        UnknownName: Baxter has no such arm.
+    """
+    if side not in ("left", "right"):
+        raise UnknownName("arm", side, ("left", "right"))
+    data = json.loads((files("labkit") / "data" / "baxter.json").read_text())[side]
+    bodies = data["bodies"]
+
+    def column(key: str) -> Array:
+        return locked(np.array([b[key] for b in bodies]))
+
+    return Robot(
+        side=side,  # type: ignore[arg-type]
+        joint_names=tuple(b["joint"] for b in bodies),
+        lower=column("lower"),
+        upper=column("upper"),
+        speed=column("speed"),
+        effort=column("effort"),
+        neutral=locked(np.array(data["neutral"])),
+        T_hand_tip=locked(np.array(data["T_hand_tip"])),
+        T_hand_camera=locked(np.array(data["T_hand_camera"])),
+        bodies=tuple(bodies),
+    )
+
+
+def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tuple[Any, ...]:  # noqa: E741
+    """Mass, centre and inertia about the centre, after a point mass at p joins the body."""
+    total = m + extra
+    centre = (m * c + extra * p) / total
+    for mass, at in ((m, c), (extra, p)):
+        d = at - centre
+        I = I + mass * ((d @ d) * np.eye(3) - np.outer(d, d))  # noqa: E741
+    return total, centre, I
+
+
+def _rpy(R: Array) -> Array:
+    """URDF's roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll)."""
+    return np.array(
+        [
+            atan2(R[2, 1], R[2, 2]),
+            atan2(-R[2, 0], hypot(R[2, 1], R[2, 2])),
+            atan2(R[1, 0], R[0, 0]),
+        ]
+    )
+
+
+def _text(x: Array) -> str:
+    return " ".join(repr(float(v)) for v in x)

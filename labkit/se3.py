@@ -1,0 +1,265 @@
+r"""Rigid motion: rotations, poses, twists, and the maps between them.
+
+A pose is a 4 x 4 matrix `T_ab` that turns coordinates in frame b into frame a, ``p_a = T_ab @ p_b``;
+the subscripts cancel.  A twist is (v, w), linear part first, as in Murray, Li & Sastry (MLS) and
+Pinocchio.  Formulas: MLS chapter 2; Lynch & Park, *Modern Robotics*, chapter 3.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, sin, sqrt
+from typing import Any
+
+import numpy as np
+
+from .arrays import Array, as_array
+from .errors import OutOfRange
+
+_SMALL = 1e-4  # below this angle the closed forms lose digits and the series are exact
+
+
+def hat(w: Any) -> Array:
+    """The skew matrix with ``hat(w) @ x == cross(w, x)`` (MLS eq. 2.4).
+
+    Args:
+        w: Vector, shape (3,).
+
+    Returns:
+        Shape (3, 3).
+    """
+    x, y, z = as_array(w, (3,), "w")
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
+def vee(S: Any) -> Array:
+    """The vector of a skew matrix, the inverse of `hat`.
+
+    Args:
+        S: Skew matrix, shape (3, 3); its symmetric part is ignored.
+
+    Returns:
+        Shape (3,).
+    """
+    S = as_array(S, (3, 3), "S")
+    return 0.5 * np.array([S[2, 1] - S[1, 2], S[0, 2] - S[2, 0], S[1, 0] - S[0, 1]])
+
+
+def rotation(phi: Any) -> Array:
+    """The rotation by the angle ``|phi|`` about the axis ``phi`` (Rodrigues, MLS eq. 2.14).
+
+    Args:
+        phi: Rotation vector, shape (3,) in [rad].
+
+    Returns:
+        Shape (3, 3).
+    """
+    phi = as_array(phi, (3,), "phi")
+    S, theta = hat(phi), sqrt(phi @ phi)
+    a, b, _ = _coefficients(theta)
+    return np.eye(3) + a * S + b * (S @ S)
+
+
+def rotation_log(R: Any) -> Array:
+    r"""The rotation vector of R, the inverse of `rotation`: :math:`\log(R)^\vee`.
+
+    Near half a turn the axis is read from the symmetric part, where it is well conditioned; its
+    sign at exactly half a turn is arbitrary, as it must be.
+
+    Args:
+        R: Rotation matrix, shape (3, 3).
+
+    Returns:
+        Shape (3,) in [rad], of length at most pi.
+
+    Raises:
+        OutOfRange: R is no rotation matrix.
+    """
+    R = as_rotation(R, "R")
+    v = vee(R)  # sin(theta) * axis
+    s, c = sqrt(v @ v), 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
+    theta = atan2(s, c)
+    if theta < _SMALL:
+        return v * (1.0 + theta * theta / 6.0)
+    if theta < 3.0:
+        return v * (theta / s)
+    B = 0.5 * (R + R.T) - cos(theta) * np.eye(3)  # (1 - cos(theta)) * axis axis^T
+    k = int(np.argmax(np.diag(B)))
+    axis = B[:, k] / np.linalg.norm(B[:, k])
+    if axis @ v < 0.0:
+        axis = -axis
+    return axis * theta
+
+
+def rotation_about(axis: Any, angle: float) -> Array:
+    """The rotation by ``angle`` [rad] about ``axis``, shape (3,), of any length but zero.
+
+    Returns:
+        Shape (3, 3).
+
+    Raises:
+        OutOfRange: The axis has no length.
+    """
+    axis = as_array(axis, (3,), "axis")
+    length = sqrt(axis @ axis)
+    if length < 1e-12:
+        raise OutOfRange("axis is zero; a rotation needs a direction to turn about")
+    return rotation(axis * (angle / length))
+
+
+def orientation_error(R_wd: Any, R_wt: Any) -> Array:
+    r"""The turn, in world axes, that takes the actual orientation to the desired one.
+
+    :math:`e_o = \log(R_{wd} R_{wt}^T)^\vee`, target minus actual in the only sense that rotations
+    allow (Lynch & Park, section 11.3.3; Siciliano, section 3.7.3 with the logarithm).
+
+    Args:
+        R_wd: Desired orientation in the world, shape (3, 3).
+        R_wt: Actual orientation of the tip in the world, shape (3, 3).
+
+    Returns:
+        Rotation vector in world axes, shape (3,) in [rad].
+    """
+    R_wd = as_array(R_wd, (3, 3), "R_wd")
+    return rotation_log(R_wd @ as_array(R_wt, (3, 3), "R_wt").T)
+
+
+def pose(R: Any, p: Any) -> Array:
+    """The pose with rotation ``R``, shape (3, 3), and origin ``p``, shape (3,) in [m].
+
+    Returns:
+        Shape (4, 4).
+    """
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = as_rotation(R, "R"), as_array(p, (3,), "p")
+    return T
+
+
+def inverse(T_ab: Any) -> Array:
+    """The pose `T_ba` of a in b, from the pose of b in a (MLS eq. 2.24).
+
+    Args:
+        T_ab: Pose, shape (4, 4).
+
+    Returns:
+        Shape (4, 4).
+    """
+    T_ab = as_array(T_ab, (4, 4), "T_ab")
+    T_ba, R_ba = np.eye(4), T_ab[:3, :3].T
+    T_ba[:3, :3], T_ba[:3, 3] = R_ba, -R_ba @ T_ab[:3, 3]
+    return T_ba
+
+
+def exp(V: Any) -> Array:
+    r"""The pose reached by following the body twist ``V`` for one second (MLS eq. 2.36).
+
+    Args:
+        V: Twist (v, w), shape (6,).
+
+    Returns:
+        Pose :math:`e^{\hat V}`, shape (4, 4).
+    """
+    V = as_array(V, (6,), "V")
+    S, theta = hat(V[3:]), sqrt(V[3:] @ V[3:])
+    a, b, c = _coefficients(theta)
+    S2, T = S @ S, np.eye(4)
+    T[:3, :3] = np.eye(3) + a * S + b * S2
+    T[:3, 3] = (np.eye(3) + b * S + c * S2) @ V[:3]
+    return T
+
+
+def log(T: Any) -> Array:
+    """The body twist that reaches ``T`` in one second, the inverse of `exp`.
+
+    Args:
+        T: Pose, shape (4, 4).
+
+    Returns:
+        Twist (v, w), shape (6,).
+    """
+    T = as_array(T, (4, 4), "T")
+    w = rotation_log(T[:3, :3])
+    S, theta = hat(w), sqrt(w @ w)
+    a, b, _ = _coefficients(theta)
+    k = 1.0 / 12.0 if theta < _SMALL else (1.0 - 0.5 * a / b) / theta**2
+    left_inverse = np.eye(3) - 0.5 * S + k * (S @ S)
+    return np.concatenate([left_inverse @ T[:3, 3], w])
+
+
+def adjoint(T_ab: Any) -> Array:
+    r"""The matrix that turns a twist seen in b into the same twist seen in a (MLS eq. 2.58).
+
+    With (v, w) order it is :math:`[[R, \hat p R], [0, R]]`; the product is of matrices.
+
+    Args:
+        T_ab: Pose, shape (4, 4).
+
+    Returns:
+        Shape (6, 6).
+    """
+    T_ab = as_array(T_ab, (4, 4), "T_ab")
+    R, Ad = T_ab[:3, :3], np.zeros((6, 6))
+    Ad[:3, :3] = Ad[3:, 3:] = R
+    Ad[:3, 3:] = hat(T_ab[:3, 3]) @ R
+    return Ad
+
+
+def angle_between(R_a: Any, R_b: Any) -> float:
+    """The angle of the turn from one orientation to the other, in [rad], from 0 to pi."""
+    R = as_array(R_a, (3, 3), "R_a").T @ as_array(R_b, (3, 3), "R_b")
+    s = float(np.linalg.norm(vee(R)))
+    c = 0.5 * float(np.trace(R) - 1.0)
+    return atan2(s, c)
+
+
+def as_rotation(R: Any, name: str) -> Array:
+    """Read ``R`` as a rotation matrix.
+
+    Args:
+        R: Shape (3, 3).
+        name: What to call it in the sentence, if it is none.
+
+    Returns:
+        Shape (3, 3).
+
+    Raises:
+        OutOfRange: Its columns are not orthonormal, or it mirrors.
+    """
+    R = as_array(R, (3, 3), name)
+    off = float(np.abs(R.T @ R - np.eye(3)).max())
+    if off > 1e-6:
+        raise OutOfRange(
+            f"{name} is no rotation: {name}.T @ {name} differs from the identity by {off:.2g}; "
+            "rotations are made by products and se3.rotation, not by sums"
+        )
+    if float(np.linalg.det(R)) < 0.0:
+        raise OutOfRange(f"{name} has determinant -1: it mirrors; two of its columns are swapped")
+    return R
+
+
+def as_pose(T: Any, name: str) -> Array:
+    """Read ``T`` as a pose: a rotation, an origin and the row (0, 0, 0, 1).
+
+    Args:
+        T: Shape (4, 4).
+        name: What to call it in the sentence, if it is none.
+
+    Returns:
+        Shape (4, 4).
+
+    Raises:
+        OutOfRange: It is no rigid motion.
+    """
+    T = as_array(T, (4, 4), name)
+    if np.abs(T[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
+        raise OutOfRange(f"{name}'s last row is {T[3]}, a pose has (0, 0, 0, 1); is it transposed?")
+    as_rotation(T[:3, :3], f"{name}[:3, :3]")
+    return T
+
+
+def _coefficients(theta: float) -> tuple[float, float, float]:
+    """sin(t)/t, (1 - cos t)/t^2 and (t - sin t)/t^3, by their series near zero."""
+    if theta < _SMALL:
+        t2 = theta * theta
+        return 1.0 - t2 / 6.0, 0.5 - t2 / 24.0, 1.0 / 6.0 - t2 / 120.0
+    s, c = sin(theta), cos(theta)
+    return s / theta, (1.0 - c) / theta**2, (theta - s) / theta**3
