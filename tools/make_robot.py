@@ -96,9 +96,7 @@ def main() -> None:
     kept = sum(len(m.faces) for *_, m in each(coarse)), sum(len(m.faces) for *_, m in each(fine))
     size = sum(f.stat().st_size for f in (DATA / "meshes").iterdir()) / 1e6
     robot = (DATA / "viewer/robot.js").stat().st_size / 1e6
-    print(
-        f"{len(pieces)} pieces, {drawn} triangles drawn by the camera; {kept[0]} kept, {size:.2f} MB"
-    )
+    print(f"camera: {len(pieces)} pieces, {drawn} triangles drawn; {kept[0]} kept, {size:.2f} MB")
     print(f"viewer: {kept[1]} triangles kept, {robot:.2f} MB")
 
 

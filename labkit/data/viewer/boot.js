@@ -34,7 +34,7 @@ body[data-jp-theme-light="false"] :is(.lk-embed, .lk-player, .lk-demo) {
 .lk-bar + .lk-bar { padding-top: 0; }
 .lk-range { flex: 1 1 10rem; min-width: 8rem; }
 :is(.lk-player, .lk-demo, .lk-embed) :is(button, select, input[type="number"]) {
-  font: inherit; min-height: 2rem; padding: 0.1rem 0.6rem; color: var(--lk-text); background: var(--lk-face);
+  font: inherit; box-sizing: border-box; height: 2rem; padding: 0.1rem 0.6rem; color: var(--lk-text); background: var(--lk-face);
   border: 1px solid var(--lk-quiet); border-radius: 5px; margin: 0; }
 :is(.lk-player, .lk-demo, .lk-embed) button { cursor: pointer; }
 :is(.lk-player, .lk-demo, .lk-embed) button:hover { border-color: var(--lk-accent); color: var(--lk-accent); }
@@ -46,6 +46,7 @@ body[data-jp-theme-light="false"] :is(.lk-embed, .lk-player, .lk-demo) {
 .lk-icon { min-width: 2rem; padding: 0.1rem 0.3rem; }
 .lk-gap { flex: 0 0 0.6rem; }
 .lk-word, .lk-unit, .lk-speed { color: var(--lk-quiet); }
+.lk-speed { display: flex; align-items: center; gap: 0.4rem; white-space: nowrap; }
 .lk-legend { display: flex; flex-wrap: wrap; gap: 0.1rem 1.2rem; list-style: none; margin: 0; padding: 0.1rem 0.75rem; font-size: 0.85rem; color: var(--lk-text); }
 .lk-legend li { margin: 0; display: flex; align-items: center; gap: 0.4rem; }
 .lk-swatch { display: inline-block; width: 1.8rem; border-top: 3px solid; }
@@ -64,9 +65,15 @@ body[data-jp-theme-light="false"] :is(.lk-embed, .lk-player, .lk-demo) {
 .lk-cursor { stroke: var(--lk-text); stroke-width: 1.5; }
 .lk-tick { fill: var(--lk-quiet); font-size: 11px; }
 .lk-name { fill: var(--lk-text); font-size: 11.5px; }
+.lk-demo fieldset { border: 1px solid var(--lk-edge); border-radius: 6px; margin: 0 0 0.5rem; padding: 0.4rem 0.7rem; min-width: 0; }
+.lk-demo legend { font-size: 0.9rem; font-weight: 600; padding: 0 0.3rem; margin: 0; width: auto; float: none; color: var(--lk-text); }
+.lk-load { height: auto !important; }
+.lk-demo > :is(.lk-readout, .lk-plots) { padding-inline: 0; }
 .lk-dials { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 19rem), 1fr)); gap: 0.35rem 1.2rem; }
 .lk-dial, .lk-choice { display: flex; align-items: center; gap: 0.45rem; min-width: 0; }
 .lk-dial label, .lk-choice label { flex: 0 0 6.2rem; margin: 0; }
+.lk-demo fieldset.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 14rem), 1fr)); }
+fieldset .lk-dial label { flex-basis: 2.6rem; }
 .lk-dial input[type="range"] { flex: 1 1 5rem; min-width: 4rem; }
 .lk-dial .lk-unit { flex: 0 0 3rem; font-size: 0.85rem; white-space: nowrap; }
 .lk-choice select { flex: 1 1 auto; min-width: 0; }

@@ -54,12 +54,15 @@ export function dial({ label, unit = "", stops, min, max, step, value, digits = 
   return { element, get, set, index: () => +range.value };
 }
 
+/** A number with three decimals, never "-0.000". */
+export const fixed = (x) => (Math.round(1000 * x) / 1000 + 0).toFixed(3);
+
 /** A labelled list to choose one of. */
 export function choice({ label, values, value, onchange }) {
   const id = unique("choice");
   const select = h("select", { id, onchange: () => onchange?.(select.value) },
     values.map((v) => h("option", { value: v }, v)));
-  if (value !== undefined) select.value = value;
+  if (value != null) select.value = value;
   const element = h("div", { class: "lk-choice" }, h("label", { for: id }, label), select);
   return { element, get: () => select.value, index: () => select.selectedIndex, set: (v) => { select.value = v; } };
 }

@@ -1,18 +1,15 @@
 // Chooses among runs that were recorded on a grid of gains and shows the one that was chosen.
 import { Player } from "./player.js";
 import { choice, dial, h } from "./dom.js";
+import { nearest } from "./grid.js";
 
-/** The recorded key nearest to the wanted grid indices, by steps on the grid. */
-export function nearest(keys, wanted) {
-  const far = (key) => key.split("-").reduce((sum, k, i) => sum + (i < 2 ? 100 : 1) * Math.abs(k - wanted[i]), 0);
-  return keys.reduce((best, key) => (far(key) < far(best) ? key : best), keys[0]);
-}
+const isWords = ({ values }) => typeof values[0] === "string";
 
 export class Explorer {
   /** index: {dials: [{name, label, unit, values}], runs: {"0-1-2": url or motion}, facts: {key: text}} */
   constructor(host, index, robot, load) {
     Object.assign(this, { host, index, robot, load });
-    this.controls = index.dials.map((d) => (typeof d.values[0] === "string"
+    this.controls = index.dials.map((d) => (isWords(d)
       ? choice({ label: d.label, values: d.values, value: d.value, onchange: () => this.change() })
       : dial({ label: d.label, unit: d.unit, stops: d.values, value: d.value, digits: 4, oninput: () => this.change() })));
     this.note = h("p", { class: "lk-recorded", role: "status" });
@@ -29,7 +26,7 @@ export class Explorer {
 
   async show() {
     const wanted = this.controls.map((c) => c.index());
-    const key = nearest(Object.keys(this.index.runs), wanted);
+    const key = nearest(Object.keys(this.index.runs), wanted, this.index.dials.map(isWords));
     const run = this.index.runs[key];
     const motion = typeof run === "string" ? await this.load(key, run) : run;
     if (wanted.some((k, i) => k !== this.controls[i].index())) return; // moved on meanwhile

@@ -3,7 +3,7 @@ import { Body } from "./body.js";
 import { ARM, NEUTRAL, bodyJacobian, frames, manipulability, posture, tip, tipJacobian } from "./kinematics.js";
 import { arrow, axes } from "./marks.js";
 import { Stage } from "./stage.js";
-import { choice, dial, h } from "./dom.js";
+import { choice, dial, fixed, h } from "./dom.js";
 import { toEuler } from "./so3.js";
 
 const ROWS = ["vx", "vy", "vz", "ωx", "ωy", "ωz"];
@@ -63,12 +63,12 @@ export class JacobianDemo {
     }
     const shown = this.frame.index() ? bodyJacobian(this.robot, this.side, q) : columns;
     const w = manipulability(columns);
-    this.words.textContent = `Tip at x ${p[0].toFixed(3)}, y ${p[1].toFixed(3)}, z ${p[2].toFixed(3)} m; roll, pitch, yaw ${toEuler(R).map((a) => a.toFixed(2)).join(", ")} rad. Manipulability ${w.toFixed(4)}${w < 0.005 ? ": close to a singularity." : "."}`;
+    this.words.textContent = `Tip at x ${fixed(p[0])}, y ${fixed(p[1])}, z ${fixed(p[2])} m; roll, pitch, yaw ${toEuler(R).map((a) => a.toFixed(2)).join(", ")} rad. Manipulability ${w.toFixed(4)}${w < 0.005 ? ": close to a singularity." : "."}`;
     this.table.replaceChildren(
       h("caption", {}, `Jacobian, ${this.frame.get()} axes: twist of the tip per 1 rad/s of each joint`),
       h("thead", {}, h("tr", {}, h("td"), ARM.map((name, j) => h("th", { scope: "col", "aria-current": j === k && "true" }, name)))),
       h("tbody", {}, ROWS.map((row, i) => h("tr", {}, h("th", { scope: "row" }, row),
-        shown.map((c, j) => h("td", { class: j === k && "lk-chosen" }, (c[i] + 0).toFixed(3)))))));
+        shown.map((c, j) => h("td", { class: j === k && "lk-chosen" }, fixed(c[i])))))));
   }
 
   dispose() {

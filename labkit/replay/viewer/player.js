@@ -48,7 +48,7 @@ export class Player {
     const speed = h("select", { id, onchange: () => { this.speed = +speed.value; } },
       SPEEDS.map((s) => h("option", { value: s, selected: s === 1 }, `${s} ×`)));
     return h("div", { class: "lk-bar" }, this.button, this.range, this.number, h("span", { class: "lk-unit" }, "s"),
-      h("label", { class: "lk-speed", for: id }, "Speed"), speed);
+      h("span", { class: "lk-speed" }, h("label", { for: id }, "Speed"), speed));
   }
 
   viewbar() {

@@ -2,13 +2,13 @@
 import { h, svg, unique } from "./dom.js";
 
 export const DASHES = ["", "7 3", "2 3", "9 3 2 3", "12 4", "5 2 1 2 1 2", "1 4"];
-const HEIGHT = 190, LEFT = 52, TOP = 12, BOTTOM = 30;
+const HEIGHT = 196, LEFT = 46, TOP = 8, BOTTOM = 36;
 
 /** Round values for an axis from low to high. */
 export function ticks(low, high, wanted = 4) {
-  const rough = (high - low) / wanted || 1;
-  const base = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((m) => m * base).find((s) => s >= rough * 0.999);
+  const base = 10 ** Math.floor(Math.log10((high - low) / wanted || 1));
+  const miss = (step) => Math.abs((high - low) / step - wanted);
+  const step = [1, 2, 5, 10].map((m) => m * base).reduce((a, b) => (miss(b) < miss(a) ? b : a));
   const found = [];
   for (let v = Math.ceil(low / step - 1e-9) * step; v <= high + step * 1e-9; v += step) found.push(+v.toPrecision(10));
   return found;
@@ -47,7 +47,7 @@ export class Plot {
     const width = this.element.clientWidth;
     if (!width) return;
     const longest = Math.max(...this.series.map((s) => s.name.length));
-    const right = Math.min(24 + 6.6 * longest, 0.34 * width);
+    const right = this.series.length < 2 ? 12 : Math.min(24 + 6.6 * longest, 0.34 * width);
     const wide = this.wide = Math.max(60, width - LEFT - right);
     const tall = HEIGHT - TOP - BOTTOM;
     let low = this.zero ? 0 : Infinity, high = -Infinity;
@@ -68,7 +68,7 @@ export class Plot {
       parts.push(svg("line", { class: "lk-gridline", x1: px(t), x2: px(t), y1: TOP + tall, y2: TOP + tall + 4 }),
         svg("text", { class: "lk-tick", x: px(t), y: TOP + tall + 17, "text-anchor": "middle" }, String(t)));
     }
-    parts.push(svg("text", { class: "lk-tick", x: LEFT + wide, y: HEIGHT - 1, "text-anchor": "end" }, this.xName));
+    parts.push(svg("text", { class: "lk-tick", x: LEFT + wide, y: HEIGHT - 3, "text-anchor": "end" }, this.xName));
     const names = this.series.map((s, k) => ({ k, s, y: py(s.values.at(-1)) })).sort((a, b) => a.y - b.y);
     names.forEach((n, i) => { if (i) n.y = Math.max(n.y, names[i - 1].y + 14); });
     const over = Math.max(0, (names.at(-1)?.y ?? 0) - (TOP + tall));
@@ -79,7 +79,7 @@ export class Plot {
         class: "lk-line", points, "stroke-dasharray": dash ?? DASHES[k % DASHES.length],
         style: `stroke: ${colour ?? `var(--lk-line-${k % 7})`}; stroke-width: ${thick ?? 1.8}` }));
     });
-    for (const { s, y } of names) {
+    for (const { s, y } of names.length > 1 ? names : []) {
       const from = py(s.values.at(-1));
       parts.push(svg("path", { class: "lk-leader", d: `M${LEFT + wide + 1},${from} L${LEFT + wide + 8},${y}` }),
         svg("text", { class: "lk-name", x: LEFT + wide + 11, y: y + 4 }, s.name));

@@ -3,14 +3,15 @@
 /** Rows (N, k) of a channel {step, width, data}; null stays null. */
 export function unpack(channel) {
   if (!channel) return null;
-  const { step, width, data } = channel;
+  const { step, width, order, data } = channel;
   const count = data.length / width;
   const rows = Array.from({ length: count }, () => new Array(width));
   for (let k = 0; k < width; k++) {
-    let whole = 0;
+    const sums = new Array(order + 1).fill(0); // sums[order] adds up differences of differences
     for (let i = 0; i < count; i++) {
-      whole += data[k * count + i];
-      rows[i][k] = whole * step;
+      sums[0] = data[k * count + i];
+      for (let n = 1; n <= order; n++) sums[n] += sums[n - 1];
+      rows[i][k] = sums[order] * step;
     }
   }
   return rows;

@@ -1,5 +1,5 @@
 // Live demo: the error between two orientations by the logarithm, and by subtracting Euler angles.
-import { dial, h } from "./dom.js";
+import { dial, fixed, h } from "./dom.js";
 import { apply, fromEuler, log, multiply, norm, subtract, toEuler, transpose } from "./so3.js";
 
 const ANGLES = ["roll", "pitch", "yaw"];
@@ -35,7 +35,7 @@ export class RotationDemo {
     const aligned = found.log.reduce((sum, x, i) => sum + x * found.euler[i], 0) / (norm(found.log) * norm(found.euler) || 1);
     const off = (Math.acos(Math.min(1, Math.max(-1, aligned))) * 180) / Math.PI;
     this.words.textContent = `The orientations are ${found.angle.toFixed(3)} rad apart. Subtracting Euler angles says ${norm(found.euler).toFixed(3)} and pushes ${off.toFixed(0)}° away from the shortest way.`;
-    const row = (name, v) => h("tr", {}, h("th", { scope: "row" }, name), v.map((x) => h("td", {}, x.toFixed(3))), h("td", {}, norm(v).toFixed(3)));
+    const row = (name, v) => h("tr", {}, h("th", { scope: "row" }, name), v.map((x) => h("td", {}, fixed(x))), h("td", {}, norm(v).toFixed(3)));
     this.table.replaceChildren(
       h("caption", {}, "Error = target − actual, as a rotation vector in base axes [rad]"),
       h("thead", {}, h("tr", {}, ["", "x / roll", "y / pitch", "z / yaw", "length"].map((n, i) => h(i ? "th" : "td", i ? { scope: "col" } : {}, n)))),

@@ -1,6 +1,6 @@
 // Live demo of the time scalings: the same way in the same time, four shapes.
 import { Plot } from "./plots.js";
-import { choice, dial, h } from "./dom.js";
+import { choice, dial, fixed, h } from "./dom.js";
 import { profile, trapezoid, trapezoidAcceleration } from "./scaling.js";
 
 const NAMES = ["bang-bang", "trapezoid", "cubic", "quintic"];
@@ -12,7 +12,7 @@ export class ScalingDemo {
     const redraw = () => this.draw();
     this.length = dial({ label: "Length", unit: "m", min: 0.05, max: 1, step: 0.05, value: 0.4, oninput: redraw });
     this.duration = dial({ label: "Duration", unit: "s", min: 0.5, max: 8, step: 0.1, value: 2, oninput: redraw });
-    this.cruise = dial({ label: "Cruise speed", unit: "of peak", min: 0.02, max: 0.98, step: 0.02, value: 0.5, oninput: redraw });
+    this.cruise = dial({ label: "Cruising", unit: "of time", min: 0, max: 0.96, step: 0.02, value: 0.34, oninput: redraw });
     this.bold = choice({ label: "Emphasise", values: NAMES, value: "quintic", onchange: redraw });
     this.time = dial({ label: "Time", unit: "s", min: 0, max: 2, step: 0.01, value: 1, digits: 2, oninput: () => this.mark() });
     const plot = (title) => new Plot({ title, series: [], x: [0, 1], scrub: (t) => { this.time.set(t); this.mark(); } });
@@ -31,7 +31,7 @@ export class ScalingDemo {
   sample(name, t) {
     const [d, T] = [this.length.get(), this.duration.get()];
     if (name !== "trapezoid") return profile(name, T, t);
-    const v = (d / T) * (1 + this.cruise.get()); // between the mean speed and bang-bang's peak
+    const v = (2 * d) / (T * (1 + this.cruise.get())); // no cruising at all is bang-bang
     return trapezoid(d, v, trapezoidAcceleration(d, v, T), t);
   }
 
@@ -50,7 +50,7 @@ export class ScalingDemo {
   mark() {
     const [t, d] = [this.time.get(), this.length.get()];
     this.plots.forEach((p) => p.time(t));
-    const cells = (values) => values.map((v) => h("td", {}, v.toFixed(3)));
+    const cells = (values) => values.map((v) => h("td", {}, fixed(v)));
     this.table.replaceChildren(
       h("caption", {}, `At t = ${t.toFixed(2)} s, and the largest values on the way`),
       h("thead", {}, h("tr", {}, ["time scaling", "way [m]", "speed [m/s]", "accel. [m/s²]", "peak speed", "peak accel."].map((n) => h("th", { scope: "col" }, n)))),

@@ -9,14 +9,12 @@ const stages = new Set();
 
 function context() {
   if (renderer !== undefined) return renderer;
-  try {
-    renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "low-power" });
-    renderer.domElement.addEventListener("webglcontextlost", (event) => event.preventDefault());
-    renderer.domElement.addEventListener("webglcontextrestored", () => stages.forEach((s) => s.draw()));
-  } catch {
-    renderer = null;
-  }
-  return renderer;
+  const canvas = document.createElement("canvas");
+  const gl = canvas.getContext("webgl2", { antialias: true, powerPreference: "low-power" });
+  if (!gl) return (renderer = null);
+  canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+  canvas.addEventListener("webglcontextrestored", () => stages.forEach((s) => s.draw()));
+  return (renderer = new THREE.WebGLRenderer({ canvas, context: gl }));
 }
 
 export class Stage {
@@ -105,7 +103,7 @@ export class Stage {
     let last = -Infinity;
     for (const { element, x, y, behind } of spots) {
       last = Math.max(y - 10, last + 22);
-      element.style.transform = `translate(${Math.round(Math.min(x + 14, width - 90))}px, ${Math.round(last)}px)`;
+      element.style.transform = `translate(${Math.round(Math.min(x + 14, width - element.offsetWidth - 4))}px, ${Math.round(last)}px)`;
       element.hidden = behind;
     }
   }
