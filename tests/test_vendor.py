@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-VENDOR = ROOT / "book/_static/vendor"
+VENDOR = ROOT / "book/static/vendor"
 MANIFEST = json.loads((VENDOR / "MANIFEST.json").read_text())
 AGAIN = "run `sh tools/vendor.sh` (node 20, npm) and commit what it writes"
 
@@ -30,7 +30,7 @@ def test_bundle_was_made_from_these_sources():
 
 def test_nothing_unrecorded_lies_among_them():
     here = {str(p.relative_to(ROOT)) for p in VENDOR.rglob("*") if p.is_file()}
-    assert here - set(MANIFEST["files"]) == {"book/_static/vendor/MANIFEST.json"}
+    assert here - set(MANIFEST["files"]) == {"book/static/vendor/MANIFEST.json"}
 
 
 def test_versions_are_exact_and_no_registry_is_named():

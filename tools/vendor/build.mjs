@@ -12,7 +12,8 @@ const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, "../..");
 const source = join(root, "labkit/replay/viewer");
 const viewer = join(root, "labkit/data/viewer");
-const vendor = join(root, "book/_static/vendor");
+// Not book/_static: Jupyter Book 1 would put every script in a folder of that name on every page.
+const vendor = join(root, "book/static/vendor");
 const tests = join(root, "tests/vendor");
 const esbuild = createRequire(join(modules, "x.js"))("esbuild");
 const wanted = JSON.parse(readFileSync(join(here, "package.json"))).dependencies;

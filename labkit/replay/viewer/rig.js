@@ -2,8 +2,8 @@
 import * as THREE from "three";
 
 export const VIEWS = {
-  Front: { azimuth: 0.5, elevation: 0.22, distance: 3.1, target: [0.3, 0, 0.02] },
-  Side: { azimuth: -1.5708, elevation: 0.12, distance: 3.1, target: [0.45, 0, 0.05] },
+  Front: { azimuth: 0.5, elevation: 0.22, distance: 3.1, target: [0.3, 0, -0.02] },
+  Side: { azimuth: 1.5708, elevation: 0.12, distance: 3.2, target: [0.4, 0, -0.1] },
   Top: { azimuth: 0, elevation: 1.5, distance: 3.0, target: [0.5, 0, 0] },
   Hand: { azimuth: 0.6, elevation: 0.3, distance: 1.1, follow: true },
 };
@@ -15,7 +15,7 @@ export class Rig {
     this.listen(canvas);
   }
 
-  /** Go to a named view; on the right-hand side of the robot it is mirrored. */
+  /** Go to a named view; for the right arm it is mirrored. */
   use(name) {
     Object.assign(this, { follow: false }, VIEWS[name]);
     if (name !== "Top") this.azimuth *= this.mirror;
@@ -81,6 +81,7 @@ export class Rig {
       }[e.key] ?? (Object.keys(VIEWS)[e.key - 1] && (() => this.use(Object.keys(VIEWS)[e.key - 1])));
       if (!act) return;
       e.preventDefault();
+      e.stopPropagation();
       act();
     });
   }

@@ -18,6 +18,7 @@ const KINDS = {
 export function mount(host, data, load) {
   dress();
   const made = KINDS[data.kind](host, data, globalThis.labkitRobot, load);
+  made.element.dataset.lmSuppressShortcuts = "true"; // JupyterLab's own keys stay out
   host.labkit = made;
   return made;
 }
