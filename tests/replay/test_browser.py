@@ -316,3 +316,24 @@ def test_the_notebook_front_end_asks_for_its_files_once(chromium):
     assert page.get_attribute("#b .lk-range", "max") == "2"
     assert json.loads(first)["title"] in page.get_attribute("#b .lk-player", "aria-label")
     page.close()
+
+
+def test_the_notebook_front_end_works_in_a_page_without_a_kernel(chromium, visit):
+    """A notebook rendered in the book: boot.js has the files that no kernel can send."""
+    page = visit(chromium, "motion")
+    page.wait_for_selector("[data-ready]")
+    source = (ROOT / "labkit/data/viewer/widget.js").read_text().replace("export default", "return")
+    cdp = page.context.new_cdp_session(page)  # the page's own policy forbids to build code
+    data = json.dumps(swing(2.0, ghosts=0).to_json())
+    cdp.send("Runtime.evaluate", {
+        "awaitPromise": True,
+        "expression": f"""(async () => {{
+            const front = (() => {{ {source} }})();
+            const el = document.createElement("div");
+            el.id = "cell";
+            document.body.prepend(el);
+            const model = {{ get: () => {data}, on() {{}}, off() {{}} }};
+            await front.render({{ model, el }});
+        }})()""",
+    })  # fmt: skip
+    page.wait_for_selector("#cell [data-ready]")

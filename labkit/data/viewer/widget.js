@@ -1,7 +1,8 @@
 // The notebook's front end (anywidget).  Viewer and robot are asked from the kernel once per page,
-// so a saved notebook holds the motion alone.
+// so a saved notebook holds the motion alone.  In the built book there is no kernel: boot.js has them.
 
 function viewer(model) {
+  if (globalThis.labkitLoad) return globalThis.labkitLoad();
   return (globalThis.labkitFiles ??= new Promise((done) => {
     model.on("msg:custom", async (message, buffers) => {
       if (message.kind !== "files") return;

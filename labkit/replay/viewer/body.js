@@ -37,8 +37,9 @@ export class Body {
     this.groups = { base: new THREE.Group() };
     for (const joint of robot.joints) this.groups[joint.name] = new THREE.Group();
     const { geometries, materials } = parts(robot);
-    this.own = ghost && new THREE.MeshStandardMaterial({
-      color: ghost.colour, transparent: true, opacity: 0.38, roughness: 0.8, depthWrite: false });
+    this.own = ghost && new THREE.MeshStandardMaterial({ // set back a few mm: the arm itself stays red
+      color: ghost.colour, transparent: true, opacity: 0.38, roughness: 0.8, depthWrite: false,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 400 });
     for (const piece of robot.pieces) {
       if (ghost && !piece.parent.startsWith(ghost.side)) continue;
       const mesh = new THREE.Mesh(geometries[piece.mesh], this.own ?? materials[robot.meshes[piece.mesh].colour]);

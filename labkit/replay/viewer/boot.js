@@ -23,16 +23,22 @@ async function run(key, url) {
   return globalThis.labkitRuns[url.replace(/^.*\//, "").replace(/\.js$/, "")];
 }
 
+/** The viewer, loaded once; the notebook's widget asks for it too where a page has no kernel. */
+const load = (globalThis.labkitLoad = async () => {
+  await Promise.all([script(`${base}viewer.js`), script(`${base}robot.js`)]);
+  return globalThis.labkitViewer;
+});
+
 async function build(host) {
   if (host.dataset.mounted) return;
   host.dataset.mounted = "1";
   host.querySelector(".lk-load")?.remove();
   const data = JSON.parse(host.querySelector('script[type="application/json"]').textContent);
   try {
-    await Promise.all([script(`${base}viewer.js`), script(`${base}robot.js`)]);
+    const { mount } = await load();
     const place = document.createElement("div");
     host.insertBefore(place, host.querySelector("figcaption"));
-    globalThis.labkitViewer.mount(place, data, run);
+    mount(place, data, run);
     if (place.querySelector(".lk-note")) host.classList.add("lk-flat"); // no WebGL: the picture stays
   } catch (problem) {
     delete host.dataset.mounted; // the picture and the words stay

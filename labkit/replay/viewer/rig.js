@@ -3,7 +3,7 @@ import * as THREE from "three";
 
 export const VIEWS = {
   Front: { azimuth: 0.5, elevation: 0.22, distance: 3.1, target: [0.3, 0, -0.02] },
-  Side: { azimuth: 1.5708, elevation: 0.12, distance: 3.2, target: [0.4, 0, -0.1] },
+  Side: { azimuth: 1.5708, elevation: 0.12, distance: 3.4, target: [0.4, 0, -0.06] },
   Top: { azimuth: 0, elevation: 1.5, distance: 3.0, target: [0.5, 0, 0] },
   Hand: { azimuth: 0.6, elevation: 0.3, distance: 1.1, follow: true },
 };

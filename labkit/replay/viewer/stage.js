@@ -10,11 +10,20 @@ const stages = new Set();
 function context() {
   if (renderer !== undefined) return renderer;
   const canvas = document.createElement("canvas");
-  const gl = canvas.getContext("webgl2", { antialias: true, powerPreference: "low-power" });
+  const gl = canvas.getContext("webgl2", { antialias: hasCard(), powerPreference: "low-power" });
   if (!gl) return (renderer = null);
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => stages.forEach((s) => s.draw()));
   return (renderer = new THREE.WebGLRenderer({ canvas, context: gl }));
+}
+
+/** Smooth edges double the time of a frame where the processor has to draw: only with a card. */
+function hasCard() {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const info = probe?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? probe.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return !/swiftshader|llvmpipe|software/i.test(name);
 }
 
 export class Stage {
