@@ -159,6 +159,20 @@ def test_arrow_keys_turn_the_view(chromium, visit):
     assert page.evaluate(f"{rig}.view") == "Top"
 
 
+def test_lines_follow_the_theme_and_the_view_stays(chromium, visit):
+    page = visit(chromium, "motion")
+    page.wait_for_selector("[data-ready]")
+    player = "document.querySelector('[data-ready]').labkit"
+    colour = f"{player}.marks[1].material.color.getHexString()"
+    page.evaluate(f"{player}.stage.rig.turn(0.3, 0)")
+    before, azimuth = page.evaluate(f"[{colour}, {player}.stage.rig.azimuth]")
+    page.evaluate("document.documentElement.dataset.theme = 'dark'")
+    page.wait_for_timeout(200)
+    assert page.evaluate(colour) != before
+    page.evaluate(f"{player}.show(JSON.stringify({json.dumps(swing(2.0).data())}))")
+    assert page.evaluate(f"{player}.stage.rig.azimuth") == azimuth
+
+
 @pytest.mark.parametrize("reduced", ["no-preference", "reduce"])
 def test_play_waits_for_the_reader_and_honours_reduced_motion(chromium, visit, reduced):
     page = visit(chromium, "motion", reduced_motion=reduced)

@@ -72,6 +72,7 @@ export class Player {
     this.board = board();
     this.stage.scene.add(this.body.root, this.target, this.board);
     this.stage.drawn = () => { this.host.dataset.ready = "1"; };
+    this.stage.themed = () => { this.dress(); this.arrange(); };
   }
 
   /** Show a motion (again). */
@@ -111,8 +112,11 @@ export class Player {
       this.marks.push(line(tips, { colour: GHOSTS[k % GHOSTS.length], width: 2.5, dash: 0.006, gap: 0.008 * (k + 1) }));
     }
     stage.scene.add(...this.marks, ...this.ghosts.map(({ body }) => body.root));
-    stage.rig.mirror = motion.side === "left" ? 1 : -1;
-    stage.rig.use(stage.rig.view);
+    const mirror = motion.side === "left" ? 1 : -1;
+    if (stage.rig.mirror !== mirror) { // else the reader's own view stays
+      stage.rig.mirror = mirror;
+      stage.rig.use(stage.rig.view);
+    }
     if (this.ghosts.length) {
       stage.label(motion.label, () => at(motion, this.tips, this.time));
       for (const { name, tips } of this.ghosts) stage.label(name, () => at(motion, tips, this.time));

@@ -49,7 +49,7 @@ export class Stage {
     this.watch = [new ResizeObserver(() => this.draw()), new IntersectionObserver(([entry]) => {
       this.visible = entry.isIntersecting;
       this.draw();
-    }), new MutationObserver(() => this.draw())];
+    }), new MutationObserver(() => { this.themed?.(); this.draw(); })];
     this.watch[0].observe(this.canvas);
     this.watch[1].observe(this.canvas);
     const theme = { attributeFilter: ["data-theme", "data-jp-theme-light"] };
