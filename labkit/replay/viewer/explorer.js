@@ -28,7 +28,13 @@ export class Explorer {
     const wanted = this.controls.map((c) => c.index());
     const key = nearest(Object.keys(this.index.runs), wanted, this.index.dials.map(isWords));
     const run = this.index.runs[key];
-    const motion = typeof run === "string" ? await this.load(key, run) : run;
+    let motion;
+    try {
+      motion = typeof run === "string" ? await this.load(key, run) : run;
+    } catch {
+      this.note.textContent = `The recorded run ${run} is missing beside this page.`;
+      return;
+    }
     if (wanted.some((k, i) => k !== this.controls[i].index())) return; // moved on meanwhile
     const words = key.split("-").map((k, i) => {
       const { label, unit, values } = this.index.dials[i];
