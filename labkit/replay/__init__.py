@@ -1,0 +1,20 @@
+"""A run made visible: in the book's pages and in the notebook, by one viewer."""
+
+from __future__ import annotations
+
+from .motion import Motion
+from .page import Dial, Explorer, demo_html, explorer_html, motion_html, run_files, shared_files
+from .widget import demo, show
+
+__all__ = [
+    "Dial",
+    "Explorer",
+    "Motion",
+    "demo",
+    "demo_html",
+    "explorer_html",
+    "motion_html",
+    "run_files",
+    "shared_files",
+    "show",
+]

@@ -1,0 +1,264 @@
+"""A motion of one arm as data: small enough for a page, described in words from its numbers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
+STEPS = {  # how fine each channel is kept
+    "q": 1e-4,  # rad
+    "target": 1e-4,  # m
+    "target_quaternion": 1e-4,
+    "board": 1e-4,  # m
+    "board_quaternion": 1e-4,
+    "path": 1e-4,  # m
+    "error": 1e-5,  # m or rad
+    "tau": 1e-2,  # N m
+}
+LIMIT = 40_000  # bytes that a page spends on one motion
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """What one arm did, to be seen again.
+
+    Attributes:
+        side: "left" or "right".
+        t: Times, shape (N,), increasing, in [s].
+        q: Joint angles s0 to w2, shape (N, 7), in [rad].
+        title: A few words; the heading and the name for assistive technology.
+        label: Name of this arm in legend and plots.
+        target_position: Where the target was, shape (N, 3), in [m], in the robot's base.
+        target_rotation: How it was turned, shape (N, 3, 3).
+        board_position: Where the tag's board was, shape (N, 3), in [m].
+        board_rotation: How it was turned, shape (N, 3, 3), the tag facing its own +z.
+        path: Points of the desired path, shape (K, 3), in [m].
+        error: A tracking error over time, shape (N,), in `error_unit`.
+        error_name: What that error is.
+        error_unit: "m" (shown in mm) or "rad".
+        tau: Joint torques, shape (N, 7), in [N m].
+        ghosts: Other arms' angles by name, each of shape (N, 7), in [rad].
+    """
+
+    side: str
+    t: Array
+    q: Array
+    title: str = "Motion of the arm"
+    label: str = "arm"
+    target_position: Array | None = None
+    target_rotation: Array | None = None
+    board_position: Array | None = None
+    board_rotation: Array | None = None
+    path: Array | None = None
+    error: Array | None = None
+    error_name: str = "Tip error"
+    error_unit: str = "m"
+    tau: Array | None = None
+    ghosts: Mapping[str, Array] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.side not in ("left", "right"):
+            raise ValueError(f"side is 'left' or 'right', not {self.side!r}.")
+        if self.error_unit not in ("m", "rad"):
+            raise ValueError(f"error_unit is 'm' or 'rad', not {self.error_unit!r}.")
+        n = np.shape(self.t)[0] if np.ndim(self.t) else 0
+        if n < 2:
+            raise ValueError("A motion needs at least two times.")
+        shapes: dict[str, tuple[int, ...]] = {
+            "t": (n,),
+            "q": (n, 7),
+            "target_position": (n, 3),
+            "target_rotation": (n, 3, 3),
+            "board_position": (n, 3),
+            "board_rotation": (n, 3, 3),
+            "path": (0 if self.path is None else len(self.path), 3),
+            "error": (n,),
+            "tau": (n, 7),
+        }
+        for name, shape in shapes.items():
+            value = getattr(self, name)
+            if value is not None:
+                object.__setattr__(self, name, _array(name, value, shape))
+        ghosts = {k: _array(f"ghost {k!r}", v, (n, 7)) for k, v in self.ghosts.items()}
+        object.__setattr__(self, "ghosts", ghosts)
+        if not (np.diff(self.t) > 0).all():
+            raise ValueError("t increases from row to row.")
+
+    def data(self, rate: float = 25.0) -> dict[str, Any]:
+        """The motion as the viewer reads it: resampled evenly, whole numbers, differences in time.
+
+        Args:
+            rate: Samples per second.
+
+        Returns:
+            What `to_json` writes.
+        """
+        count = max(2, round((self.t[-1] - self.t[0]) * rate) + 1)
+        times = np.linspace(self.t[0], self.t[-1], count)
+
+        def even(x: Array | None) -> Array | None:
+            if x is None:
+                return None
+            flat = x.reshape(len(x), -1)
+            return np.column_stack([np.interp(times, self.t, column) for column in flat.T])
+
+        channels = {
+            "q": even(self.q),
+            "target": even(self.target_position),
+            "target_quaternion": even(_quaternions(self.target_rotation)),
+            "board": even(self.board_position),
+            "board_quaternion": even(_quaternions(self.board_rotation)),
+            "path": self.path,
+            "error": even(self.error),
+            "tau": even(self.tau),
+        }
+        packed = {k: pack(v, STEPS[k]) for k, v in channels.items() if v is not None}
+        ghosts = {
+            k: pack(v, STEPS["q"]) for k, q in self.ghosts.items() if (v := even(q)) is not None
+        }
+        return {
+            "kind": "motion",
+            "title": self.title,
+            "alt": self.alt,
+            "label": self.label,
+            "side": self.side,
+            "start": round(float(times[0]), 6),
+            "period": round(float(times[1] - times[0]), 9),
+            "error_name": self.error_name,
+            "error_unit": self.error_unit,
+            **packed,
+            "ghosts": ghosts,
+        }
+
+    def to_json(self, rate: float = 25.0) -> str:
+        """Compact JSON of `data(rate)`; ten seconds with torques and two ghosts fit 40 kB."""
+        return json.dumps(self.data(rate), separators=(",", ":"), ensure_ascii=False)
+
+    @cached_property
+    def size(self) -> int:
+        """Bytes of `to_json()`."""
+        return len(self.to_json().encode())
+
+    @cached_property
+    def alt(self) -> str:
+        """One or two sentences for whoever does not see the picture, with the run's own numbers."""
+        words = f"Baxter's {self.side} arm moves for {self.t[-1] - self.t[0]:.1f} s"
+        if self.error is not None:
+            words += f"; {_lower(self.error_name)} {self._span(self.error)}"
+        if self.ghosts:
+            words += f"; compared with {_listed(list(self.ghosts))}, drawn as see-through arms"
+        return words + "."
+
+    @cached_property
+    def description(self) -> str:
+        """A paragraph: duration, joint travel, error over time, torques, all from the arrays."""
+        travel = np.ptp(self.q, axis=0)
+        most = int(travel.argmax())
+        words = [
+            self.alt,
+            f"Joint {JOINTS[most]} travels farthest, {travel[most]:.2f} rad between"
+            f" {self.q[:, most].min():.2f} and {self.q[:, most].max():.2f} rad.",
+        ]
+        if self.target_position is not None:
+            low, high = self.target_position.min(0), self.target_position.max(0)
+            spans = (
+                f"{axis} from {a:.2f} to {b:.2f} m"
+                for axis, a, b in zip("xyz", low, high, strict=True)
+            )
+            words.append(f"The target moves within {', '.join(spans)}.")
+        if self.error is not None:
+            e, peak = np.abs(self.error), int(np.abs(self.error).argmax())
+            words.append(
+                f"{self.error_name} is {self._amount(e[0])} at the start, largest at"
+                f" t = {self.t[peak]:.2f} s with {self._amount(e[peak])},"
+                f" and {self._amount(e[-1])} at the end."
+            )
+        if self.tau is not None:
+            at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)
+            words.append(
+                f"The largest torque is {self.tau[at, joint]:.1f} N m at joint {JOINTS[joint]},"
+                f" t = {self.t[at]:.2f} s."
+            )
+        return " ".join(words)
+
+    def _amount(self, e: float) -> str:
+        return f"{1000 * e:.1f} mm" if self.error_unit == "m" else f"{e:.3f} rad"
+
+    def _span(self, error: Array) -> str:
+        rms = float(np.sqrt(np.mean(error**2)))
+        return f"{self._amount(rms)} RMS, {self._amount(float(np.abs(error).max()))} at most"
+
+
+def pack(x: Array, step: float) -> dict[str, Any]:
+    """One channel as whole numbers of `step`, differenced down its rows, column after column.
+
+    Rounding comes before differencing, so the error never exceeds step / 2, however long it is.
+    Smooth channels are shortest differenced twice, noisy ones once.
+
+    Args:
+        x: Shape (N, k).
+        step: Size of one unit.
+
+    Returns:
+        {"step", "width": k, "order": 1 or 2, "data": N * k whole numbers}.
+    """
+    whole = np.rint(x / step).astype(np.int64)
+    once = np.diff(whole, axis=0, prepend=0)
+    twice = np.diff(once, axis=0, prepend=0)
+    order, best = min(((1, once), (2, twice)), key=lambda o: int(np.abs(o[1]).sum()))
+    data = best.T.ravel().tolist()
+    return {"step": step, "width": whole.shape[1], "order": order, "data": data}
+
+
+def unpack(channel: Mapping[str, Any]) -> Array:
+    """The inverse of `pack`: shape (N, k)."""
+    whole = np.array(channel["data"], dtype=np.int64).reshape(channel["width"], -1)
+    for _ in range(channel["order"]):
+        whole = np.cumsum(whole, axis=1)
+    return np.asarray(whole.T * float(channel["step"]), dtype=np.float64)
+
+
+def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
+    """A read-only float array of this shape, or a sentence."""
+    array = np.array(value, dtype=np.float64)
+    if array.shape != shape:
+        raise ValueError(f"{name} has shape {array.shape}; it should be {shape}.")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} has values that are not finite.")
+    array.setflags(write=False)
+    return array
+
+
+def _quaternions(R: Array | None) -> Array | None:
+    """Rotations (N, 3, 3) to unit quaternions x y z w (N, 4) without jumps of sign."""
+    if R is None:
+        return None
+    # The largest eigenvector of this matrix is the quaternion; no case distinction.
+    K = np.empty((len(R), 4, 4))
+    K[:, :3, :3] = (
+        R + R.transpose(0, 2, 1) - np.trace(R, axis1=1, axis2=2)[:, None, None] * np.eye(3)
+    )
+    skew = np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], 1)
+    K[:, :3, 3] = K[:, 3, :3] = skew
+    K[:, 3, 3] = np.trace(R, axis1=1, axis2=2)
+    q = np.linalg.eigh(K)[1][:, :, 3]
+    flips = np.where(np.sum(q[1:] * q[:-1], axis=1) < 0, -1.0, 1.0)
+    signs = np.concatenate([[1.0], np.cumprod(flips)])
+    return np.asarray(q * signs[:, None], dtype=np.float64)
+
+
+def _lower(name: str) -> str:
+    return name[:1].lower() + name[1:]
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"

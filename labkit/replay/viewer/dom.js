@@ -1,0 +1,68 @@
+// Small makers of elements.
+
+/** An element: h("button", {class: "x", onclick: f}, "text", child, ...). */
+export function h(tag, attributes = {}, ...children) {
+  return fill(document.createElement(tag), attributes, children);
+}
+
+/** The same for SVG. */
+export function svg(tag, attributes = {}, ...children) {
+  return fill(document.createElementNS("http://www.w3.org/2000/svg", tag), attributes, children);
+}
+
+function fill(element, attributes, children) {
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name === "style") element.style.cssText = value; // through the CSSOM: no inline styles
+    else element.setAttribute(name, value === true ? "" : value);
+  }
+  element.append(...children.flat().filter((c) => c !== null && c !== undefined));
+  return element;
+}
+
+let count = 0;
+/** An id that no other element has. */
+export const unique = (stem) => `lk-${stem}-${++count}`;
+
+export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+/** A slider with a typed number beside it; `stops` holds the only values it can take. */
+export function dial({ label, unit = "", stops, min, max, step, value, digits = 3, oninput }) {
+  const id = unique("dial");
+  const nearest = (x) => stops.reduce((b, s, i) => (Math.abs(s - x) < Math.abs(stops[b] - x) ? i : b), 0);
+  const show = (x) => String(+Number(x).toFixed(digits));
+  const words = (x) => `${show(x)}${unit && ` ${unit}`}`;
+  const range = h("input", {
+    type: "range", id, min: stops ? 0 : min, max: stops ? stops.length - 1 : max, step: stops ? 1 : step });
+  const number = h("input", {
+    type: "number", "aria-label": `${label}, typed`, min: stops ? Math.min(...stops) : min,
+    max: stops ? Math.max(...stops) : max, step: "any", disabled: stops?.length === 1 });
+  range.disabled = stops?.length === 1;
+  const get = () => (stops ? stops[+range.value] : +range.value);
+  const set = (x) => {
+    range.value = stops ? nearest(x) : x;
+    number.value = show(get());
+    range.setAttribute("aria-valuetext", words(get()));
+  };
+  const changed = () => { set(get()); oninput?.(get()); };
+  range.addEventListener("input", changed);
+  number.addEventListener("change", () => { set(Number.isFinite(number.valueAsNumber) ? number.valueAsNumber : get()); oninput?.(get()); });
+  set(value ?? (stops ? stops[0] : min));
+  const element = h("div", { class: "lk-dial" },
+    h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, unit));
+  return { element, get, set, index: () => +range.value };
+}
+
+/** A number with three decimals, never "-0.000". */
+export const fixed = (x) => (Math.round(1000 * x) / 1000 + 0).toFixed(3);
+
+/** A labelled list to choose one of. */
+export function choice({ label, values, value, onchange }) {
+  const id = unique("choice");
+  const select = h("select", { id, onchange: () => onchange?.(select.value) },
+    values.map((v) => h("option", { value: v }, v)));
+  if (value != null) select.value = value;
+  const element = h("div", { class: "lk-choice" }, h("label", { for: id }, label), select);
+  return { element, get: () => select.value, index: () => select.selectedIndex, set: (v) => { select.value = v; } };
+}

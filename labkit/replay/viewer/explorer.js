@@ -1,0 +1,59 @@
+// Chooses among runs that were recorded on a grid of gains and shows the one that was chosen.
+import { Player } from "./player.js";
+import { choice, dial, h } from "./dom.js";
+import { nearest } from "./grid.js";
+
+const isWords = ({ values }) => typeof values[0] === "string";
+
+export class Explorer {
+  /** index: {dials: [{name, label, unit, values}], runs: {"0-1-2": url or motion}, facts: {key: text}} */
+  constructor(host, index, robot, load) {
+    Object.assign(this, { host, index, robot, load });
+    this.controls = index.dials.map((d) => (isWords(d)
+      ? choice({ label: d.label, values: d.values, value: d.value, onchange: () => this.change() })
+      : dial({ label: d.label, unit: d.unit, stops: d.values, value: d.value, digits: 4, oninput: () => this.change() })));
+    this.note = h("p", { class: "lk-recorded", role: "status" });
+    this.element = h("div", { class: "lk-demo lk-explorer", role: "group", "aria-label": index.title },
+      h("div", { class: "lk-dials" }, this.controls.map((c) => c.element)), this.note);
+    host.append(this.element);
+    this.change();
+  }
+
+  change() { // sliders fire quickly: load when they rest
+    clearTimeout(this.due);
+    this.due = setTimeout(() => this.show(), this.player ? 120 : 0);
+  }
+
+  async show() {
+    const wanted = this.controls.map((c) => c.index());
+    const key = nearest(Object.keys(this.index.runs), wanted, this.index.dials.map(isWords));
+    const run = this.index.runs[key];
+    let motion;
+    try {
+      motion = typeof run === "string" ? await this.load(key, run) : run;
+    } catch {
+      this.note.textContent = `The recorded run ${run} is missing beside this page.`;
+      return;
+    }
+    if (wanted.some((k, i) => k !== this.controls[i].index())) return; // moved on meanwhile
+    const words = key.split("-").map((k, i) => {
+      const { label, unit, values } = this.index.dials[i];
+      return typeof values[k] === "string" ? values[k] : `${label} ${values[k]}${unit ? ` ${unit}` : ""}`;
+    }).join(", ");
+    const exact = key === wanted.join("-") ? "" : "This point was not recorded; shown is the nearest that was. ";
+    this.note.replaceChildren(h("span", { class: "lk-badge" }, "recorded"), `${exact}${words}. ${this.index.facts?.[key] ?? ""}`);
+    this.host.dataset.run = key;
+    if (this.player) this.player.show(motion);
+    else {
+      this.player = new Player(this.element, motion, this.robot);
+      this.player.stage.drawn = () => { this.host.dataset.ready = "1"; };
+      if (!this.player.stage.works) this.host.dataset.ready = "1";
+    }
+  }
+
+  dispose() {
+    clearTimeout(this.due);
+    this.player?.dispose();
+    this.element.remove();
+  }
+}

@@ -1,0 +1,251 @@
+// The replay of one motion: the robot, its controls, and plots that share one time cursor.
+import { Body } from "./body.js";
+import { ARM, frames, posture, tip } from "./kinematics.js";
+import { axes, board, dispose, line } from "./marks.js";
+import { DASHES, Plot } from "./plots.js";
+import { at, read } from "./recording.js";
+import { Stage } from "./stage.js";
+import { VIEWS } from "./rig.js";
+import { h, reducedMotion, unique } from "./dom.js";
+
+const GHOSTS = [0x1f77d0, 0xc77700, 0x2a9d66, 0x9a5bc4];
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
+
+export class Player {
+  constructor(host, json, robot) {
+    Object.assign(this, { host, robot, speed: 1, playing: false, plots: [] });
+    this.element = h("div", { class: "lk-player", role: "group" });
+    this.stagebox = h("div", { class: "lk-stage" });
+    this.plotbox = h("div", { class: "lk-plots" });
+    this.legend = h("ul", { class: "lk-legend", "aria-label": "What is drawn" });
+    this.readout = h("p", { class: "lk-readout" });
+    this.status = h("p", { class: "lk-hidden", role: "status" });
+    this.element.append(this.stagebox, this.timebar(), this.viewbar(), this.legend, this.readout, this.status, this.plotbox);
+    host.append(this.element);
+    this.stage = new Stage(this.stagebox, "Baxter");
+    if (this.stage.works) this.furnish();
+    else this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The picture, the plots and the numbers still follow the time slider."));
+    this.show(json);
+  }
+
+  timebar() {
+    this.button = h("button", { type: "button", class: "lk-play", onclick: () => this.play(!this.playing) }, "Play");
+    this.range = h("input", { type: "range", class: "lk-range", "aria-label": "Time", min: 0, step: "any",
+      oninput: () => { this.play(false); this.seek(+this.range.value); }, onchange: () => this.speak() });
+    this.range.addEventListener("keydown", (e) => { // a key moves one recorded sample, Page keys a tenth
+      const [one, ten] = [this.motion.period, (this.motion.end - this.motion.start) / 10];
+      const by = { ArrowRight: one, ArrowUp: one, ArrowLeft: -one, ArrowDown: -one, PageUp: ten, PageDown: -ten,
+        Home: -Infinity, End: Infinity }[e.key];
+      if (!by) return;
+      e.preventDefault();
+      this.play(false);
+      this.seek(this.time + by);
+      this.speak();
+    });
+    this.number = h("input", { type: "number", class: "lk-number", "aria-label": "Time in seconds, typed", step: "any",
+      onchange: () => { this.play(false); this.seek(this.number.valueAsNumber || 0); this.speak(); } });
+    const id = unique("speed");
+    const speed = h("select", { id, onchange: () => { this.speed = +speed.value; } },
+      SPEEDS.map((s) => h("option", { value: s, selected: s === 1 }, `${s} ×`)));
+    return h("div", { class: "lk-bar" }, this.button, this.range, this.number, h("span", { class: "lk-unit" }, "s"),
+      h("span", { class: "lk-speed" }, h("label", { for: id }, "Speed"), speed));
+  }
+
+  viewbar() {
+    const views = Object.keys(VIEWS).map((name) => h("button", {
+      type: "button", onclick: () => this.stage.rig?.use(name) }, name));
+    const moves = [
+      ["←", "Turn left", (r) => r.turn(-0.2, 0)], ["→", "Turn right", (r) => r.turn(0.2, 0)],
+      ["↑", "Turn up", (r) => r.turn(0, 0.15)], ["↓", "Turn down", (r) => r.turn(0, -0.15)],
+      ["+", "Zoom in", (r) => r.zoom(0.85)], ["−", "Zoom out", (r) => r.zoom(1 / 0.85)],
+    ].map(([sign, name, act]) => h("button", {
+      type: "button", class: "lk-icon", "aria-label": name, title: name, onclick: () => act(this.stage.rig) }, sign));
+    this.views = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
+      h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, h("span", { class: "lk-gap" }), moves);
+    return this.views;
+  }
+
+  /** What does not depend on the motion. */
+  furnish() {
+    this.body = new Body(this.robot);
+    this.target = axes();
+    this.board = board();
+    this.stage.scene.add(this.body.root, this.target, this.board);
+    this.stage.drawn = () => { this.host.dataset.ready = "1"; };
+    this.stage.themed = () => { this.dress(); this.arrange(); };
+  }
+
+  /** Show a motion (again). */
+  show(json) {
+    this.play(false);
+    const motion = this.motion = read(json);
+    this.tips = motion.q.map((q) => tip(this.robot, motion.side, q).p);
+    this.element.setAttribute("aria-label", `Replay: ${motion.title}`);
+    this.stage.canvas.setAttribute("aria-label", `${motion.title}. ${motion.alt} Arrow keys turn the view, plus and minus zoom, 1 to 4 choose a view.`);
+    for (const input of [this.range, this.number]) Object.assign(input, { min: motion.start, max: motion.end });
+    this.views.hidden = !this.stage.works;
+    if (this.stage.works) this.dress();
+    this.explain();
+    this.plots.forEach((p) => p.dispose());
+    this.plots = this.curves().map((c) => new Plot({
+      ...c, x: motion.time, scrub: (t) => { this.play(false); this.seek(t); } }));
+    this.plotbox.replaceChildren(...this.plots.map((p) => p.element));
+    this.seek(Math.min(Math.max(this.time ?? motion.start, motion.start), motion.end));
+    if (!this.stage.works) this.host.dataset.ready = "1";
+  }
+
+  /** Lines and ghosts of this motion. */
+  dress() {
+    const { motion, stage } = this;
+    this.marks?.forEach((mark) => { stage.scene.remove(mark); dispose(mark); });
+    this.ghosts?.forEach(({ body }) => { stage.scene.remove(body.root); body.dispose(); });
+    stage.overlay.replaceChildren();
+    stage.labels = [];
+    const style = getComputedStyle(this.element);
+    const colour = (name) => style.getPropertyValue(name).trim();
+    this.marks = [line(this.tips, { colour: colour("--lk-trace"), width: 3 })];
+    if (motion.path) this.marks.push(line(motion.path, { colour: colour("--lk-path"), width: 3.5, dash: 0.025, gap: 0.014 }));
+    this.ghosts = Object.entries(motion.ghosts).map(([name, q], k) => ({
+      name, q, k, body: new Body(this.robot, { side: motion.side, colour: GHOSTS[k % GHOSTS.length] }),
+      tips: q.map((row) => tip(this.robot, motion.side, row).p) }));
+    for (const { tips, k } of this.ghosts) {
+      this.marks.push(line(tips, { colour: GHOSTS[k % GHOSTS.length], width: 2.5, dash: 0.006, gap: 0.008 * (k + 1) }));
+    }
+    stage.scene.add(...this.marks, ...this.ghosts.map(({ body }) => body.root));
+    const mirror = motion.side === "left" ? 1 : -1;
+    if (stage.rig.mirror !== mirror) { // else the reader's own view stays
+      stage.rig.mirror = mirror;
+      stage.rig.use(stage.rig.view);
+    }
+    if (this.ghosts.length) {
+      stage.label(motion.label, () => at(motion, this.tips, this.time));
+      for (const { name, tips } of this.ghosts) stage.label(name, () => at(motion, tips, this.time));
+    }
+    this.target.visible = !!motion.target;
+    this.board.visible = !!motion.board;
+  }
+
+  /** The key to lines and arms. */
+  explain() {
+    const { motion } = this;
+    const swatch = (dash, colour) => {
+      const s = h("span", { class: `lk-swatch ${dash}`, "aria-hidden": "true" });
+      s.style.borderTopColor = colour;
+      return s;
+    };
+    const hex = (k) => `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}`;
+    const rows = [["lk-solid", "var(--lk-trace)", `tip of ${motion.label}`]];
+    if (motion.path) rows.push(["lk-dashed", "var(--lk-path)", "desired path"]);
+    Object.keys(motion.ghosts).forEach((name, k) => rows.push(["lk-dotted", hex(k), `${name} (see-through arm)`]));
+    if (motion.target) rows.push([null, null, "target: frame with x, y, z marked by one, two, three rings"]);
+    this.legend.replaceChildren(...rows.map(([dash, colour, text]) => h("li", {}, dash && swatch(dash, colour), text)));
+  }
+
+  /** Series for the plots: error of every arm, torques of the first. */
+  curves() {
+    const { motion } = this;
+    const away = (q) => q.map((row, i) => {
+      const p = tip(this.robot, motion.side, row).p;
+      return Math.hypot(...p.map((x, k) => x - motion.target[i][k]));
+    });
+    const metres = motion.error_unit === "m";
+    const scale = metres ? 1000 : 1;
+    const found = [];
+    const main = motion.error?.map(([e]) => e) ?? (motion.target && away(motion.q));
+    if (main) {
+      const series = [{ name: motion.label, values: main.map((e) => scale * e), colour: "var(--lk-trace)", width: 2.4 }];
+      if (motion.target && metres) Object.entries(motion.ghosts).forEach(([name, q], k) => series.push({
+        name, values: away(q).map((e) => scale * e), dash: DASHES[1 + k], colour: `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}` }));
+      this.error = series[0].values;
+      found.push({ title: `${motion.error_name} [${metres ? "mm" : motion.error_unit}]`, series, zero: Math.min(...main) >= 0 });
+    } else this.error = null;
+    if (motion.tau) found.push({
+      title: "Joint torque [N m]",
+      series: ARM.map((name, k) => ({ name, values: motion.tau.map((row) => row[k]) })) });
+    return found;
+  }
+
+  seek(time) {
+    const { motion } = this;
+    this.time = Math.min(Math.max(time, motion.start), motion.end);
+    if (this.stage.works) this.arrange();
+    this.range.value = this.time;
+    this.range.setAttribute("aria-valuetext", `${this.time.toFixed(2)} seconds`);
+    if (document.activeElement !== this.number || !this.playing) this.number.value = this.time.toFixed(2);
+    this.plots.forEach((p) => p.time(this.time));
+    this.readout.textContent = this.numbers();
+  }
+
+  /** Put arm, ghosts and marks where they are at this time. */
+  arrange() {
+    const { motion } = this;
+    const q = at(motion, motion.q, this.time);
+    this.body.pose(motion.side, q);
+    this.ghosts.forEach((g) => g.body.pose(motion.side, at(motion, g.q, this.time)));
+    for (const [mark, name] of [[this.target, "target"], [this.board, "board"]]) {
+      if (!motion[name]) continue;
+      mark.position.fromArray(at(motion, motion[name], this.time));
+      const turn = motion[`${name}_quaternion`];
+      if (turn) mark.quaternion.fromArray(at(motion, turn, this.time)).normalize();
+    }
+    this.stage.rig.hand = tip(this.robot, motion.side, q).p;
+    this.stage.draw();
+  }
+
+  /** The current numbers as a sentence. */
+  numbers() {
+    const { motion } = this;
+    const words = [`t = ${this.time.toFixed(2)} s`];
+    if (this.error) {
+      const e = at(motion, this.error.map((x) => [x]), this.time)[0];
+      words.push(`error ${motion.error_unit === "m" ? `${e.toFixed(1)} mm` : `${e.toFixed(3)} ${motion.error_unit}`}`);
+    }
+    if (motion.tau) {
+      const tau = at(motion, motion.tau, this.time);
+      const k = tau.reduce((b, x, i) => (Math.abs(x) > Math.abs(tau[b]) ? i : b), 0);
+      words.push(`largest torque ${tau[k].toFixed(1)} N m at ${ARM[k]}`);
+    }
+    return words.join(" · ");
+  }
+
+  /** Tell the numbers to a screen reader: when the reader stops, not at every frame. */
+  speak() {
+    clearTimeout(this.spoken);
+    this.spoken = setTimeout(() => { this.status.textContent = this.numbers(); }, 500);
+  }
+
+  /** Joint positions in the base now, for tests. */
+  joints() {
+    return frames(this.robot, posture(this.motion.side, at(this.motion, this.motion.q, this.time)));
+  }
+
+  play(on) {
+    if (on === this.playing) return;
+    this.playing = on;
+    this.button.textContent = on ? "Pause" : "Play";
+    if (!on) { cancelAnimationFrame(this.tick); this.speak(); return; }
+    if (this.time >= this.motion.end) this.seek(this.motion.start);
+    let last = performance.now();
+    // Reduced motion: play is the reader's own wish, but in still pictures, four a second.
+    let due = 0;
+    const step = (now) => {
+      if (!this.playing) return;
+      if (now >= due) {
+        if (reducedMotion()) due = now + 250;
+        this.seek(this.time + (this.speed * (now - last)) / 1000);
+        last = now;
+      }
+      if (this.time >= this.motion.end) this.play(false);
+      else this.tick = requestAnimationFrame(step);
+    };
+    this.tick = requestAnimationFrame(step);
+  }
+
+  dispose() {
+    this.play(false);
+    clearTimeout(this.spoken);
+    this.plots.forEach((p) => p.dispose());
+    this.stage.dispose();
+    this.element.remove();
+  }
+}

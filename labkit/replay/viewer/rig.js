@@ -1,0 +1,88 @@
+// The camera's stand: turns about a point by mouse, finger or keys; no inertia.
+import * as THREE from "three";
+
+export const VIEWS = {
+  Front: { azimuth: 0.5, elevation: 0.22, distance: 3.1, target: [0.3, 0, -0.02] },
+  Side: { azimuth: 1.5708, elevation: 0.12, distance: 3.4, target: [0.4, 0, -0.06] },
+  Top: { azimuth: 0, elevation: 1.5, distance: 3.0, target: [0.5, 0, 0] },
+  Hand: { azimuth: 0.6, elevation: 0.3, distance: 1.1, follow: true },
+};
+
+export class Rig {
+  constructor(canvas, camera, changed) {
+    Object.assign(this, { camera, changed, hand: [0.7, 0, 0.2], mirror: 1 });
+    this.use("Front");
+    this.listen(canvas);
+  }
+
+  /** Go to a named view; for the right arm it is mirrored. */
+  use(name) {
+    Object.assign(this, { follow: false }, VIEWS[name]);
+    if (name !== "Top") this.azimuth *= this.mirror;
+    this.view = name;
+    this.changed();
+  }
+
+  turn(dx, dy) {
+    this.azimuth -= dx;
+    this.elevation = Math.min(1.55, Math.max(-1.2, this.elevation + dy));
+    this.changed();
+  }
+
+  zoom(factor) {
+    this.distance = Math.min(8, Math.max(0.3, this.distance * factor));
+    this.changed();
+  }
+
+  /** Put the camera where it belongs for this frame. */
+  frame(aspect) {
+    const c = Math.cos(this.elevation);
+    const target = this.follow ? this.hand : this.target;
+    const reach = this.distance * Math.max(1, 1.15 / aspect);
+    this.camera.position.set(
+      target[0] + reach * c * Math.cos(this.azimuth), target[1] + reach * c * Math.sin(this.azimuth),
+      target[2] + reach * Math.sin(this.elevation));
+    this.camera.lookAt(new THREE.Vector3(...target));
+    this.camera.aspect = aspect;
+    this.camera.updateProjectionMatrix();
+    this.camera.updateMatrixWorld();
+  }
+
+  listen(canvas) {
+    const held = new Map(); // pointers down, by id
+    canvas.addEventListener("pointerdown", (e) => {
+      held.set(e.pointerId, [e.clientX, e.clientY]);
+      canvas.setPointerCapture(e.pointerId);
+    });
+    canvas.addEventListener("pointermove", (e) => {
+      const before = held.get(e.pointerId);
+      if (!before) return;
+      if (held.size === 2) {
+        const other = [...held].find(([id]) => id !== e.pointerId)[1];
+        const span = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]);
+        this.zoom(span(before) / Math.max(1, span([e.clientX, e.clientY])));
+      } else this.turn((e.clientX - before[0]) * 0.008, (e.clientY - before[1]) * 0.008);
+      held.set(e.pointerId, [e.clientX, e.clientY]);
+    });
+    for (const name of ["pointerup", "pointercancel"]) {
+      canvas.addEventListener(name, (e) => held.delete(e.pointerId));
+    }
+    canvas.addEventListener("wheel", (e) => { // only when chosen: the page keeps its own scroll
+      if (document.activeElement !== canvas) return;
+      e.preventDefault();
+      this.zoom(Math.exp(e.deltaY * 0.001));
+    }, { passive: false });
+    canvas.addEventListener("keydown", (e) => {
+      if (e.ctrlKey || e.metaKey || e.altKey) return;
+      const act = {
+        ArrowLeft: () => this.turn(-0.1, 0), ArrowRight: () => this.turn(0.1, 0),
+        ArrowUp: () => this.turn(0, 0.1), ArrowDown: () => this.turn(0, -0.1),
+        "+": () => this.zoom(0.9), "=": () => this.zoom(0.9), "-": () => this.zoom(1 / 0.9),
+      }[e.key] ?? (Object.keys(VIEWS)[e.key - 1] && (() => this.use(Object.keys(VIEWS)[e.key - 1])));
+      if (!act) return;
+      e.preventDefault();
+      e.stopPropagation();
+      act();
+    });
+  }
+}

@@ -1,0 +1,125 @@
+// A 3-D view in the page.  All stages share one WebGL context: each frame is drawn by the one
+// renderer and copied to the stage's own 2-D canvas, so any number of viewers fits a page.
+import * as THREE from "three";
+import { Rig } from "./rig.js";
+import { h } from "./dom.js";
+
+let renderer; // undefined: not tried, null: this browser has no WebGL
+const stages = new Set();
+
+function context() {
+  if (renderer !== undefined) return renderer;
+  const canvas = document.createElement("canvas");
+  const gl = canvas.getContext("webgl2", { antialias: hasCard(), powerPreference: "low-power" });
+  if (!gl) return (renderer = null);
+  canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+  canvas.addEventListener("webglcontextrestored", () => stages.forEach((s) => s.draw()));
+  return (renderer = new THREE.WebGLRenderer({ canvas, context: gl }));
+}
+
+/** Smooth edges double the time of a frame where the processor has to draw: only with a card. */
+function hasCard() {
+  const probe = document.createElement("canvas").getContext("webgl2");
+  const info = probe?.getExtension("WEBGL_debug_renderer_info");
+  const name = info ? probe.getParameter(info.UNMASKED_RENDERER_WEBGL) : "";
+  probe?.getExtension("WEBGL_lose_context")?.loseContext();
+  return !/swiftshader|llvmpipe|software/i.test(name);
+}
+
+export class Stage {
+  /** A canvas inside `host`; `this.works` is false without WebGL. */
+  constructor(host, label) {
+    this.works = context() !== null;
+    this.canvas = h("canvas", {
+      class: "lk-canvas", tabindex: 0, role: "application", "aria-roledescription": "3-D view",
+      "aria-label": `${label}. Arrow keys turn the view, plus and minus zoom, 1 to 4 choose a view.` });
+    this.overlay = h("div", { class: "lk-overlay", "aria-hidden": "true" });
+    this.host = host;
+    if (!this.works) return;
+    host.append(this.canvas, this.overlay);
+    this.paper = this.canvas.getContext("2d");
+    this.scene = new THREE.Scene();
+    this.camera = new THREE.PerspectiveCamera(35, 4 / 3, 0.05, 30);
+    this.camera.up.set(0, 0, 1);
+    this.rig = new Rig(this.canvas, this.camera, () => this.draw());
+    this.light();
+    this.visible = true;
+    this.waiting = 0;
+    this.labels = [];
+    this.watch = [new ResizeObserver(() => this.draw()), new IntersectionObserver(([entry]) => {
+      this.visible = entry.isIntersecting;
+      this.draw();
+    }), new MutationObserver(() => { this.themed?.(); this.draw(); })];
+    this.watch[0].observe(this.canvas);
+    this.watch[1].observe(this.canvas);
+    const theme = { attributeFilter: ["data-theme", "data-jp-theme-light"] };
+    this.watch[2].observe(document.documentElement, theme);
+    this.watch[2].observe(document.body, theme);
+    stages.add(this);
+  }
+
+  light() {
+    const key = new THREE.DirectionalLight(0xffffff, 2.2);
+    key.position.set(2.5, -1.5, 4);
+    const rim = new THREE.DirectionalLight(0xdfe8ff, 1.3);
+    rim.position.set(-3, 2, 2.5);
+    this.floor = new THREE.GridHelper(4, 16);
+    this.floor.material.vertexColors = false;
+    this.floor.rotation.x = Math.PI / 2;
+    this.floor.position.z = -0.925;
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9ca3, 2.4), key, rim, this.floor);
+  }
+
+  /** A text that follows a point; `place()` gives [x, y, z]. */
+  label(text, place) {
+    const element = h("span", { class: "lk-tag" }, text);
+    this.overlay.append(element);
+    this.labels.push({ element, place });
+  }
+
+  /** Ask for a frame; many calls make one. */
+  draw() {
+    if (!this.works || !this.visible || this.waiting) return;
+    this.waiting = requestAnimationFrame(() => { this.waiting = 0; this.paint(); });
+  }
+
+  paint() {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!width || !height) return;
+    const fine = Math.min(2, devicePixelRatio);
+    const [w, t] = [Math.round(width * fine), Math.round(height * fine)];
+    if (this.canvas.width !== w || this.canvas.height !== t) Object.assign(this.canvas, { width: w, height: t });
+    const style = getComputedStyle(this.canvas);
+    const colour = (name) => new THREE.Color(style.getPropertyValue(name).trim() || "#888");
+    this.floor.material.color = colour("--lk-grid");
+    renderer.setClearColor(colour("--lk-sky"));
+    renderer.setPixelRatio(1);
+    const size = renderer.getSize(new THREE.Vector2());
+    if (size.x !== w || size.y !== t) renderer.setSize(w, t, false);
+    this.rig.frame(width / height);
+    renderer.render(this.scene, this.camera);
+    this.paper.drawImage(renderer.domElement, 0, 0);
+    this.settle(width, height);
+    this.drawn?.();
+  }
+
+  /** Lay the labels over their points, pushed apart where they would overlap. */
+  settle(width, height) {
+    const spots = this.labels.map(({ element, place }) => {
+      const p = new THREE.Vector3(...place()).project(this.camera);
+      return { element, x: (p.x + 1) * width / 2, y: (1 - p.y) * height / 2, behind: p.z > 1 };
+    }).sort((a, b) => a.y - b.y);
+    let last = -Infinity;
+    for (const { element, x, y, behind } of spots) {
+      last = Math.max(y - 10, last + 22);
+      element.style.transform = `translate(${Math.round(Math.min(x + 14, width - element.offsetWidth - 4))}px, ${Math.round(last)}px)`;
+      element.hidden = behind;
+    }
+  }
+
+  dispose() {
+    cancelAnimationFrame(this.waiting);
+    this.watch?.forEach((w) => w.disconnect());
+    stages.delete(this);
+  }
+}

@@ -1,0 +1,66 @@
+"""The same viewer in a notebook, as an anywidget."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from typing import Any
+
+from .motion import Motion
+from .page import VIEWER
+
+
+def show(motion: Motion, rate: float = 25.0) -> Any:
+    """A replay to put last in a cell.
+
+    Args:
+        motion: What to show.
+        rate: Samples per second.
+
+    Returns:
+        A widget; assign `.motion = another` to change what it shows.
+    """
+    return _widget_class()(data=motion.to_json(rate))
+
+
+def demo(name: str, side: str = "left") -> Any:
+    """One of the live demos, "scaling", "jacobian" or "rotation", as a widget."""
+    return _widget_class()(
+        data=json.dumps({"kind": name, "side": side, "alt": f"Live demo: {name}"})
+    )
+
+
+@cache
+def _widget_class() -> type[Any]:
+    """The widget's class; anywidget is imported only when a notebook asks for one."""
+    import anywidget
+    import traitlets
+
+    class Replay(anywidget.AnyWidget):
+        """Shows one motion; viewer and robot go to the page once, not into the notebook."""
+
+        _esm = (VIEWER / "widget.js").read_text(encoding="utf-8")
+        data = traitlets.Unicode().tag(sync=True)
+
+        def __init__(self, **traits: Any) -> None:
+            super().__init__(**traits)
+            self.on_msg(_answer)
+
+        @property
+        def motion(self) -> dict[str, Any]:
+            """What is shown, as the viewer reads it."""
+            shown: dict[str, Any] = json.loads(self.data)
+            return shown
+
+        @motion.setter
+        def motion(self, motion: Motion) -> None:
+            self.data = motion.to_json()
+
+    return Replay
+
+
+def _answer(widget: Any, message: Any, _buffers: Any) -> None:
+    """Send the shared files to the page that asks for them."""
+    if message.get("kind") == "files":
+        files = [(VIEWER / name).read_bytes() for name in ("viewer.js", "robot.js")]
+        widget.send({"kind": "files"}, buffers=files)

@@ -1,0 +1,155 @@
+"""What the browser computes equals what Pinocchio and NumPy compute."""
+
+import site
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from numpy.polynomial import Polynomial
+from samples import swing
+
+from labkit.replay.motion import unpack
+
+ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
+SHARE = Path(site.getsitepackages()[0]) / "cmeel.prefix/share"
+
+
+@pytest.fixture(scope="module")
+def baxter():
+    return pin.buildModelFromUrdf(
+        str(SHARE / "example-robot-data/robots/baxter_description/urdf/baxter.urdf")
+    )
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_kinematics_equal_pinocchio(node, baxter, side):
+    rng = np.random.default_rng(7)
+    index = [baxter.idx_qs[baxter.getJointId(f"{side}_{j}")] for j in ARM]
+    low, high = baxter.lowerPositionLimit[index], baxter.upperPositionLimit[index]
+    angles = rng.uniform(low, high, (100, 7))
+    found = node(
+        f"x.map((q) => ({{...kinematics.tip(robot, '{side}', q),"
+        f" J: kinematics.tipJacobian(robot, '{side}', q),"
+        f" B: kinematics.bodyJacobian(robot, '{side}', q),"
+        f" w: kinematics.manipulability(kinematics.tipJacobian(robot, '{side}', q))}}))",
+        angles.tolist(),
+    )
+    data, frame = baxter.createData(), baxter.getFrameId(f"{side}_gripper")
+    columns = [baxter.idx_vs[baxter.getJointId(f"{side}_{j}")] for j in ARM]
+    for q7, js in zip(angles, found, strict=True):
+        q = pin.neutral(baxter)
+        q[index] = q7
+        world = pin.computeFrameJacobian(baxter, data, q, frame, pin.LOCAL_WORLD_ALIGNED)[
+            :, columns
+        ]
+        body = pin.computeFrameJacobian(baxter, data, q, frame, pin.LOCAL)[:, columns]
+        pin.framesForwardKinematics(baxter, data, q)
+        T = data.oMf[frame]
+        np.testing.assert_allclose(np.reshape(js["R"], (3, 3)), T.rotation, atol=1e-6)
+        np.testing.assert_allclose(js["p"], T.translation, atol=1e-6)
+        np.testing.assert_allclose(np.transpose(js["J"]), world, atol=1e-6)
+        np.testing.assert_allclose(np.transpose(js["B"]), body, atol=1e-6)
+        measure = np.sqrt(np.linalg.det(world @ world.T))
+        assert js["w"] == pytest.approx(measure, abs=1e-6)
+
+
+def test_every_joint_frame_equals_pinocchio(node, baxter):
+    rng = np.random.default_rng(8)
+    q, data = pin.neutral(baxter), baxter.createData()
+    tree = node("robot.joints")
+    assert len(tree) == 15
+    angles = {j["name"]: rng.uniform(j["lower"], j["upper"]) for j in tree}
+    for name, angle in angles.items():
+        q[baxter.idx_qs[baxter.getJointId(name)]] = angle
+    pin.forwardKinematics(baxter, data, q)
+    for name, frame in node("kinematics.frames(robot, x)", angles).items():
+        if name != "base":
+            T = data.oMi[baxter.getJointId(name)]
+            np.testing.assert_allclose(frame["p"], T.translation, atol=1e-6)
+            np.testing.assert_allclose(np.reshape(frame["R"], (3, 3)), T.rotation, atol=1e-6)
+
+
+def test_logarithm_equals_pinocchio(node):
+    rng = np.random.default_rng(9)
+    axes = rng.normal(size=(60, 3))
+    axes /= np.linalg.norm(axes, axis=1)[:, None]
+    small = np.array([0, 1e-9, 1e-6, 1e-3])
+    nearly_half = np.pi - np.array([1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8])
+    lengths = np.concatenate([rng.uniform(0, np.pi, 50), small, nearly_half])
+    vectors = axes * lengths[:, None]
+    rotations = [pin.exp3(v).ravel().tolist() for v in vectors]
+    np.testing.assert_allclose(node("x.map(so3.log)", rotations), vectors, atol=1e-6)
+
+
+def test_euler_angles_equal_pinocchio(node):
+    rng = np.random.default_rng(10)
+    angles = rng.uniform([-np.pi, -1.5, -np.pi], [np.pi, 1.5, np.pi], (50, 3))
+    rotations = node("x.map(so3.fromEuler)", angles.tolist())
+    for rpy, R in zip(angles, rotations, strict=True):
+        np.testing.assert_allclose(np.reshape(R, (3, 3)), pin.rpy.rpyToMatrix(rpy), atol=1e-12)
+    np.testing.assert_allclose(node("x.map(so3.toEuler)", rotations), angles, atol=1e-9)
+
+
+def test_orientation_error_turns_actual_into_target(node):
+    rng = np.random.default_rng(11)
+    for target, actual in rng.uniform(-1.4, 1.4, (20, 2, 3)):
+        found = node("rotation_demo.errors(...x)", [target.tolist(), actual.tolist()])
+        Rd, Ra = (pin.rpy.rpyToMatrix(a) for a in (target, actual))
+        np.testing.assert_allclose(pin.exp3(np.array(found["log"])) @ Ra, Rd, atol=1e-9)
+        assert found["angle"] == pytest.approx(np.linalg.norm(found["log"]))
+
+
+POLYNOMIALS = {"cubic": Polynomial([0, 0, 3, -2]), "quintic": Polynomial([0, 0, 0, 10, -15, 6])}
+
+
+@pytest.mark.parametrize("name", POLYNOMIALS)
+def test_polynomial_scalings_equal_numpy(node, name):
+    T, p = 3.7, POLYNOMIALS[name]
+    t = np.linspace(0, T, 101)[:-1]
+    found = np.array(node(f"x.map((t) => scaling.profile('{name}', {T}, t))", t.tolist()))
+    exact = np.column_stack([p(t / T), p.deriv()(t / T) / T, p.deriv(2)(t / T) / T**2])
+    np.testing.assert_allclose(found, exact, atol=1e-12)
+    assert node(f"scaling.profile('{name}', {T}, {T})") == [1, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("expression", "T", "ramp", "a"),
+    [
+        ("scaling.profile('bang-bang', 2.5, t)", 2.5, 1.25, 4 / 2.5**2),
+        ("scaling.trapezoid(0.6, 0.3, 0.5, t)", 0.6 / 0.3 + 0.3 / 0.5, 0.6, 0.5 / 0.6),
+        ("scaling.trapezoid(0.1, 5, 0.4, t)", 1.0, 0.5, 4.0),  # too short to cruise
+    ],
+)
+def test_ramped_scalings_are_their_accelerations_integrated(node, expression, T, ramp, a):
+    t = np.linspace(0, T * (1 - 1e-9), 4001)
+    found = np.array(node(f"x.map((t) => {expression})", t.tolist()))
+    dds = np.where(t < ramp, a, np.where(t < T - ramp, 0.0, -a))
+    inside = np.minimum(np.abs(t - ramp), np.abs(t - T + ramp)) > 1e-6
+    np.testing.assert_allclose(found[inside, 2], dds[inside], atol=1e-9)
+    first = np.minimum(a * ramp, np.minimum(a * t, a * (T - t)))
+    np.testing.assert_allclose(found[:, 1], first, atol=1e-6)
+    way = np.concatenate([[0], np.cumsum(0.5 * (first[1:] + first[:-1]) * np.diff(t))])
+    np.testing.assert_allclose(found[:, 0], way, atol=1e-5)
+    assert found[-1, 0] == pytest.approx(1.0, abs=1e-6)
+
+
+def test_trapezoid_of_a_given_duration(node):
+    a = node("scaling.trapezoidAcceleration(0.4, 0.3, 2)")
+    assert node("scaling.trapezoidDuration(0.4, 0.3, x)", a) == pytest.approx(2.0)
+
+
+def test_browser_unpacks_what_python_packs(node):
+    data = swing(3.0).data()
+    read = node("recording.read(x)", data)
+    for name in ("q", "target", "tau", "error", "target_quaternion"):
+        np.testing.assert_allclose(read[name], unpack(data[name]), atol=1e-12)
+    assert read["end"] == pytest.approx(3.0)
+    halfway = node("(m => recording.at(m, m.q, 1.5 * m.period))(recording.read(x))", data)
+    np.testing.assert_allclose(halfway, np.mean(unpack(data["q"])[1:3], axis=0), atol=1e-12)
+
+
+def test_missing_grid_points_go_to_the_nearest(node):
+    keys = ["0-0-0", "0-3-2", "1-2-1"]
+    assert node("grid.nearest(x, [0, 2, 2], [true, false, false])", keys) == "0-3-2"
+    assert node("grid.nearest(x, [1, 0, 0], [true, false, false])", keys) == "1-2-1"

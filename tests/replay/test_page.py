@@ -1,0 +1,101 @@
+"""The HTML of the static book and the notebook's widget, without a browser."""
+
+import json
+from html.parser import HTMLParser
+
+import pytest
+from samples import swing
+
+from labkit.replay import (
+    Dial,
+    Explorer,
+    demo,
+    demo_html,
+    explorer_html,
+    motion_html,
+    run_files,
+    shared_files,
+    show,
+)
+
+
+class Reader(HTMLParser):
+    """Collects elements and the text of JSON scripts."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.elements, self.data = [], ""
+        self.feed(html)
+
+    def handle_starttag(self, tag, attrs):
+        self.elements.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        if self.elements and self.elements[-1] == ("script", {"type": "application/json"}):
+            self.data += data
+
+
+def test_a_figure_has_words_data_and_no_inline_code():
+    motion = swing(2.0)
+    page = Reader(motion_html(motion, root="../_static/viewer/", poster="a.png"))
+    assert json.loads(page.data)["title"] == motion.title
+    assert ("img", {"class": "lk-poster", "src": "a.png", "alt": motion.alt}) in page.elements
+    scripts = [a for tag, a in page.elements if tag == "script" and "type" not in a]
+    assert scripts == [{"defer": None, "src": "../_static/viewer/boot.js"}]
+    assert not [k for _, a in page.elements for k in a if k.startswith("on") or k == "style"]
+
+
+def test_titles_cannot_break_out():
+    import dataclasses
+
+    motion = dataclasses.replace(swing(1.0), title="</script><script>alert(1)</script>")
+    page = Reader(motion_html(motion))
+    assert sum(tag == "script" for tag, _ in page.elements) == 1
+    assert json.loads(page.data)["title"] == motion.title
+
+
+def test_too_large_a_motion_is_refused():
+    with pytest.raises(ValueError, match="lower rate"):
+        motion_html(swing(60.0, ghosts=4))
+
+
+def test_viewer_and_robot_are_small():
+    files = shared_files()
+    assert sum(p.stat().st_size for p in files.values()) <= 2_500_000
+    assert {"boot.js", "viewer.js", "robot.js"} <= set(files)
+
+
+def test_an_explorer_names_its_runs():
+    run = swing(2.0, ghosts=0)
+    dials = [Dial("Controller", ["PD", "impedance"]), Dial("Kp", [10.0, 20.0], "1/s²")]
+    grid = Explorer("gains", "Gains", dials, {(0, 0): run, (1, 1): run}, {(0, 0): "RMS 5 mm."})
+    files = run_files(grid)
+    page = Reader(explorer_html(grid, "runs/"))
+    index = json.loads(page.data)
+    assert index["runs"] == {"0-0": "runs/gains-0-0.js", "1-1": "runs/gains-1-1.js"}
+    assert set(files) == {"gains-0-0.js", "gains-1-1.js"}
+    assert all(len(text) < 20_000 for text in files.values())
+    assert index["facts"] == {"0-0": "RMS 5 mm."}
+
+
+@pytest.mark.parametrize("name", ["scaling", "jacobian", "rotation"])
+def test_demos_describe_themselves(name):
+    page = Reader(demo_html(name))
+    assert json.loads(page.data)["kind"] == name
+    assert json.loads(demo(name).data)["kind"] == name
+
+
+def test_the_widget_sends_the_files_when_asked_and_keeps_them_out_of_its_state():
+    motion = swing(2.0)
+    widget = show(motion)
+    sent = []
+    widget.send = lambda content, buffers=None: sent.append((content, buffers))
+    widget._handle_custom_msg({"kind": "files"}, [])
+    ((content, buffers),) = sent
+    assert content == {"kind": "files"}
+    assert [len(b) for b in buffers] == [
+        shared_files()[n].stat().st_size for n in ("viewer.js", "robot.js")
+    ]
+    assert len(json.dumps(widget.get_state(), default=str)) < 60_000
+    widget.motion = swing(1.0)
+    assert widget.motion["period"] == pytest.approx(0.04)

@@ -1,0 +1,56 @@
+"""The committed browser files are the ones that were made, from the sources that are here."""
+
+import hashlib
+import json
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+VENDOR = ROOT / "book/static/vendor"
+MANIFEST = json.loads((VENDOR / "MANIFEST.json").read_text())
+AGAIN = "run `sh tools/vendor.sh` (node 20, npm) and commit what it writes"
+
+
+def sha256(name):
+    return hashlib.sha256((ROOT / name).read_bytes()).hexdigest()
+
+
+def test_committed_files_have_the_recorded_hashes():
+    wrong = [n for n, h in MANIFEST["files"].items() if not (ROOT / n).exists() or sha256(n) != h]
+    assert not wrong, f"{wrong} differ from MANIFEST.json; {AGAIN}"
+
+
+def test_bundle_was_made_from_these_sources():
+    folders = ("labkit/replay/viewer", "tools/vendor")
+    here = {str(p.relative_to(ROOT)) for f in folders for p in (ROOT / f).rglob("*") if p.is_file()}
+    changed = {n for n in here | set(MANIFEST["sources"])
+               if n not in here or MANIFEST["sources"].get(n) != sha256(n)}  # fmt: skip
+    assert not changed, f"{sorted(changed)} changed since the bundle was made; {AGAIN}"
+
+
+def test_nothing_unrecorded_lies_among_them():
+    here = {str(p.relative_to(ROOT)) for p in VENDOR.rglob("*") if p.is_file()}
+    assert here - set(MANIFEST["files"]) == {"book/static/vendor/MANIFEST.json"}
+
+
+def test_versions_are_exact_and_no_registry_is_named():
+    wanted = json.loads((ROOT / "tools/vendor/package.json").read_text())["dependencies"]
+    assert MANIFEST["packages"] == wanted
+    assert all(re.fullmatch(r"\d+\.\d+\.\d+", v) for v in wanted.values())
+    assert not list((ROOT / "tools/vendor").glob("*lock*"))
+    for folder in ("tools/vendor", "labkit/replay/viewer"):
+        for path in (ROOT / folder).rglob("*"):
+            assert "registry" not in path.read_text() if path.is_file() else True, path
+
+
+def test_each_package_brings_its_licence():
+    names = {p.name for p in VENDOR.glob("LICENSE-*")}
+    assert {
+        "LICENSE-mathjax",
+        "LICENSE-requirejs",
+        "LICENSE-html-manager",
+        "LICENSE-anywidget",
+    } <= names
+    assert (ROOT / "labkit/data/viewer/LICENSE-three").exists()
+    assert (ROOT / "tests/vendor/LICENSE-axe").exists()
+    assert "Rethink Robotics" in (ROOT / "labkit/data/LICENSE-baxter").read_text()
