@@ -82,7 +82,9 @@ class Arm:
                 physicsClientId=self._client,
             )
         # The arm compensates its own weight, not what it carries.
-        self._own = Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
+        self._own = (
+            Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
+        )
         self._publish_every = whole_steps(plant.state_rate, self.world.dt, "plant.state_rate")
         self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
         self._stiction, self._viscous = list(plant.stiction), np.array(plant.viscous)
@@ -178,7 +180,7 @@ class Arm:
         """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
         if not self.plant.lost_ticks:
             return [False] * ticks
-        return (self._random.random(ticks) < self.plant.lost_ticks).tolist()
+        return [bool(x < self.plant.lost_ticks) for x in self._random.random(ticks)]
 
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""

@@ -31,7 +31,7 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
         ShapeError: The shape differs.
         NotFinite: An entry is NaN or infinite.
     """
-    a = x
+    a: Array = x
     if type(x) is not np.ndarray or x.dtype != np.float64:
         a = _converted(x, shape, name)
     if a.shape != shape:
@@ -61,7 +61,33 @@ def as_vector(x: Any, n: int, name: str) -> Array:
     return locked(np.array(as_array(x, (n,), name)))
 
 
-def as_number(x: Any, name: str, *, above: float | None = None, least: float | None = None) -> float:
+def as_gains(x: Any, n: int, name: str) -> Array:
+    """Read ``x`` as ``n`` gains, none of them negative; one number serves all.
+
+    Args:
+        x: A number, or a vector of ``n``.
+        n: How many.
+        name: What to call them in the sentence, if they do not fit.
+
+    Returns:
+        Shape (n,), read-only.
+
+    Raises:
+        ShapeError: There are too few or too many.
+        OutOfRange: One is negative: with e = target - actual every gain is at least 0.
+    """
+    gains = as_vector(np.full(n, x) if np.ndim(x) == 0 else x, n, name)
+    for i in np.flatnonzero(gains < 0.0)[:1]:
+        raise OutOfRange(
+            f"{name} is {gains[i]:g} at index {i}; a gain is at least 0, "
+            "for the error is target minus actual"
+        )
+    return gains
+
+
+def as_number(
+    x: Any, name: str, *, above: float | None = None, least: float | None = None
+) -> float:
     """Read ``x`` as one finite float.
 
     Args:

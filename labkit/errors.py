@@ -60,7 +60,8 @@ class JointLimitExceeded(OutOfRange):
         self.joint, self.value, self.lower, self.upper = joint, value, lower, upper
         hint = "; angles are in radians, is this in degrees?" if abs(value) > 6.5 else ""
         super().__init__(
-            f"{name}: joint {joint} at {value:.4g} rad is outside [{lower:.4g}, {upper:.4g}] rad{hint}"
+            f"{name}: joint {joint} at {value:.4g} rad is outside "
+            f"[{lower:.4g}, {upper:.4g}] rad{hint}"
         )
 
 

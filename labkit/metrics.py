@@ -113,7 +113,8 @@ class Summary:
     def __str__(self) -> str:
         return (
             f"RMS {self.rms_mm:.3g} mm, max {self.max_mm:.3g} mm and {self.max_deg:.3g} degrees, "
-            f"RMS torque {self.effort:.3g} N m, command cut {100 * self.saturated:.0f} % of the time"
+            f"RMS torque {self.effort:.3g} N m, "
+            f"command cut {100 * self.saturated:.0f} % of the time"
         )
 
 
@@ -136,10 +137,9 @@ def summary(log: Log, model: Model | None = None) -> Summary:
 def velocity_error(log: Log, model: Model | None = None) -> Array:
     """Target minus actual velocity of the tip's origin, world axes, shape (N, 3) in [m/s]."""
     model = model or model_of(log)
-    actual = np.array(
-        [model.tip_jacobian(q)[:3] @ dq for q, dq in zip(log.q, log.dq, strict=True)]
-    )
+    actual = np.array([model.tip_jacobian(q)[:3] @ dq for q, dq in zip(log.q, log.dq, strict=True)])
     if isinstance(log.target, PoseSample):
         return np.asarray(log.target.twist[:, :3] - actual)
     pairs = zip(log.target.position, log.target.velocity, strict=True)
-    return np.array([model.tip_jacobian(q)[:3] @ dq for q, dq in pairs]) - actual
+    wanted = np.array([model.tip_jacobian(q)[:3] @ dq for q, dq in pairs])
+    return np.asarray(wanted - actual)

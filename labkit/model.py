@@ -70,8 +70,10 @@ class Model:
         return T
 
     def tip_jacobian(self, q: Any) -> Array:
-        r"""The Jacobian of the tip in world axes: rows are the velocity of the tip's origin, and
-        the angular velocity, :math:`(\dot p, \omega_w) = J\,\dot q` (Siciliano's geometric Jacobian).
+        r"""The Jacobian of the tip in world axes, :math:`(\dot p, \omega_w) = J\,\dot q`.
+
+        Its rows give the velocity of the tip's origin and the angular velocity; Siciliano calls it
+        the geometric Jacobian.
 
         Args:
             q: Joint angles, shape (7,) in [rad].
@@ -82,8 +84,9 @@ class Model:
         return self._jacobian(q, pin.LOCAL_WORLD_ALIGNED)
 
     def body_jacobian(self, q: Any) -> Array:
-        r"""The body Jacobian: the tip's twist in the tip's own axes, :math:`V_b = J_b\,\dot q`
-        (MLS eq. 3.55; Lynch & Park, section 5.1.2).
+        r"""The body Jacobian: the tip's twist in the tip's own axes, :math:`V_b = J_b\,\dot q`.
+
+        MLS eq. 3.55; Lynch & Park, section 5.1.2.
 
         Args:
             q: Joint angles, shape (7,) in [rad].
@@ -94,8 +97,9 @@ class Model:
         return self._jacobian(q, pin.LOCAL)
 
     def spatial_jacobian(self, q: Any) -> Array:
-        r"""The spatial Jacobian: the twist as the world's origin sees it, :math:`V_s = J_s\,\dot q`
-        (MLS eq. 3.51).  Its linear rows are not the velocity of the tip.
+        r"""The spatial Jacobian: the twist seen from the world's origin, :math:`V_s = J_s\,\dot q`.
+
+        MLS eq. 3.51.  Its linear rows are not the velocity of the tip.
 
         Args:
             q: Joint angles, shape (7,) in [rad].
@@ -111,8 +115,7 @@ class Model:
         return J
 
     def tip_jacobian_rate(self, q: Any, dq: Any) -> Array:
-        r"""The time derivative of `tip_jacobian` along a motion, so that
-        :math:`\dot V = J\,\ddot q + \dot J\,\dot q`.
+        r"""The time derivative of `tip_jacobian`, :math:`\dot V = J\,\ddot q + \dot J\,\dot q`.
 
         Args:
             q: Joint angles, shape (7,) in [rad].
@@ -130,8 +133,9 @@ class Model:
         return dJ
 
     def manipulability(self, q: Any) -> float:
-        """The volume of the velocity ellipsoid, the product of the Jacobian's singular values
-        (Yoshikawa 1985; Lynch & Park, section 5.4).
+        """The volume of the velocity ellipsoid, the product of the Jacobian's singular values.
+
+        Yoshikawa 1985; Lynch & Park, section 5.4.
 
         Args:
             q: Joint angles, shape (7,) in [rad].
@@ -206,8 +210,9 @@ class Model:
         return np.array(pin.nonLinearEffects(self._pin, self._data, q, dq))
 
     def operational_inertia(self, q: Any) -> Array:
-        r"""The inertia felt at the tip, :math:`\Lambda = (J M^{-1} J^T)^{-1}`, world axes
-        (Khatib 1987; Lynch & Park, section 8.6).  The course's helper called it `cart_inertia`.
+        r"""The inertia felt at the tip, :math:`\Lambda = (J M^{-1} J^T)^{-1}`, in world axes.
+
+        Khatib 1987; Lynch & Park, section 8.6.  The course's own helper called it `cart_inertia`.
 
         Args:
             q: Joint angles, shape (7,) in [rad].
@@ -242,13 +247,13 @@ class Model:
         Raises:
             JointLimitExceeded: A joint is outside its range.
         """
-        q = as_array(q, (_N,), name)
+        angles: Array = as_array(q, (_N,), name)
         low, high = self.robot.lower - _SLACK, self.robot.upper + _SLACK
-        for i in np.flatnonzero((q < low) | (q > high))[:1]:
+        for i in np.flatnonzero((angles < low) | (angles > high))[:1]:
             raise JointLimitExceeded(
-                name, self.robot.joint_names[i], q[i], self.robot.lower[i], self.robot.upper[i]
+                name, self.robot.joint_names[i], angles[i], self.robot.lower[i], self.robot.upper[i]
             )
-        return q
+        return angles
 
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
         """Joint angles that put the tip at a pose; of all those, the nearest to a posture.
@@ -377,9 +382,7 @@ class Model:
                 f"cannot be reached: it puts the wrist {distance:.3f} m from the shoulder and the "
                 f"arm spans {reach:.3f} m {off}; bring it nearer"
             )
-        at_limit = np.flatnonzero(
-            (q - self.robot.lower < 1e-6) | (self.robot.upper - q < 1e-6)
-        )
+        at_limit = np.flatnonzero((q - self.robot.lower < 1e-6) | (self.robot.upper - q < 1e-6))
         if at_limit.size:
             i = at_limit[0]
             return (
@@ -441,6 +444,3 @@ _SLACK = 1e-9
 
 def _place(T: Array) -> str:
     return f"at ({', '.join(f'{x:.3f}' for x in T[:3, 3])}) m"
-
-
-

@@ -127,7 +127,7 @@ class Polyline:
     def _ends(self) -> Array:
         """The way gone at each corner, as a share of the whole."""
         way = np.cumsum([0.0, *(line.length for line in self.lines)])
-        return way / way[-1]
+        return np.asarray(way / way[-1])
 
     @property
     def length(self) -> float:

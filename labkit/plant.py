@@ -74,4 +74,3 @@ BAXTER = Plant(
     lost_ticks=0.02,
 )
 """The arm as its users found it."""
-

@@ -29,7 +29,8 @@ def ready() -> None:
     parts = ", ".join(f"{name} {version(name)}" for name in ("pybullet", "pin", "numpy"))
     print(
         f"labkit {__version__} is ready: the arm moved {moved:.1f} mm "
-        f"({parts}; Python {platform.python_version()} on {platform.system()} {platform.machine()}; "
+        f"({parts}; Python {platform.python_version()} on {platform.system()} "
+        f"{platform.machine()}; "
         f"{used:.0f} MB used, {free:.1f} GB free)"
     )
 

@@ -34,6 +34,8 @@ class Robot:
         speed: Speed limits, shape (7,) in [rad/s].
         effort: Torque limits, shape (7,) in [N m].
         neutral: Rethink's neutral pose, shape (7,) in [rad].
+        ready: Gripper straight down with room all around, where the exercises start, shape (7,)
+            in [rad].
         T_hand_tip: The gripper's tip in the last body, shape (4, 4).
         T_hand_camera: The hand camera (z forward, x right of the image) there, shape (4, 4).
         bodies: The seven bodies as they stand in the data file.
@@ -46,6 +48,7 @@ class Robot:
     speed: Array
     effort: Array
     neutral: Array
+    ready: Array
     T_hand_tip: Array
     T_hand_camera: Array
     bodies: tuple[dict[str, Any], ...]
@@ -80,7 +83,8 @@ class Robot:
             lower, upper, speed, effort = (body[k] for k in ("lower", "upper", "speed", "effort"))
             parts.append(
                 f'<link name="{name}_body"><inertial>'
-                f'<origin xyz="{_text(com)}" rpy="{_text(_rpy(axes))}"/><mass value="{float(mass)!r}"/>'
+                f'<origin xyz="{_text(com)}" rpy="{_text(_rpy(axes))}"/>'
+                f'<mass value="{float(mass)!r}"/>'
                 f'<inertia ixx="{xx!r}" iyy="{yy!r}" izz="{zz!r}" '
                 'ixy="0" ixz="0" iyz="0"/></inertial></link>'
                 f'<joint name="{name}" type="revolute"><parent link="{parent}"/>'
@@ -119,6 +123,7 @@ def robot(side: str) -> Robot:
         speed=column("speed"),
         effort=column("effort"),
         neutral=locked(np.array(data["neutral"])),
+        ready=locked(np.array(data["ready"])),
         T_hand_tip=locked(np.array(data["T_hand_tip"])),
         T_hand_camera=locked(np.array(data["T_hand_camera"])),
         bodies=tuple(bodies),

@@ -15,12 +15,13 @@ from .commands import COMMANDS, JOINTS, Command, State
 from .errors import ControllerError, Diverged, LabkitError, OutOfRange
 from .motion import AnySample, PoseSample, Sample, Target
 from .plant import Plant
+from .robot import Side
 
 Controller = Callable[[State, Any], Command]
 """A function of the state and of the target's sample; nothing to inherit, nothing to register."""
 
 RUNAWAY = 50.0
-"""A joint faster than this, in [rad/s], is out of control: twelve times the quickest joint's limit."""
+"""A joint faster than this, in [rad/s], is out of control: twelve times the quickest's limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +55,7 @@ class Log:
     command_type: type
     controller: str
     plant: Plant
-    side: str
+    side: Side
 
     def __len__(self) -> int:
         return len(self.t)
@@ -155,7 +156,7 @@ class _Book:
         for column, part in zip(self.target, sample, strict=True):
             column[k] = part
             part.setflags(write=False)
-            size += np.vdot(part, part)
+            size += float(np.vdot(part, part))
         return isfinite(size)
 
     def keep(self, k: int, t: float, truth: State, seen: State, tau: Array, command: Array) -> None:
@@ -168,7 +169,9 @@ class _Book:
 
     def log(self, rows: int, kind: type | None, who: str, arm: Arm) -> Log:
         """The first ``rows`` rows, frozen."""
-        cut = {name: locked(getattr(self, name)[:rows]) for name in ("t", "q", "dq", "tau", "command")}
+        cut = {
+            name: locked(getattr(self, name)[:rows]) for name in ("t", "q", "dq", "tau", "command")
+        }
         return Log(
             **cut,
             target=self.sample_type(*(locked(column[:rows]) for column in self.target)),
@@ -187,9 +190,9 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
         duration = getattr(target, "duration", None)
         if duration is None:
             raise OutOfRange(
-                f"how long? the target {_name(target)} has no duration of its own, give duration=..."
+                f"how long? the target {_name(target)} has no duration; give duration=..."
             )
-    return int(round(as_number(duration, "duration", least=0.0) / period + 1e-9)) + 1
+    return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
 def _checked_sample(target: Target, whom: str) -> AnySample:

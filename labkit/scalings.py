@@ -61,7 +61,7 @@ class _Profile:
         return s, ds / T, dds / (T * T)
 
     def shape(self, x: float) -> tuple[float, float, float]:
-        """s and its derivatives with respect to x = t / duration, for x in [0, 1)."""
+        """Value and derivatives with respect to x = t / duration, for x in [0, 1)."""
         raise NotImplementedError
 
 

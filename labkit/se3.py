@@ -1,6 +1,6 @@
 r"""Rigid motion: rotations, poses, twists, and the maps between them.
 
-A pose is a 4 x 4 matrix `T_ab` that turns coordinates in frame b into frame a, ``p_a = T_ab @ p_b``;
+A pose is a 4 x 4 matrix `T_ab` that turns coordinates in b into a, ``p_a = T_ab @ p_b``;
 the subscripts cancel.  A twist is (v, w), linear part first, as in Murray, Li & Sastry (MLS) and
 Pinocchio.  Formulas: MLS chapter 2; Lynch & Park, *Modern Robotics*, chapter 3.
 """
@@ -84,7 +84,7 @@ def rotation_log(R: Any) -> Array:
         return v * (theta / s)
     B = 0.5 * (R + R.T) - cos(theta) * np.eye(3)  # (1 - cos(theta)) * axis axis^T
     k = int(np.argmax(np.diag(B)))
-    axis = B[:, k] / np.linalg.norm(B[:, k])
+    axis: Array = B[:, k] / np.linalg.norm(B[:, k])
     if axis @ v < 0.0:
         axis = -axis
     return axis * theta
@@ -211,11 +211,11 @@ def angle_between(R_a: Any, R_b: Any) -> float:
     return atan2(s, c)
 
 
-def as_rotation(R: Any, name: str) -> Array:
-    """Read ``R`` as a rotation matrix.
+def as_rotation(x: Any, name: str) -> Array:
+    """Read ``x`` as a rotation matrix.
 
     Args:
-        R: Shape (3, 3).
+        x: Shape (3, 3).
         name: What to call it in the sentence, if it is none.
 
     Returns:
@@ -224,7 +224,7 @@ def as_rotation(R: Any, name: str) -> Array:
     Raises:
         OutOfRange: Its columns are not orthonormal, or it mirrors.
     """
-    R = as_array(R, (3, 3), name)
+    R: Array = as_array(x, (3, 3), name)
     off = float(np.abs(R.T @ R - np.eye(3)).max())
     if off > 1e-6:
         raise OutOfRange(
@@ -236,11 +236,11 @@ def as_rotation(R: Any, name: str) -> Array:
     return R
 
 
-def as_pose(T: Any, name: str) -> Array:
-    """Read ``T`` as a pose: a rotation, an origin and the row (0, 0, 0, 1).
+def as_pose(x: Any, name: str) -> Array:
+    """Read ``x`` as a pose: a rotation, an origin and the row (0, 0, 0, 1).
 
     Args:
-        T: Shape (4, 4).
+        x: Shape (4, 4).
         name: What to call it in the sentence, if it is none.
 
     Returns:
@@ -249,7 +249,7 @@ def as_pose(T: Any, name: str) -> Array:
     Raises:
         OutOfRange: It is no rigid motion.
     """
-    T = as_array(T, (4, 4), name)
+    T: Array = as_array(x, (4, 4), name)
     if np.abs(T[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
         raise OutOfRange(f"{name}'s last row is {T[3]}, a pose has (0, 0, 0, 1); is it transposed?")
     as_rotation(T[:3, :3], f"{name}[:3, :3]")

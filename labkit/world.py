@@ -40,10 +40,8 @@ class World:
         self._actors: list[Actor] = []
         bullet.setTimeStep(self.dt, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        # By default the solver stops early, and a motor that should stand still creeps at 0.6 mrad/s.
-        bullet.setPhysicsEngineParameter(
-            solverResidualThreshold=0.0, physicsClientId=self.client
-        )
+        # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
+        bullet.setPhysicsEngineParameter(solverResidualThreshold=0.0, physicsClientId=self.client)
 
     @property
     def t(self) -> float:
@@ -78,7 +76,10 @@ class World:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
     ) -> None:
         self.close()
 

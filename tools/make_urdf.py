@@ -28,8 +28,17 @@ JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 EFFORT = {"s1": 100.0}
 # The packaged gripper holds placeholders: 0.01 kg m^2 for a finger of 20 g (a metre of gyration
 # radius), 2e-8 kg m^2 for a base of 300 g.  A box of the part's size and mass takes their place.
-BOXES = {"gripper_base": (0.08, 0.07, 0.10), "finger": (0.01, 0.02, 0.06), "tip": (0.01, 0.02, 0.03)}
+BOXES = {
+    "gripper_base": (0.08, 0.07, 0.10),
+    "finger": (0.01, 0.02, 0.06),
+    "tip": (0.01, 0.02, 0.03),
+}
 NEUTRAL = [0.0, -0.55, 0.0, 0.75, 0.0, 1.26, 0.0]  # Limb.move_to_neutral of Rethink's SDK
+# Our own start for the exercises: gripper straight down, 25 cm of room around it.
+READY = {
+    "left": [-0.5, -1.0, 0.0, 1.7, 0.0, 0.8707963267948966, 0.0],
+    "right": [0.5, -1.0, 0.0, 1.7, 0.0, 0.8707963267948966, 0.0],
+}
 
 
 def rounded(x: Any) -> Any:
@@ -86,6 +95,7 @@ def arm(full: pin.Model, side: str) -> dict[str, Any]:
         "T_hand_tip": rounded(frame[f"{side}_gripper"].placement.homogeneous),
         "T_hand_camera": rounded(frame[f"{side}_hand_camera_axis_link"].placement.homogeneous),
         "neutral": NEUTRAL,
+        "ready": READY[side],
     }
 
 

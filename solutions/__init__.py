@@ -1,0 +1,1 @@
+"""The course's answers: ordinary typed Python, never installed, never in a student's reach."""
