@@ -53,7 +53,8 @@ def encode(value: Any) -> Any:
 
     Args:
         value: None, a truth value, number, text, list, tuple, dict with text keys, array of
-            numbers, or one of `DATA`, `GIVEN`, a `Model`, a `Chain`, a `Hold`, or a method of one of these.
+            numbers, one of `DATA` or `GIVEN`, a `Model`, `Chain`, `Hold` or `Spline`, or a method
+            of one of these.
 
     Returns:
         What `json.dumps` takes; numbers keep every bit.

@@ -115,7 +115,7 @@ class Close:
 
 @dataclass(frozen=True)
 class Within:
-    """A number for which several answers are right: it must lie in one of the expected intervals."""
+    """A number of which several are right: it must lie in one of the expected intervals."""
 
     def __call__(self, answer: Any, expected: Any) -> str | None:
         """None if it does, else where it lies instead."""

@@ -150,4 +150,4 @@ def _show_evidence(question: Question, verdict: Verdict) -> None:
     if get_ipython() is not None:
         from .. import plotting
 
-        display(plotting.answers(*found))  # type: ignore[no-untyped-call]
+        display(plotting.answers(*found))
