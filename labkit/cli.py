@@ -6,7 +6,6 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from . import __version__
 from .errors import LabkitError
@@ -35,11 +34,9 @@ def parser() -> argparse.ArgumentParser:
     _course(verb)
     verb.set_defaults(do=_release)
 
-    verb = verbs.add_parser("grade", help="grade what was handed in")
-    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
-    verb.add_argument("--student", metavar="S", help="only this one")
-    _course(verb)
-    verb.set_defaults(do=_grade)
+    from .grade import verbs as instructors
+
+    instructors.add_grade(verbs)
     return top
 
 
@@ -65,28 +62,6 @@ def _release(args: argparse.Namespace) -> int:
     for name in args.names or course.names():
         print(release(course, name, args.seed), flush=True)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
-    return 0
-
-
-def _grade(args: argparse.Namespace) -> int:
-    from .grade.course import Course
-    from .grade.engines import grade_with_nbgrader, students
-
-    course = Course.here(args.course)
-    course.notebook_source(args.name)
-    found = students(course, args.name)
-    who: list[Any] = [args.student] if args.student else found
-    if not who or set(who) - set(found):
-        raise LabkitError(
-            f"nothing of {args.student or 'anybody'} lies in submitted/*/{args.name}; "
-            "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
-        )
-    for number, student in enumerate(who, start=1):
-        mark = grade_with_nbgrader(course, args.name, student)
-        got = "not graded" if mark.score is None else f"{mark.score:g} of {mark.points:g}"
-        print(
-            f"[{number}/{len(who)}] {student}: {got}{'; ' * bool(mark.says)}{mark.says}", flush=True
-        )
     return 0
 
 

@@ -94,9 +94,7 @@ class Tried:
     answers: Mapping[int, Any]
 
 
-def mark(
-    question: Question, function: Callable[..., Any], tried: Tried | None = None
-) -> Verdict:
+def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
     """Try every test of a question, its public cases before any hidden one.
 
     Args:

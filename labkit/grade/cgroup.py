@@ -45,7 +45,11 @@ class Group:
                 if what not in counted and _set(folder, file, value):
                     folders.append(folder)
                     counted.append(what)
-        return cls(tuple(dict.fromkeys(folders)), f"cgroup for {' and '.join(counted)}") if folders else None
+        return (
+            cls(tuple(dict.fromkeys(folders)), f"cgroup for {' and '.join(counted)}")
+            if folders
+            else None
+        )
 
     def enter(self) -> None:
         """Put this process into the group; all that it starts stays there."""

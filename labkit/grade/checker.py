@@ -23,11 +23,15 @@ from .sandbox import Sandbox
 from .seat import Seat
 
 _LABKIT = {name for name, thing in vars(errors).items() if isinstance(thing, type)} | {"Withheld"}
-_KNOWN = _LABKIT | {"LinAlgError"} | {
-    name
-    for name, thing in vars(builtins).items()
-    if isinstance(thing, type) and issubclass(thing, BaseException)
-}
+_KNOWN = (
+    _LABKIT
+    | {"LinAlgError"}
+    | {
+        name
+        for name, thing in vars(builtins).items()
+        if isinstance(thing, type) and issubclass(thing, BaseException)
+    }
+)
 MOST_LOST = 3
 """After so many calls of one question that died or hung, it is not asked any more."""
 
@@ -70,6 +74,7 @@ def grade(
         questions=tuple(_verdict(v, todo) for v in verdicts),
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
         cells=failed,
+        own=todo.own,
         isolation=sandbox.level,
         versions=versions(),
         hashes=hashes(data, bundle),
@@ -114,9 +119,9 @@ def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]
 
 def clean(text: str, most: int = 500) -> str:
     """Somebody else's text as one short line without control characters."""
-    return re.sub(r"\s+", " ", re.sub(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\ud800-\udfff]", " ", text))[
-        :most
-    ].strip()
+    return re.sub(
+        r"\s+", " ", re.sub(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\ud800-\udfff]", " ", text)
+    )[:most].strip()
 
 
 class Ask:
@@ -210,8 +215,7 @@ def _verdict(verdict: Verdict, todo: Plan) -> dict[str, Any]:
             }
             for t in verdict.tests
         ],
-        "mistake": verdict.mistake
-        and {"name": verdict.mistake.name, "says": verdict.mistake.says},
+        "mistake": verdict.mistake and {"name": verdict.mistake.name, "says": verdict.mistake.says},
         "notes": [clean(note) for note in todo.notes.get(verdict.name, ())],
-        "place": todo.places.get(verdict.name),
+        "source": todo.source(verdict.name),
     }

@@ -6,7 +6,7 @@ student's metadata says about points and roles is never read.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -36,11 +36,19 @@ class Plan:
         steps: The cells.
         places: For each question, the number of the cell that answers it.
         notes: What was unusual, by question; under "" what concerns the whole notebook.
+        own: The student's own cells: the released cell ``after`` which each stands, its ``type``
+            and ``source``.
     """
 
     steps: tuple[Step, ...]
     places: Mapping[str, int]
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    own: tuple[Mapping[str, str], ...] = ()
+
+    def source(self, question: str) -> str:
+        """The text of the cell that answers a question; empty if there is none."""
+        place = self.places.get(question)
+        return next((step.source for step in self.steps if step.number == place), "")
 
 
 def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
@@ -75,7 +83,21 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         if (k in own and k not in spare) or (k in needed and _same(cell["source"]) in walk):
             answers = tuple(name for name, place in places.items() if place == k)
             steps.append(Step(k, cell["source"], answers))
-    return Plan(tuple(steps), places, {name: tuple(said) for name, said in notes.items() if said})
+    told = {name: tuple(said) for name, said in notes.items() if said}
+    return Plan(tuple(steps), places, told, tuple(_own(cells, manifest, set(places.values()))))
+
+
+def _own(
+    cells: Sequence[Cell], manifest: Sequence[Cell], places: set[int]
+) -> Iterator[dict[str, str]]:
+    """Cells that the release does not have."""
+    known = {_same(m["source"]) for m in manifest if m["kind"] != "answer"}
+    ids, after = {m["id"] for m in manifest}, ""
+    for k, cell in enumerate(cells):
+        after = cell["id"] if cell["id"] in ids else after
+        released = _same(cell["source"]) in known or _is_check(cell["source"], manifest)
+        if k not in places and not released and cell["source"].strip():
+            yield {"after": after, "type": cell["type"], "source": cell["source"]}
 
 
 def _answer(
@@ -126,4 +148,3 @@ def _is_check(source: str, manifest: Iterable[Mapping[str, Any]]) -> bool:
 def _same(source: str) -> str:
     """A cell's text without what editors change unasked."""
     return "\n".join(line.rstrip() for line in source.replace("\r\n", "\n").strip().split("\n"))
-

@@ -33,6 +33,7 @@ class Result:
         questions: One verdict each, as data: name, outcome, earned, points, tests, mistake, notes.
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
+        own: The student's own cells, where they stood.
         isolation: What kept it apart while it ran.
         versions: Of what graded it.
         hashes: Of the submission, the release and the engine.
@@ -48,6 +49,7 @@ class Result:
     questions: tuple[Mapping[str, Any], ...] = ()
     notes: tuple[str, ...] = ()
     cells: tuple[Mapping[str, Any], ...] = ()
+    own: tuple[Mapping[str, str], ...] = ()
     isolation: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
     hashes: Mapping[str, str] = field(default_factory=dict)
@@ -62,7 +64,7 @@ class Result:
     def read(cls, text: str) -> Result:
         """What `text` wrote."""
         data = json.loads(text)
-        for name in ("questions", "notes", "cells"):
+        for name in ("questions", "notes", "cells", "own"):
             data[name] = tuple(data[name])
         return cls(**data)
 

@@ -6,12 +6,12 @@ submission.
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import socket
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -58,12 +58,12 @@ class Sandbox:
         self.uid = FIRST_UID + slot % 1000 if os.geteuid() == 0 else 0
         self.isolated = isolated
         self.group = Group.make(f"labkit-{os.getpid()}-{slot}") if isolated else None
-        self._log = tempfile.TemporaryFile()
+        self._log = os.memfd_create("labkit-sandbox-log")
         ours, theirs = socket.socketpair()
         try:
             self.process = subprocess.Popen(
                 command() if isolated else _bare(),
-                stdin=theirs,
+                stdin=theirs.fileno(),
                 stdout=subprocess.DEVNULL,
                 stderr=self._log,
                 env=environment() if isolated else _bare_environment(),
@@ -77,9 +77,10 @@ class Sandbox:
         try:
             self.line.read(120.0)
         except (Gone, TooLate, TooMuch):
+            said = self._words()
             self.close()
             raise NoIsolation(
-                f"the sandbox did not start: {self._words()}; `labkit doctor` says what is missing"
+                f"the sandbox did not start: {said}; `labkit doctor` says what is missing"
             ) from None
 
     @property
@@ -120,6 +121,7 @@ class Sandbox:
         with suppress(ProcessLookupError):
             self.process.kill()
         self.process.wait()
+        os.close(self._log)
         if self.group is not None:
             self.group.remove()
 
@@ -127,13 +129,14 @@ class Sandbox:
         return self
 
     def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        at: TracebackType | None,
     ) -> None:
         self.close()
 
     def _ask(self, message: dict[str, Any], end: socket.socket | None = None) -> None:
-        import json
-
         try:
             data = json.dumps(message).encode()
             socket.send_fds(self.line.end, [data], [end.fileno()] if end else [])
@@ -141,8 +144,7 @@ class Sandbox:
             raise Gone(str(error)) from None
 
     def _words(self) -> str:
-        self._log.seek(0)
-        lines = self._log.read(100_000).decode(errors="replace").strip().splitlines()
+        lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()
         return lines[-1][:300] if lines else "it gave no reason"
 
 
@@ -166,12 +168,11 @@ def command() -> list[str]:
     made: set[Path] = set()
     for place in _places():
         words += _folders(place.parent, made)
-        words += ["--symlink", os.readlink(place), str(place)] if place.is_symlink() else [
-            "--ro-bind", str(place), str(place),
-        ]  # fmt: skip
+        link = os.readlink(place) if place.is_symlink() else ""
+        words += ["--symlink", link, str(place)] if link else ["--ro-bind", str(place), str(place)]
         made.add(place)
-    for place in ("/etc/ld.so.cache", "/etc/alternatives", "/etc/localtime"):
-        words += ["--ro-bind-try", place, place]
+    for optional in ("/etc/ld.so.cache", "/etc/alternatives", "/etc/localtime"):
+        words += ["--ro-bind-try", optional, optional]
     package = Path(labkit.__file__).parent
     words += ["--perms", "0755", "--dir", _LAB, "--ro-bind", str(package), f"{_LAB}/labkit"]
     words += ["--ro-bind", str(_figure_cache()), f"{_LAB}/mpl"]
@@ -204,19 +205,29 @@ def environment() -> dict[str, str]:
 
 
 def _bare() -> list[str]:
-    return [sys.executable, "-m", "labkit.grade.inside.bare"]
+    return [sys.executable, "-m", "labkit.grade.inside.zygote", "--bare"]
 
 
 def _bare_environment() -> dict[str, str]:
-    return dict(os.environ) | {
-        k: v for k, v in _VARIABLES.items() if k not in {"PATH", "HOME", "MPLCONFIGDIR", "PYTHONPATH"}
-    } | {"PYTHONPATH": str(Path(labkit.__file__).parent.parent)}
+    return (
+        dict(os.environ)
+        | {
+            k: v
+            for k, v in _VARIABLES.items()
+            if k not in {"PATH", "HOME", "MPLCONFIGDIR", "PYTHONPATH"}
+        }
+        | {"PYTHONPATH": str(Path(labkit.__file__).parent.parent)}
+    )
 
 
 def _places() -> list[Path]:
     """What is shown inside, read-only: the system's programs, Python, its packages."""
     system = [Path(x) for x in ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64")]
-    python = {Path(sys.prefix), Path(sys.base_prefix), Path(os.path.realpath(sys.executable)).parents[1]}
+    python = {
+        Path(sys.prefix),
+        Path(sys.base_prefix),
+        Path(os.path.realpath(sys.executable)).parents[1],
+    }
     kept = [x for x in system if x.exists()]
     kept += sorted(x for x in python if not x.is_relative_to("/usr") and x != Path("/"))
     return kept
@@ -226,7 +237,11 @@ def _folders(folder: Path, made: set[Path]) -> list[str]:
     """Make the folders above a place, readable: bubblewrap would close them to all but root."""
     words: list[str] = []
     for above in (*reversed(folder.parents), folder):
-        if above != Path("/") and above not in made and not any(above.is_relative_to(m) for m in made):
+        if (
+            above != Path("/")
+            and above not in made
+            and not any(above.is_relative_to(m) for m in made)
+        ):
             words += ["--perms", "0755", "--dir", str(above)]
             made.add(above)
     return words

@@ -51,7 +51,11 @@ class Submission:
         try:
             end = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
         except OSError:
-            return b"", "", f"{path.name[:80]} is a link or cannot be opened; hand in the file itself"
+            return (
+                b"",
+                "",
+                f"{path.name[:80]} is a link or cannot be opened; hand in the file itself",
+            )
         with open(end, "rb") as file:
             about = os.fstat(file.fileno())
             if not stat.S_ISREG(about.st_mode):

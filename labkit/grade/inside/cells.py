@@ -157,10 +157,14 @@ def _bound(body: list[ast.stmt]) -> Iterator[str]:
 def _needed(scope: symtable.SymbolTable) -> Iterator[str]:
     """Names that a cell takes from the cells before it."""
     top = scope.get_type() == "module"
-    own = {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()} if top else set()
+    own = (
+        {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()}
+        if top
+        else set()
+    )
     for symbol in scope.get_symbols():
-        if symbol.is_referenced() and (top or symbol.is_global()):
-            if symbol.get_name() not in own:
-                yield symbol.get_name()
+        outside = symbol.is_referenced() and (top or symbol.is_global())
+        if outside and symbol.get_name() not in own:
+            yield symbol.get_name()
     for inner in scope.get_children():
         yield from (name for name in _needed(inner) if name not in own)

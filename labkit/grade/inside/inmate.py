@@ -6,6 +6,7 @@ Everything in here belongs to the student: whatever he does to it costs nobody e
 from __future__ import annotations
 
 import asyncio
+import builtins
 import inspect
 import io
 import linecache
@@ -40,8 +41,9 @@ class Notebook:
         self.names.update(__builtins__=__builtins__, In=[""], Out={})
         self.functions: dict[str, Any] = {}
         self.codec, self.most_output, self.output = codec, most_output, 0
-        with suppress(NameError, AttributeError):
-            get_ipython().user_ns = self.names  # type: ignore[name-defined]
+        shell = getattr(builtins, "get_ipython", None)
+        if shell is not None:
+            shell().user_ns = self.names
 
     def run(self, number: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
         """Run one cell, and keep the functions that it is to define."""
@@ -121,9 +123,7 @@ def serve(line: Line, codec: Any, withhold: Callable[..., None], limits: dict[st
         except Gone:
             return
         if "cell" in asked:
-            result = notebook.run(
-                asked["cell"], asked["source"], asked["answers"], limits["cell"]
-            )
+            result = notebook.run(asked["cell"], asked["source"], asked["answers"], limits["cell"])
             line.send({"ran": asked["cell"]} | result)
         if "question" not in asked:
             continue

@@ -47,7 +47,7 @@ def _stop(owner: Any, key: str, target: Any, says: str, student: dict[str, Any])
     if isclass(target):
         try:
             made = target.__init__
-            target.__init__ = _guarded(made, says)
+            type.__setattr__(target, "__init__", _guarded(made, says))
             return
         except TypeError:  # a class written in C
             pass
