@@ -37,6 +37,7 @@ def parser() -> argparse.ArgumentParser:
     from .grade import verbs as instructors
 
     instructors.add_grade(verbs)
+    instructors.add_make_class(verbs)
     return top
 
 

@@ -37,6 +37,10 @@ class Group:
                 (_ROOT / name, "pids.max", PROCESSES),
                 (_ROOT / "pids" / name, "pids.max", PROCESSES),
             ),
+            "processor": (  # one core, so that nobody's neighbours starve
+                (_ROOT / name, "cpu.max", 100_000),
+                (_ROOT / "cpu" / name, "cpu.cfs_quota_us", 100_000),
+            ),
         }
         folders: list[Path] = []
         counted: list[str] = []
@@ -46,7 +50,7 @@ class Group:
                     folders.append(folder)
                     counted.append(what)
         return (
-            cls(tuple(dict.fromkeys(folders)), f"cgroup for {' and '.join(counted)}")
+            cls(tuple(dict.fromkeys(folders)), f"cgroup for {', '.join(counted)}")
             if folders
             else None
         )

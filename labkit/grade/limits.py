@@ -12,6 +12,8 @@ from typing import Any
 class Limits:
     """What one submission may use; times in [s], sizes in [MiB].
 
+    The times of cells and calls are processor time; on the clock they may take three times as long.
+
     Attributes:
         cell: For one cell.
         call: For one call of a function.

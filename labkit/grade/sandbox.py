@@ -36,6 +36,10 @@ class NoIsolation(LabkitError):
     """This machine cannot keep a student's code apart; the sentence says how it could."""
 
 
+class Broken(Exception):
+    """A sandbox that worked does not any more; a fresh one may."""
+
+
 class Inside:
     """A process in the sandbox, and the line to it."""
 
@@ -98,10 +102,12 @@ class Sandbox:
         ours, theirs = socket.socketpair()
         message = {"role": role, "limits": limits.data(), "uid": self.uid, **more}
         with theirs:
-            self._ask(message, theirs)
-        inside = Inside(Line(ours), int(self.line.read(20.0)["pid"]))
+            inside = Inside(Line(ours), int(self._ask(message, theirs)["pid"]))
         try:
-            said = inside.line.read(20.0)
+            try:
+                said = inside.line.read(20.0)
+            except (Gone, TooLate, TooMuch) as error:
+                raise Broken(f"nothing could be started: {error}") from None
             if "confined" not in said:
                 raise NoIsolation(f"a sandboxed process could not be confined: {said}")
             yield inside
@@ -111,9 +117,7 @@ class Sandbox:
 
     def kill(self, inside: Inside, *, whole: bool = False) -> None:
         """Kill a process inside and all that it started, or only what it started."""
-        with suppress(Gone, TooLate):
-            self._ask({"kill": inside.pid, "whole": whole})
-            self.line.read(20.0)
+        self._ask({"kill": inside.pid, "whole": whole})
 
     def close(self) -> None:
         """End everything inside."""
@@ -136,12 +140,14 @@ class Sandbox:
     ) -> None:
         self.close()
 
-    def _ask(self, message: dict[str, Any], end: socket.socket | None = None) -> None:
+    def _ask(self, message: dict[str, Any], end: socket.socket | None = None) -> dict[str, Any]:
+        """Tell the sandbox's first process what to do, and take its word that it is done."""
         try:
             data = json.dumps(message).encode()
             socket.send_fds(self.line.end, [data], [end.fileno()] if end else [])
-        except OSError as error:
-            raise Gone(str(error)) from None
+            return self.line.read(20.0)
+        except (OSError, Gone, TooLate, TooMuch) as error:
+            raise Broken(str(error)) from None
 
     def _words(self) -> str:
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()
@@ -166,11 +172,14 @@ def command() -> list[str]:
     for capability in ("SYS_ADMIN", "SETUID", "SETGID", "SETPCAP", "KILL"):
         words += ["--cap-add", f"CAP_{capability}"]
     made: set[Path] = set()
+    shown: list[Path] = []
     for place in _places():
-        words += _folders(place.parent, made)
-        link = os.readlink(place) if place.is_symlink() else ""
-        words += ["--symlink", link, str(place)] if link else ["--ro-bind", str(place), str(place)]
-        made.add(place)
+        if not any(place.is_relative_to(other) for other in shown):
+            words += _folders(place.parent, made)
+            link = os.readlink(place) if place.is_symlink() else ""
+            words += ["--symlink", link] if link else ["--ro-bind", str(place)]
+            words.append(str(place))
+            shown.append(place)
     for optional in ("/etc/ld.so.cache", "/etc/alternatives", "/etc/localtime"):
         words += ["--ro-bind-try", optional, optional]
     package = Path(labkit.__file__).parent
@@ -237,11 +246,7 @@ def _folders(folder: Path, made: set[Path]) -> list[str]:
     """Make the folders above a place, readable: bubblewrap would close them to all but root."""
     words: list[str] = []
     for above in (*reversed(folder.parents), folder):
-        if (
-            above != Path("/")
-            and above not in made
-            and not any(above.is_relative_to(m) for m in made)
-        ):
+        if above != Path("/") and above not in made:
             words += ["--perms", "0755", "--dir", str(above)]
             made.add(above)
     return words

@@ -9,13 +9,14 @@ from types import TracebackType
 from typing import Any
 
 from ..check.question import Question
+from .inside.inmate import PATIENCE
 from .inside.wire import Gone, TooLate, TooMuch
 from .limits import Limits
 from .plan import Plan
 from .sandbox import Inside, Sandbox
 
 MOST_STARTS = 6
-GRACE = 1.5
+GRACE = 2.0
 """Seconds that a process has to stop by itself, before it is killed."""
 
 
@@ -77,7 +78,7 @@ class Seat:
         began = time.monotonic()
         try:
             self._inside.line.send(message)
-            reply = self._read(self.limits.call + GRACE)
+            reply = self._read(self.limits.call * PATIENCE + GRACE)
         except (TooLate, TooMuch):
             self._end_question()
             raise
@@ -149,7 +150,7 @@ class Seat:
     def _run(self, number: int, source: str, answers: tuple[str, ...]) -> dict[str, Any] | None:
         assert self._inside is not None
         began, why = time.monotonic(), ""
-        left = max(0.1, min(self.limits.cell + GRACE, self.until - began))
+        left = max(0.1, min(self.limits.cell * PATIENCE + GRACE, self.until - began))
         report: dict[str, Any] | None = None
         try:
             self._inside.line.send({"cell": number, "source": source, "answers": list(answers)})

@@ -48,6 +48,29 @@ def add_grade(verbs: Verbs) -> None:
     verb.set_defaults(do=grade)
 
 
+def add_make_class(verbs: Verbs) -> None:
+    """``labkit make-class``."""
+    verb = verbs.add_parser("make-class", help="write a class that never was, to try things on")
+    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    verb.add_argument("--seed", type=int, default=2019, help="of the class (default: 2019)")
+    verb.add_argument("--count", type=int, default=40, help="how many students (default: 40)")
+    course(verb)
+    verb.set_defaults(do=make_class)
+
+
+def make_class(args: argparse.Namespace) -> int:
+    """Write a synthetic class, and what it deserves."""
+    from .synthetic import expected_file
+    from .synthetic import make_class as make
+
+    here = Course.here(args.course)
+    here.notebook_source(args.name)
+    made = make(here, args.name, args.seed, args.count)
+    print(f"{len(made)} submissions in {here.submitted}")
+    print(f"what they deserve: {expected_file(here, args.name)}")
+    return 0
+
+
 def course(verb: argparse.ArgumentParser) -> None:
     """The option that says which course."""
     from pathlib import Path

@@ -13,10 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from .checker import grade, rejection
-from .inside.wire import Gone, TooLate, TooMuch
 from .limits import Limits
 from .results import Bundle, Result
-from .sandbox import NoIsolation, Sandbox
+from .sandbox import Broken, NoIsolation, Sandbox
 from .submission import Submission
 
 TRIES = 2
@@ -46,7 +45,7 @@ class Desk:
                 return rejection(why, submission.student, bundle, self.sandbox.level)
             try:
                 return grade(data, submission.student, bundle, self.sandbox, limits, note)
-            except (Gone, TooLate, TooMuch, NoIsolation):
+            except Broken:
                 self.close()
         level = "bubblewrap" if self.isolated else "none"
         says = f"its code broke the sandbox {TRIES} times; look at it yourself"

@@ -10,6 +10,7 @@ import builtins
 import inspect
 import io
 import linecache
+import math
 import os
 import resource
 import signal
@@ -25,6 +26,7 @@ from .cells import plain
 from .wire import Gone, Line
 
 SAYS = 400  # characters of an exception's message that travel
+PATIENCE = 3.0  # waiting is cheap, and a busy machine lets everybody wait
 
 
 class TimeUp(BaseException):
@@ -116,6 +118,7 @@ def serve(line: Line, codec: Any, withhold: Callable[..., None], limits: dict[st
     """Do what the checker asks, until it closes its end."""
     notebook = Notebook(codec, limits["output"])
     signal.signal(signal.SIGALRM, _time_up)
+    signal.signal(signal.SIGPROF, _time_up)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     while True:
         try:
@@ -165,22 +168,38 @@ def _time_up(number: int, frame: Any) -> None:
     raise TimeUp
 
 
+def _stop_after(seconds: float | None) -> None:
+    """Let the kernel end this process after that much more computing."""
+    _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    soft = hard if seconds is None else min(hard, math.ceil(_cpu() + seconds))
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_CPU, (soft, hard))
+
+
 def _cpu() -> float:
     used = resource.getrusage(resource.RUSAGE_SELF)
     return used.ru_utime + used.ru_stime
 
 
 class _Alarm:
-    """Raises `TimeUp` after some seconds, and again every half second, should it be caught."""
+    """Raises `TimeUp` after some seconds of computing, and again and again, should it be caught.
+
+    Who only waits is stopped after `PATIENCE` times as long; who computes where no exception can
+    reach it, by the kernel, soon after.
+    """
 
     def __init__(self, seconds: float) -> None:
         self.seconds = seconds
 
     def __enter__(self) -> None:
-        signal.setitimer(signal.ITIMER_REAL, self.seconds, 0.5)
+        signal.setitimer(signal.ITIMER_PROF, self.seconds, 0.5)
+        signal.setitimer(signal.ITIMER_REAL, self.seconds * PATIENCE, 0.5)
+        _stop_after(self.seconds + 1.0)
 
     def __exit__(self, *_: object) -> None:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         signal.setitimer(signal.ITIMER_REAL, 0.0)
+        _stop_after(None)
 
 
 class _Capped(io.StringIO):
