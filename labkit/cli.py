@@ -35,9 +35,12 @@ def parser() -> argparse.ArgumentParser:
     verb.set_defaults(do=_release)
 
     from .grade import verbs as instructors
+    from .grade import verbs_term
 
     instructors.add_grade(verbs)
     instructors.add_make_class(verbs)
+    instructors.add_doctor(verbs)
+    verbs_term.add_all(verbs)
     return top
 
 
