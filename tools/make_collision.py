@@ -103,7 +103,16 @@ def arm(side: str, links: dict[str, Any], apart: set[frozenset[str]]) -> dict[st
         joint = reduced.names[frame.parentJoint] if frame.parentJoint else "base"
         for kind, size, T in found:
             pose = rounded(np.round(frame.placement.homogeneous @ T, 6))
-            shapes.append({"link": link, "name": plain(link), "joint": joint, "kind": kind, "size": size, "T": pose})
+            shapes.append(
+                {
+                    "link": link,
+                    "name": plain(link),
+                    "joint": joint,
+                    "kind": kind,
+                    "size": size,
+                    "T": pose,
+                }
+            )
     pairs = []
     for i, j in combinations(range(len(shapes)), 2):
         a, b = shapes[i], shapes[j]

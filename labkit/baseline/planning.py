@@ -13,7 +13,7 @@ import numpy as np
 from ..arrays import Array, as_array
 from ..errors import OutOfRange
 from ..model import Model
-from ..motion import Chain, Path, Sample, Trajectory
+from ..motion import Chain, Hold, Path, Sample, Trajectory
 from ..paths import Spline
 from ..quiet import quiet
 from .collision import Blocked, Scene
@@ -95,7 +95,7 @@ def first_hit(scene: Scene, path: Path[Sample]) -> float | None:
 
 def along(
     scene: Scene, model: Model, target: Any, q0: Any, limits: Limits = MOVEIT
-) -> Trajectory | Chain:
+) -> Trajectory | Chain | Hold:
     """A path of the tip, planned as MoveIt's computeCartesianPath does.
 
     Inverse kinematics along the path, a look at every step for collisions, then a schedule of its
@@ -105,7 +105,8 @@ def along(
     Args:
         scene: The arm among obstacles.
         model: The arm's model.
-        target: A `Trajectory` of the tip, or a `Chain` of them (it stops between its parts).
+        target: A `Trajectory` of the tip, or a `Chain` of them and of `Hold` (it stops between
+            its parts).
         q0: Joint angles at the start, shape (7,) in [rad].
         limits: Joint speeds and accelerations to keep to.
 
@@ -124,7 +125,10 @@ def along(
     return Chain(parts) if isinstance(joints, Chain) else parts[0]
 
 
-def _timed(scene: Scene, part: Trajectory, limits: Limits) -> Trajectory:
+def _timed(scene: Scene, part: Trajectory | Hold, limits: Limits) -> Trajectory | Hold:
+    if isinstance(part, Hold):
+        scene.require_free(part(0.0).position, "the place to hold")
+        return part
     hit = first_hit(scene, part.path)
     if hit is not None:
         raise Blocked(f"the path at s = {hit:.2f} {scene.why(part.path(hit).position)}")
