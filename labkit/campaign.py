@@ -1,4 +1,4 @@
-"""Many runs: a grid of named cells, each worked through on its own, by as many workers as there are.
+"""Many runs: a grid of named cells, each worked through on its own, by any number of workers.
 
 A *cell* names what to do (``{"controller": "joint velocity PD", "seed": 0, ...}``); a *job* is a
 function of those names that gives numbers.  Everything random in a job comes from its cell, so the
@@ -98,20 +98,20 @@ def row_of(job: Job, cell: Cell) -> Row:
 
 def _on_dask(job: Job, todo: list[Row], address: str, tell: Progress) -> list[Row]:
     try:
-        from distributed import Client
-        from distributed import as_completed as as_finished
+        import distributed
     except ImportError:
         raise ImportError('a Dask cluster needs the extra: pip install "labkit[cluster]"') from None
-    with Client(address) as client:
+    with distributed.Client(address) as client:  # type: ignore[no-untyped-call]
         futures = client.map(row_of, [job] * len(todo), todo, pure=False)
-        for done, _ in enumerate(as_finished(futures), start=1):
+        finished = distributed.as_completed(futures)  # type: ignore[no-untyped-call]
+        for done, _ in enumerate(finished, start=1):
             tell(done, len(todo))
         return list(client.gather(futures))
 
 
 @contextmanager
 def one_thread_each() -> Iterator[None]:
-    """Let processes started in this block do linear algebra on one thread: cells are the threads."""
+    """Processes started in this block do linear algebra on one thread: the cells are parallel."""
     names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
     before = {name: os.environ.get(name) for name in names}
     os.environ.update(dict.fromkeys(names, "1"))
@@ -184,17 +184,13 @@ def table(rows: Sequence[Row], down: str, across: str, number: str, digits: int 
 
 
 def _entry(rows: list[Row], number: str, digits: int) -> str:
+    if not rows:
+        return "–"
     failed = sum(row["failed"] is not None for row in rows)
     if failed:
         return f"failed {failed} of {len(rows)}"
-    if not rows:
-        return "–"
-    mean, low, high = spread(row[number] for row in rows)
-    text = _short(mean, digits)
-    return text if low == high else f"{text} [{_short(low, digits)}, {_short(high, digits)}]"
-
-
-def _short(x: float, digits: int) -> str:
-    if not np.isfinite(x):
-        return "never"
-    return f"{float(f'{x:.{digits}g}'):g}"
+    never = sum(row[number] is None or not np.isfinite(row[number]) for row in rows)
+    if never:
+        return "never" if never == len(rows) else f"never in {never} of {len(rows)}"
+    mean, low, high = (float(f"{x:.{digits}g}") for x in spread(row[number] for row in rows))
+    return f"{mean:g}" if low == high else f"{mean:g} [{low:g}, {high:g}]"

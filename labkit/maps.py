@@ -52,10 +52,10 @@ class ErrorMap:
         Kp, Kd, least = self.best
         lost = int(np.isnan(self.array()).sum())
         return (
-            f"RMS error of {self.title} for Kp from {self.Kp[0]:g} to {self.Kp[-1]:g} {self.unit[0]}"
-            f" and Kd from {self.Kd[0]:g} to {self.Kd[-1]:g} {self.unit[1]}: least {least:.3g} mm "
-            f"at Kp = {Kp:.3g}, Kd = {Kd:.3g}; largest {np.nanmax(self.array()):.3g} mm; "
-            f"{lost} of {self.array().size} pairs lost the arm."
+            f"RMS error of {self.title} for Kp from {self.Kp[0]:g} to {self.Kp[-1]:g} "
+            f"{self.unit[0]} and Kd from {self.Kd[0]:g} to {self.Kd[-1]:g} {self.unit[1]}: "
+            f"least {least:.3g} mm at Kp = {Kp:.3g}, Kd = {Kd:.3g}; largest "
+            f"{np.nanmax(self.array()):.3g} mm; {lost} of {self.array().size} pairs lost the arm."
         )
 
     def save(self, path: Path) -> None:
@@ -80,5 +80,7 @@ def error_map(name: str) -> ErrorMap:
     if name not in names():
         raise UnknownName("error map", name, names())
     data = json.loads((_FOLDER / f"{name}.json").read_text())
+    for key in ("Kp", "Kd", "unit"):
+        data[key] = tuple(data[key])
     data["rms_mm"] = tuple(tuple(row) for row in data["rms_mm"])
-    return ErrorMap(**{k: tuple(v) if isinstance(v, list) else v for k, v in data.items()})
+    return ErrorMap(**data)

@@ -79,7 +79,9 @@ def scaling(*scalings: Any, axes: Any = None) -> Any:
     return axes
 
 
-def everything(log: Log, model: Model | None = None, *, joints: Any = None) -> Any:
+def everything(
+    log: Log, model: Model | None = None, *, joints: Any = None, title: str | None = None
+) -> Any:
     """One run on one page: the tip's position, velocity and errors; seven joints; seven torques.
 
     Args:
@@ -87,6 +89,7 @@ def everything(log: Log, model: Model | None = None, *, joints: Any = None) -> A
         model: The arm's model; None makes the log's own.
         joints: For a run after poses, the joint angles that belong to them, a function of time, to
             draw beside the joints; None draws none.
+        title: Above all; None names controller and arm.
 
     Returns:
         The figure.
@@ -94,13 +97,9 @@ def everything(log: Log, model: Model | None = None, *, joints: Any = None) -> A
     model = model or metrics.model_of(log)
     arm = model.robot
     figure = plt.figure(figsize=(13, 10), layout="constrained")
-    figure.suptitle(f"{log.controller} on the {log.plant.name} {log.side} arm", fontsize="large")
-    left, middle, right = (
-        column.subgridspec(n, 1)
-        for n, column in zip(
-            (4, 7, 7), figure.add_gridspec(1, 3, width_ratios=(1.35, 1, 1)), strict=True
-        )
-    )
+    figure.suptitle(title or f"{log.controller} on the {log.plant.name} {log.side} arm")
+    columns = figure.add_gridspec(1, 3, width_ratios=(1.35, 1, 1))
+    left, middle, right = (columns[k].subgridspec(n, 1) for k, n in enumerate((4, 7, 7)))
     e = metrics.tip_error(log, model)
     tip = [figure.add_subplot(left[k]) for k in range(4)]
     _against(
@@ -126,13 +125,15 @@ def everything(log: Log, model: Model | None = None, *, joints: Any = None) -> A
         ax.plot(log.t, np.linalg.norm(error, axis=1), "k", linewidth=0.8, label="length")
         ax.set_ylabel(label)
         ax.legend(frameon=False, ncols=4, fontsize="x-small")
-    wanted = None if isinstance(log.target, PoseSample) else log.target.position
-    if wanted is None and joints is not None:
+    wanted, meaning = None, "inverse kinematics"
+    if not isinstance(log.target, PoseSample):
+        wanted, meaning = log.target.position, "target"
+    elif joints is not None:
         wanted = np.array([joints(t).position for t in log.t])
     for i, name in enumerate(arm.joint_names):
         ax, below = figure.add_subplot(middle[i]), figure.add_subplot(right[i])
         if wanted is not None:
-            ax.plot(log.t, wanted[:, i], "0.6", linewidth=4, label="target")
+            ax.plot(log.t, wanted[:, i], "0.6", linewidth=4, label=meaning)
         ax.plot(log.t, log.q[:, i], "C0", label="actual")
         below.plot(log.t, log.tau[:, i], "C1", linewidth=0.8)
         below.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)

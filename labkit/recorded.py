@@ -57,7 +57,7 @@ def save(log: Log, path: Path) -> None:
         "plant": asdict(log.plant),
         "side": log.side,
     }
-    np.savez_compressed(path, about=np.array(json.dumps(about)), **single)  # type: ignore[arg-type]
+    np.savez_compressed(path, about=np.array(json.dumps(about)), **single)
 
 
 def load(path: Path) -> Log:
@@ -70,7 +70,7 @@ def load(path: Path) -> Log:
     return Log(
         **{name: column[name] for name in _ROWS},
         target=kind(*(column[f"target.{f}"] for f in kind._fields)),
-        measured=State(*(column[f"measured.{f}"] for f in State._fields)),  # type: ignore[arg-type]
+        measured=State(*(column[f"measured.{f}"] for f in State._fields)),
         command_type={c.__name__: c for c in COMMANDS}[about["command"]],
         controller=about["controller"],
         plant=Plant(**plant),

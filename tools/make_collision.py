@@ -11,7 +11,7 @@ Run: python tools/make_collision.py
 from __future__ import annotations
 
 import json
-from itertools import combinations
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -59,7 +59,7 @@ def stack(mesh: str) -> list[tuple[str, list[float], np.ndarray]]:
     points, _ = trimesh.sample.sample_surface(body, 100_000, seed=0)
     edges = np.linspace(*body.bounds[:, 2], SLICES + 1)
     found = []
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges):
         inside = points[(low <= points[:, 2]) & (points[:, 2] <= high)]
         lower = np.append(inside.min(axis=0)[:2], low)
         upper = np.append(inside.max(axis=0)[:2], high)

@@ -6,18 +6,16 @@ Needs the extra ``labkit[baseline]`` (ompl, toppra); its recorded runs need noth
 from __future__ import annotations
 
 try:
-    import ompl as _ompl
-    import toppra as _toppra
-except ImportError as missing:
-    raise ImportError(
-        f"the baseline needs {missing.name}, which is not installed: pip install "
-        '"labkit[baseline]"; without it, its recorded runs are there: lk.recorded'
+    from .collision import Blocked, Box, PlanningScene
+    from .planning import NoWay, along, first_hit, plan
+    from .server import RATE, PathTolerance, PositionServer, VelocityServer
+    from .timing import HARDWARE, MOVEIT, Limits, Schedule, quickest
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError(
+        f'the baseline needs {missing.name}, which is not installed: pip install "labkit[baseline]"'
+        "; its recorded runs need nothing: labkit.recorded.names()",
+        name=missing.name,
     ) from missing
-
-from .collision import Blocked, Box, Scene, table
-from .planning import NoWay, along, first_hit, plan
-from .server import RATE, PathTolerance, PositionServer, VelocityServer
-from .timing import HARDWARE, MOVEIT, Limits, Schedule, quickest
 
 __all__ = [
     "HARDWARE",
@@ -28,13 +26,12 @@ __all__ = [
     "Limits",
     "NoWay",
     "PathTolerance",
+    "PlanningScene",
     "PositionServer",
-    "Scene",
     "Schedule",
     "VelocityServer",
     "along",
     "first_hit",
     "plan",
     "quickest",
-    "table",
 ]

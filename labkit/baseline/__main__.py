@@ -10,8 +10,9 @@ from ..metrics import summary
 from ..motion import Chain, Hold
 from ..plant import BAXTER
 from ..run import Log, run
+from ..scene import Table
 from ..tasks import Task
-from . import RATE, PositionServer, Scene, VelocityServer, along, plan, quickest, table
+from . import RATE, PlanningScene, PositionServer, VelocityServer, along, plan, quickest
 
 FOLDER = Path(__file__).parents[1] / "data" / "recorded"
 
@@ -19,7 +20,7 @@ FOLDER = Path(__file__).parents[1] / "data" / "recorded"
 def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) -> tuple[Log, Log]:
     """The built-in way from neutral through a task: the log of the approach, and of the task."""
     with Arm(task.side, BAXTER, seed) as arm:
-        scene = Scene(task.side, (table(),))
+        scene = PlanningScene(task.side, (Table(),))
         approach = quickest(plan(scene, arm.robot.neutral, task.q0, seed=seed))
         there = Chain([approach, Hold(task.q0, 1.0)])
         first = run(arm, there, server, rate=RATE)

@@ -1,13 +1,15 @@
 """What the planner sees: the arm, the rest of Baxter and boxes, as simple shapes.
 
-Approximations: Rethink's own collision cylinders and boxes for the links, stacks of boxes for
-torso and pedestal, the other arm at rest in its neutral pose (``tools/make_collision.py``).  The
-distances are those of coal, by way of Pinocchio.
+Approximations: Rethink's own collision cylinders and boxes for the links, out of which the arm's
+housings stick by up to 5 cm (10 cm at the shoulder, which goes nowhere); stacks of boxes for torso
+and pedestal; the other arm at rest in its neutral pose (``tools/make_collision.py``).  MoveIt saw
+Baxter so too.  The distances are those of coal, by way of Pinocchio.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.resources import files
 from typing import Any
@@ -19,6 +21,7 @@ import pinocchio as pin
 from ..arrays import Array, as_array, as_number, as_vector
 from ..errors import JointLimitExceeded, LabkitError, OutOfRange
 from ..robot import Robot, Side, robot
+from ..scene import FACE, Table, Wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,30 +46,28 @@ class Box:
         object.__setattr__(self, "size", size)
 
 
-def table(top: float = -0.05) -> Box:
-    """A table before Baxter, with its top at this height above the world's origin, in [m]."""
-    return Box("table", (0.85, 0.0, top - 0.02), (0.9, 1.8, 0.04))
-
-
-class Scene:
+class PlanningScene:
     """The arm among obstacles, for a planner.
 
     Attributes:
         robot: Names and limits of the arm.
-        boxes: The obstacles besides Baxter's own body.
+        obstacles: What stands there besides Baxter's own body.
         margin: How near two shapes may come, in [m].
     """
 
     def __init__(
-        self, side: Side = "left", boxes: tuple[Box, ...] = (), margin: float = 0.01
+        self,
+        side: Side = "left",
+        obstacles: Iterable[Box | Table | Wall] = (),
+        margin: float = 0.01,
     ) -> None:
-        """The ``side`` arm, the rest of Baxter, and ``boxes``.
+        """The ``side`` arm, the rest of Baxter, and ``obstacles``.
 
         Raises:
             UnknownName: Baxter has no such arm.
         """
         self.robot: Robot = robot(side)
-        self.boxes = boxes
+        self.obstacles = tuple(obstacles)
         self.margin = as_number(margin, "margin", least=0.0)
         self._model = pin.buildModelFromXML(self.robot.urdf())
         self._shapes = pin.GeometryModel()
@@ -77,10 +78,8 @@ class Scene:
         for a, b in data["pairs"]:
             self._shapes.addCollisionPair(pin.CollisionPair(a, b))
         moving = [i for i, shape in enumerate(data["shapes"]) if shape["joint"] not in _FIXED]
-        for box in boxes:
-            T = np.eye(4)
-            T[:3, 3] = box.centre
-            k = self._put(box.name, 0, T, coal.Box(*box.size))
+        for thing in self.obstacles:
+            k = self._put(*_solid(thing))
             for i in moving:
                 self._shapes.addCollisionPair(pin.CollisionPair(i, k))
         self._data = self._model.createData()
@@ -104,12 +103,15 @@ class Scene:
             q: Joint angles, shape (7,) in [rad].
 
         Returns:
-            Their distance in [m], negative inside each other, and their names.
+            Their distance in [m], negative inside each other, and their names, first that of the
+            one further along the arm.
         """
         q = as_array(q, (7,), "q")
         k = pin.computeDistances(self._model, self._data, self._shapes, self._results, q)
         pair = self._shapes.collisionPairs[k]
-        names = (_plain(self._shapes.geometryObjects[i].name) for i in (pair.first, pair.second))
+        shapes = [self._shapes.geometryObjects[i] for i in (pair.first, pair.second)]
+        shapes.sort(key=lambda shape: -shape.parentJoint)
+        names = (_plain(shape.name) for shape in shapes)
         return (float(self._results.distanceResults[k].min_distance), *names)  # type: ignore[return-value]
 
     def require_free(self, q: Any, name: str) -> Array:
@@ -152,6 +154,16 @@ class Blocked(LabkitError, ValueError):
 
 
 _FIXED = ("base",)
+
+
+def _solid(thing: Box | Table | Wall) -> tuple[str, int, Array, Any]:
+    """An obstacle's name, the fixed joint 0, its pose in the world and its shape."""
+    T = np.eye(4)
+    if isinstance(thing, Box):
+        T[:3, 3] = thing.centre
+        return thing.name, 0, T, coal.Box(*thing.size)
+    T[2, 3] = -0.5 * FACE  # the face is its upper side
+    return type(thing).__name__.lower(), 0, thing.T_wf @ T, coal.Box(*thing.size, FACE)
 
 
 def _shape(shape: dict[str, Any]) -> Any:

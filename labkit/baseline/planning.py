@@ -1,7 +1,6 @@
-"""Where to go: a way for the joints that touches nothing (OMPL's RRT-Connect), and MoveIt's
-straight-line planning along a path of the tip.
+"""Where to go: OMPL's RRT-Connect between places of the joints, MoveIt's way along a tip's path.
 
-Kuffner & LaValle 2000, "RRT-Connect".
+Kuffner & LaValle 2000, "RRT-Connect: an efficient approach to single-query path planning".
 """
 
 from __future__ import annotations
@@ -16,7 +15,7 @@ from ..model import Model
 from ..motion import Chain, Hold, Path, Sample, Trajectory
 from ..paths import Spline
 from ..quiet import quiet
-from .collision import Blocked, Scene
+from .collision import Blocked, PlanningScene
 from .timing import MOVEIT, Limits, quickest
 
 with quiet():
@@ -32,7 +31,7 @@ class NoWay(Blocked):
     """The planner found no way."""
 
 
-def plan(scene: Scene, start: Any, goal: Any, *, seed: int = 0) -> Spline:
+def plan(scene: PlanningScene, start: Any, goal: Any, *, seed: int = 0) -> Spline:
     """A way from ``start`` to ``goal`` that touches nothing.
 
     The same seed gives the same way: the planner's patience is counted in places tried, not in
@@ -64,8 +63,8 @@ def plan(scene: Scene, start: Any, goal: Any, *, seed: int = 0) -> Spline:
         s = first_hit(scene, straight) or 0.0
         raise NoWay(
             f"no way found from start to goal after {CHECKS} places; going straight, "
-            f"s = {s:.2f} {scene.why(straight(s).position)}; try another seed, another start or a goal "
-            "with the elbow elsewhere"
+            f"s = {s:.2f} {scene.why(straight(s).position)}; try another seed, another start or a "
+            "goal with the elbow elsewhere"
         )
     for density in (1, 2, 4):  # the more points, the closer the smooth curve stays to the corners
         smooth = _spline(corners, density)
@@ -78,7 +77,7 @@ def plan(scene: Scene, start: Any, goal: Any, *, seed: int = 0) -> Spline:
     )
 
 
-def first_hit(scene: Scene, path: Path[Sample]) -> float | None:
+def first_hit(scene: PlanningScene, path: Path[Sample]) -> float | None:
     """The first place s along a path of joint angles where something is too near; None if none.
 
     Args:
@@ -94,7 +93,7 @@ def first_hit(scene: Scene, path: Path[Sample]) -> float | None:
 
 
 def along(
-    scene: Scene, model: Model, target: Any, q0: Any, limits: Limits = MOVEIT
+    scene: PlanningScene, model: Model, target: Any, q0: Any, limits: Limits = MOVEIT
 ) -> Trajectory | Chain | Hold:
     """A path of the tip, planned as MoveIt's computeCartesianPath does.
 
@@ -125,7 +124,7 @@ def along(
     return Chain(parts) if isinstance(joints, Chain) else parts[0]
 
 
-def _timed(scene: Scene, part: Trajectory | Hold, limits: Limits) -> Trajectory | Hold:
+def _timed(scene: PlanningScene, part: Trajectory | Hold, limits: Limits) -> Trajectory | Hold:
     if isinstance(part, Hold):
         scene.require_free(part(0.0).position, "the place to hold")
         return part
@@ -136,7 +135,7 @@ def _timed(scene: Scene, part: Trajectory | Hold, limits: Limits) -> Trajectory 
     return quickest(part.path, limits, ds_dt=peak)
 
 
-def _search(scene: Scene, start: Array, goal: Array, seed: int) -> Array | None:
+def _search(scene: PlanningScene, start: Array, goal: Array, seed: int) -> Array | None:
     """The corners of a way, shape (k, 7), or None."""
     tried = 0
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import toppra
 from toppra import algorithm, constraint
 from toppra.interpolator import AbstractGeometricPath
 
