@@ -170,7 +170,7 @@ class Loop:
         """
         if self.Kp == 0.0 and self.Kd == 0.0:
             raise OutOfRange("Kp and Kd are both 0, so there is no loop that could have margins")
-        omega = np.logspace(-3, 4, 20_000)
+        omega = np.logspace(-2, 4, 1000)
         L = (self.Kp + 1j * omega * self.Kd) * self.joint.response(omega)
         data = control.FrequencyResponseData(L, omega, smooth=True)
         gain, phase, _, _, crossover, _ = control.stability_margins(data)

@@ -95,8 +95,8 @@ def report_procedure(
         steps.append(step)
         if len(steps) > most:
             raise OutOfRange(
-                f"no oscillation up to Kp = {gain:.3g}: this loop has no delay or lag to speak of; "
-                "choose the gain by the noise and the torque instead"
+                f"no oscillation up to Kp = {gain:.3g} in {most} trials: raise growth, or, if the loop "
+                "has no delay and no lag, choose the gain by the noise and the torque instead"
             )
         gain *= growth
     chosen, ultimate = gain / 2.0, gain
@@ -129,13 +129,15 @@ def decay_ratio(error: Any) -> float:
         error: A joint's error over time, shape (N,).
 
     Returns:
-        The geometric mean over all swings but the first, 0 if there are fewer than three.  Swings
-        below a thousandth of the largest do not count: they are noise.
+        The geometric mean over all swings but the first, which is the start, and the last, which
+        may be cut short; 0 if fewer than two remain.  Swings below a thousandth of the largest do
+        not count: they are noise.
     """
     e = np.asarray(error, dtype=float)
     edges = np.flatnonzero(np.diff(np.signbit(e))) + 1
     peaks = np.array([np.abs(part).max() for part in np.split(e, edges)])
     peaks = peaks[: int(np.argmax(peaks < 1e-3 * peaks.max())) or len(peaks)]
-    if len(peaks) < 3:
+    swings = peaks[1:-1]
+    if len(swings) < 2:
         return 0.0
-    return float((peaks[-1] / peaks[1]) ** (1.0 / (len(peaks) - 2)))
+    return float((swings[-1] / swings[0]) ** (1.0 / (len(swings) - 1)))

@@ -14,8 +14,8 @@ from labkit.tuning import Trial, Tuning, report_procedure
 
 from .joint_velocity import JointVelocityPD
 
-OFF = 0.02
-"""How far from its target the joint begins, in [rad]."""
+OFF = 0.005
+"""How far from its target the joint begins, in [rad]: no further, or speed and torque saturate."""
 
 
 def trial_on(joint: int, plant: Plant = BAXTER, *, duration: float = 2.0, seed: int = 0) -> Trial:

@@ -35,7 +35,7 @@ def test_the_joints_take_the_tip_along_the_task(task):
 def test_the_square_visits_current_goals_and_current_again():
     task = TASKS[2]
     p = task.target(0.0).pose[:3, 3]
-    corners = [p, p + (0.15, 0, 0), p + (0.15, -0.15, 0), p + (0, -0.15, 0), p]
+    corners = p + np.array([(0, 0, 0), (0.15, 0, 0), (0.15, -0.15, 0), (0, -0.15, 0), (0, 0, 0)])
     for start, corner in zip([*task.target.starts, task.duration], [*corners, p], strict=True):
         sample = task.target(start)
         np.testing.assert_allclose(sample.pose[:3, 3], corner, atol=1e-12)
