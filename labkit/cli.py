@@ -14,6 +14,7 @@ from .errors import LabkitError
 EXAMPLES = """examples:
   labkit release                    make all assignments, for students and for nbgrader
   labkit release 01_paths --seed 7  one of them, with hidden cases of your own
+  labkit student-bundle             a zip for students, with a start page
   labkit grade 01_paths             grade everything under submitted/
 """
 
@@ -34,6 +35,12 @@ def parser() -> argparse.ArgumentParser:
     verb.add_argument("--seed", type=int, default=2019, help="of the hidden cases (default: 2019)")
     _course(verb)
     verb.set_defaults(do=_release)
+
+    verb = verbs.add_parser("student-bundle", help="a zip for students: labkit and notebooks")
+    verb.add_argument("names", nargs="*", metavar="NAME", help="all that are released by default")
+    verb.add_argument("--to", type=Path, metavar="FILE", help="default: dist/baxter-lab.zip")
+    _course(verb)
+    verb.set_defaults(do=_student_bundle)
 
     verb = verbs.add_parser("grade", help="grade what was handed in")
     verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
@@ -65,6 +72,16 @@ def _release(args: argparse.Namespace) -> int:
     for name in args.names or course.names():
         print(release(course, name, args.seed), flush=True)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
+    return 0
+
+
+def _student_bundle(args: argparse.Namespace) -> int:
+    from .grade.course import Course
+    from .grade.handout import student_bundle
+
+    course = Course.here(args.course)
+    path = student_bundle(course, args.names, args.to or course.root / "dist" / "baxter-lab.zip")
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
     return 0
 
 
