@@ -22,10 +22,10 @@ pre{{background:#f3f3f3;padding:1rem;overflow:auto}}</style>
 <p>You need Linux on x86-64 (on Windows: WSL 2), Python 3.11, 2 GB of disk and 1 GB of memory. No
 graphics card.</p>
 <ol><li>Open a terminal in this folder.</li>
-<li>Type <pre>sh start.sh</pre> It makes a folder <code>.venv</code> with all that is needed, the first
-time only, and opens Jupyter in your browser.</li>
+<li>Type <pre>sh start.sh</pre> It makes a folder <code>.venv</code> with all that is needed, the
+first time only, and opens Jupyter in your browser.</li>
 <li>Open one of: {names}. Run the cells from the top: the second one says that the arm moved.</li>
-<li>Where a cell says <em>Your code goes here</em>, write; the check below answers in words.</li></ol>
+<li>Where a cell says <em>Your code goes here</em>, write; the check answers in words.</li></ol>
 <p>To hand in, give back the notebook file with its name as it is. Beside it lies
 <code>checks.json</code>, which the checks need: leave it there.</p></main></html>
 """
