@@ -7,7 +7,6 @@ from collections import deque
 from dataclasses import replace
 from functools import cache
 from operator import le
-from operator import le
 from pathlib import Path
 from typing import Any
 
@@ -189,8 +188,8 @@ class Arm:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
         q, dq, _, motor = zip(*self._read(), strict=False)
         truth = State(self.world.t, np.array(q), np.array(dq))
-        truth.q.setflags(False)
-        truth.dq.setflags(False)
+        truth.q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        truth.dq.setflags(False)  # type: ignore[call-arg]  # as in `locked`
         torque = self._total if self._kind is JointTorque else np.array(motor)
         return truth, self.state() if self._publish_every else truth, torque
 

@@ -119,7 +119,7 @@ def as_number(
 
 def locked(a: Array) -> Array:
     """The same array, made read-only."""
-    a.setflags(False)  # by position: half the time of write=False
+    a.setflags(False)  # type: ignore[call-arg]  # half the time of write=False
     return a
 
 

@@ -162,7 +162,7 @@ class _Book:
             good = False
         self.latest = sample if good else self.read(sample, t)
         for part in self.latest:
-            part.setflags(False)
+            part.setflags(False)  # type: ignore[call-arg]  # as in `locked`
         return self.latest
 
     def read(self, sample: Any, t: float) -> AnySample:
@@ -233,8 +233,9 @@ def _first_sample(target: Target, whom: str) -> AnySample:
     except Exception as error:
         what = f"{type(error).__name__}: {error}"
         raise ControllerError(f"the target {whom} failed at t = 0: {what}") from error
-    n = np.size(sample.position) if isinstance(sample, Sample) else 0
-    shapes = [(n,)] * 3 if isinstance(sample, Sample) else [(4, 4), (6,), (6,)]
+    shapes: list[tuple[int, ...]] = [(4, 4), (6,), (6,)]
+    if isinstance(sample, Sample):
+        shapes = [(np.size(sample.position),)] * 3
     return _read_sample(sample, type(sample), shapes, whom, 0.0)
 
 
