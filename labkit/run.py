@@ -151,6 +151,7 @@ class _Book:
         self.latest = first
         self.widths = [JOINTS] * 6 + [part.size for part in first]
         self.rows = np.empty((ticks, sum(self.widths)))
+        self.ones = np.ones(sum(self.widths))
         self.t, self.t_seen = np.empty(ticks), np.empty(ticks)
         self.saturated = np.zeros(ticks, dtype=bool)
 
@@ -188,7 +189,7 @@ class _Book:
         np.concatenate(
             (truth.q, truth.dq, torque, command.value, seen.q, seen.dq, x.ravel(), dx, ddx), out=row
         )
-        if not isfinite(row.dot(row)):
+        if not isfinite(row.dot(self.ones)):
             self.read(sample, t)
         self.t[k], self.t_seen[k], self.filled = t, seen.t, k + 1
 
