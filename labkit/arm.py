@@ -6,6 +6,7 @@ import tempfile
 from collections import deque
 from dataclasses import replace
 from functools import cache
+from operator import le
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from .world import World
 with quiet():
     import pybullet as bullet
 
-_JOINTS = list(range(7))
+_JOINTS = tuple(range(7))
 _ZERO = [0.0] * 7
 
 
@@ -86,6 +87,7 @@ class Arm:
             Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
         )
         self._publish_every = whole_steps(plant.state_rate, self.world.dt, "plant.state_rate")
+        self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
         self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
         self._stiction, self._viscous = list(plant.stiction), np.array(plant.viscous)
         self._noise = np.array(plant.velocity_noise)
@@ -130,7 +132,7 @@ class Arm:
         if kind is not self._kind:
             self._enter(kind)
         self._fresh = True
-        self._commanded_at = self.world._steps
+        self._deadline = self.world._steps + self._patience
 
     def stop(self) -> None:
         """Come to rest and stay."""
@@ -184,9 +186,10 @@ class Arm:
 
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
-        rows = self._read()
-        q, dq, _, motor = zip(*rows, strict=True)
-        truth = State(self.world.t, locked(np.array(q)), locked(np.array(dq)))
+        q, dq, _, motor = zip(*self._read(), strict=False)
+        truth = State(self.world.t, np.array(q), np.array(dq))
+        truth.q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        truth.dq.setflags(False)  # type: ignore[call-arg]  # as in `locked`
         torque = self._total if self._kind is JointTorque else np.array(motor)
         return truth, self.state() if self._publish_every else truth, torque
 
@@ -197,7 +200,7 @@ class Arm:
         plant, steps = self.plant, self.world._steps
         if self._publish_every and steps % self._publish_every == 0:
             self._publish()
-        if (steps - self._commanded_at) * self.world.dt > plant.command_timeout:
+        if steps > self._deadline:
             self._hold()
         if self._kind is JointTorque:
             self._drive_torque()
@@ -261,7 +264,7 @@ class Arm:
     def _hold(self) -> None:
         """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
         if self._kind is JointPosition:
-            self._commanded_at = self.world._steps
+            self._deadline = self.world._steps + self._patience
             return
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
@@ -278,7 +281,7 @@ class Arm:
     def _read(self) -> Any:
         if self.world.client < 0:
             raise Closed("this arm's world was closed; make a new Arm")
-        return bullet.getJointStates(self._body, _JOINTS, physicsClientId=self._client)
+        return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:
         """Close the world it stands in."""
@@ -296,7 +299,7 @@ class Arm:
 
 def _cut(x: Array, limit: Array) -> Array:
     """``x`` itself if it is within ±limit, else a copy that is."""
-    if (abs(x) <= limit).all():
+    if all(map(le, map(abs, x.tolist()), limit.tolist())):  # NumPy is slow with seven numbers
         return x
     return np.minimum(np.maximum(x, -limit), limit)
 
