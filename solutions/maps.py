@@ -51,7 +51,7 @@ PLANES = {
         lambda Kp, Kd, plant: JointVelocityPD(Kp, Kd),
         Kp=_grid(1.0, 160.0, 12),
         Kd=(0.0, *_grid(0.05, 6.0, 8)),
-        unit=("1/s", "(no unit)"),
+        unit=("1/s", "no unit"),
         rate=200.0,
     ),
     "joint torque PD": Plane(
