@@ -13,13 +13,10 @@ from labkit.campaign import cells
 
 from .campaign import FIVE, TASKS, joints, perform
 
-REPORT = ("line", "circle", "square", "tag")
-"""The report's order of tasks; its figure 4 is the first way on the first task."""
-
 
 def grid(folder: Path) -> list[dict[str, Any]]:
     """Cells of the figures: five controllers on every task."""
-    return cells(way=FIVE, task=tuple(TASKS), folder=(str(folder),))
+    return cells(way=FIVE, task=TASKS, folder=(str(folder),))
 
 
 def draw(way: str, task: str, folder: str) -> Mapping[str, Any]:
@@ -31,9 +28,11 @@ def draw(way: str, task: str, folder: str) -> Mapping[str, Any]:
     matplotlib.use("Agg")
     from matplotlib import pyplot as plt
 
-    number = 4 + 4 * FIVE.index(way) + REPORT.index(task)
+    number = 4 + 4 * FIVE.index(way) + TASKS.index(task)
     log = perform(way, task, "baxter", 0)
-    figure = plotting.everything(log, joints=joints(way, task), title=f"{way}, {task}, baxter arm")
+    figure = plotting.everything(
+        log, joints=joints(way, task, 0), title=f"{way}, {task}, baxter arm"
+    )
     name = f"figure_{number:02d}_{way.replace(' ', '_')}_{task}.png"
     figure.savefig(Path(folder) / name, dpi=90)
     plt.close(figure)
