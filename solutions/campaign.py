@@ -272,11 +272,11 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     text = tables(rows, judged)
     (folder / "tables.md").write_text(text)
-    drawn = []
-    if not options.no_pictures:
-        drawn = work_through(  # on this machine: they write files
-            pictures.draw, pictures.grid(folder), jobs=options.jobs, progress=Meter("figures")
-        )
+    drawn, shot = [], []
+    if not options.no_pictures:  # on this machine, for they write files
+        where["dask"] = None
+        drawn = done(pictures.draw, pictures.grid(folder), "figures")
+        shot = done(pictures.shoot, pictures.film_grid(folder), "films")
     found = {
         "seeds": options.seeds,
         "seconds": round(seconds, 1),
@@ -285,11 +285,14 @@ def main() -> None:
         "noise": noise,
         "verdicts": [{**asdict(v), "outcome": v.outcome.value} for v in judged],
         "figures": drawn,
+        "films": shot,
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     print(text)
-    print(f"{len(rows)} runs in {seconds:.0f} s; {path}, {folder}/tables.md, {len(drawn)} figures")
+    print(
+        f"{len(rows)} runs in {seconds:.0f} s; {path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
+    )
 
 
 if __name__ == "__main__":

@@ -10,8 +10,10 @@ import matplotlib
 
 from labkit import plotting
 from labkit.campaign import cells
+from labkit.film import film
 
 from .campaign import FIVE, TASKS, joints, perform
+from .tag_task import staged
 
 
 def grid(folder: Path) -> list[dict[str, Any]]:
@@ -37,3 +39,21 @@ def draw(way: str, task: str, folder: str) -> Mapping[str, Any]:
     figure.savefig(Path(folder) / name, dpi=90)
     plt.close(figure)
     return {"figure": number, "file": name, "alt": f"{task}: {plotting.describe(log)}"}
+
+
+def film_grid(folder: Path) -> list[dict[str, Any]]:
+    """Cells of the videos: one for each task."""
+    return cells(task=TASKS, folder=(str(folder),))
+
+
+def shoot(task: str, folder: str) -> Mapping[str, Any]:
+    """The job: film joint velocity control of a task on Baxter's plant.
+
+    Returns:
+        "file" and "poster", their names; "alt", the film in words.
+    """
+    log = perform("joint velocity", task, "baxter", 0)
+    stage = (lambda world: staged(world, 0)) if task == "tag" else None
+    path = Path(folder) / f"{task}.mp4"
+    poster = film(log, path, stage=stage)
+    return {"file": path.name, "poster": poster.name, "alt": f"{task}: {plotting.describe(log)}"}

@@ -73,7 +73,7 @@ class Chase:
 
 
 def followed(seed: int) -> Chase:
-    """The course's way: a picture ten times a second, a filter, and a reference that never jumps."""
+    """The course's way: ten pictures a second, a filter, a reference that never jumps."""
     return _record(seed, 10.0, 0.1, lambda: TagFollower(ready_pose(), OFFSET))
 
 
