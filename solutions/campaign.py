@@ -240,8 +240,9 @@ def tables(rows: list[Row], judged: list[Verdict]) -> str:
         for plant in dict.fromkeys(row["plant"] for row in rows):
             body = table(pick(rows, plant=plant), "way", "task", number)
             parts.append(f"## {title}, {plant} arm\n\n{body}")
-    title = "Distance from where the tag really put the tip, RMS after two seconds [mm]"
-    parts.append(f"## {title}\n\n{table(pick(rows, task='tag'), 'way', 'plant', 'tag_rms_mm')}")
+    if chased := pick(rows, task="tag"):
+        title = "Distance from where the tag really put the tip, RMS after two seconds [mm]"
+        parts.append(f"## {title}\n\n{table(chased, 'way', 'plant', 'tag_rms_mm')}")
     parts.append("## What the report claimed\n\n" + "\n".join(f"- {v}" for v in judged))
     return "\n\n".join(parts) + "\n"
 
@@ -290,9 +291,8 @@ def main() -> None:
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     print(text)
-    print(
-        f"{len(rows)} runs in {seconds:.0f} s; {path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
-    )
+    made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
+    print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
 
 
 if __name__ == "__main__":

@@ -150,7 +150,6 @@ def noisy(cell):
 
 def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsys):
     """One seed of the line alone, without pictures."""
-    monkeypatch.setattr(report, "TASKS", {"line": report.TASKS["line"]})
     monkeypatch.setattr(report, "grid", lambda seeds: SMALL[::2])
     monkeypatch.setattr(report, "gain_grid", lambda seeds: [])
     monkeypatch.setattr(report, "noise_grid", lambda seeds: [])
