@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from .arm import Arm, whole_steps
-from .arrays import Array, as_array, as_number, locked
+from .arrays import Array, as_array, as_number, locked, shown
 from .commands import COMMANDS, JOINTS, Command, State
-from .errors import ControllerError, Diverged, LabkitError, OutOfRange
+from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .motion import AnySample, PoseSample, Sample, Target
 from .plant import Plant
 from .robot import Side
@@ -96,7 +96,17 @@ def run(
             or no sample; it says which and when.
         Diverged: The arm ran away; the error keeps the `log` up to then.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
+        TypeMismatch: One of the three is not what it should be.
+        Closed: The arm's world is closed.
     """
+    for name, given in (("target", target), ("controller", controller)):
+        if not callable(given):
+            raise TypeMismatch(
+                f"{name} is {shown(given)}, expected a function: run(arm, target, controller)"
+            )
+    if not isinstance(arm, Arm):
+        raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
+    rate = as_number(rate, "rate", above=0.0)
     steps = whole_steps(rate, arm.world.dt, "rate")
     ticks = _ticks(target, duration, steps * arm.world.dt)
     who, whom, world, period = _name(controller), _name(target), arm.world, steps * arm.world.dt
@@ -127,7 +137,7 @@ def run(
     except Diverged as error:
         error.log = book.log(kind, who, arm)
         raise
-    except ControllerError:
+    except (ControllerError, Closed):
         raise
     except Exception as error:
         book.blame(t)
@@ -200,6 +210,8 @@ class _Book:
             np.ascontiguousarray(column) for column in np.split(self.rows[:n], edges, axis=1)
         )
         shaped = zip(target, self.shapes, strict=True)
+        saturated = self.saturated[:n]
+        saturated.setflags(write=False)
         return Log(
             t=locked(self.t[:n]),
             q=locked(q),
@@ -208,7 +220,7 @@ class _Book:
             command=locked(command),
             target=self.sample_type(*(locked(x.reshape(n, *shape)) for x, shape in shaped)),
             measured=State(locked(self.t_seen[:n]), locked(q_seen), locked(dq_seen)),  # type: ignore[arg-type]
-            saturated=self.saturated[:n],
+            saturated=saturated,
             command_type=kind or type(None),
             controller=who,
             plant=arm.plant,

@@ -25,8 +25,10 @@ class World:
 
     Attributes:
         dt: The physics step, in [s].
-        client: PyBullet's number of this world.
+        client: PyBullet's number of this world, -1 once it is closed.
     """
+
+    client: int = -1
 
     def __init__(self, dt: float = 1e-3) -> None:
         """Open an empty world with gravity.
@@ -35,7 +37,7 @@ class World:
             dt: The physics step, in [s].
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.client: int = bullet.connect(bullet.DIRECT)
+        self.client = bullet.connect(bullet.DIRECT)
         self._steps = 0
         self._actors: list[Actor] = []
         bullet.setTimeStep(self.dt, physicsClientId=self.client)
