@@ -24,7 +24,7 @@ from .scalings import BangBang, Cubic, Quintic, Trapezoid
 from .world import World
 
 if TYPE_CHECKING:
-    from . import plotting
+    from . import check, plotting
     from .ready import ready
 
 __version__ = "0.1.0"
