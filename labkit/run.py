@@ -37,8 +37,10 @@ class Log:
             included, shape (N, 7) in [N m]; the last row repeats the one before.
         command: What the controller asked for, shape (N, 7), in the unit of `command_type`.
         target: A `Sample` or `PoseSample` of stacked arrays, (N, ...).
-        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7).
-        saturated: Whether a limit cut the command, shape (N,).
+        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7),
+            tau_ext (N, 7).
+        saturated: Whether a limit of speed or torque cut what the arm did until the next tick,
+            shape (N,).
         command_type: `JointPosition`, `JointVelocity` or `JointTorque`.
         controller: The controller's name.
         plant: The plant that was driven.
@@ -129,8 +131,8 @@ def run(
             if k < ticks - 1:
                 if not lost[k]:
                     arm.apply(command)
-                book.saturated[k] = arm.saturated
                 world.step(steps)
+                book.saturated[k] = arm.saturated
     except KeyboardInterrupt:
         if not book.filled:
             raise
@@ -159,7 +161,7 @@ class _Book:
         self.filled, self.whom, self.sample_type = 0, whom, type(first)
         self.shapes = [part.shape for part in first]
         self.latest = first
-        self.widths = [JOINTS] * 6 + [part.size for part in first]
+        self.widths = [JOINTS] * 7 + [part.size for part in first]
         self.rows = np.empty((ticks, sum(self.widths)))
         self.ones = np.ones(sum(self.widths))
         self.t, self.t_seen = np.empty(ticks), np.empty(ticks)
@@ -197,7 +199,12 @@ class _Book:
         """Write down one tick; ``torque`` belongs to the tick before."""
         row, (x, dx, ddx) = self.rows[k], sample
         np.concatenate(
-            (truth.q, truth.dq, torque, command.value, seen.q, seen.dq, x.ravel(), dx, ddx), out=row
+            (
+                *(truth.q, truth.dq, torque, command.value),
+                *(seen.q, seen.dq, seen.tau_ext),
+                *(x.ravel(), dx, ddx),
+            ),
+            out=row,
         )
         if not isfinite(row.dot(self.ones)):
             self.read(sample, t)
@@ -206,20 +213,23 @@ class _Book:
     def log(self, kind: type | None, who: str, arm: Arm) -> Log:
         """What was written so far, frozen."""
         n, edges = self.filled, np.cumsum(self.widths)[:-1]
-        q, dq, torque, command, q_seen, dq_seen, *target = (
+        q, dq, torque, command, q_seen, dq_seen, tau_seen, *target = (
             np.ascontiguousarray(column) for column in np.split(self.rows[:n], edges, axis=1)
         )
         shaped = zip(target, self.shapes, strict=True)
-        saturated = self.saturated[:n]
+        seen = (self.t_seen[:n], q_seen, dq_seen, tau_seen)
+        tau = np.concatenate([torque[1:], torque[-1:]])
+        at_limit = (np.abs(tau) >= arm.robot.effort * (1.0 - 1e-9)).any(axis=1)
+        saturated = self.saturated[:n] | at_limit
         saturated.setflags(write=False)
         return Log(
             t=locked(self.t[:n]),
             q=locked(q),
             dq=locked(dq),
-            tau=locked(np.concatenate([torque[1:], torque[-1:]])),
+            tau=locked(tau),
             command=locked(command),
             target=self.sample_type(*(locked(x.reshape(n, *shape)) for x, shape in shaped)),
-            measured=State(locked(self.t_seen[:n]), locked(q_seen), locked(dq_seen)),  # type: ignore[arg-type]
+            measured=State(*map(locked, seen)),  # type: ignore[arg-type]
             saturated=saturated,
             command_type=kind or type(None),
             controller=who,
