@@ -23,7 +23,7 @@ def arm(side):
 
 
 def test_it_starts_at_rest_in_rethinks_neutral_pose(arm):
-    t, q, dq = arm.state()
+    t, q, dq, _ = arm.state()
     assert t == 0.0
     assert_array_equal(q, arm.robot.neutral)
     assert_array_equal(dq, np.zeros(7))

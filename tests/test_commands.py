@@ -50,5 +50,5 @@ def test_to_stand_still_is_to_turn_at_no_speed():
 
 
 def test_a_state_unpacks():
-    t, q, dq = lk.State(0.5, np.zeros(7), np.ones(7))
-    assert (t, q[0], dq[0]) == (0.5, 0.0, 1.0)
+    t, q, dq, tau_ext = lk.State(0.5, np.zeros(7), np.ones(7))
+    assert (t, q[0], dq[0], tau_ext[0]) == (0.5, 0.0, 1.0, 0.0)

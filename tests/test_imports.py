@@ -19,6 +19,7 @@ ORDER = [
     {"motion", "scalings", "paths"},
     {"plant"},
     {"robot"},
+    {"limits"},
     {"model"},
     {"commands"},
     {"world", "scene"},
