@@ -272,10 +272,12 @@ class Arm:
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
         plant, steps = self.plant, self.world._steps
-        rows = self._read() if self._touchable else None
-        if rows is not None:
+        rows = None
+        if self._touchable:
+            rows = self._read()
             self._feel(rows)
-        self._publish_if_due(rows)
+        if self._publish_every:
+            self._publish_if_due(rows)
         if steps > self._deadline:
             self._hold()
         if self._kind is JointTorque:
