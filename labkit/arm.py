@@ -26,6 +26,7 @@ with quiet():
 
 _JOINTS = list(range(7))
 _ZERO = [0.0] * 7
+_STILL = locked(np.zeros(7))
 
 
 class Arm:
@@ -116,7 +117,7 @@ class Arm:
     def state(self) -> State:
         """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
         if not self._publish_every:
-            return self._exact(self._read())
+            return self.truth()
         self._publish_if_due(None)
         ready = self.world.t - self.plant.state_delay + 1e-9
         while len(self._mail) > 1 and self._mail[1].t <= ready:
@@ -167,10 +168,10 @@ class Arm:
             raise Closed("this arm's world was closed; make a new Arm")
         for i in _JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
-        self._mail: deque[State] = deque([State(self.world.t, locked(np.array(q)), _rest())])
+        self._mail: deque[State] = deque([State(self.world.t, locked(np.array(q)), _STILL)])
         self._published_at = -1
-        self._before: tuple[Array, Array, Array] | None = None
-        self._felt, self._felt_at = _rest(), self.world._steps
+        self._before: tuple[Any, Array] | None = None  # a step's beginning, and what drove it
+        self._felt, self._felt_at = _STILL, self.world._steps
         self._lagged = np.zeros(7)
         self._total = np.zeros(7)
         self._kind: type = type(None)
@@ -191,7 +192,7 @@ class Arm:
         """
         if self._kind is JointTorque:
             return self._total
-        return np.array([joint[3] for joint in self._read()])
+        return _column(self._read(), 3)
 
     @property
     def saturated(self) -> bool:
@@ -208,7 +209,7 @@ class Arm:
             moment: Shape (3,) in [N m].
         """
         f, m = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
-        R_wt = self.model.pose([joint[0] for joint in self._read()])[:3, :3]
+        R_wt = self.model.pose(_column(self._read(), 0))[:3, :3]
         # PyBullet's idea of where the link is lags a step behind: count the lever from there.
         centre = bullet.getLinkState(self._body, 6, physicsClientId=self._client)[0]
         at = (R_wt @ self._lever + centre).tolist()
@@ -230,14 +231,15 @@ class Arm:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
         rows = self._read()
         truth = self._exact(rows)
-        torque = (
-            self._total if self._kind is JointTorque else np.array([joint[3] for joint in rows])
-        )
-        return truth, self.state() if self._publish_every else truth, torque
+        torque = self._total if self._kind is JointTorque else _column(rows, 3)
+        if not self._publish_every:
+            return truth, truth, torque
+        self._publish_if_due(rows)
+        return truth, self.state(), torque
 
     def _exact(self, rows: Any) -> State:
-        q, dq, _, _ = zip(*rows, strict=True)
-        return State(self.world.t, locked(np.array(q)), locked(np.array(dq)), self._feel(rows))
+        q, dq = locked(_column(rows, 0)), locked(_column(rows, 1))
+        return State(self.world.t, q, dq, self._feel(rows))
 
     # What the torque sensors tell
 
@@ -253,14 +255,14 @@ class Arm:
         arm's own weight and motion need is taken off with the model that it has of itself.
         """
         if self._before is not None and self._felt_at != self.world._steps:
-            q, dq, extra = self._before
-            _, faster, _, motor = zip(*rows, strict=True)
-            joint = extra + motor - self._viscous * dq
-            felt = self._own.inverse_dynamics(q, dq, (faster - dq) / self.world.dt) - joint
+            then, driven = self._before
+            q, dq, dt = _column(then, 0), _column(then, 1), self.world.dt
+            joint = driven + _column(rows, 3) - self._viscous * dq
+            felt = self._own.inverse_dynamics(q, dq, (_column(rows, 1) - dq) / dt) - joint
             lag = self.plant.torque_lag
-            share = min(1.0, self.world.dt / lag) if lag else 1.0
-            self._felt = locked(self._felt + share * (felt - self._felt))
-            self._felt_at = self.world._steps
+            if lag > dt:
+                felt = self._felt + dt / lag * (felt - self._felt)
+            self._felt, self._felt_at = locked(felt), self.world._steps
         return self._felt
 
     # The machinery, once per physics step
@@ -268,14 +270,20 @@ class Arm:
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
         plant, steps = self.plant, self.world._steps
-        rows = self._read() if self._touchable else None
-        if rows is not None:
-            self._feel(rows)
-        self._publish_if_due(rows)
         if (steps - self._commanded_at) * self.world.dt > plant.command_timeout:
             self._hold()
+        touchable, rows = self._touchable, None
+        if (
+            touchable
+            or self._kind is JointPosition
+            or (self._kind is JointTorque and plant.gravity_compensation)
+        ):
+            rows = self._read()
+        if touchable and plant.torque_lag:
+            self._feel(rows)
+        self._publish_if_due(rows)
         if self._kind is JointTorque:
-            self._drive_torque()
+            self._drive_torque(rows)
         elif self._kind is JointVelocity:
             if plant.velocity_lag:
                 self._lagged += (self._wanted - self._lagged) * min(
@@ -285,24 +293,21 @@ class Arm:
             elif self._fresh:  # PyBullet's motors keep their target
                 self._spin(self._wanted)
         else:
-            q = np.array([joint[0] for joint in self._read()])
             gain = min(plant.position_gain or np.inf, 1.0 / self.world.dt)
             speed = self.robot.speed
-            wanted = gain * (self._wanted - q)
+            wanted = gain * (self._wanted - _column(rows, 0))
             allowed = _cut(wanted, speed)
             self._saturated |= allowed is not wanted
             self._spin(allowed)
         self._fresh = False
-        if rows is not None:
-            q, dq, _, _ = (np.array(column) for column in zip(*rows, strict=True))
-            self._before = q, dq, self._total if self._kind is JointTorque else np.zeros(7)
+        if touchable:
+            self._before = rows, self._total if self._kind is JointTorque else _STILL
 
-    def _drive_torque(self) -> None:
+    def _drive_torque(self, rows: Any) -> None:
         if self._fresh or self.plant.gravity_compensation:
             total = self._wanted
             if self.plant.gravity_compensation:
-                q = np.array([joint[0] for joint in self._read()])
-                wanted = total + self._own.gravity(q)
+                wanted = total + self._own.gravity(_column(rows, 0))
                 total = _cut(wanted, self._effort)
                 self._saturated |= total is not wanted
             self._total = total
@@ -390,8 +395,9 @@ def _cut(x: Array, limit: Array) -> Array:
     return np.minimum(np.maximum(x, -limit), limit)
 
 
-def _rest() -> Array:
-    return locked(np.zeros(7))
+def _column(rows: Any, i: int) -> Array:
+    """Of PyBullet's joint states: 0 the angles, 1 the speeds, 3 the motors' torques."""
+    return np.array([joint[i] for joint in rows])
 
 
 def whole_steps(rate: float, dt: float, name: str) -> int:
