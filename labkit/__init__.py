@@ -9,7 +9,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import errors, metrics, se3
+from . import controllers, energy, errors, impedance, metrics, se3
 from .arm import Arm
 from .arrays import as_array
 from .commands import Command, JointPosition, JointTorque, JointVelocity, State
@@ -106,9 +106,12 @@ __all__ = [
     "World",
     "as_array",
     "check",
+    "controllers",
     "detect_tags",
+    "energy",
     "errors",
     "find_tag",
+    "impedance",
     "links",
     "looking_at",
     "metrics",

@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import Any, Protocol, Self
 
 from .arrays import Array, as_number
-from .errors import Closed
+from .errors import Closed, OutOfRange
 from .quiet import quiet
 
 with quiet():
@@ -58,11 +58,13 @@ class World:
 
     Attributes:
         dt: The physics step, in [s].
-        client: PyBullet's number of this world.
+        client: PyBullet's number of this world, -1 once it is closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
         shown: What only cameras see.
     """
+
+    client: int = -1
 
     def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
         """Open a world with gravity.
@@ -72,7 +74,7 @@ class World:
             things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.client: int = bullet.connect(bullet.DIRECT)
+        self.client = bullet.connect(bullet.DIRECT)
         self._steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
@@ -144,3 +146,16 @@ class World:
 
     def __del__(self) -> None:
         self.close()
+
+
+def whole_steps(rate: float, dt: float, name: str) -> int:
+    """How many physics steps of ``dt`` [s] a period of ``rate`` [Hz] has; 0 for a rate of 0."""
+    if rate == 0.0:
+        return 0
+    steps = 1.0 / (rate * dt)
+    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
+        raise OutOfRange(
+            f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
+            f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
+        )
+    return round(steps)

@@ -247,6 +247,10 @@ def tables(rows: list[Row], judged: list[Verdict]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def _without(row: Row, key: str) -> Row:
+    return {name: value for name, value in row.items() if name != key}
+
+
 def main() -> None:
     """Run the campaign and write build/campaign.json and build/campaign/."""
     from . import pictures
@@ -285,8 +289,8 @@ def main() -> None:
         "gains": gains,
         "noise": noise,
         "verdicts": [{**asdict(v), "outcome": v.outcome.value} for v in judged],
-        "figures": drawn,
-        "films": shot,
+        "figures": [_without(row, "folder") for row in drawn],
+        "films": [_without(row, "folder") for row in shot],
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
