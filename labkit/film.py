@@ -98,13 +98,23 @@ def _at(t: float, times: Array, rows: Array) -> Array:
 
 
 def _trace(picture: Picture, camera: Camera, places: Array) -> None:
-    """Draw where the target has been, as dots."""
-    import cv2
-
+    """Draw where the target has been, and as a larger dot where it is."""
     lens, T_wc = camera.intrinsics, camera.T_wc
-    seen = (places - T_wc[:3, 3]) @ T_wc[:3, :3]
-    pixels = seen[:, :2] / seen[:, 2:] * (lens.fx, lens.fy) + (lens.cx, lens.cy)
-    corners = np.round(8.0 * pixels).astype(np.int32).reshape(-1, 1, 2)  # in eighths of a pixel
-    cv2.polylines(picture, [corners], False, (30, 90, 220), 2, cv2.LINE_AA, shift=3)
-    x, y = (int(v) for v in corners[-1, 0])
-    cv2.circle(picture, (x, y), 8 * 4, (30, 90, 220), -1, cv2.LINE_AA, shift=3)
+    ends = np.linspace(0, len(places) - 1, 4 * lens.width)
+    close = np.array([np.interp(ends, np.arange(len(places)), x) for x in places.T]).T
+    pixels = np.round(lens.project((close - T_wc[:3, 3]) @ T_wc[:3, :3])).astype(int)
+    _stamp(picture, np.unique(pixels, axis=0), 1)
+    _stamp(picture, pixels[-1:], 4)
+
+
+def _stamp(picture: Picture, pixels: Any, radius: int) -> None:
+    """Colour the discs about pixels (column, row) as far as they are in the picture."""
+    x, y = np.mgrid[-radius : radius + 1, -radius : radius + 1]
+    disc = np.column_stack([x.ravel(), y.ravel()])
+    disc = disc[(disc**2).sum(axis=1) <= radius * (radius + 0.5)]
+    column, row = (pixels[:, None] + disc).reshape(-1, 2).T
+    seen = (column >= 0) & (row >= 0) & (column < picture.shape[1]) & (row < picture.shape[0])
+    picture[row[seen], column[seen]] = _BLUE
+
+
+_BLUE = (30, 90, 220)

@@ -29,6 +29,8 @@ DURATION = 8.0
 """How long to follow, in [s]."""
 RATE = 200.0
 """How often the follower is asked while it is recorded, in [Hz]."""
+LAP = 6.5
+"""How long the tag takes for its circle, in [s]."""
 RADIUS = 0.06
 """Of the tag's circle, in [m]."""
 OFFSET = np.array([0.0, 0.0, 0.2])
@@ -107,7 +109,7 @@ def staged(world: World, seed: int) -> tuple[Board, Camera]:
     start = ready_pose()[:3, 3] - OFFSET
     centre = start - (0.0, RADIUS, 0.0)
     board = Board(world, Tag(), se3.pose(np.eye(3), start))
-    round_once = Trajectory(Circle(start, centre), Quintic(DURATION - 1.5))
+    round_once = Trajectory(Circle(start, centre), Quintic(LAP))
     board.move(Chain([Hold(start, 0.5), round_once, Hold(start, 1.0)]))
     eye = centre + (0.75, -0.1, 0.45)
     return board, Camera(world, looking_at(eye, centre), noise=NOISE, seed=seed)
