@@ -143,9 +143,15 @@ def everything(
             ax_i.set_ylabel(name.split("_")[1], rotation=0, labelpad=12)
             ax_i.tick_params(labelsize="x-small", labelbottom=i == 6)
         if i == 0:
-            ax.set_title("joint angles [rad]", fontsize="medium")
-            ax.legend(frameon=False, ncols=2, fontsize="x-small")
-            below.set_title("motor torques [N m]", fontsize="medium")
+            ax.set_title("joint angles [rad]", loc="left", fontsize="medium")
+            ax.legend(
+                loc="lower right",
+                bbox_to_anchor=(1.0, 0.95),
+                frameon=False,
+                ncols=2,
+                fontsize="x-small",
+            )
+            below.set_title("motor torques [N m]", loc="left", fontsize="medium")
     for ax in (tip[3], figure.axes[-2], figure.axes[-1]):
         ax.set_xlabel("time [s]")
     return figure

@@ -23,7 +23,7 @@ def forward(state, target):
 
 
 def test_the_film_shows_the_arm_move_and_where_the_target_went(log):
-    first, second, third, last = film.frames(log, 4.0, lens=LENS)
+    first, second, _, last = film.frames(log, 4.0, lens=LENS)
     assert first.shape == (144, 192, 3)
     assert np.abs(last.astype(int) - second).sum() > 10_000, "something moved"
     T_wc = looking_at(film.EYE, film.AT)
