@@ -240,15 +240,14 @@ class Arm:
         return truth, self.state() if self._publish_every else truth, torque
 
     def _exact(self, rows: Any) -> State:
-        q, dq, _, _ = zip(*rows, strict=False)  # PyBullet gives the same for every joint
-        return State(self.world.t, locked(np.array(q)), locked(np.array(dq)), self._feel(rows))
+        a, b, _, _ = zip(*rows, strict=False)  # PyBullet gives the same for every joint
+        q, dq = np.array(a), np.array(b)
+        q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        dq.setflags(False)  # type: ignore[call-arg]
+        world, felt = self.world, self._felt if self._before is None else self._feel(rows)
+        return State(world._steps * world.dt, q, dq, felt)
 
     # What the torque sensors tell
-
-    @property
-    def _touchable(self) -> bool:
-        """Whether anything can make the external torque differ from zero."""
-        return bool(self.world.things or self.plant.payload)
 
     def _feel(self, rows: Any) -> Array:
         """The external torque in the last physics step, through the estimate's lag.
@@ -273,7 +272,7 @@ class Arm:
         """Set motors and torques for the next physics step; the world calls it."""
         plant, steps = self.plant, self.world._steps
         rows = None
-        if self._touchable:
+        if self.world.things or plant.payload:  # something can make the external torque differ
             rows = self._read()
             self._feel(rows)
         if self._publish_every:
