@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from .arm import Arm, whole_steps
+from .arm import Arm
 from .arrays import Array, as_array, as_number, locked, shown
 from .commands import COMMANDS, JOINTS, Command, State
 from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .motion import AnySample, PoseSample, Sample, Target
 from .plant import Plant
 from .robot import Side
+from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]
 """A function of the state and of the target's sample; nothing to inherit, nothing to register."""
