@@ -29,10 +29,11 @@ ORDER = [
 ]  # what comes after these may import all of them
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 # What simulates, and what plans and sees for it.
-SIMULATE = {"arm", "world", "scene", "camera", "looks", "board"}
+SIMULATE = {"arm", "world", "scene", "camera", "board", "looks"}
 MODEL = {"model", "baseline"}
-DRAW = {"plotting", "sensor_plots", "replay"}
-SEE = {"camera", "tags", "detection", "edges"}
+ENGINES = "numpy, pybullet, pinocchio"
+DRAW = {"plotting", "replay", "sensor_plots"}
+SEE = {"camera", "tags", "detection", "calibration", "edges"}
 
 
 def module(path):
@@ -80,7 +81,7 @@ def test_foreign_libraries_stay_in_their_modules(path):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
 def test_imports_point_one_way(path):
-    """Errors <- arrays <- se3 <- motion <- ... <- run <- metrics <- everything else."""
+    """errors <- arrays <- se3 <- motion <- ... <- run <- metrics <- everything else."""
     here = module(path)
     if here not in LEVEL:
         return
@@ -122,18 +123,11 @@ def test_importing_labkit_loads_no_drawing_nor_notebook_package():
     assert not heavy & {name.split(".")[0] for name in loaded}
 
 
-def cpu_seconds(statement):
-    """The processor's time for a statement, again and again until a quiet moment gave a good one.
-
-    Wall time is the bench's business: here others may be using the machine.
-    """
-    program = "from time import process_time as now; {}; t = now(); {}; print(now() - t)"
-    return (float(python(program.format(*statement))) for _ in range(10))
-
-
-def test_importing_labkit_takes_at_most_0_4_s():
-    assert any(s <= 0.4 for s in cpu_seconds(("pass", "import labkit")))
-
-
-def test_an_arm_is_ready_in_a_tenth_of_a_second():
-    assert any(s <= 0.1 for s in cpu_seconds(("import labkit", "labkit.Arm()")))
+def test_importing_labkit_costs_little_more_than_its_engines():
+    """How long it takes in seconds, and how soon an arm is ready, `make bench` says."""
+    clock = "import time; t = time.perf_counter(); import {}; print(time.perf_counter() - t)"
+    pairs = [
+        (float(python(clock.format("labkit"))), float(python(clock.format(ENGINES))))
+        for _ in range(5)
+    ]
+    assert min(ours / theirs for ours, theirs in pairs) <= 1.5
