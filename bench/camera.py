@@ -45,7 +45,7 @@ def camera_figures():
         if len(lk.detect_tags(frame, camera, 0.1)) != 1:
             raise RuntimeError("the measured frame does not show its tag")
     print(
-        f"camera: {100 * covered:.0f} % of the pixels covered, {100 * table.mean():.0f} % by table; "
+        f"camera: {100 * covered:.0f} % of the pixels, {100 * table.mean():.0f} % by table; "
         + ", ".join(f"{name} {value:.1f}" for name, value in figures.items())
     )
     return figures
