@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, locked
+from .arrays import Array, as_array, locked, shown
 from .commands import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State, still
 from .errors import Closed, ControllerError
 from .model import Model
@@ -59,12 +59,14 @@ class Arm:
 
         Raises:
             UnknownName: Baxter has no such arm.
+            Closed: The world is closed.
             JointLimitExceeded: q0 is outside the joints' range.
         """
         self.robot: Robot = robot(side)
         self.plant = plant
         self.model = Model(side, plant)
         self.world = World() if world is None else world
+        self._check_open()
         self._random = np.random.default_rng(seed)
         self._client = self.world.client
         with quiet():
@@ -126,6 +128,7 @@ class Arm:
             JointLimitExceeded: A position outside the joints' range.
         """
         kind = type(command)
+        self._check_open()
         if kind is JointTorque:
             wanted, limit = command.value, self._effort
         elif kind is JointVelocity:
@@ -134,7 +137,7 @@ class Arm:
             wanted = self.model.within_limits(command.value, "JointPosition")
             limit = None
         else:
-            raise ControllerError(f"{command!r} is no command; give one of {_names()}")
+            raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
         self._wanted = wanted if limit is None else _cut(wanted, limit)
         self._saturated = self._wanted is not wanted
         if kind is not self._kind:
@@ -153,8 +156,7 @@ class Arm:
             JointLimitExceeded: A joint is out of its range.
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
-        if self.world.client < 0:
-            raise Closed("this arm's world was closed; make a new Arm")
+        self._check_open()
         for i in _JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
         self._sensors.reset()
@@ -235,7 +237,8 @@ class Arm:
             or (self._kind is JointTorque and plant.gravity_compensation)
         ):
             rows = self._read()
-        self._report(rows)
+        if self._reports.every:
+            self._report(rows)
         if self._kind is JointTorque:
             self._drive_torque(rows)
         elif self._kind is JointVelocity:
@@ -329,9 +332,12 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _read(self) -> Any:
+    def _check_open(self) -> None:
         if self.world.client < 0:
             raise Closed("this arm's world was closed; make a new Arm")
+
+    def _read(self) -> Any:
+        self._check_open()
         return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:

@@ -51,10 +51,12 @@ class World:
 
     Attributes:
         dt: The physics step, in [s].
-        client: PyBullet's number of this world.
+        client: PyBullet's number of this world, -1 once it is closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
     """
+
+    client: int = -1
 
     def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
         """Open a world with gravity.
@@ -64,7 +66,7 @@ class World:
             things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.client: int = bullet.connect(bullet.DIRECT)
+        self.client = bullet.connect(bullet.DIRECT)
         self._steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
