@@ -94,6 +94,10 @@ class Arm:
             restitution=0.0,
             physicsClientId=self._client,
         )
+        # PyBullet would show the ball at the tip; what cameras see of the arm is in `looks`.
+        bullet.changeVisualShape(
+            self._body, 6, rgbaColor=[0, 0, 0, 0], physicsClientId=self._client
+        )
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
         # The arm knows its own weight, not what it carries.

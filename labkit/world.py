@@ -46,6 +46,13 @@ class Pushable(Protocol):
         """Its equations."""
 
 
+class Shown(Protocol):
+    """Something that cameras see and the physics does not."""
+
+    def update(self) -> None:
+        """Put its looks where they belong now."""
+
+
 class World:
     """One physics world; two of them never share anything.
 
@@ -54,6 +61,7 @@ class World:
         client: PyBullet's number of this world, -1 once it is closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
+        shown: What only cameras see.
     """
 
     client: int = -1
@@ -71,6 +79,7 @@ class World:
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
         self.arms: list[Pushable] = []
+        self.shown: list[Shown] = []
         bullet.setTimeStep(self.dt, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
         # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
@@ -99,6 +108,10 @@ class World:
     def add(self, actor: Actor) -> None:
         """Let ``actor`` act before each physics step from now on."""
         self._actors.append(actor)
+
+    def show(self, thing: Shown) -> None:
+        """Let ``thing`` be brought up to date before each picture from now on."""
+        self.shown.append(thing)
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
