@@ -25,7 +25,7 @@ from .scene import Push, Spring, Table, Wall
 from .world import World
 
 if TYPE_CHECKING:
-    from . import plotting
+    from . import check, plotting
     from .board import Board
     from .camera import Camera, looking_at
     from .detection import detect_tags, find_tag
@@ -44,6 +44,7 @@ _LATER = {
     "Lookups": "looking",
     "Reading": "looking",
     "Tag": "tags",
+    "check": "",
     "detect_tags": "detection",
     "find_tag": "detection",
     "looking_at": "camera",
@@ -104,6 +105,7 @@ __all__ = [
     "Wall",
     "World",
     "as_array",
+    "check",
     "detect_tags",
     "errors",
     "find_tag",

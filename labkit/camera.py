@@ -176,12 +176,12 @@ class Camera:
         for thing in self.world.shown:
             thing.update()
         T_wc = self.T_wc
-        blocker = looks.around(T_wc[:3, 3])
+        blocker = None if self._hand else looks.around(T_wc[:3, 3])
         if blocker is not None:
             x, y, z = T_wc[:3, 3]
             raise CameraBlocked(
-                f"the camera at ({x:.3g}, {y:.3g}, {z:.3g}) m is inside the robot, in what "
-                f"{blocker.parent} carries; move it out with camera.place(T_wc)"
+                f"the camera at ({x:.3g}, {y:.3g}, {z:.3g}) m is inside the robot, near its joint "
+                f"{blocker}; move it out with camera.place(T_wc)"
             )
         return T_wc, looks
 
