@@ -115,5 +115,5 @@ def test_several_boards_are_seen_at_once():
 def test_a_motion_of_joint_angles_moves_no_board():
     with lk.World() as world:
         board = lk.Board(world, lk.Tag(), turned(0.0))
-        with pytest.raises(TypeMismatch, match="lk.PoseSample"):
+        with pytest.raises(TypeMismatch, match=r"lk\.PoseSample"):
             board.move(lk.Hold(np.zeros(7), 1.0))
