@@ -68,7 +68,7 @@ def test_views_that_turn_about_one_axis_only_are_refused():
     home = tips(1, np.random.default_rng(3))[0]
     spun = np.array([home @ se3.exp(np.array([0, 0, 0, 0, 0, a])) for a in (0, 0.4, 0.8, 1.2)])
     T_cm = np.array([se3.inverse(WORLD_TO_CAMERA) @ T @ TIP_TO_TAG for T in spun])
-    with pytest.raises(SingularViews, match="turns about one axis only.*tilt the gripper"):
+    with pytest.raises(SingularViews, match=r"turns about one axis only.*tilt the gripper"):
         calibrate_fixed_camera(spun, T_cm)
     with pytest.raises(SingularViews, match="does not turn"):
         calibrate_hand_camera(spun[[0, 0, 0, 0]], T_cm[[0, 0, 0, 0]])

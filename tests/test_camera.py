@@ -178,8 +178,10 @@ def test_the_arm_hides_a_tag(world, how):
     """A tag behind the gripper is not found; when the arm is gone, it is."""
     arm = ready_arm(world)
     tip = arm.model.pose(arm.truth().q)[:3, 3]
-    eye = [*tip, 0.5, 0.0, 0.05]
-    facing = se3.pose(np.column_stack([[0, 1, 0], [0, 0, 1.0], [1, 0, 0]]), [*tip, -0.1, 0, 0.01])
+    eye = tip + np.array([0.5, 0.0, 0.05])
+    facing = se3.pose(
+        np.column_stack([[0, 1, 0], [0, 0, 1.0], [1, 0, 0]]), tip + np.array([-0.1, 0, 0.01])
+    )
     lk.Board(world, lk.Tag(size=0.05), facing)
     camera = lk.Camera(world, lk.looking_at(eye, tip))
     assert lk.detect_tags(getattr(camera, how)(), camera, 0.05) == ()
@@ -226,7 +228,7 @@ def test_a_camera_inside_the_robot_says_so(world):
     arm = ready_arm(world)
     elbow = joint_frames({"left": arm.truth().q})["left_e1"]
     inside = elbow[:3, 3]
-    camera = lk.Camera(world, lk.looking_at(inside, [*inside, 1, 0, 0]))
+    camera = lk.Camera(world, lk.looking_at(inside, inside + np.array([1, 0, 0])))
     for take in (camera.image, camera.glimpse):
         with pytest.raises(CameraBlocked, match="inside the robot, near its joint left_"):
             take()

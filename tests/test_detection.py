@@ -118,7 +118,7 @@ def test_no_tag_in_view_is_an_empty_answer_and_a_named_error():
     blank = np.full((480, 640), 200, np.uint8)
     found = lk.detect_tags(blank, LENS, 0.1)
     assert found == ()
-    with pytest.raises(TagNotFound, match="tag 4 is not in the picture .found: none at all."):
+    with pytest.raises(TagNotFound, match=r"tag 4 is not in the picture .found: none at all."):
         lk.find_tag(found, 4)
 
 

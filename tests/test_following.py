@@ -84,6 +84,7 @@ def followed(duration, plant=lk.IDEAL, noise=0.0, follower=Watched, **dials):
     return log, error, guide, lookups
 
 
+@pytest.mark.slow
 def test_a_circling_board_is_followed_within_a_centimetre():
     """0.15 m and 0.1 m/s for 40 s, 10 Hz, 100 ms late: RMS, acceleration and jumps."""
     log, error, guide, lookups = followed(40.0)
@@ -130,7 +131,9 @@ def test_a_still_tag_is_followed_to_a_stand():
     scene = circling_board()
     scene.board.place(scene.board.pose_at(0.0))
     lookups = lk.Lookups(scene.camera, scene.board.tag)
-    target = lk.Following(lookups, TagFollower(scene.T_wt, [*scene.offset, 0.03, 0.0, 0.0]))
+    target = lk.Following(
+        lookups, TagFollower(scene.T_wt, scene.offset + np.array([0.03, 0.0, 0.0]))
+    )
     log = lk.run(scene.arm, target, WorkspaceVelocityPD(scene.arm.model), duration=4.0)
     tip = scene.arm.model.pose(log.q[-1])[:3, 3]
     np.testing.assert_allclose(tip, scene.T_wt[:3, 3] + [0.03, 0.0, 0.0], atol=4e-3)

@@ -49,7 +49,9 @@ def test_a_late_reading_tells_of_the_moment_of_its_picture(scene):
     """The tag moves 20 mm while the reading is under way; the reading does not know it."""
     board, camera = scene
     start = board.T_wm[:3, 3]
-    board.move(lk.Trajectory(lk.Line(start, [*start, 0.2, 0, 0]), lk.Trapezoid(0.2, 0.1, 100.0)))
+    board.move(
+        lk.Trajectory(lk.Line(start, start + np.array([0.2, 0, 0])), lk.Trapezoid(0.2, 0.1, 100.0))
+    )
     (_, reading), *_ = polled(lk.Lookups(camera, board.tag, rate=1, delay=0.2), 0.3)
     assert abs(reading.T_wm[0, 3] - start[0]) < 2e-3
 
