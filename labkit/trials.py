@@ -63,7 +63,7 @@ class Trials:
         path.write_text(json.dumps({k: v for k, v in vars(self).items()}) + "\n")
 
 
-LINE = Path(__file__).parent / "data" / "maps" / "trials_line.json"
+LINE = Path(__file__).parent / "data" / "trials_line.json"
 """The joint velocity PD along the line on Baxter's plant, five seeds."""
 
 

@@ -194,10 +194,7 @@ class Response:
             return f"it should be a transfer function, not {_shown(answer)}"
         for w, a, b in pairs:
             if not abs(a - b) <= self.rtol * abs(b):
-                return (
-                    f"at {w:g} rad/s expected {abs(b):.4g} at {np.degrees(np.angle(b)):.4g} degrees,"
-                    f" got {abs(a):.4g} at {np.degrees(np.angle(a)):.4g} degrees"
-                )
+                return f"at {w:g} rad/s expected {_polar(b)}, got {_polar(a)}"
         return None
 
     def same(self, answer: Any, other: Any) -> bool:
@@ -217,6 +214,10 @@ class Response:
 
 Judge = Close | Within | AtMost | Response
 JUDGES: dict[str, Any] = {kind.__name__: kind for kind in (Close, Within, AtMost, Response)}
+
+
+def _polar(z: complex) -> str:
+    return f"{abs(z):.4g} at {np.degrees(np.angle(z)):.4g} degrees"
 
 
 def _flat(value: Any) -> list[Any]:
