@@ -68,6 +68,16 @@ def tip_error(log: Log, model: Model | None = None) -> Array:
     return np.hstack([T_wd[:, :3, 3] - T_wt[:, :3, 3], np.array(turn)])
 
 
+def felt_wrench(log: Log, model: Model | None = None) -> Array:
+    """The wrench on the tip as the arm's torque sensors told it, world axes, shape (N, 6).
+
+    Force [N], then moment about the tip's origin [N m]; see `Model.tip_wrench` and `State.tau_ext`.
+    """
+    model = model or model_of(log)
+    pairs = zip(log.measured.q, log.measured.tau_ext, strict=True)
+    return np.array([model.tip_wrench(q, tau) for q, tau in pairs])
+
+
 def rms(error: Any) -> float:
     """Root mean square of the length of a vector error, rows being instants.
 
