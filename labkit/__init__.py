@@ -44,6 +44,7 @@ _LATER = {
     "Lookups": "looking",
     "Reading": "looking",
     "Tag": "tags",
+    "check": "",
     "detect_tags": "detection",
     "find_tag": "detection",
     "looking_at": "camera",
