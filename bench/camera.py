@@ -9,7 +9,7 @@ import labkit as lk
 from labkit import se3
 from labkit.camera import BACKGROUND
 
-EYE, AT = (1.42, 0.3, 0.72), (0.8, 0.3, -0.24)
+EYE, AT = (1.5, 0.3, 0.7), (0.85, 0.3, -0.26)
 """Where the camera of the measured frame stands and what it looks at: a table, arm and tag."""
 
 
@@ -45,7 +45,7 @@ def camera_figures():
         if len(lk.detect_tags(frame, camera, 0.1)) != 1:
             raise RuntimeError("the measured frame does not show its tag")
     print(
-        f"camera: {100 * covered:.0f} % of the pixels covered, {100 * table.mean():.0f} % by table; "
+        f"camera: {100 * covered:.0f} % of the pixels covered, table {100 * table.mean():.0f} %; "
         + ", ".join(f"{name} {value:.1f}" for name, value in figures.items())
     )
     return figures

@@ -1,4 +1,4 @@
-"""The closed loop: computed torque at 1 kHz, by `run` and by a plain loop over the same callables."""
+"""Computed torque at 1 kHz, by `run` and by a plain loop over the same two callables."""
 
 from statistics import median
 from time import perf_counter

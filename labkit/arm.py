@@ -19,7 +19,7 @@ from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
 from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
-from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques, speeds
+from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
 with quiet():
@@ -241,7 +241,8 @@ class Arm:
             or (self._kind is JointTorque and plant.gravity_compensation)
         ):
             rows = self._read()
-        self._report(rows)
+        if self._reports.every:
+            self._report(rows)
         if self._kind is JointTorque:
             self._drive_torque(rows)
         elif self._kind is JointVelocity:
@@ -265,8 +266,12 @@ class Arm:
             self._sensors.begin(rows, driven, steps)
 
     def _exact(self, rows: Any) -> State:
-        felt = self._sensors.felt(rows, self.world._steps)
-        return State(self.world.t, locked(angles(rows)), locked(speeds(rows)), felt)
+        world = self.world
+        a, b, _, _ = zip(*rows, strict=False)  # PyBullet gives the same four for every joint
+        q, dq = np.array(a), np.array(b)
+        q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        dq.setflags(False)  # type: ignore[call-arg]
+        return State(world._steps * world.dt, q, dq, self._sensors.felt(rows, world._steps))
 
     def _reported(self, rows: Any) -> State:
         if not self._reports.every:

@@ -55,6 +55,16 @@ class Window(NamedTuple):
     width: int
     height: int
 
+    @property
+    def rows(self) -> slice:
+        """Its rows of a picture."""
+        return slice(self.top, self.top + self.height)
+
+    @property
+    def columns(self) -> slice:
+        """Its columns of a picture."""
+        return slice(self.left, self.left + self.width)
+
 
 class Camera:
     """A camera that takes pictures of a world.
@@ -144,13 +154,13 @@ class Camera:
         picture = self._draw(T_wc, looks, size, 1, FAR)
         if self.samples > 1:
             self._refine(picture, T_wc, looks, whole=True)
-        return self._developed(picture)
+        return self._developed(picture, [size])
 
     def glimpse(self) -> Picture:
         """A quick picture of only the tags and of what may hide them; the rest stays blank.
 
         Returns:
-            As `image`; where both show something, they show the same.
+            As `image`; without noise, where both show something, they show the same.
 
         Raises:
             CameraBlocked: The camera is inside the robot.
@@ -159,8 +169,7 @@ class Camera:
         T_wc, looks = self._focus()
         shape = (self.intrinsics.height, self.intrinsics.width, 3)
         picture = np.full(shape, BACKGROUND, np.uint8)
-        self._refine(picture, T_wc, looks, whole=False)
-        return self._developed(picture)
+        return self._developed(picture, self._refine(picture, T_wc, looks, whole=False))
 
     def _in_hand(self, q: Array) -> Array:
         arm = self._hand
@@ -176,33 +185,32 @@ class Camera:
         for thing in self.world.shown:
             thing.update()
         T_wc = self.T_wc
-        blocker = looks.around(T_wc[:3, 3])
+        blocker = None if self._hand else looks.around(T_wc[:3, 3])
         if blocker is not None:
             x, y, z = T_wc[:3, 3]
             raise CameraBlocked(
-                f"the camera at ({x:.3g}, {y:.3g}, {z:.3g}) m is inside the robot, in what "
-                f"{blocker.parent} carries; move it out with camera.place(T_wc)"
+                f"the camera at ({x:.3g}, {y:.3g}, {z:.3g}) m is inside the robot, near its joint "
+                f"{blocker}; move it out with camera.place(T_wc)"
             )
         return T_wc, looks
 
-    def _refine(self, picture: Picture, T_wc: Array, looks: Looks, *, whole: bool) -> None:
+    def _refine(self, picture: Picture, T_wc: Array, looks: Looks, *, whole: bool) -> list[Window]:
         """Draw the windows around the tags finely, with or without what is behind the tags."""
+        windows = []
         for board in self.world.shown:
-            if not isinstance(board, Board):
-                continue
-            place = self._window(board, T_wc)
+            place = self._window(board, T_wc) if isinstance(board, Board) else None
             if place is None:
                 continue
             window, depth = place
             fine = self._draw(T_wc, looks, window, self.samples, FAR if whole else depth)
-            rows = slice(window.top, window.top + window.height)
-            columns = slice(window.left, window.left + window.width)
             if self.samples > 1:
                 size = (window.width, window.height)
                 fine = np.asarray(
                     cv2.resize(fine, size, interpolation=cv2.INTER_AREA), dtype=np.uint8
                 )
-            picture[rows, columns] = fine
+            picture[window.rows, window.columns] = fine
+            windows.append(window)
+        return windows
 
     def _window(self, board: Board, T_wc: Array) -> tuple[Window, float] | None:
         """The part of the picture that a board's paper covers, and a depth just behind it."""
@@ -264,11 +272,15 @@ class Camera:
             outside |= coordinate - high * z > radii * np.hypot(1.0, high)
         looks.draw_only(~outside)
 
-    def _developed(self, picture: Picture) -> Picture:
-        """With the sensor's noise, frozen."""
-        if self.noise:
-            grain = self._random.standard_normal(picture.shape, dtype=np.float32) * self.noise
-            picture = np.clip(np.rint(picture + grain), 0, 255).astype(np.uint8)
+    def _developed(self, picture: Picture, windows: list[Window]) -> Picture:
+        """With the sensor's noise where something was drawn, frozen."""
+        if self.noise and windows:
+            drawn = np.zeros(picture.shape[:2], dtype=bool)
+            for window in windows:
+                drawn[window.rows, window.columns] = True
+            grain = self._random.standard_normal((int(drawn.sum()), 3), dtype=np.float32)
+            noisy = picture[drawn] + np.float32(self.noise) * grain
+            picture[drawn] = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
         picture.setflags(write=False)
         return picture
 

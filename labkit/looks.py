@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from importlib.resources import files
-from math import pi
 from typing import Any
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from . import se3
 from .arrays import Array, locked
@@ -31,27 +31,22 @@ class Mesh:
 
     Attributes:
         points: Corners, shape (n, 3) in [m].
-        faces: Three corners each, counter-clockwise seen from outside, shape (k, 3).
         centre: Of a ball around it, shape (3,) in [m].
         radius: Of that ball, in [m].
     """
 
     points: Array
-    faces: Any
     centre: Array
     radius: float
 
-    def encloses(self, point: Array) -> bool:
-        """Whether a point is inside: the faces fill more than half of what one sees from there.
+    @cached_property
+    def _hull(self) -> Array:
+        """Planes of the convex hull, outward normals and offsets, shape (planes, 4)."""
+        return np.asarray(ConvexHull(self.points).equations)
 
-        The winding number (Jacobson 2013), which holes in the mesh do not confuse.
-        """
-        a, b, c = (self.points[self.faces[:, i]] - point for i in range(3))
-        la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
-        volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-        dots = [np.einsum("ij,ij->i", x, y) for x, y in ((a, b), (b, c), (c, a))]
-        spread = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
-        return bool(2.0 * np.arctan2(volume, spread).sum() > 2.0 * pi)
+    def encloses(self, point: Array) -> bool:
+        """Whether a point is within the convex hull: the real shells are hollow."""
+        return bool((self._hull[:, :3] @ point + self._hull[:, 3]).max() < -0.002)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,14 +132,13 @@ class Looks:
             )
         self._seen = np.array(wanted)
 
-    def around(self, point: Array) -> Piece | None:
-        """The piece that a point of the world, shape (3,) in [m], is inside of, if any."""
+    def around(self, point: Array) -> str | None:
+        """The joint whose link a point of the world, shape (3,) in [m], is inside of, if any."""
         centres, radii = self.balls
-        near = np.linalg.norm(centres - point, axis=1) < radii
-        for i in np.flatnonzero(near):
-            T_pw = se3.inverse(self.poses[i])
-            if pieces()[i].mesh.encloses(T_pw[:3, :3] @ point + T_pw[:3, 3]):
-                return pieces()[i]
+        for i in np.flatnonzero(np.linalg.norm(centres - point, axis=1) < radii):
+            T = self.poses[i]
+            if pieces()[i].mesh.encloses(T[:3, :3].T @ (point - T[:3, 3])):
+                return pieces()[i].parent
         return None
 
     def _load(self, piece: Piece) -> int:
@@ -211,13 +205,9 @@ def _joints() -> tuple[tuple[str, str, Array], ...]:
 def _mesh(name: str) -> Mesh:
     lines = (files("labkit") / "data" / name).read_text().splitlines()
     points = np.array([x.split()[1:4] for x in lines if x.startswith("v ")], dtype=float)
-    faces = np.array(
-        [[corner.split("/")[0] for corner in x.split()[1:4]] for x in lines if x.startswith("f ")],
-        dtype=int,
-    )
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     radius = float(np.linalg.norm(points - centre, axis=1).max())
-    return Mesh(locked(points), faces - 1, locked(centre), radius)
+    return Mesh(locked(points), locked(centre), radius)
 
 
 def _placed(thing: dict[str, Any]) -> Array:

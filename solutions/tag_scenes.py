@@ -51,21 +51,20 @@ def circling_board(plant: Plant = IDEAL, noise: float = 0.0, seed: int = 0) -> S
     """
     world = World()
     arm = Arm("left", plant, seed, world=world)
-    arm.reset(arm.robot.ready)
-    T_wt = arm.model.pose(arm.robot.ready)
     offset = np.array([0.0, 0.0, 0.2])
-    start = T_wt[:3, 3] - offset
-    centre = start - [RADIUS, 0.0, 0.0]
+    above = arm.model.pose(arm.robot.ready)
+    centre = above[:3, 3] - offset
+    T_wt = np.array(above)
+    T_wt[:3, 3] += [0.0, RADIUS, 0.0]
+    arm.reset(arm.model.inverse_kinematics(T_wt, arm.robot.ready))
 
     def round_it_goes(t: float) -> Sample:
-        out, rate = (
-            np.array([cos(SPEED / RADIUS * t), sin(SPEED / RADIUS * t), 0.0]),
-            SPEED / RADIUS,
-        )
+        rate = SPEED / RADIUS
+        out = np.array([-sin(rate * t), cos(rate * t), 0.0])
         on = np.array([-out[1], out[0], 0.0])
         return Sample(centre + RADIUS * out, SPEED * on, -RADIUS * rate**2 * out)
 
-    board = Board(world, Tag(), se3.pose(np.eye(3), start))
+    board = Board(world, Tag(), se3.pose(np.eye(3), T_wt[:3, 3] - offset))
     board.move(round_it_goes)
     eye = centre + np.array([0.75, -0.1, 0.45])
     camera = Camera(world, looking_at(eye, centre), noise=noise, seed=seed)

@@ -1,4 +1,4 @@
-"""What the tests share: hypothesis set to repeat itself, and states of the arm drawn from a seed."""
+"""What the tests share: hypothesis that repeats itself, and states of the arm from a seed."""
 
 import numpy as np
 import pytest

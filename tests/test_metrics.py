@@ -60,7 +60,7 @@ def test_the_velocity_error_of_a_still_pose_is_the_tips_own_speed(pose_log):
 
 
 def test_a_run_after_poses_has_no_joint_error(pose_log):
-    with pytest.raises(TypeMismatch, match="followed poses.*tip_error"):
+    with pytest.raises(TypeMismatch, match=r"followed poses.*tip_error"):
         metrics.joint_error(pose_log)
 
 

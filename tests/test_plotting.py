@@ -41,11 +41,11 @@ def test_tracking_draws_the_tip_against_its_target(log):
 
 
 def test_it_draws_where_it_is_told_and_opens_nothing(log):
-    figure, axes = plt.subplots(2)
+    _, axes = plt.subplots(2)
     before = plt.get_fignums()
     assert plotting.tracking(log, axes=axes) is axes
     assert plt.get_fignums() == before
-    figure, axes = plt.subplots(3)
+    _, axes = plt.subplots(3)
     before = plt.get_fignums()
     assert plotting.scaling(lk.Cubic(1.0), axes=axes) is axes
     assert plt.get_fignums() == before

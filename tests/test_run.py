@@ -14,7 +14,7 @@ WAY = np.array([0.4, 0.2, -0.3, 0.3, 0.2, -0.3, 0.4])
 
 
 def computed_torque(model, kp=100.0, kd=20.0):
-    """tau = M (ddq_d + Kp e + Kd de) + C dq + g (MLS eq. 4.47)."""
+    """Tau = M (ddq_d + Kp e + Kd de) + C dq + g (MLS eq. 4.47)."""
 
     def controller(state, target):
         e, de = target.position - state.q, target.velocity - state.dq
@@ -237,7 +237,7 @@ CONTROLLERS = {
     "raises": (fails, "controller failed at t = 0.100 s, tick 10: ZeroDivisionError: division by"),
     "column": (
         lambda s, x: lk.JointPosition(np.zeros((7, 1))),
-        r"controller failed at t = 0\.100 s.*JointPosition has shape \(7, 1\), expected \(7,\).*rav",
+        r"controller failed at t = 0\.100 s.*JointPosition has shape \(7, 1\), expected \(7,\).*ra",
     ),
     "matrix": (lambda s, x: lk.JointPosition(s.q * np.eye(7)), "meant to be a @"),
     "six": (lambda s, x: lk.JointPosition(np.zeros(6)), "give 7 numbers, not 6"),
@@ -255,10 +255,7 @@ CONTROLLERS = {
 @pytest.mark.parametrize("name", CONTROLLERS)
 def test_a_controller_that_fails_is_named_with_the_time_and_the_way_out(ideal, name):
     answer, words = CONTROLLERS[name]
-    if name == "too few arguments":
-        controller = answer
-    else:
-        controller = late(lambda s, x: answer(s, x))
+    controller = answer if name == "too few arguments" else late(lambda s, x: answer(s, x))
     controller.__name__ = "controller"
     with pytest.raises(ControllerError, match=words) as caught:
         lk.run(ideal, still(ideal, 0.5), controller, rate=100)
@@ -313,8 +310,8 @@ def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
         g = ideal.model.gravity(state.q)
         return lk.JointTorque(g - 300.0 * (target.position - state.q) + 0.1)
 
-    with pytest.raises(Diverged, match=r"pushes lost the arm at t = .* joint left_.. turns at .*the "
-                       r"sign of the error.*error\.log") as caught:  # fmt: skip
+    words = r"pushes lost the arm at t = .* joint left_.. turns at .*the sign of the error.*\.log"
+    with pytest.raises(Diverged, match=words) as caught:
         lk.run(ideal, still(ideal, 5.0), pushes, rate=1000)
     log = caught.value.log
     assert isinstance(log, lk.Log)
@@ -344,7 +341,7 @@ def test_impossible_rates_and_durations_are_refused(ideal, given, words):
 
 
 def test_a_target_without_duration_needs_one(ideal):
-    with pytest.raises(OutOfRange, match="how long.*give duration="):
+    with pytest.raises(OutOfRange, match=r"how long.*give duration="):
         lk.run(ideal, lambda t: None, follow)
 
 

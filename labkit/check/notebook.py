@@ -134,7 +134,7 @@ def use(name: str, function: Callable[..., Any], given: Callable[..., Any]) -> C
     if name not in desk().badges:
         desk().badges.add(name)
         print(
-            f"[stand-in] {name}: yours is not ready, so from here on labkit's own takes its place."
+            f"[stand-in] {name}: yours is not ready, so a given one takes its place from here on."
         )
     return given
 
