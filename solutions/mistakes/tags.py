@@ -18,7 +18,8 @@ BORDER = 1.25  # an AprilTag 36h11 with its white border is ten cells wide, eigh
 
 def counter_clockwise(size: float) -> Array:
     """The other way round: the tag comes out mirrored, seen from behind."""
-    return np.array(tag_corners(size)[[1, 0, 3, 2]])
+    corners: Array = tag_corners(size)[[1, 0, 3, 2]]
+    return corners
 
 
 def border_counted(size: float) -> Array:
