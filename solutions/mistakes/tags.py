@@ -29,7 +29,7 @@ def border_counted(size: float) -> Array:
 
 def from_a_corner(size: float) -> Array:
     """Puts the origin into a corner instead of the middle."""
-    return tag_corners(size) + np.array([size / 2.0, -size / 2.0, 0.0])
+    return np.add(tag_corners(size), [size / 2.0, -size / 2.0, 0.0])
 
 
 def camera_in_the_tag(pixels: Any, K: Any, size: float) -> Array:
