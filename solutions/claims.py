@@ -69,8 +69,15 @@ def judge(claim: str, unit: str, a: Mapping[Any, float], b: Mapping[Any, float])
         unit: Of the numbers.
         a: A number for each pair; the keys are (seed, ...).
         b: Its partner, under the same keys.
+
+    Raises:
+        OutOfRange: There are fewer than two pairs.
     """
     keys = sorted(a.keys() & b.keys())
+    if len(keys) < 2:
+        raise OutOfRange(
+            f"{len(keys)} pair cannot show a spread, so {claim!r} cannot be judged; take two seeds"
+        )
     mean, half = paired_difference([a[k] for k in keys], [b[k] for k in keys])
     seeds = sorted({k[0] for k in keys})
     by_seed = tuple(float(np.mean([a[k] - b[k] for k in keys if k[0] == s])) for s in seeds)

@@ -9,7 +9,8 @@ from labkit import campaign, plotting
 from labkit.campaign import cells, pick, row_of, spread, table, work_through
 from solutions import campaign as report
 from solutions import pictures
-from solutions.claims import Outcome, judge, paired_difference, verdicts
+from solutions.claims import Outcome, judge, verdicts
+from solutions.comparison import paired_difference
 from solutions.gains import five
 
 SMALL = cells(way=("joint velocity", "baseline"), task=("line",), plant=("baxter",), seed=(0, 1))
@@ -112,8 +113,8 @@ def test_the_interval_is_that_of_a_paired_t_test():
     mean, half = paired_difference(a, b)
     low, high = stats.ttest_rel(a, b).confidence_interval(0.95)
     assert (mean - half, mean + half) == pytest.approx((low, high))
-    with pytest.raises(lk.LabkitError, match="1 pair cannot show a spread"):
-        paired_difference([1.0], [0.5])
+    with pytest.raises(lk.LabkitError, match="1 pair cannot show a spread, so 'a is larger'"):
+        judge("a is larger", "mm", {(0,): 1.0}, {(0,): 0.5})
 
 
 @pytest.mark.parametrize(

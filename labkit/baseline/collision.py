@@ -21,7 +21,7 @@ import pinocchio as pin
 from ..arrays import Array, as_array, as_number, as_vector
 from ..errors import JointLimitExceeded, LabkitError, OutOfRange
 from ..robot import Robot, Side, robot
-from ..scene import Table, Wall
+from ..scene import FACE, Table, Wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +154,6 @@ class Blocked(LabkitError, ValueError):
 
 
 _FIXED = ("base",)
-_THICK = 0.02  # of a table top or a wall, in [m]
 
 
 def _solid(thing: Box | Table | Wall) -> tuple[str, int, Array, Any]:
@@ -163,8 +162,8 @@ def _solid(thing: Box | Table | Wall) -> tuple[str, int, Array, Any]:
     if isinstance(thing, Box):
         T[:3, 3] = thing.centre
         return thing.name, 0, T, coal.Box(*thing.size)
-    T[2, 3] = -0.5 * _THICK  # the face is its upper side
-    return type(thing).__name__.lower(), 0, thing.T_wf @ T, coal.Box(*thing.size, _THICK)
+    T[2, 3] = -0.5 * FACE  # the face is its upper side
+    return type(thing).__name__.lower(), 0, thing.T_wf @ T, coal.Box(*thing.size, FACE)
 
 
 def _shape(shape: dict[str, Any]) -> Any:
