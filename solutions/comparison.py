@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from math import atan, pi, radians, sqrt
+from collections.abc import Callable, Mapping
+from math import atan, hypot, radians
 from typing import Any
 
 import control
@@ -12,6 +12,8 @@ from scipy.optimize import brentq
 from scipy.stats import t as student
 
 import labkit as lk
+from labkit.arrays import as_array, as_number
+from labkit.errors import OutOfRange
 
 
 def rms_error(log: lk.Log, model: lk.Model) -> float:
@@ -30,16 +32,36 @@ def open_loop(kp: float, lag: float, delay: float) -> Any:
 
 
 def kp_for_margin(lag: float, delay: float, margin_deg: float) -> float:
-    """The gain at which the phase margin is as wanted: phase first, then the gain to be 1 there."""
+    r"""The gain with a wanted phase margin.
 
-    def margin(w: float) -> float:  # integrator, lag and delay each cost phase
-        return pi / 2 - atan(lag * w) - delay * w - radians(margin_deg)
+    The crossover w solves :math:`90^\circ - \arctan(w \tau) - w d = \varphi`, and there
+    :math:`k_p = w \sqrt{1 + (w \tau)^2}` makes the loop's gain 1.
 
-    high = 1.0
-    while margin(high) > 0.0:
-        high *= 2.0
-    w = brentq(margin, 1e-9, high, xtol=1e-12)
-    return float(w * sqrt(1.0 + (lag * w) ** 2))
+    Args:
+        lag: tau, in [s].
+        delay: d, in [s].
+        margin_deg: phi, in [degrees], between 0 and 90.
+
+    Returns:
+        kp in [1/s].
+
+    Raises:
+        OutOfRange: No gain, or any gain, has this margin.
+    """
+    lag, delay = as_number(lag, "lag", least=0.0), as_number(delay, "delay", least=0.0)
+    margin = radians(as_number(margin_deg, "margin_deg", above=0.0))
+    if margin >= radians(90.0):
+        raise OutOfRange(
+            f"margin_deg is {margin_deg:g}; the integrator leaves less than 90 degrees"
+        )
+    if lag == delay == 0.0:
+        raise OutOfRange("lag and delay are 0: an integrator keeps 90 degrees at any gain")
+
+    def excess(w: float) -> float:
+        return radians(90.0) - atan(w * lag) - w * delay - margin
+
+    w = brentq(excess, 0.0, 2.0 / max(lag, delay) * (1.0 + 1.0 / margin), xtol=1e-12)
+    return float(w * hypot(1.0, w * lag))
 
 
 def choose_gains(runner: Callable[..., float]) -> tuple[float, float]:
@@ -53,10 +75,24 @@ def choose_gains(runner: Callable[..., float]) -> tuple[float, float]:
     return stable / 2.0, 0.0
 
 
-def paired_difference(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
-    """Mean of a - b over pairs, and half the width of its 95 % interval (Student's t)."""
-    d = np.asarray(errors_a, dtype=float) - np.asarray(errors_b, dtype=float)
+def paired_difference(a: Any, b: Any) -> tuple[float, float]:
+    """Mean of a - b over pairs, and the half width of its 95 % interval.
+
+    Args:
+        a: One number for each pair, shape (n,).
+        b: Its partner, shape (n,).
+
+    Returns:
+        Mean, and Student's t times the standard error of the differences.
+
+    Raises:
+        OutOfRange: There are fewer than two pairs, so nothing is known of the spread.
+    """
+    a = as_array(a, (len(a),), "a")
+    d = a - as_array(b, (len(a),), "b")
     n = len(d)
+    if n < 2:
+        raise OutOfRange(f"{n} pair cannot show a spread; take at least two seeds or tasks")
     return float(d.mean()), float(student.ppf(0.975, n - 1) * d.std(ddof=1) / np.sqrt(n))
 
 

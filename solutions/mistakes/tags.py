@@ -18,7 +18,8 @@ BORDER = 1.25  # an AprilTag 36h11 with its white border is ten cells wide, eigh
 
 def counter_clockwise(size: float) -> Array:
     """The other way round: the tag comes out mirrored, seen from behind."""
-    return np.array(tag_corners(size)[[1, 0, 3, 2]])
+    corners: Array = tag_corners(size)[[1, 0, 3, 2]]
+    return corners
 
 
 def border_counted(size: float) -> Array:
@@ -28,7 +29,7 @@ def border_counted(size: float) -> Array:
 
 def from_a_corner(size: float) -> Array:
     """Puts the origin into a corner instead of the middle."""
-    return tag_corners(size) + np.array([size / 2.0, -size / 2.0, 0.0])
+    return np.add(tag_corners(size), [size / 2.0, -size / 2.0, 0.0])
 
 
 def camera_in_the_tag(pixels: Any, K: Any, size: float) -> Array:
