@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+import labkit
 from labkit import (
     BAXTER,
     IDEAL,
@@ -218,6 +219,9 @@ def derivative(Kd: float, plant: str, seed: int) -> Mapping[str, float]:
     }
 
 
+KEPT = Path(labkit.__file__).parent / "data" / "campaign.json"
+"""Where `labkit.recorded.campaign` finds its rows: five seeds, by ``--seeds 5 --keep``."""
+
 TABLES = {
     "late_rms_mm": "RMS position error after the first second [mm]",
     "late_max_mm": "Largest position error after the first second [mm]",
@@ -248,6 +252,16 @@ def tables(rows: list[Row], judged: list[Verdict]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def kept(rows: list[Row]) -> str:
+    """The rows as notebooks get them: JSON, one to a line, four digits."""
+    short = [
+        {k: float(f"{v:.4g}") if isinstance(v, float) else v for k, v in row.items()}
+        for row in rows
+    ]
+    lines = ",\n".join(json.dumps(_without(row, "digest"), allow_nan=False) for row in short)
+    return f"[\n{lines}\n]\n"
+
+
 def _without(row: Row, key: str) -> Row:
     return {name: value for name, value in row.items() if name != key}
 
@@ -262,6 +276,9 @@ def main() -> None:
     parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
+    parser.add_argument(
+        "--keep", action="store_true", help="and write labkit/data/campaign.json for the notebooks"
+    )
     options = parser.parse_args()
     where = {"jobs": options.jobs, "dask": options.dask}
     began = time.monotonic()
@@ -273,6 +290,8 @@ def main() -> None:
     seconds = time.monotonic() - began
     gains = done(converge, gain_grid(options.seeds), "gains")
     noise = done(derivative, noise_grid(options.seeds), "noise")
+    if options.keep:
+        KEPT.write_text(kept(rows))
     judged = verdicts(rows, gains, noise) if options.seeds > 1 else []
     folder = options.out / "campaign"
     folder.mkdir(parents=True, exist_ok=True)
