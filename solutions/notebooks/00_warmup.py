@@ -112,7 +112,7 @@ error = log.target.position - log.q
 
 plt.figure(figsize=(8, 3), layout="constrained")
 for j, style in ((0, "-"), (3, "-."), (6, ":")):
-    plt.plot(log.t, error[:, j], style, label=f"joint {arm.robot.joint_names[j]}")
+    plt.plot(log.t, error[:, j], style, label=f"joint {arm.robot.joint_names[j][-2:]}")
 plt.plot(log.t, error[0, 0] * np.exp(-2.0 * log.t), "k--", linewidth=1, label="0.5 exp(-2 t)")
 plt.xlabel("time [s]")
 plt.ylabel("error [rad]")

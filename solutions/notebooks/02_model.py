@@ -41,7 +41,7 @@ import numpy as np
 # %%
 arm = lk.Arm("left")
 model, q0 = arm.model, arm.robot.ready
-names = arm.robot.joint_names
+names = [name.removeprefix("left_") for name in arm.robot.joint_names]
 
 for name, link in zip(names, lk.links(model, q0)):
     print(f"{name}: {link.mass:.2f} kg, centre of mass at {link.com.round(3)} m")
@@ -107,7 +107,7 @@ def passes_on(state, target):
 
 
 start = model.pose(q0)[:3, 3]
-circle = lk.Trajectory(lk.Circle(start, start + [0.0, -0.15, 0.0]), lk.Quintic(4.0))
+circle = lk.Trajectory(lk.Circle(start, start + [0.0, -0.15, 0.0]), lk.Quintic(6.0))
 arm.reset(q0)
 log = lk.run(arm, model.joint_trajectory(circle, q0), passes_on)
 
@@ -167,7 +167,7 @@ def mass_matrix(masses, inertias, rotations, com_jacobians):
 # %% [markdown]
 # Three things must hold for any mass matrix, whatever the arm: it is symmetric, no motion has negative
 # energy, and none has *no* energy, so its smallest eigenvalue is above zero. The picture shows that the
-# arm is not one thing to push: stretch the elbow, and the shoulder has twice the work.
+# arm is not the same thing to push everywhere: stretch the elbow, and the shoulder has far more to do.
 
 # %%
 def given_mass_matrix(masses, inertias, rotations, com_jacobians):
@@ -199,7 +199,7 @@ felt = np.array([np.diag(M([*q0[:3], e, *q0[4:]])) for e in elbow])
 plt.figure(figsize=(8, 3), layout="constrained")
 for j, style in ((0, "-"), (1, "--"), (3, ":")):
     plt.plot(elbow, felt[:, j], style, label=f"joint {names[j]}")
-plt.xlabel("elbow e1 [rad]: 0 is stretched")
+plt.xlabel("elbow e1 [rad]: near 0 the arm is stretched")
 plt.ylabel("inertia felt [kg m²]")
 plt.legend(frameon=False)
 lk.plotting.show(
@@ -264,8 +264,8 @@ def as_in_the_report(state, target):
     return lk.JointTorque(M(state.q) @ tip_jacobian(state.q).T @ up)
 
 
-floating, falling = {}, {}
-still = lk.Hold(q0, 0.6)
+floating = {}
+still = lk.Hold(q0, 0.35)
 for name, controller in (("yours", floats), ("the report's", as_in_the_report)):
     arm.reset(q0)
     floating[name] = lk.run(arm, still, controller)
@@ -280,11 +280,11 @@ plt.xlabel("time [s]")
 plt.ylabel("height of the tip [m]")
 plt.legend(frameon=False)
 lk.plotting.show(
-    "Height of the tip while only a gravity torque is commanded, for 0.6 s. It drops by "
+    "Height of the tip while only a gravity torque is commanded, for 0.35 s. It drops by "
     + ", ".join(f"{1e3 * drop:.1f} mm with {name}" for name, drop in drops.items())
     + "."
 )
-print("your g at the ready pose [N m]:", g(q0).round(2))
+print("your g at the ready pose [N m]:", ", ".join(f"{x:.1f}" for x in g(q0)))
 
 # %%
 lk.replay.show(
