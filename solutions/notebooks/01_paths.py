@@ -15,8 +15,8 @@
 # A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling*
 # is the schedule `s(t)`. Together they are a *trajectory*. Kept apart, any path goes with any schedule.
 #
-# Every cell below runs from the start, solved or not: where your part is missing, labkit's own stands
-# in and says so. After each stub a check tells you in words what it found. Only the functions are
+# Every cell below runs from the start, solved or not: where your part is missing, a stand-in takes its
+# place and says so. After each stub a check tells you in words what it found. Only the functions are
 # marked, so play with everything else as you like.
 
 # %% setup=true

@@ -13,8 +13,8 @@
 # | **You write** | two controllers, a damped inverse, motion that the tip does not feel |
 # | **Time** | about 4 hours · 20 points |
 #
-# Every cell runs from the start, solved or not: where your part is missing, labkit's own stands in and
-# says so. After each stub a check tells you in words what it found. Only the functions are marked, so
+# Every cell runs from the start, solved or not: where your part is missing, a stand-in takes its place
+# and says so. After each stub a check tells you in words what it found. Only the functions are marked, so
 # play with everything else as you like.
 
 # %% setup=true
@@ -67,11 +67,12 @@ def joint_velocity_pd(state, target, *, kp, kd):
 # help? (Nobody turns them when the notebook is graded; it then shows what they start with.)
 
 # %%
-def given_joint_velocity_pd(state, target, *, kp, kd):
+def feedforward(state, target, **gains):
+    """The stand-in: the target's own speed, whatever the gains."""
     return lk.JointVelocity(target.velocity)
 
 
-my_joint_velocity_pd = use("joint_velocity_pd", joint_velocity_pd, given_joint_velocity_pd)
+my_joint_velocity_pd = use("joint_velocity_pd", joint_velocity_pd, feedforward)
 
 ideal, baxter = lk.Arm("left", lk.IDEAL), lk.Arm("left", lk.BAXTER, seed=1)
 model, q0 = ideal.model, ideal.robot.ready
@@ -105,10 +106,10 @@ def try_gains(kp, kd):
     above.legend(frameon=False)
     below.set_ylabel("command [rad/s]")
     below.set_xlabel("time [s]")
-    last = np.abs(error[log.t > 1.5]).max()
+    last = np.abs(error[-len(error) // 4 :]).max()
     jitter = np.abs(np.diff(log.command, axis=0)).max()
     return figure, (
-        f"Baxter with kp = {kp:.3g}, kd = {kd:.3g}: the largest error in the last half second is "
+        f"Baxter with kp = {kp:.3g}, kd = {kd:.3g}: the largest error in the last quarter is "
         f"{last:.3f} rad, the largest jump of a command {jitter:.2f} rad/s."
     )
 
@@ -147,11 +148,12 @@ def decay_rate(kp, kd):
 # more than a trace of D.) Solid lines are the arm, thin dashed ones your rate.
 
 # %%
-def given_decay_rate(kp, kd):
-    return 1.0 / ((1.0 + kd) / kp)
+def nobody_knows(kp, kd):
+    """The stand-in: not a number, so nothing is drawn."""
+    return np.nan
 
 
-my_decay_rate = use("decay_rate", decay_rate, given_decay_rate)
+my_decay_rate = use("decay_rate", decay_rate, nobody_knows)
 
 lagging = lk.Arm("left", lk.Plant(name="lagging", velocity_lag=0.05))
 plt.figure(figsize=(8, 3), layout="constrained")
@@ -219,11 +221,12 @@ def damped_inverse(J, damping):
 # is all they can do.
 
 # %%
-def given_damped_inverse(J, damping):
-    return np.linalg.pinv(np.vstack([J, np.sqrt(damping) * np.eye(7)]))[:, :6]
+def truncated_inverse(J, damping):
+    """The stand-in: leaves out the directions that are nearly impossible, whatever the damping."""
+    return np.linalg.pinv(J, rcond=0.03)
 
 
-my_damped_inverse = use("damped_inverse", damped_inverse, given_damped_inverse)
+my_damped_inverse = use("damped_inverse", damped_inverse, truncated_inverse)
 
 angles = np.linspace(0.0, 0.8, 161)
 stretched = [np.array([-0.3, -0.4, 0.0, e1, 0.0, 0.6, 0.0]) for e1 in angles]
@@ -285,13 +288,12 @@ def workspace_velocity_pd(state, target, model, *, kp, damping):
 
 
 # %%
-def given_workspace_velocity_pd(state, target, model, *, kp, damping):
+def tip_feedforward(state, target, model, *, kp, damping):
+    """The stand-in: the target's own twist, whatever the error."""
     return lk.JointVelocity(my_damped_inverse(model.tip_jacobian(state.q), damping) @ target.twist)
 
 
-my_workspace_velocity_pd = use(
-    "workspace_velocity_pd", workspace_velocity_pd, given_workspace_velocity_pd
-)
+my_workspace_velocity_pd = use("workspace_velocity_pd", workspace_velocity_pd, tip_feedforward)
 
 
 def in_the_workspace(state, target):
@@ -354,12 +356,12 @@ def posture_velocity(J, dq_wish):
 # The tip holds its place while the elbow swings from side to side.
 
 # %%
-def given_posture_velocity(J, dq_wish):
-    n = np.linalg.svd(J)[2][-1]
-    return n * n.dot(dq_wish)
+def stays(J, dq_wish):
+    """The stand-in: no motion, so the tip feels none."""
+    return np.zeros(7)
 
 
-my_posture_velocity = use("posture_velocity", posture_velocity, given_posture_velocity)
+my_posture_velocity = use("posture_velocity", posture_velocity, stays)
 
 
 def swings_the_elbow(state, target):
@@ -384,10 +386,6 @@ lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", refer
 # off the path.
 
 # %%
-def feedforward(state, target):
-    return lk.JointVelocity(target.velocity)
-
-
 joints = model.joint_trajectory(poses, q0)
 runs = {}
 for name, target, controller in (
