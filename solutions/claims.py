@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from labkit.campaign import Row, pick
+from labkit.errors import OutOfRange
 
 from .comparison import paired_difference
 
