@@ -9,7 +9,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import errors, metrics, se3
+from . import controllers, errors, metrics, se3
 from .arm import Arm
 from .arrays import as_array
 from .commands import Command, JointPosition, JointTorque, JointVelocity, State
@@ -79,6 +79,7 @@ __all__ = [
     "World",
     "as_array",
     "check",
+    "controllers",
     "errors",
     "links",
     "metrics",

@@ -5,16 +5,17 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
-from .judge import AtMost, Close, Within
+from .judge import AtMost, Close, Gains, Within
 from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
-from .question import Call, Loop, Mistake, Question, Raised, Test, read_question
+from .question import Call, Loop, Mistake, Question, Raised, Test, Tuned, read_question
 
 __all__ = [
     "AtMost",
     "Call",
     "Close",
     "Failed",
+    "Gains",
     "Loop",
     "Mistake",
     "Outcome",
@@ -22,6 +23,7 @@ __all__ = [
     "Raised",
     "Test",
     "TestResult",
+    "Tuned",
     "Verdict",
     "Within",
     "also",

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import commands, motion, paths, plant, scalings
+from .. import commands, motion, paths, plant, scalings, scene
 from ..arrays import locked
 from ..errors import TypeMismatch
 from ..model import Model
@@ -39,6 +39,10 @@ GIVEN = (
     motion.Trajectory,
     motion.PosePath,
     plant.Plant,
+    scene.Push,
+    scene.Spring,
+    scene.Table,
+    scene.Wall,
     Log,
 )
 """What a student's function may be given on top: frozen values, sent as their fields."""
