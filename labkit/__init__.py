@@ -25,12 +25,13 @@ from .scene import Push, Spring, Table, Wall
 from .world import World
 
 if TYPE_CHECKING:
-    from . import check, plotting
+    from . import check, plotting, replay
+    from .dials import dials
     from .ready import ready
 
 __version__ = "0.1.0"
 
-_LATER = {"check": "", "plotting": "", "ready": "ready"}
+_LATER = {"check": "", "dials": "dials", "plotting": "", "ready": "ready", "replay": ""}
 """Loaded when first asked for: drawing packages are slow to import."""
 
 
@@ -80,11 +81,13 @@ __all__ = [
     "as_array",
     "check",
     "controllers",
+    "dials",
     "errors",
     "links",
     "metrics",
     "plotting",
     "ready",
+    "replay",
     "robot",
     "run",
     "se3",

@@ -5,7 +5,7 @@ An error is always target minus actual.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -86,6 +86,18 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
     if not outside.size:
         return 0.0
     return float("inf") if outside[-1] == len(e) - 1 else float(t[outside[-1] + 1] - t[0])
+
+
+def since(log: Log, t: float) -> Log:
+    """The rows of a run from a time ``t`` [s] on; its clock runs on."""
+    first = int(np.searchsorted(log.t, t - 1e-9))
+    cut: dict[str, Any] = {
+        f.name: column[first:]
+        for f in fields(log)
+        if isinstance(column := getattr(log, f.name), np.ndarray)
+    }
+    target, measured = (type(x)(*(part[first:] for part in x)) for x in (log.target, log.measured))
+    return replace(log, **cut, target=target, measured=measured)
 
 
 @dataclass(frozen=True)

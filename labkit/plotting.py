@@ -9,6 +9,8 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from IPython.core.getipython import get_ipython
+from IPython.display import display
 from matplotlib.figure import Figure
 
 from . import metrics
@@ -75,6 +77,19 @@ def scaling(*scalings: Any, axes: Any = None) -> Any:
     axes[0].legend(frameon=False)
     axes[-1].set_xlabel("time [s]")
     return axes
+
+
+def show(caption: str) -> None:
+    """Show the current figure with a caption, which is its alternative text too.
+
+    Args:
+        caption: What is to be seen, with its numbers; a line under the figure.
+    """
+    figure = plt.gcf()
+    if get_ipython() is not None:
+        display(figure, metadata={"image/png": {"alt": caption}})
+    print(caption)
+    plt.close(figure)
 
 
 def answers(call: str, expected: Any, given: Any) -> Any:

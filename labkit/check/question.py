@@ -15,7 +15,7 @@ from typing import Any
 
 from ..arm import Arm
 from ..controllers import springs
-from ..metrics import summary
+from ..metrics import since, summary
 from ..plant import IDEAL, Plant
 from ..run import run
 from ..world import Thing, World
@@ -64,6 +64,7 @@ class Loop:
         q0: Where it starts, shape (7,) in [rad]; None is its ready pose.
         rate: Control rate, in [Hz].
         duration: In [s]; None takes the target's.
+        settle: How long it may take to recover from its start, in [s]; measured from then on.
         expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
         hidden: Whether the student never sees it.
     """
@@ -77,6 +78,7 @@ class Loop:
     q0: Any = None
     rate: float = 200.0
     duration: float | None = None
+    settle: float = 0.0
     expected: Any = field(default_factory=dict)
     hidden: bool = False
 
@@ -92,7 +94,7 @@ class Loop:
             log = run(arm, self.target, controller, self.rate, self.duration)
         finally:
             arm.world.close()
-        return asdict(summary(log, arm.model))
+        return asdict(summary(since(log, self.settle), arm.model))
 
     def shown(self, name: str) -> str:
         """The run in words."""
