@@ -9,7 +9,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import controllers, errors, metrics, se3
+from . import controllers, energy, errors, impedance, metrics, se3
 from .arm import Arm
 from .arrays import as_array
 from .commands import Command, JointPosition, JointTorque, JointVelocity, State
@@ -82,7 +82,9 @@ __all__ = [
     "check",
     "controllers",
     "dials",
+    "energy",
     "errors",
+    "impedance",
     "links",
     "metrics",
     "plotting",

@@ -34,6 +34,17 @@ def joint_error(log: Log) -> Array:
     return np.asarray(log.target.position - log.q)
 
 
+def joint_speed_error(log: Log) -> Array:
+    """Target minus actual joint speeds of a run after joint angles, shape (N, 7) in [rad/s].
+
+    Raises:
+        TypeMismatch: The run followed poses.
+    """
+    if isinstance(log.target, PoseSample) or log.target.velocity.shape[1] != log.dq.shape[1]:
+        raise TypeMismatch("this run followed poses, not joint angles: ask for velocity_error(log)")
+    return np.asarray(log.target.velocity - log.dq)
+
+
 def tip_poses(log: Log, model: Model | None = None) -> Array:
     """Where the tip was, `T_wt` at each tick, shape (N, 4, 4)."""
     model = model or model_of(log)
@@ -55,6 +66,16 @@ def tip_error(log: Log, model: Model | None = None) -> Array:
     T_wd, T_wt = target_poses(log, model), tip_poses(log, model)
     turn = [se3.rotation_log(d[:3, :3] @ t[:3, :3].T) for d, t in zip(T_wd, T_wt, strict=True)]
     return np.hstack([T_wd[:, :3, 3] - T_wt[:, :3, 3], np.array(turn)])
+
+
+def felt_wrench(log: Log, model: Model | None = None) -> Array:
+    """The wrench on the tip as the arm's torque sensors told it, world axes, shape (N, 6).
+
+    Force [N], then moment about the tip's origin [N m]; see `Model.tip_wrench` and `State.tau_ext`.
+    """
+    model = model or model_of(log)
+    pairs = zip(log.measured.q, log.measured.tau_ext, strict=True)
+    return np.array([model.tip_wrench(q, tau) for q, tau in pairs])
 
 
 def rms(error: Any) -> float:

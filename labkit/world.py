@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import Any, Protocol, Self
 
 from .arrays import Array, as_number
-from .errors import Closed
+from .errors import Closed, OutOfRange
 from .quiet import quiet
 
 with quiet():
@@ -131,3 +131,16 @@ class World:
 
     def __del__(self) -> None:
         self.close()
+
+
+def whole_steps(rate: float, dt: float, name: str) -> int:
+    """How many physics steps of ``dt`` [s] a period of ``rate`` [Hz] has; 0 for a rate of 0."""
+    if rate == 0.0:
+        return 0
+    steps = 1.0 / (rate * dt)
+    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
+        raise OutOfRange(
+            f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
+            f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
+        )
+    return round(steps)
