@@ -12,7 +12,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .judge import AtMost, Judge
-from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test
+from .question import Call, Case, Choice, Mistake, Question, Raised, Test
 
 
 class Outcome(Enum):
@@ -206,7 +206,7 @@ def _try(
     """Put some cases of one test, until one fails."""
     for case in cases:
         answer = _answer(case, function)
-        if not isinstance(case, Loop) and not case.hidden:
+        if isinstance(case, Call | Choice) and not case.hidden:
             answers[id(case)] = answer
         where = f"a hidden case ({test.also})" if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
