@@ -1,0 +1,240 @@
+"""Build the book: `python tools/build_book.py`, or `make book`.
+
+Makes what the pages need (viewer, notation, the students' notebooks), then runs Jupyter Book with
+warnings as errors.  Pages are executed again only when labkit, solutions or the book's figures
+changed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import importlib.metadata
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))  # this checkout, wherever another one is installed
+BOOK = ROOT / "book"
+HTML = BOOK / "_build/html"
+CACHE = ROOT / "build/book"
+MADE = BOOK / "generated"
+EXECUTED = ("labkit/**/*.py", "labkit/data/*.json", "solutions/*.py", "book/figures/*.py")
+ENGINES = ("numpy", "scipy", "pybullet", "pin", "matplotlib", "myst-nb")
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--answers", action="store_true", help="show the answers to exercises")
+    parser.add_argument("--fresh", action="store_true", help="forget what was built before")
+    parser.add_argument("--zip", action="store_true", help="also make dist/book.zip to hand out")
+    parser.add_argument("--pdf", action="store_true", help="also print it to dist/book.pdf")
+    chosen = parser.parse_args(arguments)
+    began = time.monotonic()
+    if chosen.fresh:
+        for folder in (BOOK / "_build", CACHE):
+            shutil.rmtree(folder, ignore_errors=True)
+    key = content_key()
+    prepare()
+    if code := build(key, answers=chosen.answers):
+        return code
+    size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
+    took = time.monotonic() - began
+    print(f"book/_build/html/index.html ({size:.1f} MB, {took:.0f} s): open it by double click")
+    if chosen.zip:
+        print(f"To hand out: {pack().relative_to(ROOT)}")
+    if chosen.pdf:
+        print(f"To print: {print_pdf().relative_to(ROOT)}")
+    return 0
+
+
+def content_key() -> str:
+    """One hash of all that a page's figures are computed from."""
+    digest = hashlib.sha256()
+    for path in sorted(p for pattern in EXECUTED for p in ROOT.glob(pattern)):
+        digest.update(f"{path.relative_to(ROOT)}\0".encode() + path.read_bytes())
+    for name in ENGINES:
+        digest.update(f"{name} {importlib.metadata.version(name)}\n".encode())
+    return digest.hexdigest()[:16]
+
+
+def prepare() -> None:
+    """Make the files that stand in no repository: viewer, notation, notebooks, changelog."""
+    from labkit.replay import shared_files
+
+    viewer = BOOK / "static/viewer"
+    viewer.mkdir(exist_ok=True)
+    for name, path in shared_files().items():
+        _copy(path, viewer / name)
+    _write(MADE / "parts/symbols.md", _symbols())
+    _write(MADE / "changelog.md", _changelog())
+    _notebooks(MADE / "notebooks")
+
+
+def _symbols() -> str:
+    """The table of `labkit.notation` in Markdown."""
+    from labkit.notation import ERRORS, SYMBOLS
+
+    rows = ["| In code | In formulas | Meaning | Shape | Unit |", "|---|---|---|---|---|"]
+    for s in (*SYMBOLS, *ERRORS):
+        meaning = re.sub(r"\b([TRp]_\w+)", r"`\1`", s.meaning)
+        rows.append(f"| `{s.code}` | ${s.latex}$ | {meaning} | {s.shape} | {s.unit} |")
+    return "\n".join(rows) + "\n"
+
+
+def _changelog() -> str:
+    path = ROOT / "CHANGELOG.md"
+    if not path.exists():
+        return "# Changelog\n\nThere is no release yet.\n"
+    return path.read_text()
+
+
+def _notebooks(folder: Path) -> None:
+    """The students' notebooks as pages and as downloads, whatever stands in assignments/."""
+    import nbformat
+
+    found = sorted((ROOT / "assignments").glob("*/*.ipynb"))
+    lines = [
+        "# The notebooks",
+        "",
+        "Each notebook is shown here as students receive it, before any answer is written. "
+        "Download it, or open it from the repository with `make lab`.",
+        "",
+    ]
+    for path in found:
+        notebook = nbformat.read(path, as_version=4)
+        _write(folder / path.name, nbformat.writes(_readable(notebook)))
+        _copy(path, BOOK / "static/notebooks" / path.name)
+        title = _title(notebook, path.stem)
+        link = f'<a href="../_static/notebooks/{path.name}" download>download</a>'
+        lines.append(f"- [{title}](notebooks/{path.name}), {link}")
+    if not found:
+        lines.append("No notebook has been released into `assignments/` yet.")
+    else:
+        lines += [
+            "",
+            "```{toctree}",
+            ":hidden:",
+            "",
+            *(f"notebooks/{p.stem}" for p in found),
+            "```",
+        ]
+    _write(MADE / "notebooks.md", "\n".join(lines) + "\n")
+    names = {p.name for p in found}
+    for old in [*folder.glob("*.ipynb"), *(BOOK / "static/notebooks").glob("*.ipynb")]:
+        if old.name not in names:
+            old.unlink()
+
+
+def _readable(notebook: dict) -> dict:
+    """A copy for reading: code is shown, and empty outputs stay out."""
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            cell["outputs"], cell["execution_count"] = [], None
+    notebook["metadata"]["mystnb"] = {"remove_code_source": False}
+    return notebook
+
+
+def _title(notebook: dict, stem: str) -> str:
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "markdown" and (
+            found := re.search(r"^# (.+)", cell["source"], re.M)
+        ):
+            return found[1].strip()
+    return stem
+
+
+def build(key: str, *, answers: bool) -> int:
+    """Run Jupyter Book; a warning or an exception in a cell is an error."""
+    stamp, state = BOOK / "_build/built.json", {"key": key, "answers": answers}
+    fresh = not stamp.exists() or json.loads(stamp.read_text()) != state
+    stamp.unlink(missing_ok=True)
+    cache = CACHE / f"pages-{key}"
+    for old in CACHE.glob("pages-*"):
+        if old != cache:
+            shutil.rmtree(old)
+    CACHE.mkdir(parents=True, exist_ok=True)
+    run = "from jupyter_book.cli.main import main; main()"
+    command = [sys.executable, "-c", run, "build", str(BOOK), "-W", "--keep-going"]
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")]),
+        "LAB_BOOK_CACHE": str(cache),
+        "LAB_BOOK_ANSWERS": "1" if answers else "0",
+        "PYDEVD_DISABLE_FILE_VALIDATION": "1",
+    }
+    if fresh:
+        shutil.rmtree(HTML, ignore_errors=True)
+        command.append("--all")
+    with subprocess.Popen(
+        command, env=environment, cwd=ROOT, text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    ) as process:  # fmt: skip
+        assert process.stdout
+        log = list(_shown(process.stdout))
+    (CACHE / "build.log").write_text("\n".join(log) + "\n")
+    if process.returncode:
+        print("The book was not built; the log is in build/book/build.log.", file=sys.stderr)
+        for line in log:
+            if re.search(r"WARNING|ERROR|Error|Exception|says otherwise", line):
+                print(f"  {line}", file=sys.stderr)
+        return process.returncode
+    stamp.write_text(json.dumps(state))
+    return 0
+
+
+def _shown(lines: Iterator[str]) -> Iterator[str]:
+    """Pass a log on, showing how far it is."""
+    steady = sys.stdout.isatty()
+    for raw in lines:
+        line = re.sub(r"\x1b\[[0-9;]*m", "", raw.rstrip()).rsplit("\r", 1)[-1]
+        yield line
+        if re.match(r"(reading|writing|executing)|.*Executing notebook", line, re.I):
+            step = re.sub(r".*?(Executing notebook using)\s*.*", "executing a page", line)
+            print(f"\r\x1b[K{step[:100]}" if steady else step[:100],
+                  end="" if steady else "\n", flush=True)  # fmt: skip
+    if steady:
+        print("\r\x1b[K", end="")
+
+
+def pack() -> Path:
+    """The folder to hand out, as one zip that opens by double click on index.html."""
+    target = ROOT / "dist/book"
+    target.parent.mkdir(exist_ok=True)
+    stage = CACHE / "stage"
+    shutil.rmtree(stage, ignore_errors=True)
+    shutil.copytree(
+        HTML, stage / "book", ignore=shutil.ignore_patterns(".buildinfo", "objects.inv")
+    )
+    made = Path(shutil.make_archive(str(target), "zip", stage, "book"))
+    shutil.rmtree(stage)
+    return made
+
+
+def print_pdf() -> Path:
+    """Every page printed by Chromium, one after another, in the order of the contents."""
+    raise SystemExit("not here yet")
+
+
+def _copy(source: Path, target: Path) -> None:
+    """Copy only what differs, so that unchanged pages stay built."""
+    if not target.exists() or target.read_bytes() != source.read_bytes():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+
+
+def _write(path: Path, text: str) -> None:
+    if not path.exists() or path.read_text() != text:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
