@@ -104,8 +104,7 @@ def _drawing(svg: str, caption: str, alt: str) -> str:
     mark = "f" + hashlib.sha256((caption + alt).encode()).hexdigest()[:8] + "-"
     svg = re.sub(r'id="([^"]+)"', rf'id="{mark}\1"', svg)
     svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{mark}", svg)
-    svg = re.sub(r"font: ([^;\"]*?)'[^;\"]*", r"font: \1inherit", svg)
-    svg = svg.replace("'DejaVu Sans', 'Bitstream Vera Sans'", "inherit")
+    svg = re.sub(r"font: [^;\"]*?([\d.]+px)[^;\"]*", r"font-size: \1", svg)  # the page's letters
     for ink, variable in _VARIABLES.items():
         svg = svg.replace(ink, variable)
     box = re.search(r'viewBox="([^"]+)"', svg)[1]  # type: ignore[index]
