@@ -21,6 +21,7 @@ from .plant import BAXTER, IDEAL, Plant
 from .robot import robot
 from .run import Controller, Log, run
 from .scalings import BangBang, Cubic, Quintic, Trapezoid
+from .scene import Push, Spring, Table, Wall
 from .world import World
 
 if TYPE_CHECKING:
@@ -65,12 +66,16 @@ __all__ = [
     "Polyline",
     "PosePath",
     "PoseSample",
+    "Push",
     "Quintic",
     "Sample",
     "Spline",
+    "Spring",
     "State",
+    "Table",
     "Trajectory",
     "Trapezoid",
+    "Wall",
     "World",
     "as_array",
     "check",

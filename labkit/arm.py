@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, locked
+from .arrays import Array, as_array, locked
 from .commands import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State, still
 from .errors import Closed, ControllerError, OutOfRange
 from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
+from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 from .world import World
 
 with quiet():
@@ -81,23 +82,42 @@ class Arm:
                 jointDamping=0.0 if joint < 0 else plant.viscous[joint],
                 physicsClientId=self._client,
             )
-        # The arm compensates its own weight, not what it carries.
+        bullet.changeDynamics(
+            self._body,
+            6,
+            contactStiffness=TIP_STIFFNESS,
+            contactDamping=TIP_DAMPING,
+            lateralFriction=1.0,
+            restitution=0.0,
+            physicsClientId=self._client,
+        )
+        hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
+        self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
+        # The arm knows its own weight, not what it carries.
         self._own = (
             Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
         )
+        self._noise, self._torque_noise = (
+            np.array(plant.velocity_noise),
+            np.array(plant.torque_noise),
+        )
+        self._noisy = bool(self._noise.any() or self._torque_noise.any())
         self._publish_every = whole_steps(plant.state_rate, self.world.dt, "plant.state_rate")
+        if not self._publish_every and (self._noisy or plant.state_delay):
+            self._publish_every = 1
         self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
         self._stiction, self._viscous = list(plant.stiction), np.array(plant.viscous)
-        self._noise = np.array(plant.velocity_noise)
         self.reset(q0)
         self.world.add(self)
+        self.world.arms.append(self)
 
     # What a controller may use
 
     def state(self) -> State:
         """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
         if not self._publish_every:
-            return self.truth()
+            return self._exact(self._read())
+        self._publish_if_due(None)
         ready = self.world.t - self.plant.state_delay + 1e-9
         while len(self._mail) > 1 and self._mail[1].t <= ready:
             self._mail.popleft()
@@ -126,7 +146,7 @@ class Arm:
         else:
             raise ControllerError(f"{command!r} is no command; give one of {_names()}")
         self._wanted = wanted if limit is None else _cut(wanted, limit)
-        self._asked = wanted
+        self._saturated = self._wanted is not wanted
         if kind is not self._kind:
             self._enter(kind)
         self._fresh = True
@@ -148,6 +168,9 @@ class Arm:
         for i in _JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
         self._mail: deque[State] = deque([State(self.world.t, locked(np.array(q)), _rest())])
+        self._published_at = -1
+        self._before: tuple[Array, Array, Array] | None = None
+        self._felt, self._felt_at = _rest(), self.world._steps
         self._lagged = np.zeros(7)
         self._total = np.zeros(7)
         self._kind: type = type(None)
@@ -157,8 +180,7 @@ class Arm:
 
     def truth(self) -> State:
         """The joints as they really are."""
-        q, dq, _, _ = zip(*self._read(), strict=True)
-        return State(self.world.t, locked(np.array(q)), locked(np.array(dq)))
+        return self._exact(self._read())
 
     @property
     def torque(self) -> Array:
@@ -173,8 +195,30 @@ class Arm:
 
     @property
     def saturated(self) -> bool:
-        """Whether a limit cut the command that the arm follows now."""
-        return self._wanted is not self._asked
+        """Whether a limit cut the command that the arm follows, at any time since it came."""
+        return self._saturated
+
+    def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
+        """Push the tip during the next physics step; world axes, at the tip's origin.
+
+        A force that lasts is a `Push` in the world, which the arm can also feel.
+
+        Args:
+            force: Shape (3,) in [N].
+            moment: Shape (3,) in [N m].
+        """
+        f, m = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
+        R_wt = self.model.pose([joint[0] for joint in self._read()])[:3, :3]
+        # PyBullet's idea of where the link is lags a step behind: count the lever from there.
+        centre = bullet.getLinkState(self._body, 6, physicsClientId=self._client)[0]
+        at = (R_wt @ self._lever + centre).tolist()
+        bullet.applyExternalForce(
+            self._body, 6, f.tolist(), at, bullet.WORLD_FRAME, physicsClientId=self._client
+        )
+        if m.any():
+            bullet.applyExternalTorque(
+                self._body, 6, m.tolist(), bullet.WORLD_FRAME, physicsClientId=self._client
+            )
 
     def lost_ticks(self, ticks: int) -> list[bool]:
         """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
@@ -185,18 +229,49 @@ class Arm:
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
         rows = self._read()
-        q, dq, _, motor = zip(*rows, strict=True)
-        truth = State(self.world.t, locked(np.array(q)), locked(np.array(dq)))
-        torque = self._total if self._kind is JointTorque else np.array(motor)
+        truth = self._exact(rows)
+        torque = (
+            self._total if self._kind is JointTorque else np.array([joint[3] for joint in rows])
+        )
         return truth, self.state() if self._publish_every else truth, torque
+
+    def _exact(self, rows: Any) -> State:
+        q, dq, _, _ = zip(*rows, strict=True)
+        return State(self.world.t, locked(np.array(q)), locked(np.array(dq)), self._feel(rows))
+
+    # What the torque sensors tell
+
+    @property
+    def _touchable(self) -> bool:
+        """Whether anything can make the external torque differ from zero."""
+        return bool(self.world.things or self.plant.payload)
+
+    def _feel(self, rows: Any) -> Array:
+        """The external torque in the last physics step, through the estimate's lag.
+
+        The torque sensors sit behind the gears, so friction is no part of what they tell; what the
+        arm's own weight and motion need is taken off with the model that it has of itself.
+        """
+        if self._before is not None and self._felt_at != self.world._steps:
+            q, dq, extra = self._before
+            _, faster, _, motor = zip(*rows, strict=True)
+            joint = extra + motor - self._viscous * dq
+            felt = self._own.inverse_dynamics(q, dq, (faster - dq) / self.world.dt) - joint
+            lag = self.plant.torque_lag
+            share = min(1.0, self.world.dt / lag) if lag else 1.0
+            self._felt = locked(self._felt + share * (felt - self._felt))
+            self._felt_at = self.world._steps
+        return self._felt
 
     # The machinery, once per physics step
 
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
         plant, steps = self.plant, self.world._steps
-        if self._publish_every and steps % self._publish_every == 0:
-            self._publish()
+        rows = self._read() if self._touchable else None
+        if rows is not None:
+            self._feel(rows)
+        self._publish_if_due(rows)
         if (steps - self._commanded_at) * self.world.dt > plant.command_timeout:
             self._hold()
         if self._kind is JointTorque:
@@ -213,15 +288,23 @@ class Arm:
             q = np.array([joint[0] for joint in self._read()])
             gain = min(plant.position_gain or np.inf, 1.0 / self.world.dt)
             speed = self.robot.speed
-            self._spin(np.minimum(np.maximum(gain * (self._wanted - q), -speed), speed))
+            wanted = gain * (self._wanted - q)
+            allowed = _cut(wanted, speed)
+            self._saturated |= allowed is not wanted
+            self._spin(allowed)
         self._fresh = False
+        if rows is not None:
+            q, dq, _, _ = (np.array(column) for column in zip(*rows, strict=True))
+            self._before = q, dq, self._total if self._kind is JointTorque else np.zeros(7)
 
     def _drive_torque(self) -> None:
         if self._fresh or self.plant.gravity_compensation:
             total = self._wanted
             if self.plant.gravity_compensation:
                 q = np.array([joint[0] for joint in self._read()])
-                total = _cut(total + self._own.gravity(q), self._effort)
+                wanted = total + self._own.gravity(q)
+                total = _cut(wanted, self._effort)
+                self._saturated |= total is not wanted
             self._total = total
             self._total_list = total.tolist()
         bullet.setJointMotorControlArray(
@@ -266,10 +349,16 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _publish(self) -> None:
-        t, q, dq = self.truth()
-        noisy = dq + self._noise * self._random.standard_normal(7)
-        self._mail.append(State(t, q, locked(noisy)))
+    def _publish_if_due(self, rows: Any) -> None:
+        steps = self.world._steps
+        if not self._publish_every or steps % self._publish_every or steps == self._published_at:
+            return
+        self._published_at = steps
+        t, q, dq, felt = self._exact(self._read() if rows is None else rows)
+        if self._noisy:
+            dq = locked(dq + self._noise * self._random.standard_normal(7))
+            felt = locked(felt + self._torque_noise * self._random.standard_normal(7))
+        self._mail.append(State(t, q, dq, felt))
         if len(self._mail) > 100:
             self.state()
             while len(self._mail) > 100:
@@ -326,7 +415,12 @@ def _names() -> str:
 def _urdf_file(side: str, plant: Plant) -> str:
     """PyBullet reads only files: one for each kind of arm, gone with the process."""
     path = Path(_folder().name) / f"{side}_{len(list(Path(_folder().name).iterdir()))}.urdf"
-    path.write_text(robot(side).urdf(plant))
+    x, y, z = robot(side).T_hand_tip[:3, 3]
+    ball = (
+        f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="{TIP_RADIUS}"/>'
+        "</geometry></collision></link>"
+    )
+    path.write_text(ball.join(robot(side).urdf(plant).rsplit("</link>", 1)))
     return str(path)
 
 

@@ -10,7 +10,7 @@ chapters 5, 6 and 8.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -25,6 +25,27 @@ from .robot import Robot, Side, robot
 
 _N = 7
 _LOWER = np.tril_indices(_N, -1)
+
+
+class Terms(NamedTuple):
+    r"""The equations of motion at one instant; see the `Model` methods of the same quantities.
+
+    Attributes:
+        T_wt: `Model.pose`, shape (4, 4).
+        J: `Model.tip_jacobian`, shape (6, 7).
+        drift: The tip's acceleration while the joints turn evenly, :math:`\dot J\,\dot q`, shape
+            (6,).
+        M: `Model.mass_matrix`, shape (7, 7) in [kg m^2].
+        c: Coriolis and centrifugal torque, C @ dq, shape (7,) in [N m].
+        g: `Model.gravity`, shape (7,) in [N m].
+    """
+
+    T_wt: Array
+    J: Array
+    drift: Array
+    M: Array
+    c: Array
+    g: Array
 
 
 class Model:
@@ -209,6 +230,52 @@ class Model:
         q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
         return np.array(pin.nonLinearEffects(self._pin, self._data, q, dq))
 
+    def inverse_dynamics(self, q: Any, dq: Any, ddq: Any) -> Array:
+        """The torque that a motion takes, ``M @ ddq + C @ dq + g`` (recursive Newton-Euler).
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
+            ddq: Joint accelerations, shape (7,) in [rad/s^2].
+
+        Returns:
+            Shape (7,) in [N m].
+        """
+        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        ddq = as_array(ddq, (_N,), "ddq")
+        return np.array(pin.rnea(self._pin, self._data, q, dq, ddq))
+
+    def tip_wrench(self, q: Any, tau_ext: Any) -> Array:
+        r"""The wrench on the arm's tip that explains external joint torques, :math:`J^{-T}\tau`.
+
+        Seven torques and six numbers: the least squares solution of
+        :math:`J^T F = \tau_{ext}`.  Near a singularity a small torque error becomes a large force.
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+            tau_ext: External torque, as `State.tau_ext` has it, shape (7,) in [N m].
+
+        Returns:
+            Force [N] and moment [N m] about the tip's origin, world axes, shape (6,).
+        """
+        tau_ext = as_array(tau_ext, (_N,), "tau_ext")
+        return np.asarray(np.linalg.lstsq(self.tip_jacobian(q).T, tau_ext, rcond=None)[0])
+
+    def terms(self, q: Any, dq: Any) -> Terms:
+        """All that a controller of torques needs at one instant, in one sweep over the arm.
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
+        """
+        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        m, d = self._pin, self._data
+        pin.forwardKinematics(m, d, q, dq, _AT_REST)
+        T_wt = pin.updateFramePlacement(m, d, self._tip).homogeneous
+        drift = pin.getFrameClassicalAcceleration(m, d, self._tip, pin.LOCAL_WORLD_ALIGNED).vector
+        M, g = self.mass_matrix(q), self.gravity(q)
+        return Terms(T_wt, self.tip_jacobian(q), drift, M, self.bias(q, dq) - g, g)
+
     def operational_inertia(self, q: Any) -> Array:
         r"""The inertia felt at the tip, :math:`\Lambda = (J M^{-1} J^T)^{-1}`, in world axes.
 
@@ -306,9 +373,7 @@ class Model:
         Returns:
             Position error [m] and orientation error [rad], world axes, shape (6,).
         """
-        T_wt = self.pose(q)
-        turn = se3.rotation_log(T_wd[:3, :3] @ T_wt[:3, :3].T)
-        return np.concatenate([T_wd[:3, 3] - T_wt[:3, 3], turn])
+        return se3.pose_error(T_wd, self.pose(q))
 
     def joint_trajectory(self, target: Any, q0: Any, *, samples: int = 101) -> Any:
         """The joint motion that takes the tip along a workspace target.
@@ -438,6 +503,10 @@ def links(model: Model, q: Any) -> tuple[Link, ...]:
     return tuple(out)
 
 
+NEAR_SINGULAR = 0.03
+"""Below this smallest singular value of the tip Jacobian, a pose counts as near a singularity."""
+
+_AT_REST = np.zeros(_N)
 _ITERATIONS = 200
 _SLACK = 1e-9
 

@@ -36,8 +36,10 @@ class Log:
             included, shape (N, 7) in [N m]; the last row repeats the one before.
         command: What the controller asked for, shape (N, 7), in the unit of `command_type`.
         target: A `Sample` or `PoseSample` of stacked arrays, (N, ...).
-        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7).
-        saturated: Whether a limit cut the command, shape (N,).
+        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7),
+            tau_ext (N, 7).
+        saturated: Whether a limit of speed or torque cut what the arm did until the next tick,
+            shape (N,).
         command_type: `JointPosition`, `JointVelocity` or `JointTorque`.
         controller: The controller's name.
         plant: The plant that was driven.
@@ -120,8 +122,8 @@ def run(
             if k < ticks - 1:
                 if not lost[k]:
                     arm.apply(command)
-                book.saturated[k] = arm.saturated
                 world.step(steps)
+                book.saturated[k] = arm.saturated
     except KeyboardInterrupt:
         return book.log(k, kind, who, arm)
     except Diverged as error:
@@ -143,8 +145,8 @@ class _Book:
 
     def __init__(self, ticks: int, first: AnySample) -> None:
         self.t, self.t_seen = np.zeros(ticks), np.zeros(ticks)
-        self.q, self.dq, self.tau, self.command, self.q_seen, self.dq_seen = (
-            np.zeros((ticks, JOINTS)) for _ in range(6)
+        self.q, self.dq, self.tau, self.command, self.q_seen, self.dq_seen, self.tau_seen = (
+            np.zeros((ticks, JOINTS)) for _ in range(7)
         )
         self.saturated = np.zeros(ticks, dtype=bool)
         self.target = tuple(np.zeros((ticks, *part.shape)) for part in first)
@@ -163,7 +165,7 @@ class _Book:
         """Write down one tick; ``tau`` belongs to the tick before."""
         self.t[k], self.t_seen[k] = t, seen.t
         self.q[k], self.dq[k], self.command[k] = truth.q, truth.dq, command
-        self.q_seen[k], self.dq_seen[k] = seen.q, seen.dq
+        self.q_seen[k], self.dq_seen[k], self.tau_seen[k] = seen.q, seen.dq, seen.tau_ext
         if k:
             self.tau[k - 1] = self.tau[k] = tau
 
@@ -172,11 +174,15 @@ class _Book:
         cut = {
             name: locked(getattr(self, name)[:rows]) for name in ("t", "q", "dq", "tau", "command")
         }
+        seen = (self.t_seen, self.q_seen, self.dq_seen, self.tau_seen)
+        at_limit = np.abs(cut["tau"]) >= arm.robot.effort * (1.0 - 1e-9)
+        saturated = self.saturated[:rows] | at_limit.any(axis=1)
+        saturated.setflags(write=False)
         return Log(
             **cut,
             target=self.sample_type(*(locked(column[:rows]) for column in self.target)),
-            measured=State(*(locked(x[:rows]) for x in (self.t_seen, self.q_seen, self.dq_seen))),  # type: ignore[arg-type]
-            saturated=self.saturated[:rows],
+            measured=State(*(locked(x[:rows]) for x in seen)),  # type: ignore[arg-type]
+            saturated=saturated,
             command_type=kind or type(None),
             controller=who,
             plant=arm.plant,

@@ -123,6 +123,22 @@ def orientation_error(R_wd: Any, R_wt: Any) -> Array:
     return rotation_log(R_wd @ as_array(R_wt, (3, 3), "R_wt").T)
 
 
+def pose_error(T_wd: Any, T_wt: Any) -> Array:
+    """Target minus actual of two poses, world axes: the way to go and the turn to make.
+
+    Args:
+        T_wd: Desired pose, shape (4, 4).
+        T_wt: Actual pose of the tip, shape (4, 4).
+
+    Returns:
+        Position error [m] and `orientation_error` [rad], shape (6,).
+    """
+    e = np.empty(6)
+    e[:3] = T_wd[:3, 3] - T_wt[:3, 3]
+    e[3:] = orientation_error(T_wd[:3, :3], T_wt[:3, :3])
+    return e
+
+
 def pose(R: Any, p: Any) -> Array:
     """The pose with rotation ``R``, shape (3, 3), and origin ``p``, shape (3,) in [m].
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
-from .arrays import as_number
+from .arrays import Array, as_number
 from .errors import Closed
 from .quiet import quiet
 
@@ -20,33 +21,78 @@ class Actor(Protocol):
         """Apply forces and motor targets for the next step."""
 
 
+class Thing(Protocol):
+    """Something to put into a world: a value that knows how to build itself there."""
+
+    def put_into(self, world: World) -> Actor | None:
+        """Build it; what it gives, if anything, acts before each physics step from now on."""
+
+
+class Pushable(Protocol):
+    """An arm, as far as the things around it need to know it."""
+
+    def truth(self) -> Any:
+        """The joints as they really are."""
+
+    def push(self, force: Array, moment: Array) -> None:
+        """Push the tip during the next physics step."""
+
+    @property
+    def robot(self) -> Any:
+        """Its names."""
+
+    @property
+    def model(self) -> Any:
+        """Its equations."""
+
+
 class World:
     """One physics world; two of them never share anything.
 
     Attributes:
         dt: The physics step, in [s].
         client: PyBullet's number of this world.
+        things: What was put into it, the arms apart.
+        arms: The arms that stand in it.
     """
 
-    def __init__(self, dt: float = 1e-3) -> None:
-        """Open an empty world with gravity.
+    def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
+        """Open a world with gravity.
 
         Args:
             dt: The physics step, in [s].
+            things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
         """
         self.dt = as_number(dt, "dt", above=0.0)
         self.client: int = bullet.connect(bullet.DIRECT)
         self._steps = 0
         self._actors: list[Actor] = []
+        self.things: list[Thing] = []
+        self.arms: list[Pushable] = []
         bullet.setTimeStep(self.dt, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
         # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
         bullet.setPhysicsEngineParameter(solverResidualThreshold=0.0, physicsClientId=self.client)
+        for thing in things:
+            self.put(thing)
 
     @property
     def t(self) -> float:
         """The time in this world, in [s]."""
         return self._steps * self.dt
+
+    def put(self, thing: Thing) -> None:
+        """Put a thing into the world, where it stays.
+
+        Raises:
+            Closed: The world is closed.
+        """
+        if self.client < 0:
+            raise Closed("this world was closed; make a new World")
+        actor = thing.put_into(self)
+        self.things.append(thing)
+        if actor is not None:
+            self.add(actor)
 
     def add(self, actor: Actor) -> None:
         """Let ``actor`` act before each physics step from now on."""
