@@ -18,11 +18,13 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))  # this checkout, wherever another one is installed
 BOOK = ROOT / "book"
+sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, wherever another one is installed
 HTML = BOOK / "_build/html"
 CACHE = ROOT / "build/book"
 MADE = BOOK / "generated"
@@ -44,6 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
             shutil.rmtree(folder, ignore_errors=True)
     key = content_key()
     prepare()
+    record(key)
     if code := build(key, answers=chosen.answers):
         return code
     size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
@@ -152,6 +155,27 @@ def _title(notebook: dict, stem: str) -> str:
     return stem
 
 
+def record(key: str) -> None:
+    """The runs of the gain explorer, one small file each; kept until what makes them changes."""
+    from figures import gains
+
+    folder = BOOK / "static/runs"
+    stamp = folder / "key.txt"
+    if stamp.exists() and stamp.read_text() == key:
+        return
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    points, facts = gains.points(), {}
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        made = pool.map(gains.make, points, chunksize=8)
+        for k, (point, (name, text, fact)) in enumerate(zip(points, made, strict=True), start=1):
+            (folder / name).write_text(text)
+            facts["-".join(map(str, point))] = fact
+            _progress(f"recording runs... [{100 * k // len(points):3d}%]", every=k % 36 == 0)
+    _write(folder / "facts.json", json.dumps(facts))
+    stamp.write_text(key)
+
+
 def build(key: str, *, answers: bool) -> int:
     """Run Jupyter Book; a warning or an exception in a cell is an error."""
     stamp, state = BOOK / "_build/built.json", {"key": key, "answers": answers}
@@ -192,16 +216,21 @@ def build(key: str, *, answers: bool) -> int:
 
 def _shown(lines: Iterator[str]) -> Iterator[str]:
     """Pass a log on, showing how far it is."""
-    steady = sys.stdout.isatty()
     for raw in lines:
         line = re.sub(r"\x1b\[[0-9;]*m", "", raw.rstrip()).rsplit("\r", 1)[-1]
         yield line
         if re.match(r"(reading|writing|executing)|.*Executing notebook", line, re.I):
-            step = re.sub(r".*?(Executing notebook using)\s*.*", "executing a page", line)
-            print(f"\r\x1b[K{step[:100]}" if steady else step[:100],
-                  end="" if steady else "\n", flush=True)  # fmt: skip
-    if steady:
+            _progress(re.sub(r".*?(Executing notebook using)\s*.*", "executing a page", line)[:100])
+    if sys.stdout.isatty():
         print("\r\x1b[K", end="")
+
+
+def _progress(text: str, *, every: bool = True) -> None:
+    """One line that renews itself; where there is no terminal, a line now and then."""
+    if sys.stdout.isatty():
+        print(f"\r\x1b[K{text}", end="", flush=True)
+    elif every:
+        print(text, flush=True)
 
 
 def pack() -> Path:

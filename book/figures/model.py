@@ -204,4 +204,3 @@ def check_yourself() -> HTML:
             1,
         ),
     )
-
