@@ -22,7 +22,7 @@ from .page import Question, figure, holds, number, numbers, quiz, replay, tracki
 SEED = 3
 OFFSET = 0.1
 DELAY = 0.004 + 0.5 / 100.0 + 0.5 / 200.0
-"""What the loop waits for on average: the state's age, half of its period, half a control period."""
+"""What the loop waits on average: the state's age, half its period, half a control period."""
 
 
 @cache
