@@ -25,7 +25,7 @@ from .scene import Push, Spring, Table, Wall
 from .world import World
 
 if TYPE_CHECKING:
-    from . import plotting
+    from . import check, plotting
     from .ready import ready
 
 __version__ = "0.1.0"

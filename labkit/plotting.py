@@ -9,6 +9,7 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.figure import Figure
 
 from . import metrics
 from .model import Model
@@ -74,6 +75,31 @@ def scaling(*scalings: Any, axes: Any = None) -> Any:
     axes[0].legend(frameon=False)
     axes[-1].set_xlabel("time [s]")
     return axes
+
+
+def answers(call: str, expected: Any, given: Any) -> Any:
+    """The numbers of an answer beside those expected.
+
+    Args:
+        call: What was asked, as a title.
+        expected: Shape (n,).
+        given: Shape (n,).
+
+    Returns:
+        A figure of its own, not shown.
+    """
+    figure = Figure(figsize=(6.4, 2.2), layout="constrained")
+    ax = figure.add_subplot()
+    index = np.arange(len(expected))
+    ax.vlines(index, expected, given, color="0.7")
+    ax.plot(index, expected, "o", mfc="none", ms=9, color="C0", label="expected")
+    ax.plot(index, given, "x", ms=8, color="C3", label="yours")
+    ax.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
+    ax.set_xlabel("number in the answer")
+    ax.set_xticks(index[:: max(1, len(index) // 14)])
+    ax.set_title(call, loc="left", fontsize="small", family="monospace")
+    ax.legend(frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    return figure
 
 
 def describe(log: Log, model: Model | None = None) -> str:

@@ -1,0 +1,34 @@
+"""Checks: a question, a function, a verdict in words.
+
+A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questions.
+"""
+
+from __future__ import annotations
+
+from .judge import AtMost, Close, Within
+from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
+from .notebook import also, check, hint, use
+from .question import Call, Loop, Mistake, Question, Raised, Test, read_question
+
+__all__ = [
+    "AtMost",
+    "Call",
+    "Close",
+    "Failed",
+    "Loop",
+    "Mistake",
+    "Outcome",
+    "Question",
+    "Raised",
+    "Test",
+    "TestResult",
+    "Verdict",
+    "Within",
+    "also",
+    "check",
+    "fingerprint",
+    "hint",
+    "mark",
+    "read_question",
+    "use",
+]

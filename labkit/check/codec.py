@@ -1,0 +1,178 @@
+"""Values as JSON and back: how inputs travel to a student's code, and answers from it.
+
+Only the kinds named here travel; never pickle, never code.  `decode` builds whatever labkit wrote;
+`decode_answer` builds only plain data, because an answer was written by somebody else.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from types import MethodType
+from typing import Any
+
+import numpy as np
+
+from .. import commands, motion, paths, plant, scalings
+from ..arrays import locked
+from ..errors import TypeMismatch
+from ..model import Model
+from ..run import Log
+
+DATA = (
+    commands.State,
+    motion.Sample,
+    motion.PoseSample,
+    commands.JointPosition,
+    commands.JointVelocity,
+    commands.JointTorque,
+)
+"""What a student's function may give back, beside numbers, arrays, texts, lists and tables."""
+
+GIVEN = (
+    paths.Line,
+    paths.Circle,
+    paths.Polyline,
+    scalings.BangBang,
+    scalings.Cubic,
+    scalings.Quintic,
+    scalings.Trapezoid,
+    motion.Trajectory,
+    motion.PosePath,
+    plant.Plant,
+    Log,
+)
+"""What a student's function may be given on top: frozen values, sent as their fields."""
+
+_DATA = {kind.__name__: kind for kind in DATA}
+_ALL = _DATA | {kind.__name__: kind for kind in GIVEN}
+_COMMANDS: dict[str, type] = {kind.__name__: kind for kind in commands.COMMANDS}
+
+
+def encode(value: Any) -> Any:
+    """A value as JSON data.
+
+    Args:
+        value: None, a truth value, number, text, list, tuple, dict with text keys, array of
+            numbers, one of `DATA` or `GIVEN`, a `Model`, `Chain`, `Hold` or `Spline`, or a method
+            of one of these.
+
+    Returns:
+        What `json.dumps` takes; numbers keep every bit.
+
+    Raises:
+        TypeMismatch: It is none of these.
+    """
+    if value is None or isinstance(value, bool | str):
+        return value
+    if isinstance(value, np.bool_):
+        return bool(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    if isinstance(value, float | np.floating):
+        return _number(float(value))
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fiub":
+            raise TypeMismatch(f"an array of {value.dtype} cannot be compared; give real numbers")
+        numbers = [_number(x) for x in value.ravel().tolist()]
+        return {"$": "array", "shape": list(value.shape), "numbers": numbers}
+    name = type(value).__name__
+    if type(value) is _ALL.get(name):
+        if dataclasses.is_dataclass(value):
+            fields = {f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(value)}
+        else:
+            fields = {key: encode(x) for key, x in value._asdict().items()}
+        return {"$": name, "fields": fields}
+    if isinstance(value, list):
+        return [encode(x) for x in value]
+    if isinstance(value, tuple):
+        return {"$": "tuple", "items": [encode(x) for x in value]}
+    if isinstance(value, dict):
+        if not all(isinstance(key, str) for key in value):
+            raise TypeMismatch("a dict travels only with text keys")
+        return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
+    return _encode_machinery(value, name)
+
+
+def _encode_machinery(value: Any, name: str) -> Any:
+    if isinstance(value, Model):
+        return {"$": "Model", "side": value.robot.side, "plant": encode(value.plant)}
+    if isinstance(value, motion.Chain):
+        return {"$": "Chain", "parts": [encode(part) for part in value.parts]}
+    if isinstance(value, motion.Hold):
+        sample = value(0.0)
+        return {"$": "Hold", "place": encode(sample[0]), "duration": _number(value.duration)}
+    if isinstance(value, paths.Spline):
+        return {"$": "Spline", "s": encode(value.s), "values": encode(value.values)}
+    if isinstance(value, MethodType):
+        return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
+    if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
+        return {"$": "command type", "name": value.__name__}
+    raise TypeMismatch(
+        f"a value of type {name} cannot be compared; give numbers, arrays, lists or "
+        + ", ".join(kind.__name__ for kind in DATA)
+    )
+
+
+def decode(data: Any) -> Any:
+    """The value that `encode` wrote; arrays come read-only.
+
+    Args:
+        data: From `json.loads`, written by labkit itself.
+    """
+    return _decode(data, _ALL, machinery=True)
+
+
+def decode_answer(data: Any) -> Any:
+    """Plain data from an answer that somebody else wrote; see `DATA`.
+
+    Raises:
+        TypeMismatch: It is not of the form that `encode` writes.
+    """
+    try:
+        return _decode(data, _DATA, machinery=False)
+    except (KeyError, ValueError, TypeError, RecursionError) as error:
+        raise TypeMismatch(f"the answer did not arrive in one piece: {error}") from None
+
+
+def _decode(data: Any, kinds: dict[str, Any], *, machinery: bool) -> Any:
+    if isinstance(data, list):
+        return [_decode(x, kinds, machinery=machinery) for x in data]
+    if not isinstance(data, dict):
+        return data
+    kind = data["$"]
+    if kind == "float":
+        return float(data["value"])
+    if kind == "array":
+        numbers = [
+            x if isinstance(x, bool | int | float) else float(x["value"]) for x in data["numbers"]
+        ]
+        return locked(np.array(numbers, dtype=float).reshape([int(n) for n in data["shape"]]))
+
+    def inner(x: Any) -> Any:
+        return _decode(x, kinds, machinery=machinery)
+
+    if kind == "tuple":
+        return tuple(inner(x) for x in data["items"])
+    if kind == "dict":
+        return {str(key): inner(x) for key, x in data["items"].items()}
+    if kind in kinds:
+        return kinds[kind](**{str(key): inner(x) for key, x in data["fields"].items()})
+    if machinery:
+        if kind == "Model":
+            return Model(data["side"], inner(data["plant"]))
+        if kind == "Chain":
+            return motion.Chain(inner(data["parts"]))
+        if kind == "Hold":
+            return motion.Hold(inner(data["place"]), data["duration"])
+        if kind == "Spline":
+            return paths.Spline(inner(data["s"]), inner(data["values"]))
+        if kind == "method":
+            return getattr(inner(data["of"]), data["name"])
+        if kind == "command type":
+            return _COMMANDS[data["name"]]
+    raise TypeMismatch(f"no value of kind {kind!r} can be read here")
+
+
+def _number(x: Any) -> Any:
+    """JSON has no word for NaN and the infinities."""
+    return x if isinstance(x, bool | int) or np.isfinite(x) else {"$": "float", "value": repr(x)}

@@ -1,0 +1,191 @@
+"""Judges: does an answer mean the same as the expected one?  If not, how does it differ?
+
+A judge is a frozen value, so that it travels with its question as data.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arrays import as_array
+from ..commands import COMMANDS
+from ..errors import LabkitError
+from ..motion import PoseSample, Sample
+
+
+@dataclass(frozen=True)
+class Close:
+    """Every number within ``atol + rtol |expected|``; shapes and command types must be the same.
+
+    Lists pass for arrays, and any three things in order for a `Sample`.
+
+    Attributes:
+        rtol: Relative tolerance.
+        atol: Absolute tolerance, in the answer's unit.
+        parts: What to call the parts of an answer that is a tuple.
+    """
+
+    rtol: float = 1e-6
+    atol: float = 1e-9
+    parts: tuple[str, ...] = ()
+
+    def __call__(self, answer: Any, expected: Any) -> str | None:
+        """None if they agree, else how they differ."""
+        return self._differ(answer, expected, "")
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, are the same one."""
+        try:
+            return self(answer, other) is None
+        except (LabkitError, TypeError, ValueError):
+            return False
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """How far the answer is off, in tolerances; infinite where it has another form."""
+        try:
+            a, b = (np.concatenate([x.ravel() for x in _flat(v)]) for v in (answer, expected))
+        except (LabkitError, TypeError, ValueError):
+            return float("inf")
+        if a.shape != b.shape or not np.isfinite(a).all():
+            return float("inf")
+        return float(np.max(np.abs(a - b) / (self.atol + self.rtol * np.abs(b)), initial=0.0))
+
+    def _differ(self, answer: Any, expected: Any, part: str) -> str | None:
+        if isinstance(expected, COMMANDS):
+            kind = type(expected)
+            if type(answer) is not kind:
+                return f"{_of(part)}it should be a {kind.__name__}, not {_shown(answer)}"
+            return self._differ(answer.value, expected.value, part)
+        if isinstance(expected, dict):
+            return self._differ_dict(answer, expected)
+        if isinstance(expected, Sample | PoseSample):
+            return self._differ_each(answer, expected, expected._fields)
+        if isinstance(expected, tuple | list):
+            names = self.parts or tuple(f"part {k + 1}" for k in range(len(expected)))
+            return self._differ_each(answer, expected, names)
+        if isinstance(expected, str | bool) or expected is None:
+            same = type(answer) is type(expected) and answer == expected
+            return None if same else f"{_of(part)}it should be {expected!r}, not {_shown(answer)}"
+        return self._differ_numbers(answer, expected, part)
+
+    def _differ_dict(self, answer: Any, expected: dict[str, Any]) -> str | None:
+        if not isinstance(answer, dict):
+            return f"it should be a dict, not {_shown(answer)}"
+        for key in expected:
+            if key not in answer:
+                return f"the key {key!r} is missing"
+            if found := self._differ(answer[key], expected[key], key):
+                return found
+        return None
+
+    def _differ_each(self, answer: Any, expected: Any, names: tuple[str, ...]) -> str | None:
+        try:
+            items = list(answer)
+        except TypeError:
+            return f"it should be {len(expected)} things ({', '.join(names)}), not {_shown(answer)}"
+        if len(items) != len(expected):
+            return f"it should be {len(expected)} things ({', '.join(names)}), not {len(items)}"
+        for name, a, b in zip(names, items, expected, strict=True):
+            if found := self._differ(a, b, name):
+                return found
+        return None
+
+    def _differ_numbers(self, answer: Any, expected: Any, part: str) -> str | None:
+        b = np.asarray(expected, dtype=float)
+        name = part or "the answer"
+        try:
+            a = as_array(answer, b.shape, name)
+        except LabkitError as error:
+            return str(error)
+        off = np.abs(a - b)
+        bad = off > self.atol + self.rtol * np.abs(b)
+        if not bad.any():
+            return None
+        if b.ndim == 0:
+            return f"{_of(part)}expected {_number(b)}, got {_number(a)}"
+        at = np.unravel_index(int(np.argmax(np.where(bad, off, -1.0))), b.shape)
+        index = str(int(at[0])) if b.ndim == 1 else str(tuple(map(int, at)))
+        if b.size <= 9:
+            return f"{_of(part)}expected {_shown(b)}, got {_shown(a)}"
+        return f"{_of(part)}at index {index} expected {_number(b[at])}, got {_number(a[at])}"
+
+
+@dataclass(frozen=True)
+class Within:
+    """A number of which several are right: it must lie in one of the expected intervals."""
+
+    def __call__(self, answer: Any, expected: Any) -> str | None:
+        """None if it does, else where it lies instead."""
+        try:
+            x = float(as_array(answer, (), "the answer"))
+        except LabkitError as error:
+            return str(error)
+        return None if self.distance(x, expected) <= 1.0 else f"got {_number(x)}"
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, are the same number."""
+        return Close().same(answer, other)
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """Below 1 inside an interval, above 1 outside, growing with the distance."""
+        x = float(answer)
+        return min(float(abs(x - (a + b) / 2) / ((b - a) / 2)) for a, b in expected)
+
+
+@dataclass(frozen=True)
+class AtMost:
+    """The measures of a run, each at most its expected limit."""
+
+    def __call__(self, answer: dict[str, float], expected: dict[str, float]) -> str | None:
+        """None if all are, else the first that is not."""
+        for name, limit in expected.items():
+            if not answer[name] <= limit:
+                unit = name.rsplit("_", 1)[-1] if "_" in name else ""
+                what = name.removesuffix(f"_{unit}").replace("_", " ")
+                return f"{what} {answer[name]:.3g} {unit}, allowed {limit:.3g} {unit}"
+        return None
+
+    def same(self, answer: dict[str, float], other: dict[str, float]) -> bool:
+        """Whether two runs measure the same."""
+        return Close().same(answer, other)
+
+    def distance(self, answer: dict[str, float], expected: dict[str, float]) -> float:
+        """The largest ratio of a measure to its limit."""
+        return max(answer[name] / limit for name, limit in expected.items())
+
+
+Judge = Close | Within | AtMost
+JUDGES: dict[str, Any] = {kind.__name__: kind for kind in (Close, Within, AtMost)}
+
+
+def _flat(value: Any) -> list[Any]:
+    """All numbers of an answer, part by part."""
+    if isinstance(value, COMMANDS):
+        value = value.value
+    if isinstance(value, dict):
+        value = list(value.values())
+    if isinstance(value, list | tuple) and any(np.ndim(x) != 0 for x in value):
+        return [a for x in value for a in _flat(x)]
+    return [np.asarray(value, dtype=float)]
+
+
+def _of(part: str) -> str:
+    return f"{part}: " if part else ""
+
+
+def _number(x: Any) -> str:
+    return f"{float(x):.6g}"
+
+
+def _shown(x: Any) -> str:
+    if isinstance(x, np.ndarray) and x.dtype.kind in "fiub":
+        return np.array2string(x, precision=4, suppress_small=True, separator=", ").replace(
+            "\n", ""
+        )
+    if isinstance(x, int | float | np.number) and not isinstance(x, bool):
+        return _number(x)
+    text = " ".join(repr(x).split())
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,153 @@
+"""What a notebook says: ``check``, ``hint`` and ``use``.
+
+The questions lie in a file ``checks.json`` beside the notebook.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError, OutOfRange, UnknownName
+from . import words
+from .calling import heard
+from .evidence import evidence
+from .mark import Outcome, Verdict, mark
+from .question import Question, read_question
+from .source import withheld_names
+
+FILE = "checks.json"
+
+
+class Desk:
+    """The questions of one notebook, and what has come of them so far."""
+
+    def __init__(self, questions: dict[str, Question]) -> None:
+        self.questions = questions
+        self.seen: dict[str, tuple[Any, Verdict]] = {}
+        self.badges: set[str] = set()
+
+    @classmethod
+    def beside(cls, folder: Path) -> Desk:
+        """The desk of the notebook in ``folder``.
+
+        Raises:
+            LabkitError: No questions lie there.
+        """
+        file = folder / FILE
+        if not file.exists():
+            raise LabkitError(
+                f"there is no {FILE} in {folder.name!r}; it came with the notebook and belongs "
+                "beside it, so fetch the assignment's whole folder again"
+            )
+        data = json.loads(file.read_text(encoding="utf-8"))
+        return cls({q["name"]: read_question(q) for q in data["questions"]})
+
+    def question(self, name: str) -> Question:
+        """One question.
+
+        Raises:
+            UnknownName: There is none of that name.
+        """
+        if name not in self.questions:
+            raise UnknownName("question", name, self.questions)
+        return self.questions[name]
+
+    def verdict(self, name: str, function: Callable[..., Any]) -> tuple[Verdict, str]:
+        """Try a function, and what it printed meanwhile."""
+        with heard() as out:
+            verdict = mark(self.question(name), function)
+        self.seen[name] = (function, verdict)
+        return verdict, out.text
+
+
+_desks: dict[Path, Desk] = {}
+
+
+def desk() -> Desk:
+    """The desk of the notebook that runs here."""
+    folder = Path.cwd()
+    if folder not in _desks:
+        _desks[folder] = Desk.beside(folder)
+    return _desks[folder]
+
+
+def check(name: str, function: Callable[..., Any]) -> float:
+    """Try your function and print what came of it.
+
+    Args:
+        name: The question's name.
+        function: What you wrote.
+
+    Returns:
+        The points earned, a plain float, which is what nbgrader reads.
+
+    Raises:
+        UnknownName: No such question.
+    """
+    question = desk().question(name)
+    verdict, printed = desk().verdict(name, function)
+    used = tuple(withheld_names(function, question.withheld))
+    print(words.tell(question, verdict, printed, used))
+    if verdict.mistake is not None:
+        _show_evidence(question, verdict)
+    return float(verdict.earned)
+
+
+def also(name: str, packed: str) -> None:
+    """Add hidden cases to a question; the teacher's copy of a notebook does so."""
+    desk().questions[name] = desk().question(name).with_hidden(packed)
+
+
+def hint(name: str, level: int = 1) -> None:
+    """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
+
+    Raises:
+        OutOfRange: There is no such hint.
+    """
+    hints = desk().question(name).hints
+    if not 1 <= level <= len(hints):
+        raise OutOfRange(f"{name} has hints 1 to {len(hints)}, there is no hint {level}")
+    more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
+    print(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}{more}")
+
+
+def use(name: str, function: Callable[..., Any], given: Callable[..., Any]) -> Callable[..., Any]:
+    """Your function if it is right, else the one given; so the notebook always goes on.
+
+    Args:
+        name: The question's name.
+        function: What you wrote.
+        given: What takes its place.
+
+    Returns:
+        One of the two; a badge says once which, if it is not yours.
+    """
+    known, verdict = desk().seen.get(name, (None, None))
+    if known is not function or verdict is None:
+        verdict, _ = desk().verdict(name, function)
+    if verdict.outcome is Outcome.RIGHT:
+        return function
+    if name not in desk().badges:
+        desk().badges.add(name)
+        print(
+            f"[stand-in] {name}: yours is not ready, so from here on labkit's own takes its place."
+        )
+    return given
+
+
+def _show_evidence(question: Question, verdict: Verdict) -> None:
+    """A small figure of the answers that gave a known mistake away, where there is a notebook."""
+    found = evidence(question, verdict)
+    if found is None or "IPython" not in sys.modules:
+        return
+    from IPython.core.getipython import get_ipython
+    from IPython.display import display
+
+    if get_ipython() is not None:
+        from .. import plotting
+
+        display(plotting.answers(*found))

@@ -1,0 +1,278 @@
+"""Questions as data: what is asked, on which inputs, what is expected, what goes wrong.
+
+A question holds no code of its own answer, so it may travel to a student; its hidden cases travel
+apart.
+"""
+
+from __future__ import annotations
+
+import base64
+import json
+import zlib
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
+
+from ..arm import Arm
+from ..metrics import summary
+from ..plant import IDEAL, Plant
+from ..run import run
+from .codec import decode, encode
+from .judge import JUDGES, Judge
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """One call of the student's function.
+
+    Attributes:
+        args: Its arguments.
+        kwargs: Its arguments by name.
+        expected: What the judge compares the answer with.
+        hidden: Whether the student never sees it.
+    """
+
+    args: tuple[Any, ...]
+    kwargs: Mapping[str, Any] = field(default_factory=dict)
+    expected: Any = None
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The function's answer."""
+        return function(*self.args, **self.kwargs)
+
+    def shown(self, name: str) -> str:
+        """The call as a student would type it."""
+        words = [_short(x) for x in self.args]
+        words += [f"{key}={_short(x)}" for key, x in self.kwargs.items()]
+        return f"{name}({', '.join(words)})"
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """One closed-loop run with the student's function as the controller.
+
+    Attributes:
+        target: What the arm follows.
+        kwargs: What the controller is given besides state and target.
+        side: Which arm.
+        plant: What it is like.
+        seed: Of its noise.
+        q0: Where it starts, shape (7,) in [rad]; None is its ready pose.
+        rate: Control rate, in [Hz].
+        duration: In [s]; None takes the target's.
+        expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
+        hidden: Whether the student never sees it.
+    """
+
+    target: Any
+    kwargs: Mapping[str, Any] = field(default_factory=dict)
+    side: Any = "left"
+    plant: Plant = IDEAL
+    seed: int = 0
+    q0: Any = None
+    rate: float = 200.0
+    duration: float | None = None
+    expected: Any = field(default_factory=dict)
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
+        """The measures of the run that the function makes."""
+
+        def controller(state: Any, target: Any) -> Any:
+            return function(state, target, **self.kwargs)
+
+        arm = Arm(self.side, self.plant, self.seed)
+        arm.reset(arm.robot.ready if self.q0 is None else self.q0)
+        try:
+            log = run(arm, self.target, controller, self.rate, self.duration)
+        finally:
+            arm.world.close()
+        return asdict(summary(log, arm.model))
+
+    def shown(self, name: str) -> str:
+        """The run in words."""
+        return f"a run of the {self.plant.name} {self.side} arm with {name} as its controller"
+
+
+Case = Call | Loop
+_CASES: dict[str, Any] = {"Call": Call, "Loop": Loop}
+
+
+@dataclass(frozen=True, eq=False)
+class Test:
+    """Cases that stand or fall together.
+
+    Attributes:
+        name: What it looks at, as the student reads it.
+        cases: Public ones first.
+        weight: Share of the points; 0 is a gate, without which no other test counts.
+        also: The classes of hidden case it will meet, in words; never the numbers.
+    """
+
+    __test__ = False  # pytest, this is not for you
+
+    name: str
+    cases: tuple[Case, ...]
+    weight: float = 1.0
+    also: str = ""
+
+
+@dataclass(frozen=True)
+class Raised:
+    """An answer that never came: the function raised.
+
+    Attributes:
+        kind: The exception's type.
+    """
+
+    kind: str
+
+
+@dataclass(frozen=True, eq=False)
+class Mistake:
+    """A wrong answer that people really give, known by its fingerprint.
+
+    Attributes:
+        name: In a few words.
+        says: What to tell who made it.
+        answers: What it gives on each public call, in order; `Raised` where it raises.
+    """
+
+    name: str
+    says: str
+    answers: tuple[Any, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Question:
+    """One thing to write, and how it is marked.
+
+    Attributes:
+        name: The function's name.
+        points: What it is worth.
+        asks: What it should do, in one sentence.
+        judge: Compares answers.
+        tests: In the order in which they are tried.
+        withheld: Names that would answer it, such as "labkit.Circle".
+        hints: From the idea to nearly there.
+        mistakes: Known wrong answers.
+    """
+
+    name: str
+    points: float
+    asks: str
+    judge: Judge
+    tests: tuple[Test, ...]
+    withheld: tuple[str, ...] = ()
+    hints: tuple[str, ...] = ()
+    mistakes: tuple[Mistake, ...] = ()
+
+    @property
+    def calls(self) -> tuple[Call, ...]:
+        """The public calls, on which fingerprints are taken."""
+        cases = (case for test in self.tests for case in test.cases)
+        return tuple(case for case in cases if isinstance(case, Call) and not case.hidden)
+
+    def public(self) -> Question:
+        """The same question without its hidden cases."""
+        return replace(
+            self,
+            tests=tuple(
+                replace(test, cases=tuple(case for case in test.cases if not case.hidden))
+                for test in self.tests
+            ),
+        )
+
+    def with_hidden(self, packed: str) -> Question:
+        """The same question with the hidden cases that `pack_hidden` wrote."""
+        more = json.loads(zlib.decompress(base64.b85decode(packed)))
+        return replace(
+            self,
+            tests=tuple(
+                replace(test, cases=(*test.cases, *map(_case, more.get(test.name, ()))))
+                for test in self.public().tests
+            ),
+        )
+
+    def pack_hidden(self) -> str:
+        """The hidden cases as one line of text."""
+        data = {
+            test.name: [_case_data(case) for case in test.cases if case.hidden]
+            for test in self.tests
+        }
+        text = json.dumps({name: cases for name, cases in data.items() if cases})
+        return base64.b85encode(zlib.compress(text.encode(), 9)).decode()
+
+    def data(self) -> dict[str, Any]:
+        """The question as JSON data, all cases included."""
+        judge = {"kind": type(self.judge).__name__, **asdict(self.judge)}
+        return {
+            "name": self.name,
+            "points": self.points,
+            "asks": self.asks,
+            "judge": judge,
+            "withheld": list(self.withheld),
+            "hints": list(self.hints),
+            "tests": [
+                {
+                    "name": test.name,
+                    "weight": test.weight,
+                    "also": test.also,
+                    "cases": [_case_data(case) for case in test.cases],
+                }
+                for test in self.tests
+            ],
+            "mistakes": [
+                {"name": m.name, "says": m.says, "answers": [_answer_data(a) for a in m.answers]}
+                for m in self.mistakes
+            ],
+        }
+
+
+def read_question(data: Mapping[str, Any]) -> Question:
+    """The question that `Question.data` wrote."""
+    judge = dict(data["judge"])
+    kind = JUDGES[judge.pop("kind")]
+    if "parts" in judge:
+        judge["parts"] = tuple(judge["parts"])
+    return Question(
+        name=data["name"],
+        points=data["points"],
+        asks=data["asks"],
+        judge=kind(**judge),
+        tests=tuple(
+            Test(t["name"], tuple(map(_case, t["cases"])), t["weight"], t["also"])
+            for t in data["tests"]
+        ),
+        withheld=tuple(data["withheld"]),
+        hints=tuple(data["hints"]),
+        mistakes=tuple(
+            Mistake(m["name"], m["says"], tuple(map(_answer, m["answers"])))
+            for m in data["mistakes"]
+        ),
+    )
+
+
+def _case_data(case: Case) -> dict[str, Any]:
+    fields = {key: encode(value) for key, value in vars(case).items()}
+    return {"case": type(case).__name__, **fields}
+
+
+def _case(data: Mapping[str, Any]) -> Case:
+    fields = {key: decode(value) for key, value in data.items() if key != "case"}
+    case: Case = _CASES[data["case"]](**fields)
+    return case
+
+
+def _answer_data(answer: Any) -> Any:
+    return {"raises": answer.kind} if isinstance(answer, Raised) else {"is": encode(answer)}
+
+
+def _answer(data: Mapping[str, Any]) -> Any:
+    return Raised(data["raises"]) if "raises" in data else decode(data["is"])
+
+
+def _short(x: Any) -> str:
+    text = " ".join(repr(x.tolist() if hasattr(x, "tolist") else x).split())
+    return text if len(text) <= 48 else f"{text[:45]}..."

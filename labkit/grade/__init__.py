@@ -1,0 +1,1 @@
+"""For instructors: release assignments, grade submissions, read what the class misunderstood."""

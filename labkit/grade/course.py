@@ -1,0 +1,97 @@
+"""The course on disk: where sources, assignments, submissions and results lie."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import LabkitError, UnknownName
+from .problem import Problem
+
+
+@dataclass(frozen=True)
+class Course:
+    """A course directory, laid out as `nbgrader_config.py` says.
+
+    Attributes:
+        root: The directory that holds ``solutions/`` and ``nbgrader_config.py``.
+    """
+
+    root: Path
+
+    @classmethod
+    def here(cls, start: Path | None = None) -> Course:
+        """The course around a folder, the working directory by default.
+
+        Raises:
+            LabkitError: There is none.
+        """
+        start = (start or Path.cwd()).resolve()
+        for folder in (start, *start.parents):
+            if (folder / "nbgrader_config.py").exists():
+                return cls(folder)
+        raise LabkitError(
+            f"{start} is not inside a course: no nbgrader_config.py there or above; "
+            "change to the course's folder, or give it with --course"
+        )
+
+    @property
+    def build(self) -> Path:
+        """What is made and never committed."""
+        return self.root / "build" / "course"
+
+    @property
+    def source(self) -> Path:
+        """The sources for nbgrader, with hidden cases: for instructors."""
+        return self.build / "source"
+
+    @property
+    def solution(self) -> Path:
+        """Solved notebooks with the answers' source, for after the deadline."""
+        return self.build / "solution"
+
+    @property
+    def bundle(self) -> Path:
+        """What a grader needs: manifests, questions, hidden cases."""
+        return self.build / "bundle"
+
+    @property
+    def release(self) -> Path:
+        """The students' notebooks."""
+        return self.root / "assignments"
+
+    @property
+    def submitted(self) -> Path:
+        """What came back: student/assignment/notebook."""
+        return self.root / "submitted"
+
+    @property
+    def results(self) -> Path:
+        """One result file for each submission."""
+        return self.root / "results"
+
+    def names(self) -> tuple[str, ...]:
+        """All assignments that have a source, in order."""
+        folder = self.root / "solutions" / "notebooks"
+        return tuple(sorted(path.stem for path in folder.glob("[0-9]*.py")))
+
+    def notebook_source(self, name: str) -> Path:
+        """The text an assignment is made from.
+
+        Raises:
+            UnknownName: There is none of that name.
+        """
+        if name not in self.names():
+            raise UnknownName("assignment", name, self.names())
+        return self.root / "solutions" / "notebooks" / f"{name}.py"
+
+    def problems(self, name: str) -> tuple[Problem, ...]:
+        """The problems of an assignment, from the course's own ``solutions`` package."""
+        self.notebook_source(name)
+        if str(self.root) not in sys.path:
+            sys.path.insert(0, str(self.root))
+        module = importlib.import_module(f"solutions.problems.{name.partition('_')[2]}")
+        problems: tuple[Problem, ...] = module.PROBLEMS
+        return problems

@@ -1,0 +1,78 @@
+"""Engines: ways to grade a submission.  Here nbgrader's own, in one process with the tests."""
+
+from __future__ import annotations
+
+import logging
+import os
+import re
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from .course import Course
+
+
+@dataclass(frozen=True)
+class Mark:
+    """What a student got for an assignment.
+
+    Attributes:
+        student: Whose.
+        assignment: Which.
+        score: Points, or None where grading failed.
+        points: What full marks would be.
+        says: Why it failed, if it did.
+    """
+
+    student: str
+    assignment: str
+    score: float | None
+    points: float
+    says: str = ""
+
+
+def nbgrader_api(course: Course, quiet: int = logging.ERROR) -> Any:
+    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says."""
+    from nbgrader.apps import NbGraderAPI
+    from nbgrader.coursedir import CourseDirectory
+    from traitlets.config import Config
+    from traitlets.config.loader import PyFileConfigLoader
+
+    here = str(Path(sys.executable).parent)  # nbgrader calls programs that lie beside Python
+    if here not in os.environ["PATH"].split(os.pathsep):
+        os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
+    config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+    settings = Config(config)
+    settings.CourseDirectory.root = str(course.root)
+    settings.Application.log_level = quiet
+    return NbGraderAPI(CourseDirectory(config=settings), config=settings)
+
+
+def students(course: Course, name: str) -> list[str]:
+    """Who handed in an assignment, in order."""
+    return sorted(p.parent.name for p in course.submitted.glob(f"*/{name}") if p.is_dir())
+
+
+def grade_with_nbgrader(course: Course, name: str, student: str) -> Mark:
+    """Grade one submission with nbgrader's own engine.
+
+    The student's code runs in one process with the hidden cases: it can read and change them.
+    """
+    api = nbgrader_api(course, quiet=logging.CRITICAL)
+    result = api.autograde(name, student, force=True, create=True)
+    with api.gradebook as book:
+        try:
+            submission = book.find_submission(name, student)
+        except Exception:
+            return Mark(student, name, None, 0.0, reason(result))
+        if not result["success"]:
+            return Mark(student, name, None, submission.max_score, reason(result))
+        return Mark(student, name, submission.score, submission.max_score)
+
+
+def reason(result: dict[str, Any]) -> str:
+    """Why nbgrader failed: the last exception in its log, or else the log's last line."""
+    lines = [x for x in f"{result.get('log', '')}\n{result.get('error', '')}".splitlines() if x]
+    errors = [x.strip() for x in lines if re.match(r"\s*[\w.]+(Error|Exception)\b", x)]
+    return (errors or lines or ["nbgrader gave no reason"])[-1]

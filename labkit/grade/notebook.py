@@ -1,0 +1,161 @@
+"""From an assignment's source text to its notebooks.
+
+In the source, a code cell with ``question="name"`` holds a stub whose solution region imports the
+answer; ``setup=true`` marks cells that students should leave alone.  A brief before the stub and
+the check after it are written here, from the question.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+import inspect
+import textwrap
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import jupytext
+import nbformat
+
+from ..check import Question
+from ..errors import LabkitError
+from .problem import Problem
+
+Notebook = Any
+KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
+
+
+def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
+    """The notebook that nbgrader takes as its source: solutions and hidden cases inside.
+
+    Args:
+        path: The source, in jupytext's percent format.
+        questions: By name, hidden cases included.
+
+    Raises:
+        LabkitError: Stubs and questions do not match.
+    """
+    text = jupytext.read(path, fmt="py:percent")
+    cells: list[dict[str, Any]] = []
+    asked: list[str] = []
+    for cell in text.cells:
+        name, setup = cell.metadata.get("question"), cell.metadata.get("setup", False)
+        if name is None:
+            kind = "setup" if setup else "walk"
+            meta = _nbgrader(f"setup-{len(cells)}", locked=True) if setup else {}
+            cells.append(_cell(cell.cell_type, cell.source, kind, meta))
+            continue
+        if name not in questions:
+            raise LabkitError(f"{path.name} asks {name!r}, which has no Problem")
+        question = questions[name]
+        asked.append(name)
+        cells.append(_cell("markdown", brief(question), "brief", {}))
+        cells.append(_cell("code", cell.source, "answer", _nbgrader(name, solution=True)))
+        check = f"also({name!r}, {question.pack_hidden()!r})"
+        check = f"### BEGIN HIDDEN TESTS\n{check}\n### END HIDDEN TESTS\ncheck({name!r}, {name})"
+        meta = _nbgrader(f"{name}-check", locked=True, grade=True, points=question.points)
+        cells.append(_cell("code", check.replace("'", '"'), "check", meta))
+    if sorted(asked) != sorted(questions):
+        missing = sorted(set(questions) ^ set(asked)) or sorted(asked)
+        raise LabkitError(f"{path.name}: each problem needs just one stub; look at {missing}")
+    for number, cell in enumerate(cells):
+        cell["id"] = f"{path.stem.replace('_', '-')}-{number:02d}"
+    meta = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
+    return nbformat.from_dict(
+        {"cells": cells, "metadata": meta, "nbformat": 4, "nbformat_minor": 5}
+    )
+
+
+def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:
+    """The solved notebook: the answers' own source in place of the stubs, no hidden cases."""
+    notebook = copy.deepcopy(source)
+    for cell in notebook.cells:
+        kind, grade_id = cell.metadata.get("lab"), cell.metadata.get("nbgrader", {}).get("grade_id")
+        if kind == "answer":
+            cell.source = inlined(problems[grade_id])
+        elif kind == "check":
+            cell.source = cell.source.rpartition("### END HIDDEN TESTS\n")[2]
+    return notebook
+
+
+def brief(question: Question) -> str:
+    """What stands above a stub: the task, the points, how it is tried, what is withheld."""
+    points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
+    lines = [f"**Your turn: `{question.name}`** · {points}", "", question.asks]
+    also = list(dict.fromkeys(test.also for test in question.tests if test.also))
+    gates = [test.name for test in question.tests if not test.weight]
+    lines += ["", f"- Needed before anything counts: {'; '.join(gates)}."] if gates else [""]
+    if also:
+        lines.append(f"- Also tried when it is marked: {'; '.join(also)}.")
+    if question.withheld:
+        names = ", ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
+        lines.append(f"- Write it yourself: {names} may not be used in the answer.")
+    if question.hints:
+        lines.append(f'- Stuck? `hint("{question.name}", 1)`: free, and nobody is told.')
+    return "\n".join(lines)
+
+
+def inlined(problem: Problem) -> str:
+    """The answer's source as a cell of its own, with the imports and helpers that it needs.
+
+    Raises:
+        LabkitError: The answer leans on something that cannot be copied.
+    """
+    function = inspect.unwrap(problem.answer)
+    tree = ast.parse(inspect.getsource(inspect.getmodule(function)))  # type: ignore[arg-type]
+    defined = {name: node for node in tree.body for name in _defines(node)}
+    wanted, parts = [function.__name__], []
+    seen: set[str] = set()
+    while wanted:
+        name = wanted.pop(0)
+        node = defined.get(name)
+        if name in seen or node is None:
+            continue
+        seen.add(name)
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("solutions"):
+            raise LabkitError(f"the answer of {problem.name} imports {node.module}: keep it whole")
+        parts.append(node)
+        wanted += [n.id for n in ast.walk(node) if isinstance(n, ast.Name)]
+    ordered = sorted({id(node): node for node in parts}.values(), key=lambda node: node.lineno)
+    imports = [ast.unparse(n) for n in ordered if isinstance(n, ast.Import | ast.ImportFrom)]
+    lines = inspect.getsource(inspect.getmodule(function)).splitlines()  # type: ignore[arg-type]
+    bodies = [
+        textwrap.dedent("\n".join(lines[_first_line(n) - 1 : n.end_lineno]))
+        for n in ordered
+        if not isinstance(n, ast.Import | ast.ImportFrom)
+    ]
+    return "\n\n\n".join(["\n".join(imports), *bodies] if imports else bodies)
+
+
+def _defines(node: ast.stmt) -> list[str]:
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return [node.name]
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        if isinstance(node, ast.ImportFrom) and node.module == "__future__":
+            return []
+        return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
+    if isinstance(node, ast.Assign):
+        return [t.id for t in node.targets if isinstance(t, ast.Name)]
+    if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+        return [node.target.id]
+    return []
+
+
+def _first_line(node: Any) -> int:
+    decorators = [d.lineno for d in getattr(node, "decorator_list", ())]
+    return int(min([node.lineno, *decorators]))
+
+
+def _cell(kind: str, source: str, lab: str, nbgrader: dict[str, Any]) -> dict[str, Any]:
+    metadata: dict[str, Any] = {"lab": lab}
+    if nbgrader:
+        metadata |= {"nbgrader": nbgrader, "deletable": False}
+        metadata["editable"] = not nbgrader["locked"]
+    cell = {"cell_type": kind, "metadata": metadata, "source": source}
+    return cell | ({"outputs": [], "execution_count": None} if kind == "code" else {})
+
+
+def _nbgrader(grade_id: str, **flags: Any) -> dict[str, Any]:
+    base = {"grade": False, "locked": False, "solution": False, "task": False}
+    return {"schema_version": 3, "grade_id": grade_id, **base, **flags}

@@ -1,0 +1,1 @@
+"""Makers of the hidden cases, functions of a generator: one module for each notebook."""
