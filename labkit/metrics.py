@@ -34,6 +34,17 @@ def joint_error(log: Log) -> Array:
     return np.asarray(log.target.position - log.q)
 
 
+def joint_speed_error(log: Log) -> Array:
+    """Target minus actual joint speeds of a run after joint angles, shape (N, 7) in [rad/s].
+
+    Raises:
+        TypeMismatch: The run followed poses.
+    """
+    if isinstance(log.target, PoseSample) or log.target.velocity.shape[1] != log.dq.shape[1]:
+        raise TypeMismatch("this run followed poses, not joint angles: ask for velocity_error(log)")
+    return np.asarray(log.target.velocity - log.dq)
+
+
 def tip_poses(log: Log, model: Model | None = None) -> Array:
     """Where the tip was, `T_wt` at each tick, shape (N, 4, 4)."""
     model = model or model_of(log)

@@ -18,6 +18,7 @@ import pinocchio as pin
 from . import se3
 from .arrays import Array, as_array
 from .errors import JointLimitExceeded, TypeMismatch, Unreachable
+from .limits import warn_of_singularity, warn_of_speed
 from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 from .paths import Spline
 from .plant import IDEAL, Plant
@@ -393,6 +394,10 @@ class Model:
         Raises:
             Unreachable: A pose along the way cannot be reached; names s, the pose and the reason.
             TypeMismatch: It is none of these.
+
+        Warns:
+            LabkitWarning: A joint would exceed its speed limit, or the path comes near a
+                singularity.
         """
         q0 = self.within_limits(q0, "q0")
         if isinstance(target, Chain):
@@ -427,7 +432,10 @@ class Model:
                 f"the joint angles jump by {jump:.2f} rad between two neighbouring poses: the path "
                 "runs through a singularity; move it, or start from another q0"
             )
-        return Trajectory(Spline(grid, angles), target.scaling)
+        warn_of_singularity(grid, np.array([self.tip_jacobian(q) for q in angles]))
+        joints = Trajectory(Spline(grid, angles), target.scaling)
+        warn_of_speed(joints, self.robot)
+        return joints
 
     def _posed(self, sample: Sample | PoseSample, q0: Array) -> Array:
         if isinstance(sample, PoseSample):
@@ -502,9 +510,6 @@ def links(model: Model, q: Any) -> tuple[Link, ...]:
         out.append(Link(body.mass, np.array(body.inertia), T_wl, com, J))
     return tuple(out)
 
-
-NEAR_SINGULAR = 0.03
-"""Below this smallest singular value of the tip Jacobian, a pose counts as near a singularity."""
 
 _AT_REST = np.zeros(_N)
 _ITERATIONS = 200

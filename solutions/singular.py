@@ -16,7 +16,7 @@ import numpy as np
 
 from labkit.arrays import Array
 from labkit.errors import LabkitWarning
-from labkit.model import NEAR_SINGULAR
+from labkit.limits import NEAR_SINGULAR
 
 
 @dataclass

@@ -17,6 +17,9 @@ With another inertia the measured force takes part:
 .. math:: a = \dot V_d + M_d^{-1}(D\,\dot e + K\,e + F_{ext}) - \Lambda^{-1} F_{ext}
    \quad\Rightarrow\quad M_d\,\ddot e + D\,\dot e + K\,e = -F_{ext}
 
+A force that is measured h seconds late enters as :math:`F + h\,(M_d \Lambda^{-1} - I)\,\dot F`: the
+further M_d is from Lambda, the fresher the measurement must be.
+
 Then, the elbow's freedom going to a posture through the dynamically consistent null space:
 
 .. math:: \tau = J^T \Lambda\,(a - \dot J \dot q) + C \dot q + g
