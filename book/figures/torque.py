@@ -55,7 +55,7 @@ def responses() -> HTML:
         "Seven joints, each 0.1 rad away, ideal arm at 1 kHz. Behind the left curves, in grey, the "
         "solution of the linear error equation.",
         "Left, computed torque: the seven curves lie on each other and on the critically damped "
-        f"solution. Right, augmented PD: they differ by up to {100 * different:.2g} % of the start.",
+        f"solution. Right, augmented PD: they differ by {100 * different:.2g} % of the start.",
     )
 
 
@@ -145,8 +145,8 @@ def circle_run() -> lk.Log:
 
 def circle_replay() -> HTML:
     """The same in 3-D."""
-    return replay(circle_run(), "A circle by computed torque",
-                  "Computed torque on the circle, realistic arm, 200 Hz.", label="computed torque")  # fmt: skip
+    caption = "Computed torque on the circle, realistic arm, 200 Hz."
+    return replay(circle_run(), "A circle by computed torque", caption, label="computed torque")
 
 
 def circle_tracking() -> HTML:
