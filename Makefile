@@ -24,7 +24,7 @@ lab: .venv/.student ## open the students' notebooks
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments
 
 release: .venv/.course ## make the students' notebooks; SEED=n for hidden cases of your own
-	@$(BIN)/labkit release --seed $(SEED)
+	@$(BIN)/labkit release $(if $(filter command line environment,$(origin SEED)),--seed $(SEED))
 
 grade: .venv/.course .venv/.programs ## grade submitted/ ; ASSIGNMENT=01_paths
 	@$(BIN)/labkit grade $(ASSIGNMENT)

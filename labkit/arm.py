@@ -6,6 +6,7 @@ import tempfile
 from collections import deque
 from dataclasses import replace
 from functools import cache
+from operator import le
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ from .world import World
 with quiet():
     import pybullet as bullet
 
-_JOINTS = list(range(7))
+_JOINTS = tuple(range(7))
 _ZERO = [0.0] * 7
 
 
@@ -103,6 +104,7 @@ class Arm:
         )
         self._noisy = bool(self._noise.any() or self._torque_noise.any())
         self._publish_every = whole_steps(plant.state_rate, self.world.dt, "plant.state_rate")
+        self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
         if not self._publish_every and (self._noisy or plant.state_delay):
             self._publish_every = 1
         self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
@@ -150,7 +152,7 @@ class Arm:
         if kind is not self._kind:
             self._enter(kind)
         self._fresh = True
-        self._commanded_at = self.world._steps
+        self._deadline = self.world._steps + self._patience
 
     def stop(self) -> None:
         """Come to rest and stay."""
@@ -236,7 +238,7 @@ class Arm:
         return truth, self.state() if self._publish_every else truth, torque
 
     def _exact(self, rows: Any) -> State:
-        q, dq, _, _ = zip(*rows, strict=True)
+        q, dq, _, _ = zip(*rows, strict=False)  # PyBullet gives the same for every joint
         return State(self.world.t, locked(np.array(q)), locked(np.array(dq)), self._feel(rows))
 
     # What the torque sensors tell
@@ -272,7 +274,7 @@ class Arm:
         if rows is not None:
             self._feel(rows)
         self._publish_if_due(rows)
-        if (steps - self._commanded_at) * self.world.dt > plant.command_timeout:
+        if steps > self._deadline:
             self._hold()
         if self._kind is JointTorque:
             self._drive_torque()
@@ -344,7 +346,7 @@ class Arm:
     def _hold(self) -> None:
         """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
         if self._kind is JointPosition:
-            self._commanded_at = self.world._steps
+            self._deadline = self.world._steps + self._patience
             return
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
@@ -367,7 +369,7 @@ class Arm:
     def _read(self) -> Any:
         if self.world.client < 0:
             raise Closed("this arm's world was closed; make a new Arm")
-        return bullet.getJointStates(self._body, _JOINTS, physicsClientId=self._client)
+        return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:
         """Close the world it stands in."""
@@ -385,7 +387,7 @@ class Arm:
 
 def _cut(x: Array, limit: Array) -> Array:
     """``x`` itself if it is within ±limit, else a copy that is."""
-    if (abs(x) <= limit).all():
+    if all(map(le, map(abs, x.tolist()), limit.tolist())):  # NumPy is slow with seven numbers
         return x
     return np.minimum(np.maximum(x, -limit), limit)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,9 +31,35 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"labkit {__version__}")
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
 
+    verb = verbs.add_parser("submit-check", help="before handing in: is the notebook whole?")
+    verb.add_argument("notebook", type=Path, metavar="NOTEBOOK")
+    verb.add_argument("--forum", action="store_true", help="print a block to copy into a forum")
+    verb.set_defaults(do=_submit_check)
+
+    verb = verbs.add_parser("merge", help="bring your work into a corrected release")
+    verb.add_argument("mine", type=Path, metavar="MINE", help="the notebook you worked in")
+    verb.add_argument("new", type=Path, metavar="NEW", help="the corrected one")
+    verb.add_argument("--to", type=Path, required=True, metavar="FILE", help="where to write")
+    verb.set_defaults(do=_merge)
+
+    verb = verbs.add_parser("new-term", help="archive the last term, release with a new seed")
+    verb.add_argument("names", nargs="*", metavar="NAME", help="all by default")
+    verb.add_argument("--seed", type=int, help="of the hidden cases; drawn by default")
+    _course(verb)
+    verb.set_defaults(do=_new_term)
+
+    verb = verbs.add_parser("forget", help="delete archived terms, and the names with them")
+    _course(verb)
+    verb.set_defaults(do=_forget)
+
+    verb = verbs.add_parser("export-course", help="a repository for students, and a private one")
+    verb.add_argument("--to", type=Path, required=True, metavar="DIR")
+    _course(verb)
+    verb.set_defaults(do=_export_course)
+
     verb = verbs.add_parser("release", help="make the students' notebooks")
     verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
-    verb.add_argument("--seed", type=int, default=2019, help="of the hidden cases (default: 2019)")
+    verb.add_argument("--seed", type=int, help="of the hidden cases; the term's by default")
     _course(verb)
     verb.set_defaults(do=_release)
 
@@ -64,13 +91,67 @@ def _course(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--course", type=Path, metavar="DIR", help="the course; found by default")
 
 
+def _submit_check(args: argparse.Namespace) -> int:
+    from .check.handin import look
+
+    found = look(args.notebook)
+    print(found.for_the_forum() if args.forum else found)
+    return 1 if found.problems else 0
+
+
+def _merge(args: argparse.Namespace) -> int:
+    from .check.handin import read_cells
+    from .check.merging import merge
+
+    mine, new = read_cells(args.mine), read_cells(args.new)
+    if args.to.exists():
+        raise LabkitError(f"{args.to} is there already; give another name with --to")
+    notebook = json.loads(args.new.read_text(encoding="utf-8")) | {"cells": merge(mine, new)}
+    args.to.write_text(json.dumps(notebook, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    print(f"{args.to}: the new release with your work; look it through, then run it all")
+    return 0
+
+
+def _new_term(args: argparse.Namespace) -> int:
+    from .grade.course import Course
+    from .grade.term import new_term
+
+    record = new_term(Course.here(args.course), args.seed, tuple(args.names))
+    for name, digest in record["bundles"].items():
+        print(f"{name}: bundle {digest[:16]}")
+    print(
+        f"a term with seed {record['seed']} begins; course_private/term.json keeps it, so keep that"
+    )
+    return 0
+
+
+def _forget(args: argparse.Namespace) -> int:
+    from .grade.course import Course
+    from .grade.term import forget
+
+    gone = forget(Course.here(args.course))
+    print("\n".join(f"deleted {folder.name}" for folder in gone) or "no archived term is there")
+    return 0
+
+
+def _export_course(args: argparse.Namespace) -> int:
+    from .grade.course import Course
+    from .grade.export import export_course
+
+    student, private = export_course(Course.here(args.course), args.to)
+    print(f"for students, without answers: {student}\nprivate, everything: {private}")
+    return 0
+
+
 def _release(args: argparse.Namespace) -> int:
     from .grade.course import Course
     from .grade.release import release
+    from .grade.term import seed_of
 
     course = Course.here(args.course)
+    seed = seed_of(course) if args.seed is None else args.seed
     for name in args.names or course.names():
-        print(release(course, name, args.seed), flush=True)
+        print(release(course, name, seed), flush=True)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
     return 0
 

@@ -277,5 +277,5 @@ def _coefficients(theta: float) -> tuple[float, float, float]:
     if theta < _SMALL:
         t2 = theta * theta
         return 1.0 - t2 / 6.0, 0.5 - t2 / 24.0, 1.0 / 6.0 - t2 / 120.0
-    s, c = sin(theta), cos(theta)
-    return s / theta, (1.0 - c) / theta**2, (theta - s) / theta**3
+    s, h = sin(theta), sin(0.5 * theta)  # 1 - cos t = 2 sin^2(t/2), without the cancellation
+    return s / theta, 2.0 * (h / theta) ** 2, (theta - s) / theta**3
