@@ -1,15 +1,13 @@
 """Build the book: `python tools/build_book.py`, or `make book`.
 
-Makes what the pages need (viewer, notation, the students' notebooks), then runs Jupyter Book with
-warnings as errors.  Pages are executed again only when labkit, solutions or the book's figures
-changed.
+Makes what the pages need (viewer, notation, the students' notebooks, recorded runs, the campaign),
+then runs Jupyter Book with warnings as errors.  What is computed is kept until the code that
+computes it changes.
 """
 
 from __future__ import annotations
 
 import argparse
-import hashlib
-import importlib.metadata
 import json
 import os
 import re
@@ -22,14 +20,12 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-BOOK = ROOT / "book"
+from book_outputs import pack, print_pdf
+from book_pages import BOOK, CACHE, CAMPAIGN, HTML, ROOT, forget_stale, key_of, page_keys
+
 sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, wherever another one is installed
-HTML = BOOK / "_build/html"
-CACHE = ROOT / "build/book"
+PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
 MADE = BOOK / "generated"
-EXECUTED = ("labkit/**/*.py", "labkit/data/*.json", "solutions/*.py", "book/figures/*.py")
-ENGINES = ("numpy", "scipy", "pybullet", "pin", "matplotlib", "myst-nb")
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -42,43 +38,31 @@ def main(arguments: list[str] | None = None) -> int:
     chosen = parser.parse_args(arguments)
     began = time.monotonic()
     if chosen.fresh:
-        for folder in (BOOK / "_build", CACHE):
+        for folder in (BOOK / "_build", BOOK / "static/runs", CACHE):
             shutil.rmtree(folder, ignore_errors=True)
-    key = content_key()
     prepare()
-    record(key)
-    if code := build(key, answers=chosen.answers):
+    record()
+    compare()
+    if code := build(answers=chosen.answers):
         return code
     size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
     took = time.monotonic() - began
     print(f"book/_build/html/index.html ({size:.1f} MB, {took:.0f} s): open it by double click")
     if chosen.zip:
-        print(f"To hand out: {pack().relative_to(ROOT)}")
+        made = pack()
+        print(f"{made.relative_to(ROOT)} ({made.stat().st_size / 1e6:.1f} MB): to hand out")
     if chosen.pdf:
-        print(f"To print: {print_pdf().relative_to(ROOT)}")
+        print(f"{print_pdf(_progress).relative_to(ROOT)}: to print")
     return 0
 
 
-def content_key() -> str:
-    """One hash of all that a page's figures are computed from."""
-    digest = hashlib.sha256()
-    for path in sorted(p for pattern in EXECUTED for p in ROOT.glob(pattern)):
-        digest.update(f"{path.relative_to(ROOT)}\0".encode() + path.read_bytes())
-    for name in ENGINES:
-        digest.update(f"{name} {importlib.metadata.version(name)}\n".encode())
-    return digest.hexdigest()[:16]
-
-
 def prepare() -> None:
-    """Make the files that stand in no repository: viewer, notation, notebooks, changelog."""
+    """Make the files that stand in no repository: viewer, notation, notebooks."""
     from labkit.replay import shared_files
 
-    viewer = BOOK / "static/viewer"
-    viewer.mkdir(exist_ok=True)
     for name, path in shared_files().items():
-        _copy(path, viewer / name)
+        _copy(path, BOOK / "static/viewer" / name)
     _write(MADE / "parts/symbols.md", _symbols())
-    _write(MADE / "changelog.md", _changelog())
     _notebooks(MADE / "notebooks")
 
 
@@ -91,13 +75,6 @@ def _symbols() -> str:
         meaning = re.sub(r"\b([TRp]_\w+)", r"`\1`", s.meaning)
         rows.append(f"| `{s.code}` | ${s.latex}$ | {meaning} | {s.shape} | {s.unit} |")
     return "\n".join(rows) + "\n"
-
-
-def _changelog() -> str:
-    path = ROOT / "CHANGELOG.md"
-    if not path.exists():
-        return "# Changelog\n\nThere is no release yet.\n"
-    return path.read_text()
 
 
 def _notebooks(folder: Path) -> None:
@@ -114,22 +91,13 @@ def _notebooks(folder: Path) -> None:
     ]
     for path in found:
         notebook = nbformat.read(path, as_version=4)
+        title = _title(notebook, path.stem)
         _write(folder / path.name, nbformat.writes(_readable(notebook)))
         _copy(path, BOOK / "static/notebooks" / path.name)
-        title = _title(notebook, path.stem)
         link = f'<a href="../_static/notebooks/{path.name}" download>download</a>'
         lines.append(f"- [{title}](notebooks/{path.name}), {link}")
     if not found:
         lines.append("No notebook has been released into `assignments/` yet.")
-    else:
-        lines += [
-            "",
-            "```{toctree}",
-            ":hidden:",
-            "",
-            *(f"notebooks/{p.stem}" for p in found),
-            "```",
-        ]
     _write(MADE / "notebooks.md", "\n".join(lines) + "\n")
     names = {p.name for p in found}
     for old in [*folder.glob("*.ipynb"), *(BOOK / "static/notebooks").glob("*.ipynb")]:
@@ -138,7 +106,7 @@ def _notebooks(folder: Path) -> None:
 
 
 def _readable(notebook: dict) -> dict:
-    """A copy for reading: code is shown, and empty outputs stay out."""
+    """A copy for reading: its code is shown, and it has not been run."""
     for cell in notebook["cells"]:
         if cell["cell_type"] == "code":
             cell["outputs"], cell["execution_count"] = [], None
@@ -147,19 +115,16 @@ def _readable(notebook: dict) -> dict:
 
 
 def _title(notebook: dict, stem: str) -> str:
-    for cell in notebook["cells"]:
-        if cell["cell_type"] == "markdown" and (
-            found := re.search(r"^# (.+)", cell["source"], re.M)
-        ):
-            return found[1].strip()
-    return stem
+    texts = (cell["source"] for cell in notebook["cells"] if cell["cell_type"] == "markdown")
+    headings = (re.search(r"^# (.+)", text, re.M) for text in texts)
+    return next((found[1].strip() for found in headings if found), stem)
 
 
-def record(key: str) -> None:
-    """The runs of the gain explorer, one small file each; kept until what makes them changes."""
+def record() -> None:
+    """The runs of the gain explorer, one small file each."""
     from figures import gains
 
-    folder = BOOK / "static/runs"
+    folder, key = BOOK / "static/runs", key_of("figures.gains")
     stamp = folder / "key.txt"
     if stamp.exists() and stamp.read_text() == key:
         return
@@ -176,20 +141,49 @@ def record(key: str) -> None:
     stamp.write_text(key)
 
 
-def build(key: str, *, answers: bool) -> int:
+def compare() -> None:
+    """The campaign that the comparison speaks of.
+
+    `make campaign` may have left one that this code reproduces; else two seeds are run here.
+    """
+    key, stamp = key_of("solutions.campaign"), CACHE / "campaign.key"
+    theirs = ROOT / "build/campaign.json"
+    if CAMPAIGN.exists() and stamp.exists() and stamp.read_text() == key:
+        return
+    CACHE.mkdir(parents=True, exist_ok=True)
+    if theirs.exists() and _reproduces(json.loads(theirs.read_text())["rows"][-1]):
+        shutil.copyfile(theirs, CAMPAIGN)
+    else:
+        _progress("running the campaign, two seeds")
+        command = [sys.executable, "-m", "solutions.campaign", "--seeds", "2", "--no-pictures"]
+        command += ["--out", str(CACHE)]
+        done = subprocess.run(command, env=os.environ | {"PYTHONPATH": PATHS}, cwd=ROOT,
+                              capture_output=True, text=True, check=False)  # fmt: skip
+        if done.returncode:
+            raise SystemExit(f"the campaign failed:\n{done.stderr[-3000:]}")
+    stamp.write_text(key)
+
+
+def _reproduces(row: dict) -> bool:
+    """Whether this code gives the same run as the one that the row tells of, bit for bit."""
+    from solutions.campaign import numbers
+
+    cell = {name: row[name] for name in ("way", "task", "plant", "seed")}
+    return numbers(**cell)["digest"] == row["digest"]
+
+
+def build(*, answers: bool) -> int:
     """Run Jupyter Book; a warning or an exception in a cell is an error."""
-    stamp, state = BOOK / "_build/built.json", {"key": key, "answers": answers}
+    keys = page_keys()
+    stamp, state = BOOK / "_build/built.json", {"keys": keys, "answers": answers}
     fresh = not stamp.exists() or json.loads(stamp.read_text()) != state
     stamp.unlink(missing_ok=True)
-    cache = CACHE / f"pages-{key}"
-    for old in CACHE.glob("pages-*"):
-        if old != cache:
-            shutil.rmtree(old)
-    CACHE.mkdir(parents=True, exist_ok=True)
+    cache = CACHE / "pages"
+    forget_stale(cache, keys)
     run = "from jupyter_book.cli.main import main; main()"
     command = [sys.executable, "-c", run, "build", str(BOOK), "-W", "--keep-going"]
     environment = os.environ | {
-        "PYTHONPATH": os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")]),
+        "PYTHONPATH": PATHS,
         "LAB_BOOK_CACHE": str(cache),
         "LAB_BOOK_ANSWERS": "1" if answers else "0",
         "PYDEVD_DISABLE_FILE_VALIDATION": "1",
@@ -207,7 +201,7 @@ def build(key: str, *, answers: bool) -> int:
     if process.returncode:
         print("The book was not built; the log is in build/book/build.log.", file=sys.stderr)
         for line in log:
-            if re.search(r"WARNING|ERROR|Error|Exception|says otherwise", line):
+            if re.search(r"WARNING:|ERROR|Error|Exception|ConclusionFails", line):
                 print(f"  {line}", file=sys.stderr)
         return process.returncode
     stamp.write_text(json.dumps(state))
@@ -231,25 +225,6 @@ def _progress(text: str, *, every: bool = True) -> None:
         print(f"\r\x1b[K{text}", end="", flush=True)
     elif every:
         print(text, flush=True)
-
-
-def pack() -> Path:
-    """The folder to hand out, as one zip that opens by double click on index.html."""
-    target = ROOT / "dist/book"
-    target.parent.mkdir(exist_ok=True)
-    stage = CACHE / "stage"
-    shutil.rmtree(stage, ignore_errors=True)
-    shutil.copytree(
-        HTML, stage / "book", ignore=shutil.ignore_patterns(".buildinfo", "objects.inv")
-    )
-    made = Path(shutil.make_archive(str(target), "zip", stage, "book"))
-    shutil.rmtree(stage)
-    return made
-
-
-def print_pdf() -> Path:
-    """Every page printed by Chromium, one after another, in the order of the contents."""
-    raise SystemExit("not here yet")
 
 
 def _copy(source: Path, target: Path) -> None:

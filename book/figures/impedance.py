@@ -141,7 +141,8 @@ def check_yourself() -> HTML:
     """The quiz of the chapter."""
     return quiz(
         Question(
-            "You push with 6 N against an arm of 300 N/m and 40 N s/m and wait. How far does it go?",
+            "You push with 6 N against an arm of 300 N/m and 40 N s/m and wait. How far does it "
+            "go?",
             [
                 ("20 mm", "Yes: at rest only the spring counts, F / K."),
                 ("15 mm", "The damper gives no force at rest."),

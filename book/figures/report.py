@@ -123,9 +123,7 @@ def impedance() -> None:
     gone = {}
     for sign in (1.0, -1.0):
 
-        def law(
-            state: lk.State, target: lk.PoseSample, sign: float = sign
-        ) -> lk.JointTorque:
+        def law(state: lk.State, target: lk.PoseSample, sign: float = sign) -> lk.JointTorque:
             J = model.tip_jacobian(state.q)
             e = model.pose_error(target.pose, state.q)
             F = sign * K * e - D * (J @ state.dq)

@@ -127,7 +127,9 @@ def predict() -> HTML:
         states.append(x)
     k = np.clip(((t - age) / period).astype(int), 0, len(shots) - 1)
     last = seen[k]
-    ahead = np.array([states[i][0] + (now - shots[i]) * states[i][1] for i, now in zip(k, t, strict=True)])
+    ahead = np.array(
+        [states[i][0] + (now - shots[i]) * states[i][1] for i, now in zip(k, t, strict=True)]
+    )
     late = t > 1.5
     rms = {
         name: 1e3 * float(np.sqrt(np.mean((guess - truth(t))[late] ** 2)))
