@@ -20,9 +20,7 @@ import numpy as np
 
 from .arrays import Array, as_array, as_number
 from .errors import OutOfRange
-from .model import Model
 from .plant import Plant
-from .run import Log
 
 _PADE = 4
 """Order of the rational stand-in for the delay; where a delay can be exact, it is."""
@@ -210,30 +208,3 @@ class Loop:
 def ultimate_gain(joint: Joint) -> float:
     """The proportional gain at which the joint would oscillate for ever; infinite if none does."""
     return Loop(joint, 1.0).margins().gain
-
-
-# From a log
-
-
-def lyapunov(log: Log, Kp: Any, model: Model | None = None) -> Array:
-    r"""The energy of the error, :math:`V = \frac12 \dot e^T M(q)\,\dot e + \frac12 e^T K_p e`.
-
-    Along an augmented PD torque controller without disturbance :math:`\dot V = -\dot e^T K_d \dot
-    e`, never positive (MLS, Proposition 4.10); for the exponential rate see LaSalle.
-
-    Args:
-        log: A run after joint angles.
-        Kp: The torque controller's gains, shape (7,) or one number, in [N m/rad].
-        model: The arm's model; None makes the log's own.
-
-    Returns:
-        V at each tick, shape (N,) in [J].
-    """
-    from .metrics import joint_error, model_of
-
-    model = model or model_of(log)
-    e = joint_error(log)
-    de = np.asarray(log.target.velocity) - log.dq  # type: ignore[union-attr]
-    M = np.array([model.mass_matrix(q) for q in log.q])
-    kinetic = np.einsum("ni,nij,nj->n", de, M, de)
-    return np.asarray(0.5 * (kinetic + np.sum(np.asarray(Kp) * e * e, axis=1)))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections import deque
 from dataclasses import replace
 from functools import cache
 from operator import le
@@ -12,14 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, locked
+from .arrays import Array, as_array, locked, shown
 from .commands import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State, still
-from .errors import Closed, ControllerError, OutOfRange
+from .errors import Closed, ControllerError
 from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
 from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
+from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
 with quiet():
@@ -59,12 +59,14 @@ class Arm:
 
         Raises:
             UnknownName: Baxter has no such arm.
+            Closed: The world is closed.
             JointLimitExceeded: q0 is outside the joints' range.
         """
         self.robot: Robot = robot(side)
         self.plant = plant
         self.model = Model(side, plant)
         self.world = World() if world is None else world
+        self._check_open()
         self._random = np.random.default_rng(seed)
         self._client = self.world.client
         with quiet():
@@ -92,23 +94,21 @@ class Arm:
             restitution=0.0,
             physicsClientId=self._client,
         )
+        # PyBullet would show the ball at the tip; what cameras see of the arm is in `looks`.
+        bullet.changeVisualShape(
+            self._body, 6, rgbaColor=[0, 0, 0, 0], physicsClientId=self._client
+        )
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
         # The arm knows its own weight, not what it carries.
         self._own = (
             Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
         )
-        self._noise, self._torque_noise = (
-            np.array(plant.velocity_noise),
-            np.array(plant.torque_noise),
-        )
-        self._noisy = bool(self._noise.any() or self._torque_noise.any())
-        self._publish_every = whole_steps(plant.state_rate, self.world.dt, "plant.state_rate")
         self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
-        if not self._publish_every and (self._noisy or plant.state_delay):
-            self._publish_every = 1
+        self._reports = Reports(plant, self.world.dt, self._random)
+        self._sensors = TorqueSensors(self._own, plant, self.world.dt)
         self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
-        self._stiction, self._viscous = list(plant.stiction), np.array(plant.viscous)
+        self._stiction = list(plant.stiction)
         self.reset(q0)
         self.world.add(self)
         self.world.arms.append(self)
@@ -117,13 +117,7 @@ class Arm:
 
     def state(self) -> State:
         """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
-        if not self._publish_every:
-            return self._exact(self._read())
-        self._publish_if_due(None)
-        ready = self.world.t - self.plant.state_delay + 1e-9
-        while len(self._mail) > 1 and self._mail[1].t <= ready:
-            self._mail.popleft()
-        return self._mail[0]
+        return self._reported(None)
 
     def apply(self, command: Command) -> None:
         """Follow ``command`` until the next one, or until the plant's command timeout.
@@ -138,6 +132,7 @@ class Arm:
             JointLimitExceeded: A position outside the joints' range.
         """
         kind = type(command)
+        self._check_open()
         if kind is JointTorque:
             wanted, limit = command.value, self._effort
         elif kind is JointVelocity:
@@ -146,7 +141,7 @@ class Arm:
             wanted = self.model.within_limits(command.value, "JointPosition")
             limit = None
         else:
-            raise ControllerError(f"{command!r} is no command; give one of {_names()}")
+            raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
         self._wanted = wanted if limit is None else _cut(wanted, limit)
         self._saturated = self._wanted is not wanted
         if kind is not self._kind:
@@ -165,14 +160,11 @@ class Arm:
             JointLimitExceeded: A joint is out of its range.
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
-        if self.world.client < 0:
-            raise Closed("this arm's world was closed; make a new Arm")
+        self._check_open()
         for i in _JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
-        self._mail: deque[State] = deque([State(self.world.t, locked(np.array(q)), _rest())])
-        self._published_at = -1
-        self._before: tuple[Array, Array, Array] | None = None
-        self._felt, self._felt_at = _rest(), self.world._steps
+        self._sensors.reset()
+        self._reports.reset(State(self.world.t, locked(np.array(q)), NOTHING))
         self._lagged = np.zeros(7)
         self._total = np.zeros(7)
         self._kind: type = type(None)
@@ -193,7 +185,7 @@ class Arm:
         """
         if self._kind is JointTorque:
             return self._total
-        return np.array([joint[3] for joint in self._read()])
+        return motor_torques(self._read())
 
     @property
     def saturated(self) -> bool:
@@ -210,7 +202,7 @@ class Arm:
             moment: Shape (3,) in [N m].
         """
         f, m = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
-        R_wt = self.model.pose([joint[0] for joint in self._read()])[:3, :3]
+        R_wt = self.model.pose(angles(self._read()))[:3, :3]
         # PyBullet's idea of where the link is lags a step behind: count the lever from there.
         centre = bullet.getLinkState(self._body, 6, physicsClientId=self._client)[0]
         at = (R_wt @ self._lever + centre).tolist()
@@ -232,52 +224,27 @@ class Arm:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
         rows = self._read()
         truth = self._exact(rows)
-        torque = (
-            self._total if self._kind is JointTorque else np.array([joint[3] for joint in rows])
-        )
-        return truth, self.state() if self._publish_every else truth, torque
-
-    def _exact(self, rows: Any) -> State:
-        q, dq, _, _ = zip(*rows, strict=False)  # PyBullet gives the same for every joint
-        return State(self.world.t, locked(np.array(q)), locked(np.array(dq)), self._feel(rows))
-
-    # What the torque sensors tell
-
-    @property
-    def _touchable(self) -> bool:
-        """Whether anything can make the external torque differ from zero."""
-        return bool(self.world.things or self.plant.payload)
-
-    def _feel(self, rows: Any) -> Array:
-        """The external torque in the last physics step, through the estimate's lag.
-
-        The torque sensors sit behind the gears, so friction is no part of what they tell; what the
-        arm's own weight and motion need is taken off with the model that it has of itself.
-        """
-        if self._before is not None and self._felt_at != self.world._steps:
-            q, dq, extra = self._before
-            _, faster, _, motor = zip(*rows, strict=True)
-            joint = extra + motor - self._viscous * dq
-            felt = self._own.inverse_dynamics(q, dq, (faster - dq) / self.world.dt) - joint
-            lag = self.plant.torque_lag
-            share = min(1.0, self.world.dt / lag) if lag else 1.0
-            self._felt = locked(self._felt + share * (felt - self._felt))
-            self._felt_at = self.world._steps
-        return self._felt
+        torque = self._total if self._kind is JointTorque else motor_torques(rows)
+        return truth, self._reported(rows) if self._reports.every else truth, torque
 
     # The machinery, once per physics step
 
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
         plant, steps = self.plant, self.world._steps
-        rows = self._read() if self._touchable else None
-        if rows is not None:
-            self._feel(rows)
-        self._publish_if_due(rows)
         if steps > self._deadline:
             self._hold()
+        touchable, rows = self._touchable, None
+        if (
+            touchable
+            or self._kind is JointPosition
+            or (self._kind is JointTorque and plant.gravity_compensation)
+        ):
+            rows = self._read()
+        if self._reports.every:
+            self._report(rows)
         if self._kind is JointTorque:
-            self._drive_torque()
+            self._drive_torque(rows)
         elif self._kind is JointVelocity:
             if plant.velocity_lag:
                 self._lagged += (self._wanted - self._lagged) * min(
@@ -287,24 +254,46 @@ class Arm:
             elif self._fresh:  # PyBullet's motors keep their target
                 self._spin(self._wanted)
         else:
-            q = np.array([joint[0] for joint in self._read()])
             gain = min(plant.position_gain or np.inf, 1.0 / self.world.dt)
             speed = self.robot.speed
-            wanted = gain * (self._wanted - q)
+            wanted = gain * (self._wanted - angles(rows))
             allowed = _cut(wanted, speed)
             self._saturated |= allowed is not wanted
             self._spin(allowed)
         self._fresh = False
-        if rows is not None:
-            q, dq, _, _ = (np.array(column) for column in zip(*rows, strict=True))
-            self._before = q, dq, self._total if self._kind is JointTorque else np.zeros(7)
+        if touchable:
+            driven = self._total if self._kind is JointTorque else NOTHING
+            self._sensors.begin(rows, driven, steps)
 
-    def _drive_torque(self) -> None:
+    def _exact(self, rows: Any) -> State:
+        world = self.world
+        a, b, _, _ = zip(*rows, strict=False)  # PyBullet gives the same four for every joint
+        q, dq = np.array(a), np.array(b)
+        q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        dq.setflags(False)  # type: ignore[call-arg]
+        return State(world._steps * world.dt, q, dq, self._sensors.felt(rows, world._steps))
+
+    def _reported(self, rows: Any) -> State:
+        if not self._reports.every:
+            return self.truth()
+        self._report(rows)
+        return self._reports.newest(self.world.t)
+
+    def _report(self, rows: Any) -> None:
+        if self._reports.due(self.world._steps):
+            truth = self.truth() if rows is None else self._exact(rows)
+            self._reports.send(truth, self.world._steps)
+
+    @property
+    def _touchable(self) -> bool:
+        """Whether anything can make the external torque differ from zero."""
+        return bool(self.world.things or self.plant.payload)
+
+    def _drive_torque(self, rows: Any) -> None:
         if self._fresh or self.plant.gravity_compensation:
             total = self._wanted
             if self.plant.gravity_compensation:
-                q = np.array([joint[0] for joint in self._read()])
-                wanted = total + self._own.gravity(q)
+                wanted = total + self._own.gravity(angles(rows))
                 total = _cut(wanted, self._effort)
                 self._saturated |= total is not wanted
             self._total = total
@@ -351,24 +340,12 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _publish_if_due(self, rows: Any) -> None:
-        steps = self.world._steps
-        if not self._publish_every or steps % self._publish_every or steps == self._published_at:
-            return
-        self._published_at = steps
-        t, q, dq, felt = self._exact(self._read() if rows is None else rows)
-        if self._noisy:
-            dq = locked(dq + self._noise * self._random.standard_normal(7))
-            felt = locked(felt + self._torque_noise * self._random.standard_normal(7))
-        self._mail.append(State(t, q, dq, felt))
-        if len(self._mail) > 100:
-            self.state()
-            while len(self._mail) > 100:
-                self._mail.popleft()
-
-    def _read(self) -> Any:
+    def _check_open(self) -> None:
         if self.world.client < 0:
             raise Closed("this arm's world was closed; make a new Arm")
+
+    def _read(self) -> Any:
+        self._check_open()
         return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:
@@ -390,23 +367,6 @@ def _cut(x: Array, limit: Array) -> Array:
     if all(map(le, map(abs, x.tolist()), limit.tolist())):  # NumPy is slow with seven numbers
         return x
     return np.minimum(np.maximum(x, -limit), limit)
-
-
-def _rest() -> Array:
-    return locked(np.zeros(7))
-
-
-def whole_steps(rate: float, dt: float, name: str) -> int:
-    """How many physics steps of ``dt`` [s] a period of ``rate`` [Hz] has; 0 for a rate of 0."""
-    if rate == 0.0:
-        return 0
-    steps = 1.0 / (rate * dt)
-    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
-        raise OutOfRange(
-            f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
-            f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
-        )
-    return round(steps)
 
 
 def _names() -> str:

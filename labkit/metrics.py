@@ -5,7 +5,7 @@ An error is always target minus actual.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -68,6 +68,16 @@ def tip_error(log: Log, model: Model | None = None) -> Array:
     return np.hstack([T_wd[:, :3, 3] - T_wt[:, :3, 3], np.array(turn)])
 
 
+def felt_wrench(log: Log, model: Model | None = None) -> Array:
+    """The wrench on the tip as the arm's torque sensors told it, world axes, shape (N, 6).
+
+    Force [N], then moment about the tip's origin [N m]; see `Model.tip_wrench` and `State.tau_ext`.
+    """
+    model = model or model_of(log)
+    pairs = zip(log.measured.q, log.measured.tau_ext, strict=True)
+    return np.array([model.tip_wrench(q, tau) for q, tau in pairs])
+
+
 def rms(error: Any) -> float:
     """Root mean square of the length of a vector error, rows being instants.
 
@@ -101,6 +111,18 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
 
 SETTLED = 5e-3
 """The tip has settled when it is no further than this from its target, in [m]."""
+
+
+def since(log: Log, t: float) -> Log:
+    """The rows of a run from a time ``t`` [s] on; its clock runs on."""
+    first = int(np.searchsorted(log.t, t - 1e-9))
+    cut: dict[str, Any] = {
+        f.name: column[first:]
+        for f in fields(log)
+        if isinstance(column := getattr(log, f.name), np.ndarray)
+    }
+    target, measured = (type(x)(*(part[first:] for part in x)) for x in (log.target, log.measured))
+    return replace(log, **cut, target=target, measured=measured)
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,13 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from IPython.core.getipython import get_ipython
+from IPython.display import display
 from matplotlib import colors
 from matplotlib.figure import Figure
 
 from . import metrics
+from .analysis import Loop
 from .maps import ErrorMap
 from .model import Model
 from .motion import PoseSample
@@ -142,9 +145,15 @@ def everything(
             ax_i.set_ylabel(name.split("_")[1], rotation=0, labelpad=12)
             ax_i.tick_params(labelsize="x-small", labelbottom=i == 6)
         if i == 0:
-            ax.set_title("joint angles [rad]", fontsize="medium")
-            ax.legend(frameon=False, ncols=2, fontsize="x-small")
-            below.set_title("motor torques [N m]", fontsize="medium")
+            ax.set_title("joint angles [rad]", loc="left", fontsize="medium")
+            ax.legend(
+                loc="lower right",
+                bbox_to_anchor=(1.0, 0.95),
+                frameon=False,
+                ncols=2,
+                fontsize="x-small",
+            )
+            below.set_title("motor torques [N m]", loc="left", fontsize="medium")
     for ax in (tip[3], figure.axes[-2], figure.axes[-1]):
         ax.set_xlabel("time [s]")
     return figure
@@ -179,9 +188,10 @@ def error_map(found: ErrorMap, point: tuple[float, float] | None = None, *, ax: 
     ticks = [x for x in (0.5, 1, 2, 5, 10, 20, 50, 100, 200) if bar.vmin <= x <= bar.vmax]
     bar.set_ticks(ticks, labels=[f"{x:g}" for x in ticks])
     bar.ax.minorticks_off()
-    ax.set_xticks(columns, [f"{x:.3g}" for x in found.Kd])
-    ax.set_yticks(rows, [f"{x:.3g}" for x in found.Kp])
-    ax.set_xlabel(f"Kd {found.unit[1]}")
+    ax.set_facecolor("0.75")  # where the arm was lost
+    ax.set_xticks(columns, [f"{x:.4g}" for x in found.Kd])
+    ax.set_yticks(rows, [f"{x:.4g}" for x in found.Kp])
+    ax.set_xlabel(f"Kd [{found.unit[1]}]")
     ax.set_ylabel(f"Kp [{found.unit[0]}]")
     ax.set_title(found.title, loc="left", fontsize="medium")
     Kp, Kd, least = found.best
@@ -189,8 +199,23 @@ def error_map(found: ErrorMap, point: tuple[float, float] | None = None, *, ax: 
     if point is not None:
         x, y = np.interp(point[1], found.Kd, columns), np.interp(point[0], found.Kp, rows)
         ax.plot(x, y, "rX", markersize=12, markeredgecolor="w", label="yours")
-    ax.legend(loc="upper left", fontsize="small")
+    if np.isnan(found.array()).any():
+        ax.plot([], [], "s", color="0.75", markersize=10, label="arm lost")
+    ax.legend(loc="upper left", fontsize="small", facecolor="0.45", labelcolor="w", framealpha=0.9)
     return ax
+
+
+def show(caption: str) -> None:
+    """Show the current figure with a caption, which is its alternative text too.
+
+    Args:
+        caption: What is to be seen, with its numbers; a line under the figure.
+    """
+    figure = plt.gcf()
+    if get_ipython() is not None:
+        display(figure, metadata={"image/png": {"alt": caption}})
+    print(caption)
+    plt.close(figure)
 
 
 def answers(call: str, expected: Any, given: Any) -> Any:
@@ -216,6 +241,54 @@ def answers(call: str, expected: Any, given: Any) -> Any:
     ax.set_title(call, loc="left", fontsize="small", family="monospace")
     ax.legend(frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
     return figure
+
+
+def loop(found: Loop, *, axes: Any = None) -> Any:
+    """A joint's loop three ways: gain and phase over frequency, poles, and a step.
+
+    Args:
+        found: The loop.
+        axes: Four axes to draw on; None makes a figure.
+
+    Returns:
+        The four axes: gain, phase, root locus, step response.
+    """
+    if axes is None:
+        _, axes = plt.subplots(2, 2, figsize=(10, 6.5), layout="constrained")
+        axes = axes[:, 0].tolist() + axes[:, 1].tolist()
+    gain, phase, locus, step = axes
+    margins = found.margins()
+    omega = np.geomspace(0.01, 20.0, 600) * margins.crossover
+    L = (found.Kp + 1j * omega * found.Kd) * found.joint.response(omega)
+    gain.loglog(omega, np.abs(L))
+    gain.axhline(1.0, color="0.7", linewidth=0.8)
+    gain.set_ylabel("gain of the loop")
+    gain.set_title(str(margins).replace(", room", "\nroom"), loc="left", fontsize="small")
+    phase.semilogx(omega, np.degrees(np.unwrap(np.angle(L))))
+    phase.axhline(-180.0, color="0.7", linewidth=0.8)
+    phase.set_ylim(-360.0, 0.0)
+    phase.set_ylabel("phase [degrees]")
+    phase.set_xlabel("frequency [rad/s]")
+    for ax in (gain, phase):
+        ax.axvline(margins.crossover, color="C3", linestyle="--", linewidth=0.8)
+    factors = np.concatenate([[0.0], np.geomspace(0.01, 100.0, 600)])
+    poles = found.locus(factors)
+    locus.plot(poles.real, poles.imag, "C0.", markersize=2)
+    here = found.locus([1.0])[0]
+    locus.plot(here.real, here.imag, "C3x", markersize=8, label="poles with these gains")
+    far = 4.0 * margins.crossover
+    locus.set_xlim(-far, 0.5 * far)
+    locus.set_ylim(-far, far)
+    locus.axvline(0.0, color="0.7", linewidth=0.8)
+    locus.set_xlabel("real part [1/s]")
+    locus.set_ylabel("imaginary part [1/s]")
+    locus.legend(frameon=False, fontsize="small")
+    t = np.linspace(0.0, 10.0 / margins.crossover, 400)
+    step.plot(t, found.step(t))
+    step.axhline(1.0, color="0.7", linewidth=0.8)
+    step.set_xlabel("time [s]")
+    step.set_ylabel("step response")
+    return axes
 
 
 def describe(log: Log, model: Model | None = None) -> str:

@@ -44,6 +44,16 @@ def recorded(name: str) -> Log:
         return load(path)
 
 
+def campaign() -> list[dict[str, Any]]:
+    """Every controller on every task, five seeds: made by ``make campaign``, kept for notebooks.
+
+    Returns:
+        One row for each run: its "way", "task", "plant" and "seed", and its errors.
+    """
+    text = (files("labkit") / "data" / "campaign.json").read_text()
+    return [dict(row) for row in json.loads(text)]
+
+
 def save(log: Log, path: Path) -> None:
     """Write a log to a file with the ending ``.npz``."""
     columns = {name: getattr(log, name) for name in _ROWS}

@@ -247,7 +247,7 @@ def _build_box(world: World, T_wf: Array, thing: Any) -> None:
         baseCollisionShapeIndex=shape,
         baseVisualShapeIndex=look,
         basePosition=(T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
-        baseOrientation=_quaternion(T_wf[:3, :3]),
+        baseOrientation=se3.quaternion(T_wf[:3, :3]).tolist(),
         physicsClientId=world.client,
     )
     bullet.changeDynamics(
@@ -259,11 +259,3 @@ def _build_box(world: World, T_wf: Array, thing: Any) -> None:
         restitution=0.0,
         physicsClientId=world.client,
     )
-
-
-def _quaternion(R: Array) -> list[float]:
-    """(x, y, z, w), as PyBullet wants it."""
-    phi = se3.rotation_log(R)
-    angle = float(np.linalg.norm(phi))
-    axis = phi / angle if angle > 0.0 else phi
-    return [*(np.sin(0.5 * angle) * axis).tolist(), float(np.cos(0.5 * angle))]

@@ -41,12 +41,14 @@ class Task:
         target: Poses of the tip over time.
         q0: Joint angles at its start, shape (7,) in [rad].
         side: Which arm.
+        samples: At how many places along each path its joint angles are solved for.
     """
 
     name: str
     target: Any
     q0: Array
     side: Side = "left"
+    samples: int = 101
 
     @property
     def duration(self) -> float:
@@ -65,7 +67,8 @@ class Task:
     @cached_property
     def joints(self) -> Target:
         """The same motion as joint angles."""
-        joints: Target = Model(self.side).joint_trajectory(self.target, self.q0)
+        model = Model(self.side)
+        joints: Target = model.joint_trajectory(self.target, self.q0, samples=self.samples)
         return joints
 
 

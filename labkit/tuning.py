@@ -95,8 +95,8 @@ def report_procedure(
         steps.append(step)
         if len(steps) > most:
             raise OutOfRange(
-                f"no oscillation up to Kp = {gain:.3g} in {most} trials: raise growth, or, if the loop "
-                "has no delay and no lag, choose the gain by the noise and the torque instead"
+                f"no oscillation up to Kp = {gain:.3g} in {most} trials: raise growth, or, if the "
+                "loop has no delay and no lag, choose the gain by the noise and the torque instead"
             )
         gain *= growth
     chosen, ultimate = gain / 2.0, gain

@@ -43,17 +43,14 @@ from labkit.tasks import Task
 from .claims import Verdict, verdicts
 from .gains import Tuned, five
 from .joint_velocity import JointVelocityPD
+from .tag_task import Chase, followed, sequential
 
 PLANTS = {
     "ideal": IDEAL,
     "baxter": BAXTER,
     "baxter without noise": replace(BAXTER, velocity_noise=0.0),
 }
-TASKS: dict[str, Callable[[], Task]] = {
-    "line": tasks.line,
-    "circle": tasks.circle,
-    "square": tasks.square,
-}
+TASKS = ("line", "circle", "square", "tag")
 FEED_FORWARD, BASELINE = "feed-forward only", "baseline"
 FIVE = (
     "joint velocity",
@@ -68,13 +65,31 @@ WAYS = (*FIVE, FEED_FORWARD, BASELINE)
 
 def grid(seeds: int) -> list[dict[str, Any]]:
     """The campaign's cells: 7 ways, every task, 2 plants, the seeds."""
-    return cells(way=WAYS, task=tuple(TASKS), plant=("ideal", "baxter"), seed=range(seeds))
+    return cells(way=WAYS, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
 
 
 @cache
-def task(name: str) -> Task:
+def _chase(kind: str, seed: int) -> Chase:
+    return sequential(seed) if kind == BASELINE else followed(seed)
+
+
+def chase(way: str, seed: int) -> Chase:
+    """The tag task: of the report's kind for the baseline, which cannot follow a moving goal."""
+    return _chase(BASELINE if way == BASELINE else "", seed)
+
+
+@cache
+def _path(name: str) -> Task:
+    makers: dict[str, Callable[[], Task]]
+    makers = {"line": tasks.line, "circle": tasks.circle, "square": tasks.square}
+    return makers[name]()
+
+
+def task_of(name: str, way: str, seed: int) -> Task:
     """A task by name; made once, for its inverse kinematics takes a moment."""
-    return TASKS[name]()
+    if name == "tag":
+        return chase(way, seed).task
+    return _path(name)
 
 
 @cache
@@ -82,7 +97,7 @@ def built_in(name: str) -> Any:
     """The baseline's own schedule along a task's path, planned as MoveIt does."""
     from labkit import baseline  # an extra that only these runs need
 
-    goal = task(name)
+    goal = _path(name)
     scene = baseline.PlanningScene(goal.side, (Table(),))
     return baseline.along(scene, Model(goal.side), goal.target, goal.q0)
 
@@ -103,16 +118,17 @@ def _tuned(way: str, plant: Plant, side: Any) -> Tuned:
     return five(Model(side, knows), plant)[way]
 
 
-def joints(way: str, name: str) -> Any:
+def joints(way: str, task: str, seed: int) -> Any:
     """The joint angles that belong to a way's target, a function of time."""
-    return built_in(name) if way == BASELINE else task(name).joints
+    planned = way == BASELINE and task != "tag"
+    return built_in(task) if planned else task_of(task, way, seed).joints
 
 
-def perform(way: str, task_name: str, plant: str, seed: int) -> Log:
+def perform(way: str, task: str, plant: str, seed: int) -> Log:
     """One run of the campaign."""
-    goal, arm_is = task(task_name), PLANTS[plant]
+    goal, arm_is = task_of(task, way, seed), PLANTS[plant]
     tuned = _tuned(way, arm_is, goal.side)
-    target = joints(way, task_name) if tuned.joints else goal.target
+    target = joints(way, task, seed) if tuned.joints else goal.target
     with Arm(goal.side, arm_is, seed, q0=goal.start(seed)) as arm:
         return replace(run(arm, target, tuned.controller, rate=tuned.rate), controller=way)
 
@@ -120,7 +136,13 @@ def perform(way: str, task_name: str, plant: str, seed: int) -> Log:
 def numbers(way: str, task: str, plant: str, seed: int) -> Mapping[str, Any]:
     """The campaign's job: one run, in numbers."""
     log = perform(way, task, plant, seed)
-    return measured(log, joints(way, task))
+    told = measured(log, joints(way, task, seed))
+    if task == "tag":
+        late = log.t >= 2.0
+        tips = metrics.tip_poses(log)[late, :3, 3]
+        miss = chase(way, seed).miss(log.t[late], tips)
+        told["tag_rms_mm"] = 1e3 * metrics.rms(miss)
+    return told
 
 
 def measured(log: Log, wanted: Any) -> dict[str, Any]:
@@ -162,7 +184,7 @@ def converge(Kp: float, plant: str, seed: int) -> Mapping[str, float]:
     Returns:
         "tenth_s" in [s], and "rest_mm": the RMS error of the tip in the last second.
     """
-    goal = task("line")
+    goal = _path("line")
     with Arm(goal.side, PLANTS[plant], seed, q0=goal.start(seed)) as arm:
         log = run(arm, Hold(goal.q0, 4.0), JointVelocityPD(Kp))
     off = np.linalg.norm(metrics.joint_error(log), axis=1)
@@ -184,7 +206,7 @@ def derivative(Kd: float, plant: str, seed: int) -> Mapping[str, float]:
         "late_rms_mm": the RMS error after the first second; "shake_mm_s": how much the tip's speed
         jitters in the last half second, when it should stand still.
     """
-    goal = task("line")
+    goal = _path("line")
     with Arm(goal.side, PLANTS[plant], seed, q0=goal.start(seed)) as arm:
         log = run(arm, goal.joints, JointVelocityPD(3.0, Kd))
     still = log.t >= log.t[-1] - 0.5
@@ -218,8 +240,15 @@ def tables(rows: list[Row], judged: list[Verdict]) -> str:
         for plant in dict.fromkeys(row["plant"] for row in rows):
             body = table(pick(rows, plant=plant), "way", "task", number)
             parts.append(f"## {title}, {plant} arm\n\n{body}")
+    if chased := pick(rows, task="tag"):
+        title = "Distance from where the tag really put the tip, RMS after two seconds [mm]"
+        parts.append(f"## {title}\n\n{table(chased, 'way', 'plant', 'tag_rms_mm')}")
     parts.append("## What the report claimed\n\n" + "\n".join(f"- {v}" for v in judged))
     return "\n\n".join(parts) + "\n"
+
+
+def _without(row: Row, key: str) -> Row:
+    return {name: value for name, value in row.items() if name != key}
 
 
 def main() -> None:
@@ -248,11 +277,11 @@ def main() -> None:
     folder.mkdir(parents=True, exist_ok=True)
     text = tables(rows, judged)
     (folder / "tables.md").write_text(text)
-    drawn = []
-    if not options.no_pictures:
-        drawn = work_through(  # on this machine: they write files
-            pictures.draw, pictures.grid(folder), jobs=options.jobs, progress=Meter("figures")
-        )
+    drawn, shot = [], []
+    if not options.no_pictures:  # on this machine, for they write files
+        where["dask"] = None
+        drawn = done(pictures.draw, pictures.grid(folder), "figures")
+        shot = done(pictures.shoot, pictures.film_grid(folder), "films")
     found = {
         "seeds": options.seeds,
         "seconds": round(seconds, 1),
@@ -260,12 +289,14 @@ def main() -> None:
         "gains": gains,
         "noise": noise,
         "verdicts": [{**asdict(v), "outcome": v.outcome.value} for v in judged],
-        "figures": drawn,
+        "figures": [_without(row, "folder") for row in drawn],
+        "films": [_without(row, "folder") for row in shot],
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
     print(text)
-    print(f"{len(rows)} runs in {seconds:.0f} s; {path}, {folder}/tables.md, {len(drawn)} figures")
+    made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
+    print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
 
 
 if __name__ == "__main__":

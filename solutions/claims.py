@@ -14,11 +14,11 @@ from enum import Enum
 from typing import Any
 
 import numpy as np
-from scipy.stats import t as student
 
-from labkit.arrays import as_array
 from labkit.campaign import Row, pick
 from labkit.errors import OutOfRange
+
+from .comparison import paired_difference
 
 THREE = ("workspace velocity", "joint velocity", "joint torque")
 IMPEDANCE = ("joint impedance", "workspace impedance")
@@ -62,27 +62,6 @@ class Verdict:
         )
 
 
-def paired_difference(a: Any, b: Any) -> tuple[float, float]:
-    """Mean of a - b over pairs, and the half width of its 95 % interval.
-
-    Args:
-        a: One number for each pair, shape (n,).
-        b: Its partner, shape (n,).
-
-    Returns:
-        Mean, and Student's t times the standard error of the differences.
-
-    Raises:
-        OutOfRange: There are fewer than two pairs, so nothing is known of the spread.
-    """
-    a = as_array(a, (len(a),), "a")
-    d = a - as_array(b, (len(a),), "b")
-    n = len(d)
-    if n < 2:
-        raise OutOfRange(f"{n} pair cannot show a spread; take at least two seeds or tasks")
-    return float(d.mean()), float(student.ppf(0.975, n - 1) * d.std(ddof=1) / np.sqrt(n))
-
-
 def judge(claim: str, unit: str, a: Mapping[Any, float], b: Mapping[Any, float]) -> Verdict:
     """Does ``a`` exceed ``b``?
 
@@ -91,8 +70,15 @@ def judge(claim: str, unit: str, a: Mapping[Any, float], b: Mapping[Any, float])
         unit: Of the numbers.
         a: A number for each pair; the keys are (seed, ...).
         b: Its partner, under the same keys.
+
+    Raises:
+        OutOfRange: There are fewer than two pairs.
     """
     keys = sorted(a.keys() & b.keys())
+    if len(keys) < 2:
+        raise OutOfRange(
+            f"{len(keys)} pair cannot show a spread, so {claim!r} cannot be judged; take two seeds"
+        )
     mean, half = paired_difference([a[k] for k in keys], [b[k] for k in keys])
     seeds = sorted({k[0] for k in keys})
     by_seed = tuple(float(np.mean([a[k] - b[k] for k in keys if k[0] == s])) for s in seeds)
@@ -127,6 +113,7 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
             ("joint impedance", "workspace impedance"),
         )
     ]
+    planned = [row for row in rows if row["task"] != "tag"]  # it cannot follow what moves
     found += [
         judge(
             "the impedance controllers track worse than the other three",
@@ -139,8 +126,8 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
         judge(
             f"MoveIt tracks better than {way}",
             "mm",
-            _mean(rows, (way,)),
-            _mean(rows, ("baseline",)),
+            _mean(planned, (way,)),
+            _mean(planned, ("baseline",)),
         )
         for way in (*THREE, *IMPEDANCE)
     ]

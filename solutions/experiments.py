@@ -241,9 +241,6 @@ def _meet(
         with Arm("left", plant, seed, q0=ready, world=World(things=things)) as arm:
             log = run(arm, goal, tuned.controller, tuned.rate, target.duration + wait)
         off = -metrics.tip_error(log, model)
-        pairs = zip(log.measured.q, log.measured.tau_ext, strict=True)
-        wrench = np.array([model.tip_wrench(q, tau) for q, tau in pairs])
-        out.append(
-            Encounter(name, log.t, locked(off[:, :3]), locked(off[:, 3:]), locked(wrench), log)
-        )
+        wrench = locked(metrics.felt_wrench(log, model))
+        out.append(Encounter(name, log.t, locked(off[:, :3]), locked(off[:, 3:]), wrench, log))
     return tuple(out)

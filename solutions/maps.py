@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 import labkit
-from labkit import BAXTER, IDEAL, Arm, Model, metrics, run, tasks
+from labkit import BAXTER, IDEAL, Arm, Model, Plant, metrics, run, tasks
 from labkit.campaign import Meter, cells, pick, work_through
 from labkit.maps import ErrorMap
 
+from .joint_torque import ComputedTorque
 from .joint_velocity import JointVelocityPD
 
 FOLDER = Path(labkit.__file__).parent / "data" / "maps"
@@ -27,14 +28,14 @@ class Plane:
     """The gains to try on one kind of controller.
 
     Attributes:
-        make: Gives the controller from the two gains.
+        make: Gives the controller from the two gains and the plant.
         Kp: Proportional gains.
         Kd: Derivative gains.
         unit: Their units.
         rate: How often the controller is asked, in [Hz].
     """
 
-    make: Callable[[float, float, Model], Any]
+    make: Callable[[float, float, Plant], Any]
     Kp: tuple[float, ...]
     Kd: tuple[float, ...]
     unit: tuple[str, str]
@@ -47,10 +48,19 @@ def _grid(low: float, high: float, count: int) -> tuple[float, ...]:
 
 PLANES = {
     "joint velocity PD": Plane(
-        lambda Kp, Kd, model: JointVelocityPD(Kp, Kd),
+        lambda Kp, Kd, plant: JointVelocityPD(Kp, Kd),
         Kp=_grid(1.0, 160.0, 12),
         Kd=(0.0, *_grid(0.05, 6.0, 8)),
-        unit=("1/s", "(no unit)"),
+        unit=("1/s", "no unit"),
+        rate=200.0,
+    ),
+    "joint torque PD": Plane(
+        lambda Kp, Kd, plant: ComputedTorque(
+            Model("left", Plant(armature=plant.armature)), Kp, Kd, not plant.gravity_compensation
+        ),
+        Kp=_grid(25.0, 6400.0, 12),
+        Kd=_grid(2.0, 250.0, 9),
+        unit=("1/s^2", "1/s"),
         rate=200.0,
     ),
 }
@@ -59,10 +69,8 @@ PLANES = {
 def rms(controller: str, plant: str, Kp: float, Kd: float, seed: int) -> Mapping[str, float]:
     """The job: RMS error of the tip on the line for one pair of gains."""
     plane = PLANES[controller]
-    known = labkit.Plant(armature=PLANTS[plant].armature)
     with Arm("left", PLANTS[plant], seed, q0=LINE.start(seed)) as arm:
-        control = plane.make(Kp, Kd, Model("left", known))
-        log = run(arm, LINE.joints, control, rate=plane.rate)
+        log = run(arm, LINE.joints, plane.make(Kp, Kd, PLANTS[plant]), rate=plane.rate)
     return {"rms_mm": 1e3 * metrics.rms(metrics.tip_error(log)[:, :3])}
 
 

@@ -49,7 +49,7 @@ def states(random):
 
 
 @pytest.fixture
-def arm():
+def ideal():
     """An ideal left arm at rest in its neutral pose."""
     with lk.Arm() as arm:
         yield arm

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit import analysis
+from labkit import analysis, plotting
 from labkit.analysis import Joint, Loop, torque_joint, velocity_joint, velocity_joint_of
 from labkit.tuning import decay_ratio
-from solutions.joint_torque import AugmentedPD
 from solutions.tuning import trial_on
 
 INTEGRATOR = Joint((1.0,), (1.0, 0.0), delay=0.05)
@@ -81,18 +80,14 @@ def test_the_arm_overshoots_as_its_loop_says(Kp):
     assert t[actual.argmin()] == pytest.approx(t[predicted.argmin()], abs=0.015)
 
 
-def test_the_energy_of_the_error_falls_at_the_rate_of_the_damping():
-    """Augmented PD on the ideal arm: dV/dt = -de^T Kd de (MLS, Proposition 4.10), 1 kHz."""
-    model, ready = lk.Model(), lk.robot("left").ready
-    Kp = np.array([400.0, 400.0, 200.0, 200.0, 10.0, 10.0, 1.0])
-    Kd = np.array([80.0, 80.0, 20.0, 20.0, 2.0, 2.0, 0.2])
-    with lk.Arm(q0=ready + 0.05) as arm:
-        log = lk.run(arm, lk.Hold(ready, 1.0), AugmentedPD(model, Kp, Kd), rate=1000.0)
-    V = analysis.lyapunov(log, Kp)
-    lost = np.sum(Kd * log.dq**2, axis=1)
-    spent = np.concatenate([[0.0], np.cumsum(0.5 * (lost[1:] + lost[:-1]) * np.diff(log.t))])
-    assert np.all(np.diff(V) < 1e-4 * V[0])
-    np.testing.assert_allclose(V, V[0] - spent, atol=0.02 * V[0])
+def test_the_figure_of_a_loop_shows_its_margins_and_its_poles():
+    loop = Loop(velocity_joint_of(lk.BAXTER), 20.0)
+    gain, phase, locus, step = plotting.loop(loop)
+    assert "phase margin" in gain.get_title(loc="left")
+    crossing = np.interp(loop.margins().crossover, *phase.get_lines()[0].get_data())
+    assert crossing == pytest.approx(loop.margins().phase - 180.0, abs=0.5)
+    assert len(locus.get_lines()) == 3 + len(loop.locus([1.0])[0]) - 1
+    assert step.get_lines()[0].get_ydata()[-1] == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize(

@@ -5,10 +5,12 @@ import pytest
 from scipy import stats
 
 import labkit as lk
-from labkit import campaign
+from labkit import campaign, plotting
 from labkit.campaign import cells, pick, row_of, spread, table, work_through
 from solutions import campaign as report
-from solutions.claims import Outcome, judge, paired_difference, verdicts
+from solutions import pictures
+from solutions.claims import Outcome, judge, verdicts
+from solutions.comparison import paired_difference
 from solutions.gains import five
 
 SMALL = cells(way=("joint velocity", "baseline"), task=("line",), plant=("baxter",), seed=(0, 1))
@@ -86,6 +88,22 @@ def test_bad_grids_and_columns_are_sentences():
         work_through(fails_on_two, cells(n=(1,)), jobs=0)
 
 
+def test_a_figure_of_the_report_is_numbered_drawn_and_put_into_words(tmp_path):
+    """Figure 5: joint space velocity controller on the circle; every axis has its unit."""
+    made = pictures.draw("joint velocity", "circle", str(tmp_path))
+    assert made["figure"] == 5 and (tmp_path / made["file"]).stat().st_size > 50_000
+    assert "circle: Tracking by joint velocity on the baxter left arm" in made["alt"]
+    log = report.perform("workspace velocity", "circle", "ideal", 0)
+    figure = plotting.everything(log, joints=report.joints("workspace velocity", "circle", 0))
+    labels = {ax.get_ylabel() for ax in figure.axes}
+    assert {"tip position [m]", "tip velocity [m/s]", "orientation error [deg]"} < labels
+    assert {"s0", "s1", "e0", "e1", "w0", "w1", "w2"} < labels
+    velocity = next(ax for ax in figure.axes if ax.get_ylabel() == "tip velocity [m/s]")
+    drawn = velocity.get_lines()[1].get_ydata()  # x, after the target's x
+    path = np.gradient(lk.metrics.tip_poses(log)[:, 0, 3], log.t)
+    np.testing.assert_allclose(drawn[5:-5], path[5:-5], atol=5e-3)
+
+
 # Verdicts
 
 
@@ -95,8 +113,8 @@ def test_the_interval_is_that_of_a_paired_t_test():
     mean, half = paired_difference(a, b)
     low, high = stats.ttest_rel(a, b).confidence_interval(0.95)
     assert (mean - half, mean + half) == pytest.approx((low, high))
-    with pytest.raises(lk.LabkitError, match="1 pair cannot show a spread"):
-        paired_difference([1.0], [0.5])
+    with pytest.raises(lk.LabkitError, match="1 pair cannot show a spread, so 'a is larger'"):
+        judge("a is larger", "mm", {(0,): 1.0}, {(0,): 0.5})
 
 
 @pytest.mark.parametrize(
@@ -150,7 +168,6 @@ def noisy(cell):
 
 def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsys):
     """One seed of the line alone, without pictures."""
-    monkeypatch.setattr(report, "TASKS", {"line": report.TASKS["line"]})
     monkeypatch.setattr(report, "grid", lambda seeds: SMALL[::2])
     monkeypatch.setattr(report, "gain_grid", lambda seeds: [])
     monkeypatch.setattr(report, "noise_grid", lambda seeds: [])

@@ -217,14 +217,14 @@ def test_torque_control_of_the_ideal_arm_follows_a_line_within_a_tenth_of_a_mill
 
 
 BAXTER_LIMITS = {  # mm of RMS on line and circle, of the worst of three seeds, rounded up
-    "workspace velocity": 4.0,
-    "joint velocity": 4.0,
-    "joint torque": 10.0,
-    "augmented PD": 14.0,
-    "workspace impedance": 25.0,
-    "joint impedance": 20.0,
-    "shaped workspace impedance": 30.0,
-    "shaped joint impedance": 60.0,
+    "workspace velocity": 3.0,
+    "joint velocity": 3.0,
+    "joint torque": 7.0,
+    "augmented PD": 10.0,
+    "workspace impedance": 17.0,
+    "joint impedance": 16.0,
+    "shaped workspace impedance": 21.0,
+    "shaped joint impedance": 44.0,
 }
 
 

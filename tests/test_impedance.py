@@ -49,8 +49,7 @@ def test_what_the_arm_feels_like_is_what_its_controller_was_asked_for():
     with lk.Arm(plant=plant, q0=ready, world=lk.World(things=pushes)) as arm:
         law = WorkspaceImpedance(model, **asked, inertia=M_d)
         log = lk.run(arm, lk.Hold(model.pose(ready), 3.2), law, rate=1000)
-    pairs = zip(log.measured.q, log.measured.tau_ext, strict=True)
-    force = np.array([model.tip_wrench(q, tau)[:3] for q, tau in pairs])
+    force = lk.metrics.felt_wrench(log, model)[:, :3]
     fit = fit_impedance(log.t, force, -lk.metrics.tip_error(log, model)[:, :3])
     assert np.diag(fit.stiffness) == pytest.approx(asked["K"][:3], rel=0.03)
     assert np.diag(fit.damping) == pytest.approx(asked["D"][:3], rel=0.03)

@@ -73,6 +73,14 @@ def test_the_external_torque_is_noisy_and_lags():
     assert share == pytest.approx(1.0 - np.exp(-1.0), abs=0.03)
 
 
+def test_a_long_delay_keeps_every_report_until_it_arrives():
+    """Nobody asks for 0.4 s; then the state is exactly the delay old."""
+    with lk.Arm(plant=lk.Plant(state_delay=0.15), q0=READY) as arm:
+        path = steps(arm, velocity(0.1), 400)
+        assert arm.state().t == pytest.approx(arm.world.t - 0.15)
+        assert arm.state().q == pytest.approx(path[249].q)
+
+
 @pytest.mark.parametrize("plant", [lk.BAXTER, lk.Plant(velocity_noise=0.02)])
 def test_the_same_seed_gives_the_same_run_bit_for_bit(plant):
     """Noise and late ticks come from the arm's seed alone; another seed gives another run."""

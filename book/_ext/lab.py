@@ -78,6 +78,10 @@ def _names(page: BeautifulSoup) -> None:
         del icon["title"]
     for button in page.select("button.search-button-field"):
         button["aria-label"] = " ".join(button.get_text(" ").split()).replace(" + ", "+")
+    for fold in page.select("nav summary"):
+        above = fold.find_parent("li")
+        link = above.find("a") if above else None
+        fold["aria-label"] = f"Pages under {link.get_text(strip=True) if link else 'this one'}"
     for query, name in {
         ".search-button, .search-button__button": "Search",
         ".theme-switch-button": "Colour theme: light, dark or as the system",
@@ -118,6 +122,9 @@ def _tables(page: BeautifulSoup) -> None:
         box["tabindex"] = "0"
         box["role"] = "group"
         box["aria-label"] = "Table"
+    for head in page.select("th"):
+        if not head.get_text(strip=True):
+            head.name = "td"
 
 
 def _scrollers(page: BeautifulSoup) -> None:

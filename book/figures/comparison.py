@@ -83,7 +83,7 @@ def one_table(name: str, plant: str) -> HTML:
             x = [row[name] for row in pick(found()["rows"], way=way, task=task, plant=plant)]
             cells.append(f"{np.mean(x):.3g} [{min(x):.3g}, {max(x):.3g}]")
         body.append((way, *cells))
-    return table(("", *campaign.TASKS), body, f"{TABLES[name]}, {plant} arm")
+    return table(("Way", *campaign.TASKS), body, f"{TABLES[name]}, {plant} arm")
 
 
 def tables(plant: str) -> HTML:

@@ -183,7 +183,7 @@ def quiz(*questions: Question) -> HTML:
     for k, question in enumerate(questions):
         name = "quiz-" + hashlib.sha256(question.text.encode()).hexdigest()[:8]
         choices = "".join(
-            f'<label class="lab-choice"><input type="radio" name="{name}" value="{i}"> '
+            f'<label class="lab-choice"><input type="radio" name="{name}" value="{i}"{_spoken(answer)}> '
             f"<span>{answer}</span></label>"
             for i, (answer, _) in enumerate(question.answers)
         )
@@ -194,6 +194,14 @@ def quiz(*questions: Question) -> HTML:
             '<p class="lab-said" role="status"></p></fieldset>'
         )
     return HTML(f'<div class="lab-quiz tex2jax_process">{"".join(parts)}</div>')
+
+
+def _spoken(answer: str) -> str:
+    """A name for an answer that is drawn as a formula."""
+    if "\\(" not in answer:
+        return ""
+    words = re.sub(r"\\[()]", "", answer).replace("\\dot", "derivative of").replace("\\", "")
+    return f' aria-label="{escape(words)}"'
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> HTML:

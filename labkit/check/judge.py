@@ -157,8 +157,67 @@ class AtMost:
         return max(answer[name] / limit for name, limit in expected.items())
 
 
-Judge = Close | Within | AtMost
-JUDGES: dict[str, Any] = {kind.__name__: kind for kind in (Close, Within, AtMost)}
+@dataclass(frozen=True)
+class Ratio:
+    """A transfer function as data: two polynomials, highest power first.
+
+    Attributes:
+        num: Numerator.
+        den: Denominator.
+    """
+
+    num: tuple[float, ...]
+    den: tuple[float, ...]
+
+    def __call__(self, s: complex) -> complex:
+        """Its value at ``s``."""
+        return complex(np.polyval(self.num, s) / np.polyval(self.den, s))
+
+
+@dataclass(frozen=True)
+class Response:
+    """A transfer function judged by its frequency response, whatever its form.
+
+    Attributes:
+        omega: Where to compare, in [rad/s].
+        rtol: Largest difference, as a share of the expected value.
+    """
+
+    omega: tuple[float, ...]
+    rtol: float = 0.02
+
+    def __call__(self, answer: Any, expected: Any) -> str | None:
+        """None if they agree, else where they do not."""
+        try:
+            pairs = [(w, complex(answer(1j * w)), complex(expected(1j * w))) for w in self.omega]
+        except (TypeError, ValueError):
+            return f"it should be a transfer function, not {_shown(answer)}"
+        for w, a, b in pairs:
+            if not abs(a - b) <= self.rtol * abs(b):
+                return f"at {w:g} rad/s expected {_polar(b)}, got {_polar(a)}"
+        return None
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, respond alike."""
+        return self(answer, other) is None
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """How far the answer is off, in tolerances."""
+        try:
+            return max(
+                abs(complex(answer(1j * w)) / complex(expected(1j * w)) - 1.0) / self.rtol
+                for w in self.omega
+            )
+        except (TypeError, ValueError, ZeroDivisionError):
+            return float("inf")
+
+
+Judge = Close | Within | AtMost | Response
+JUDGES: dict[str, Any] = {kind.__name__: kind for kind in (Close, Within, AtMost, Response)}
+
+
+def _polar(z: complex) -> str:
+    return f"{abs(z):.4g} at {np.degrees(np.angle(z)):.4g} degrees"
 
 
 def _flat(value: Any) -> list[Any]:

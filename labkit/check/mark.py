@@ -12,7 +12,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .judge import AtMost, Judge
-from .question import Call, Case, Mistake, Question, Raised, Test
+from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test
 
 
 class Outcome(Enum):
@@ -121,8 +121,12 @@ def mark(question: Question, function: Callable[..., Any]) -> Verdict:
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
     """The known mistake that gives just these answers on the public calls, if there is one."""
     for mistake in question.mistakes:
-        if len(answers) == len(mistake.answers) and all(
-            _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
+        if (
+            answers
+            and len(answers) == len(mistake.answers)
+            and all(
+                _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
+            )
         ):
             return mistake
     return None
@@ -161,19 +165,30 @@ def _try(test: Test, question: Question, function: Callable[..., Any], answers: 
     """Put the cases of one test, until one fails."""
     for case in test.cases:
         answer = _answer(case, function)
-        if isinstance(case, Call) and not case.hidden:
+        if not isinstance(case, Loop) and not case.hidden:
             answers[id(case)] = answer
         where = f"a hidden case ({test.also})" if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
             outcome = Outcome.NOT_ATTEMPTED if answer.not_attempted else Outcome.ERROR
             says = f"{where} raised {answer.kind if case.hidden else answer.sentence}"
             return TestResult(test.name, test.weight, outcome, says, case.hidden)
-        judge = question.judge if isinstance(case, Call) else AtMost()
-        found = judge(answer, case.expected)
+        found = _difference(question, case, answer)
         if found is not None:
             says = where if case.hidden else f"{where}: {found}"
             return TestResult(test.name, test.weight, Outcome.WRONG, says, case.hidden)
     return TestResult(test.name, test.weight, Outcome.RIGHT)
+
+
+def _difference(question: Question, case: Case, answer: Any) -> str | None:
+    """How an answer differs from what is expected; None if it does not."""
+    if isinstance(case, Call):
+        return question.judge(answer, case.expected)
+    if isinstance(case, Choice):
+        try:
+            answer = case.measured(answer)
+        except LabkitError as error:
+            return str(error)
+    return AtMost()(answer, case.expected)
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:

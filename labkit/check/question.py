@@ -14,9 +14,11 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from ..arm import Arm
-from ..metrics import summary
+from ..errors import TypeMismatch
+from ..metrics import since, summary
 from ..plant import IDEAL, Plant
 from ..run import run
+from ..trials import Runner, Trials
 from .codec import decode, encode
 from .judge import JUDGES, Judge
 
@@ -61,6 +63,7 @@ class Loop:
         q0: Where it starts, shape (7,) in [rad]; None is its ready pose.
         rate: Control rate, in [Hz].
         duration: In [s]; None takes the target's.
+        settle: How long it may take to recover from its start, in [s]; measured from then on.
         expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
         hidden: Whether the student never sees it.
     """
@@ -73,6 +76,7 @@ class Loop:
     q0: Any = None
     rate: float = 200.0
     duration: float | None = None
+    settle: float = 0.0
     expected: Any = field(default_factory=dict)
     hidden: bool = False
 
@@ -88,15 +92,54 @@ class Loop:
             log = run(arm, self.target, controller, self.rate, self.duration)
         finally:
             arm.world.close()
-        return asdict(summary(log, arm.model))
+        return asdict(summary(since(log, self.settle), arm.model))
 
     def shown(self, name: str) -> str:
         """The run in words."""
         return f"a run of the {self.plant.name} {self.side} arm with {name} as its controller"
 
 
-Case = Call | Loop
-_CASES: dict[str, Any] = {"Call": Call, "Loop": Loop}
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """The student's function chooses gains with a runner that has a limited number of tries.
+
+    Attributes:
+        trials: What the runner knows.
+        expected: Largest allowed ``worst_mm``.
+        unseen: What the choice is tried on instead; None takes ``trials`` again.
+        budget: How many tries the runner has.
+        hidden: Whether the student never sees it.
+    """
+
+    trials: Trials
+    expected: Any
+    unseen: Trials | None = None
+    budget: int = 20
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The gains that the function chooses, with a fresh runner."""
+        return function(Runner(self.trials, self.budget))
+
+    def measured(self, answer: Any) -> dict[str, float]:
+        """The worst error that the chosen gains give, in [mm].
+
+        Raises:
+            LabkitError: The answer is no pair of gains that were recorded.
+        """
+        try:
+            Kp, Kd = answer
+        except (TypeError, ValueError):
+            raise TypeMismatch("the answer should be two gains, (Kp, Kd)") from None
+        return {"worst_mm": (self.unseen or self.trials).worst(Kp, Kd)}
+
+    def shown(self, name: str) -> str:
+        """The choice in words."""
+        return f"{name}(runner) with {self.budget} tries"
+
+
+Case = Call | Loop | Choice
+_CASES: dict[str, Any] = {"Call": Call, "Loop": Loop, "Choice": Choice}
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,10 +212,10 @@ class Question:
     mistakes: tuple[Mistake, ...] = ()
 
     @property
-    def calls(self) -> tuple[Call, ...]:
+    def calls(self) -> tuple[Call | Choice, ...]:
         """The public calls, on which fingerprints are taken."""
         cases = (case for test in self.tests for case in test.cases)
-        return tuple(case for case in cases if isinstance(case, Call) and not case.hidden)
+        return tuple(case for case in cases if not isinstance(case, Loop) and not case.hidden)
 
     def public(self) -> Question:
         """The same question without its hidden cases."""
@@ -234,8 +277,7 @@ def read_question(data: Mapping[str, Any]) -> Question:
     """The question that `Question.data` wrote."""
     judge = dict(data["judge"])
     kind = JUDGES[judge.pop("kind")]
-    if "parts" in judge:
-        judge["parts"] = tuple(judge["parts"])
+    judge = {key: tuple(x) if isinstance(x, list) else x for key, x in judge.items()}
     return Question(
         name=data["name"],
         points=data["points"],
