@@ -153,7 +153,7 @@ class Camera:
         size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
         picture = self._draw(T_wc, looks, size, FAR, np.eye(2), (size.width, size.height))
         if self.samples > 1:
-            self._refine(picture, T_wc, looks, whole=True)
+            self._refine(picture, T_wc, looks)
         return self._developed(picture, [size])
 
     def glimpse(self) -> Picture:
@@ -169,7 +169,7 @@ class Camera:
         T_wc, looks = self._focus()
         shape = (self.intrinsics.height, self.intrinsics.width, 3)
         picture = np.full(shape, BACKGROUND, np.uint8)
-        return self._developed(picture, self._refine(picture, T_wc, looks, whole=False))
+        return self._developed(picture, self._refine(picture, T_wc, looks))
 
     def _in_hand(self, q: Array) -> Array:
         arm = self._hand
@@ -194,20 +194,20 @@ class Camera:
             )
         return T_wc, looks
 
-    def _refine(self, picture: Picture, T_wc: Array, looks: Looks, *, whole: bool) -> list[Window]:
-        """Draw the windows around the tags finely, with or without what is behind the tags."""
+    def _refine(self, picture: Picture, T_wc: Array, looks: Looks) -> list[Window]:
+        """Draw tags, and what may hide them, finely over the picture."""
         windows = []
         for board in [thing for thing in self.world.shown if isinstance(thing, Board)]:
             place = self._window(board, T_wc)
             if place is None:
                 continue
             window, depth = place
-            behind = {} if whole else self._behind(board)
+            behind = self._behind(board)
             self._paint(behind, 0.0)
-            picture[window.rows, window.columns] = self._finely(
-                T_wc, looks, window, FAR if whole else depth
-            )
+            fine = self._finely(T_wc, looks, window, depth)
             self._paint(behind, 1.0)
+            part = picture[window.rows, window.columns]
+            np.copyto(part, fine, where=(fine != BACKGROUND).any(axis=2, keepdims=True))
             windows.append(window)
         return windows
 
