@@ -25,10 +25,11 @@ from .scene import Push, Spring, Table, Wall
 from .world import World
 
 if TYPE_CHECKING:
-    from . import check, plotting
+    from . import check, plotting, replay
     from .board import Board
     from .camera import Camera, looking_at
     from .detection import detect_tags, find_tag
+    from .dials import dials
     from .intrinsics import Intrinsics
     from .looking import Following, Lookups, Reading
     from .ready import ready
@@ -52,6 +53,8 @@ _LATER = {
     "ready": "ready",
 }
 """Where to find what is loaded when first asked for: OpenCV and Matplotlib are slow to import."""
+_LATER = {"check": "", "dials": "dials", "plotting": "", "ready": "ready", "replay": ""}
+"""Loaded when first asked for: drawing packages are slow to import."""
 
 
 def __getattr__(name: str) -> Any:
@@ -108,6 +111,7 @@ __all__ = [
     "check",
     "controllers",
     "detect_tags",
+    "dials",
     "energy",
     "errors",
     "find_tag",
@@ -117,6 +121,7 @@ __all__ = [
     "metrics",
     "plotting",
     "ready",
+    "replay",
     "robot",
     "run",
     "se3",

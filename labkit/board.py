@@ -32,6 +32,7 @@ class Board:
     Attributes:
         tag: What is printed on it.
         world: Where it is.
+        bodies: PyBullet's numbers of its paper and its plate.
     """
 
     def __init__(self, world: World, tag: Tag, T_wm: Any) -> None:
@@ -105,7 +106,7 @@ class Board:
         """Put what cameras see where it belongs; they call it before each picture."""
         T = self.T_wm
         place, turn = T[:3, 3].tolist(), se3.quaternion(T[:3, :3]).tolist()
-        for body in self._bodies:
+        for body in self.bodies:
             bullet.resetBasePositionAndOrientation(
                 body, place, turn, physicsClientId=self.world.client
             )
@@ -130,13 +131,13 @@ class Board:
                 rgbaColor=[0.5, 0.5, 0.5, 1],
                 physicsClientId=client,
             )
-            self._bodies = tuple(
+            self.bodies = tuple(
                 bullet.createMultiBody(0, -1, shape, physicsClientId=client)
                 for shape in (paper, plate)
             )
             print_on = bullet.loadTexture(str(texture), physicsClientId=client)
             bullet.changeVisualShape(
-                self._bodies[0], -1, textureUniqueId=print_on, physicsClientId=client
+                self.bodies[0], -1, textureUniqueId=print_on, physicsClientId=client
             )
 
 

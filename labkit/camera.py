@@ -1,15 +1,14 @@
-r"""A camera in the world: fixed somewhere, or in the robot's hand.
+"""A camera in the world: fixed somewhere, or in the robot's hand.
 
 PyBullet's software renderer looks at one point in the middle of each pixel.  A real pixel collects
-light from its whole area, and edges are only as sharp as that; so tags are drawn several times as
-fine and averaged down, which costs little, for they are small.
+light from its whole area; so tags are drawn on a finer grid and averaged down, which costs little,
+for they are small.
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import cv2
 import numpy as np
 
 from . import se3
@@ -73,7 +72,7 @@ class Camera:
         world: What it looks at.
         intrinsics: Its lens and sensor.
         noise: Standard deviation of each colour of each pixel, in grey levels.
-        samples: How many times as fine tags are drawn, along each side.
+        samples: How fine tags are drawn: at s^2 + 1 points of each pixel.
     """
 
     def __init__(
@@ -94,7 +93,8 @@ class Camera:
                 `looking_at` makes one.
             intrinsics: Lens and sensor; None is 640 x 480 pixels and a focal length of 515 px.
             noise: Standard deviation of each colour of each pixel, in grey levels of 255.
-            samples: How many times as fine tags are drawn; 1 shows the renderer's own jagged edges.
+            samples: s, for s^2 + 1 points of each pixel on a tag; 1 shows the renderer's own jagged
+                edges.
             seed: Of the noise.
         """
         self.world = world
@@ -151,9 +151,9 @@ class Camera:
         """
         T_wc, looks = self._focus()
         size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
-        picture = self._draw(T_wc, looks, size, 1, FAR)
+        picture = self._draw(T_wc, looks, size, FAR, np.eye(2), (size.width, size.height))
         if self.samples > 1:
-            self._refine(picture, T_wc, looks, whole=True)
+            self._refine(picture, T_wc, looks)
         return self._developed(picture, [size])
 
     def glimpse(self) -> Picture:
@@ -169,7 +169,7 @@ class Camera:
         T_wc, looks = self._focus()
         shape = (self.intrinsics.height, self.intrinsics.width, 3)
         picture = np.full(shape, BACKGROUND, np.uint8)
-        return self._developed(picture, self._refine(picture, T_wc, looks, whole=False))
+        return self._developed(picture, self._refine(picture, T_wc, looks))
 
     def _in_hand(self, q: Array) -> Array:
         arm = self._hand
@@ -194,21 +194,20 @@ class Camera:
             )
         return T_wc, looks
 
-    def _refine(self, picture: Picture, T_wc: Array, looks: Looks, *, whole: bool) -> list[Window]:
-        """Draw the windows around the tags finely, with or without what is behind the tags."""
+    def _refine(self, picture: Picture, T_wc: Array, looks: Looks) -> list[Window]:
+        """Draw tags, and what may hide them, finely over the picture."""
         windows = []
-        for board in self.world.shown:
-            place = self._window(board, T_wc) if isinstance(board, Board) else None
+        for board in [thing for thing in self.world.shown if isinstance(thing, Board)]:
+            place = self._window(board, T_wc)
             if place is None:
                 continue
             window, depth = place
-            fine = self._draw(T_wc, looks, window, self.samples, FAR if whole else depth)
-            if self.samples > 1:
-                size = (window.width, window.height)
-                fine = np.asarray(
-                    cv2.resize(fine, size, interpolation=cv2.INTER_AREA), dtype=np.uint8
-                )
-            picture[window.rows, window.columns] = fine
+            behind = self._behind(board)
+            self._paint(behind, 0.0)
+            fine = self._finely(T_wc, looks, window, depth)
+            self._paint(behind, 1.0)
+            part = picture[window.rows, window.columns]
+            np.copyto(part, fine, where=(fine != BACKGROUND).any(axis=2, keepdims=True))
             windows.append(window)
         return windows
 
@@ -228,28 +227,99 @@ class Camera:
             corners[:, 2].max()
         )
 
-    def _draw(self, T_wc: Array, looks: Looks, window: Window, fine: int, depth: float) -> Picture:
-        """Let PyBullet draw a part of the picture.
+    def _behind(self, board: Board) -> dict[int, Any]:
+        """Colours of the plain bodies that lie behind a board's plane and so cannot hide it."""
+        client, T_wm = self.world.client, board.T_wm
+        ours = {body for thing in self.world.shown for body in thing.bodies}
+        found = {}
+        for i in range(bullet.getNumBodies(physicsClientId=client)):
+            body = bullet.getBodyUniqueId(i, physicsClientId=client)
+            if body in ours or bullet.getNumJoints(body, physicsClientId=client):
+                continue
+            box = np.array(bullet.getAABB(body, physicsClientId=client)) - T_wm[:3, 3]
+            if np.maximum(*(box * T_wm[:3, 2])).sum() <= 0.0:  # its foremost corner
+                shapes = bullet.getVisualShapeData(body, physicsClientId=client)
+                if len(shapes) == 1:
+                    found[body] = shapes[0][7]
+        return found
 
-        Its sample points, measured in ``tests/test_camera.py``, are columns 0, 1, ... counted from
-        the left edge of the frustum and rows 1, 2, ... counted from the upper one.
+    def _paint(self, bodies: dict[int, Any], opacity: float) -> None:
+        """Show bodies in their colours, times an opacity."""
+        for body, (*rgb, alpha) in bodies.items():
+            bullet.changeVisualShape(
+                body, -1, rgbaColor=[*rgb, alpha * opacity], physicsClientId=self.world.client
+            )
+
+    def _finely(self, T_wc: Array, looks: Looks, window: Window, depth: float) -> Picture:
+        """Draw a window on a finer grid, turned so that no two samples of a pixel share a row.
+
+        With s for `samples` a pixel holds s^2 + 1 points of the grid, all at different heights and
+        at different places from left to right; an edge along the picture's own rows, which is
+        common, then shows where it is to that part of a pixel.
         """
-        lens = self.intrinsics
-        # Borders of the window on the plane z = 1 of the camera's frame.
+        s = self.samples
+        if s == 1:
+            return self._draw(T_wc, looks, window, depth, np.eye(2), (window.width, window.height))
+        turn = np.array([[s, -1], [1, s]])  # from pixels to the fine grid
+        size = (s * window.width + window.height + 2 * s, window.width + s * window.height + 2 * s)
+        first = np.array([window.height + s - 1, s])  # where the first pixel's middle comes to lie
+        fine = self._draw(T_wc, looks, window, depth, turn, size, first).reshape(-1, 3)
+        column, row = np.meshgrid(np.arange(window.width), np.arange(window.height))
+        middles = (s * column - row + first[0]) + size[0] * (column + s * row + first[1])
+        near = np.mgrid[-s : s + 1, -s : s + 1].reshape(2, -1).T
+        inside = (np.abs(near @ np.linalg.inv(turn).T + 1e-9) < 0.5).all(axis=1)
+        offsets = near[inside] @ (1, size[0])
+        total = np.zeros((window.height, window.width, 3), dtype=np.uint16)
+        for offset in offsets:
+            total += fine[middles + offset]
+        return ((total + len(offsets) // 2) // len(offsets)).astype(np.uint8)
+
+    def _draw(
+        self,
+        T_wc: Array,
+        looks: Looks,
+        window: Window,
+        depth: float,
+        grid: Any,
+        size: tuple[int, int],
+        first: Any = (0, 0),
+    ) -> Picture:
+        """Let PyBullet draw a part of the picture, its middles of pixels on a grid of its own.
+
+        PyBullet's sample points, measured in ``tests/test_camera.py``, are columns 0, 1, ... from
+        the left edge of what its projection matrix takes in, and rows 1, 2, ... from the upper.
+
+        Args:
+            T_wc: Pose of the camera, shape (4, 4).
+            looks: The robot.
+            window: Which part.
+            depth: Up to how far away, in [m].
+            grid: From pixels to steps of the grid, shape (2, 2).
+            size: Columns and rows of the grid.
+            first: Where on the grid the window's first pixel comes to lie.
+        """
+        lens, (wide, tall) = self.intrinsics, size
         x0, y0 = window.left - 0.5, window.top - 0.5
         left, right = (x0 - lens.cx) / lens.fx, (x0 + window.width - lens.cx) / lens.fx
         top, bottom = (y0 - lens.cy) / lens.fy, (y0 + window.height - lens.cy) / lens.fy
         self._cull(looks, T_wc, (left, right, top, bottom), depth)
-        dx, dy = -0.5 / (fine * lens.fx), 0.5 / (fine * lens.fy)  # onto the middles of the pixels
-        frustum = (left - dx, right - dx, -(bottom - dy), -(top - dy))
-        projection = bullet.computeProjectionMatrix(*(NEAR * x for x in frustum), NEAR, depth)
+        (a, b), (c, d) = grid @ np.diag([lens.fx, lens.fy])
+        e, f = grid @ (lens.cx - window.left, lens.cy - window.top) + first
+        span = depth - NEAR
+        projection = np.array(
+            [
+                [2 * a / wide, -2 * b / wide, 1 - 2 * e / wide, 0],
+                [-2 * c / tall, 2 * d / tall, 2 * (f + 1) / tall - 1, 0],
+                [0, 0, -(depth + NEAR) / span, -2 * depth * NEAR / span],
+                [0, 0, -1, 0],
+            ]
+        )
         view = np.diag([1.0, -1.0, -1.0, 1.0]) @ se3.inverse(T_wc)
-        width, height = window.width * fine, window.height * fine
         _, _, rgba, _, _ = bullet.getCameraImage(
-            width,
-            height,
+            wide,
+            tall,
             view.T.ravel().tolist(),
-            projection,
+            projection.T.ravel().tolist(),
             lightDirection=_LIGHT,
             shadow=0,
             renderer=bullet.ER_TINY_RENDERER,
@@ -257,7 +327,7 @@ class Camera:
             physicsClientId=self.world.client,
         )
         return np.ascontiguousarray(
-            np.asarray(rgba, dtype=np.uint8).reshape(height, width, 4)[..., :3]
+            np.asarray(rgba, dtype=np.uint8).reshape(tall, wide, 4)[..., :3]
         )
 
     @staticmethod

@@ -101,9 +101,9 @@ def _on_dask(job: Job, todo: list[Row], address: str, tell: Progress) -> list[Ro
         import distributed
     except ImportError:
         raise ImportError('a Dask cluster needs the extra: pip install "labkit[cluster]"') from None
-    with distributed.Client(address) as client:  # type: ignore[no-untyped-call]
+    with distributed.Client(address) as client:
         futures = client.map(row_of, [job] * len(todo), todo, pure=False)
-        finished = distributed.as_completed(futures)  # type: ignore[no-untyped-call]
+        finished = distributed.as_completed(futures)
         for done, _ in enumerate(finished, start=1):
             tell(done, len(todo))
         return list(client.gather(futures))

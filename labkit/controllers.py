@@ -1,11 +1,12 @@
-"""The controllers that are given: to hold still, and to follow blindly.  The rest is the course."""
+"""The controllers that are given: hold still, follow blindly, springs.  The rest is the course."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from .commands import JointPosition, JointVelocity, State
+from .arrays import as_gains
+from .commands import JOINTS, JointPosition, JointTorque, JointVelocity, State
 from .errors import ControllerError
 from .motion import Sample
 
@@ -36,3 +37,21 @@ def feedforward(state: State, target: Sample) -> JointVelocity:
             "makes one"
         )
     return JointVelocity(target.velocity)
+
+
+def springs(kp: Any, kd: Any) -> Callable[[State, Sample], JointTorque]:
+    """A spring and a damper at each joint and no model behind them, as in Rethink's own example.
+
+    The arm must carry its own weight, or it sags.
+
+    Args:
+        kp: Stiffness, shape (7,) or one number, in [N m/rad].
+        kd: Damping, shape (7,) or one number, in [N m s/rad].
+    """
+    stiffness, damping = as_gains(kp, JOINTS, "kp"), as_gains(kd, JOINTS, "kd")
+
+    def springs(state: State, target: Sample) -> JointTorque:
+        e, de = target.position - state.q, target.velocity - state.dq
+        return JointTorque(stiffness * e + damping * de)
+
+    return springs

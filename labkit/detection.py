@@ -26,7 +26,7 @@ from .errors import LabkitError, TypeMismatch
 from .intrinsics import Intrinsics
 from .tags import APRILTAG, Picture, as_picture, pattern, tag_corners
 
-CORNER_NOISE = 0.05
+CORNER_NOISE = 0.035
 """Standard deviation of a corner's coordinate, in [px], without image noise (`bench.tags`)."""
 
 _APRILTAG_OFFSET = 0.5  # OpenCV's AprilTag code counts pixels from their corners

@@ -73,6 +73,7 @@ class Looks:
 
     Attributes:
         world: Where it stands.
+        bodies: PyBullet's numbers of the pieces.
         poses: Pose of each piece in the world at the last update, shape (pieces, 4, 4).
     """
 
@@ -85,8 +86,8 @@ class Looks:
     def __init__(self, world: World) -> None:
         """Load the meshes into ``world``."""
         self.world = world
-        self._bodies = [self._load(piece) for piece in pieces()]
-        self._seen = np.ones(len(self._bodies), dtype=bool)
+        self.bodies = [self._load(piece) for piece in pieces()]
+        self._seen = np.ones(len(self.bodies), dtype=bool)
         self._centres = np.array([[*p.mesh.centre, 1.0] for p in pieces()])
         self._radii = np.array([p.mesh.radius for p in pieces()])
         self._at: bytes = b""
@@ -103,7 +104,7 @@ class Looks:
         self._at = now
         frames = joint_frames(q)
         self.poses = np.array([frames[piece.parent] @ piece.T_jp for piece in pieces()])
-        for body, T in zip(self._bodies, self.poses, strict=True):
+        for body, T in zip(self.bodies, self.poses, strict=True):
             bullet.resetBasePositionAndOrientation(
                 body,
                 T[:3, 3].tolist(),
@@ -125,7 +126,7 @@ class Looks:
         for i in np.flatnonzero(wanted != self._seen):
             *rgb, opacity = pieces()[i].colour
             bullet.changeVisualShape(
-                self._bodies[i],
+                self.bodies[i],
                 -1,
                 rgbaColor=[*rgb, opacity if wanted[i] else 0.0],
                 physicsClientId=self.world.client,

@@ -5,7 +5,7 @@ An error is always target minus actual.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -111,6 +111,18 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
 
 SETTLED = 5e-3
 """The tip has settled when it is no further than this from its target, in [m]."""
+
+
+def since(log: Log, t: float) -> Log:
+    """The rows of a run from a time ``t`` [s] on; its clock runs on."""
+    first = int(np.searchsorted(log.t, t - 1e-9))
+    cut: dict[str, Any] = {
+        f.name: column[first:]
+        for f in fields(log)
+        if isinstance(column := getattr(log, f.name), np.ndarray)
+    }
+    target, measured = (type(x)(*(part[first:] for part in x)) for x in (log.target, log.measured))
+    return replace(log, **cut, target=target, measured=measured)
 
 
 @dataclass(frozen=True)

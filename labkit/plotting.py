@@ -9,6 +9,8 @@ from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
+from IPython.core.getipython import get_ipython
+from IPython.display import display
 from matplotlib import colors
 from matplotlib.figure import Figure
 
@@ -201,6 +203,19 @@ def error_map(found: ErrorMap, point: tuple[float, float] | None = None, *, ax: 
         ax.plot([], [], "s", color="0.75", markersize=10, label="arm lost")
     ax.legend(loc="upper left", fontsize="small", facecolor="0.45", labelcolor="w", framealpha=0.9)
     return ax
+
+
+def show(caption: str) -> None:
+    """Show the current figure with a caption, which is its alternative text too.
+
+    Args:
+        caption: What is to be seen, with its numbers; a line under the figure.
+    """
+    figure = plt.gcf()
+    if get_ipython() is not None:
+        display(figure, metadata={"image/png": {"alt": caption}})
+    print(caption)
+    plt.close(figure)
 
 
 def answers(call: str, expected: Any, given: Any) -> Any:

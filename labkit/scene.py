@@ -246,7 +246,7 @@ def _build_box(world: World, T_wf: Array, thing: Any) -> None:
         baseMass=0.0,
         baseCollisionShapeIndex=shape,
         baseVisualShapeIndex=look,
-        basePosition=(T_wf[:3, 3] - 0.5 * _FACE * T_wf[:3, 2]).tolist(),
+        basePosition=(T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
         baseOrientation=se3.quaternion(T_wf[:3, :3]).tolist(),
         physicsClientId=world.client,
     )

@@ -40,7 +40,7 @@ class Setup:
         tilt: Range of the angle between the tag's normal and the ray on which it is seen, in [rad].
         intrinsics: Lens and sensor.
         noise: Of each colour of each pixel, standard deviation in grey levels.
-        samples: How many times as fine the tag is drawn; see `Camera`.
+        samples: How fine the tag is drawn; see `Camera`.
         spread: How far from the middle of the picture the tag may be, as a share of the picture.
     """
 

@@ -1,4 +1,4 @@
-"""Figures of a camera's readings.  Each takes values and `axes=None`, and gives what it drew on."""
+"""Figures of tags read and followed.  Each takes values and `axes=None`, gives what it drew on."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
+from .motion import PoseSample
 from .plotting import STYLES
+from .run import Log
 from .sensing import Quality, Readings
 
 UNITS = {
@@ -72,3 +74,30 @@ def ambiguity(readings: Readings, *, ax: Any = None) -> Any:
     ax.set_ylabel("orientation error [degrees]")
     ax.legend(frameon=False)
     return ax
+
+
+def following(runs: Mapping[str, tuple[Log, Any]], *, axes: Any = None) -> Any:
+    """Runs after a moving tag: distance from where the tip should be, and the reference's speed.
+
+    Args:
+        runs: For each name a log and the tip's error, shape (N, 3) in [m].
+        axes: Two axes to draw on; None makes a figure.
+
+    Returns:
+        The two axes.
+    """
+    if axes is None:
+        _, axes = plt.subplots(2, 1, figsize=(8, 5), sharex=True, layout="constrained")
+    above, below = axes
+    for k, (name, (log, error)) in enumerate(runs.items()):
+        look: dict[str, Any] = {"color": f"C{k}", "linestyle": STYLES[k % 4], "label": name}
+        above.semilogy(log.t, 1e3 * np.linalg.norm(error, axis=1), **look)
+        wanted = log.target
+        v = wanted.twist[:, :3] if isinstance(wanted, PoseSample) else wanted.velocity
+        below.plot(log.t, np.linalg.norm(v, axis=1), **look)
+    above.set_ylim(bottom=0.5)
+    above.set_ylabel("tip's error [mm]")
+    below.set_ylabel("reference's speed [m/s]")
+    below.set_xlabel("time [s]")
+    above.legend(frameon=False)
+    return axes

@@ -49,6 +49,10 @@ class Pushable(Protocol):
 class Shown(Protocol):
     """Something that cameras see and the physics does not."""
 
+    @property
+    def bodies(self) -> Iterable[int]:
+        """PyBullet's numbers of what is seen."""
+
     def update(self) -> None:
         """Put its looks where they belong now."""
 

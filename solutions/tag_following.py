@@ -110,7 +110,7 @@ class TagFollower:
     offset: Any
     horizon: float = 0.45
     coast: float = 0.5
-    acceleration: float = 0.3
+    acceleration: float = 0.27
     accel_noise: float = 0.005
     speed: float = 0.1
     estimate: Estimate | None = field(default=None, init=False)

@@ -30,7 +30,7 @@ class SequentialServoing:
 
     T_wt: Any
     offset: Any
-    duration: float = 3.0
+    duration: float = 6.0
     moved: float = 0.005
 
     def __post_init__(self) -> None:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit import sensing, sensor_plots
+from labkit import se3, sensing, sensor_plots
 from labkit.errors import OutOfRange, UnknownName
 from labkit.estimation import average_pose, low_pass, low_pass_noise
 from labkit.sensing import Readings, Setup, quality, random_poses, read, sweep
@@ -82,6 +82,13 @@ def test_the_detectors_covariance_is_of_the_size_of_its_errors():
     expected = np.sqrt(np.einsum("nii->ni", seen.covariance)[:, :3].mean(axis=0))
     had = np.sqrt(np.mean(seen.error[:, :3] ** 2, axis=0))
     assert (had / expected > 0.5).all() and (had / expected < 2.0).all()
+
+
+def test_a_tag_square_to_the_camera_is_read_as_well_as_any():
+    """Edges along the rows and columns of the picture, where plain sampling is worst."""
+    straight = [se3.pose(np.diag([1, -1, -1.0]), np.array([0, 0, z])) for z in (0.5, 0.7, 0.9, 1.1)]
+    error = read(Setup(), straight).error
+    assert np.abs(error[:, 2]).max() < 1.5e-3
 
 
 def test_a_tag_too_far_away_is_counted_as_missed():

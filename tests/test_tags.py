@@ -103,7 +103,7 @@ def test_several_boards_are_seen_at_once():
     with lk.World() as world:
         down = np.diag([1.0, -1.0, -1.0])
         for number, x, size in ((4, 2.9, 0.1), (9, 3.1, 0.06)):
-            lk.Board(world, lk.Tag(number, size), turned(0.3, (x, 3.0, 0.0)))
+            lk.Board(world, lk.Tag(number, size), turned(0.0, (x, 3.0, 0.0)))
         camera = lk.Camera(world, se3.pose(down, np.array([3.0, 3.0, 0.7])))
         seen = lk.detect_tags(camera.image(), camera, {4: 0.1, 9: 0.06})
         assert [d.id for d in seen] == [4, 9]

@@ -5,10 +5,10 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
-from .judge import AtMost, Close, Response, Within
+from .judge import AtMost, Close, Gains, Response, Within
 from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
-from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, read_question
+from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned, read_question
 
 __all__ = [
     "AtMost",
@@ -16,6 +16,7 @@ __all__ = [
     "Choice",
     "Close",
     "Failed",
+    "Gains",
     "Loop",
     "Mistake",
     "Outcome",
@@ -24,6 +25,7 @@ __all__ = [
     "Response",
     "Test",
     "TestResult",
+    "Tuned",
     "Verdict",
     "Within",
     "also",

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import commands, motion, paths, plant, scalings
+from .. import commands, motion, paths, plant, scalings, scene
 from ..arrays import locked
 from ..errors import TypeMismatch
 from ..model import Model
@@ -42,6 +42,10 @@ GIVEN = (
     motion.Trajectory,
     motion.PosePath,
     plant.Plant,
+    scene.Push,
+    scene.Spring,
+    scene.Table,
+    scene.Wall,
     Log,
     Trials,
     Runner,
