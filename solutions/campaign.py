@@ -38,6 +38,7 @@ from labkit import (
     tasks,
 )
 from labkit.campaign import Job, Meter, Row, cells, pick, table, work_through
+from labkit.recorded import keep_campaign
 from labkit.tasks import Task
 
 from .claims import Verdict, verdicts
@@ -261,6 +262,7 @@ def main() -> None:
     parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
+    parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
     options = parser.parse_args()
     where = {"jobs": options.jobs, "dask": options.dask}
     began = time.monotonic()
@@ -294,6 +296,8 @@ def main() -> None:
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    if options.keep:
+        keep_campaign(rows)
     print(text)
     made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
     print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
