@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-import labkit
 from labkit import (
     BAXTER,
     IDEAL,
@@ -39,6 +38,7 @@ from labkit import (
     tasks,
 )
 from labkit.campaign import Job, Meter, Row, cells, pick, table, work_through
+from labkit.recorded import keep_campaign
 from labkit.tasks import Task
 
 from .claims import Verdict, verdicts
@@ -219,9 +219,6 @@ def derivative(Kd: float, plant: str, seed: int) -> Mapping[str, float]:
     }
 
 
-KEPT = Path(labkit.__file__).parent / "data" / "campaign.json"
-"""Where `labkit.recorded.campaign` finds its rows: five seeds, by ``--seeds 5 --keep``."""
-
 TABLES = {
     "late_rms_mm": "RMS position error after the first second [mm]",
     "late_max_mm": "Largest position error after the first second [mm]",
@@ -252,16 +249,6 @@ def tables(rows: list[Row], judged: list[Verdict]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def kept(rows: list[Row]) -> str:
-    """The rows as notebooks get them: JSON, one to a line, four digits."""
-    short = [
-        {k: float(f"{v:.4g}") if isinstance(v, float) else v for k, v in row.items()}
-        for row in rows
-    ]
-    lines = ",\n".join(json.dumps(_without(row, "digest"), allow_nan=False) for row in short)
-    return f"[\n{lines}\n]\n"
-
-
 def _without(row: Row, key: str) -> Row:
     return {name: value for name, value in row.items() if name != key}
 
@@ -276,9 +263,7 @@ def main() -> None:
     parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
-    parser.add_argument(
-        "--keep", action="store_true", help="and write labkit/data/campaign.json for the notebooks"
-    )
+    parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
     options = parser.parse_args()
     where = {"jobs": options.jobs, "dask": options.dask}
     began = time.monotonic()
@@ -290,8 +275,6 @@ def main() -> None:
     seconds = time.monotonic() - began
     gains = done(converge, gain_grid(options.seeds), "gains")
     noise = done(derivative, noise_grid(options.seeds), "noise")
-    if options.keep:
-        KEPT.write_text(kept(rows))
     judged = verdicts(rows, gains, noise) if options.seeds > 1 else []
     folder = options.out / "campaign"
     folder.mkdir(parents=True, exist_ok=True)
@@ -314,6 +297,8 @@ def main() -> None:
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    if options.keep:
+        keep_campaign(rows)
     print(text)
     made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
     print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
