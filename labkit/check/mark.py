@@ -147,7 +147,8 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
 
 def _outcome(results: tuple[TestResult, ...]) -> Outcome:
     """What the tests come to together."""
-    outcomes = {result.outcome for result in results}
+    tried = zip(question.tests, results, strict=True)
+    outcomes = {result.outcome for test, result in tried if test.cases}
     if len(outcomes) == 1:
         return outcomes.pop()
     return Outcome.WRONG if Outcome.WRONG in outcomes else Outcome.ERROR
