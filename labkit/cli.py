@@ -3,44 +3,55 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 
 from . import __version__
 from .errors import LabkitError
 
 EXAMPLES = """examples:
-  labkit release                    make all assignments, for students and for nbgrader
-  labkit release 01_paths --seed 7  one of them, with hidden cases of your own
-  labkit grade 01_paths             grade everything under submitted/
+  labkit submit-check 01_paths.ipynb    before handing in: is the notebook whole?
+"""
+EXAMPLES_FOR_INSTRUCTORS = """\
+  labkit release                        make all assignments, for students and for graders
+  labkit release 01_paths --seed 7      one of them, with hidden cases of your own
+  labkit student-bundle                 a zip for students, with a start page
+  labkit grade 01_paths                 grade everything under submitted/
 """
 
 
 def parser() -> argparse.ArgumentParser:
-    """The command's words."""
+    """The command's words; a students' repository comes without those of instructors."""
+    instructors = find_spec("labkit.grade") is not None
     top = argparse.ArgumentParser(
         prog="labkit",
         description="A teaching laboratory for robot control.",
-        epilog=EXAMPLES,
+        epilog=EXAMPLES + EXAMPLES_FOR_INSTRUCTORS * instructors,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     top.add_argument("--version", action="version", version=f"labkit {__version__}")
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
 
-    verb = verbs.add_parser("release", help="make the students' notebooks")
-    verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
-    verb.add_argument("--seed", type=int, default=2019, help="of the hidden cases (default: 2019)")
-    _course(verb)
-    verb.set_defaults(do=_release)
+    verb = verbs.add_parser("submit-check", help="before handing in: is the notebook whole?")
+    verb.add_argument("notebook", type=Path, metavar="NOTEBOOK")
+    verb.add_argument("--forum", action="store_true", help="print a block to copy into a forum")
+    verb.set_defaults(do=_submit_check)
 
-    from .grade import verbs as instructors
-    from .grade import verbs_term
+    verb = verbs.add_parser("merge", help="bring your work into a corrected release")
+    verb.add_argument("mine", type=Path, metavar="MINE", help="the notebook you worked in")
+    verb.add_argument("new", type=Path, metavar="NEW", help="the corrected one")
+    verb.add_argument("--to", type=Path, required=True, metavar="FILE", help="where to write")
+    verb.set_defaults(do=_merge)
 
-    instructors.add_grade(verbs)
-    instructors.add_make_class(verbs)
-    instructors.add_doctor(verbs)
-    verbs_term.add_all(verbs)
+    if instructors:
+        from .grade import term_verbs
+        from .grade import verbs as grading_verbs
+
+        term_verbs.add(verbs)
+        grading_verbs.add(verbs)
     return top
 
 
@@ -54,18 +65,24 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
 
 
-def _course(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("--course", type=Path, metavar="DIR", help="the course; found by default")
+def _submit_check(args: argparse.Namespace) -> int:
+    from .check.handin import look
+
+    found = look(args.notebook)
+    print(found.for_the_forum() if args.forum else found)
+    return 1 if found.problems else 0
 
 
-def _release(args: argparse.Namespace) -> int:
-    from .grade.course import Course
-    from .grade.release import release
+def _merge(args: argparse.Namespace) -> int:
+    from .check.handin import read_cells
+    from .check.merging import merge
 
-    course = Course.here(args.course)
-    for name in args.names or course.names():
-        print(release(course, name, args.seed), flush=True)
-    print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
+    mine, new = read_cells(args.mine), read_cells(args.new)
+    if args.to.exists():
+        raise LabkitError(f"{args.to} is there already; give another name with --to")
+    notebook = json.loads(args.new.read_text(encoding="utf-8")) | {"cells": merge(mine, new)}
+    args.to.write_text(json.dumps(notebook, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    print(f"{args.to}: the new release with your work; look it through, then run it all")
     return 0
 
 

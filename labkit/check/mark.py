@@ -12,7 +12,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .judge import AtMost, Judge
-from .question import Call, Case, Mistake, Question, Raised, Test
+from .question import Call, Case, Choice, Mistake, Question, Raised, Test
 
 
 class Outcome(Enum):
@@ -147,7 +147,8 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
 
 def _outcome(results: tuple[TestResult, ...]) -> Outcome:
     """What the tests come to together."""
-    outcomes = {result.outcome for result in results}
+    tried = zip(question.tests, results, strict=True)
+    outcomes = {result.outcome for test, result in tried if test.cases}
     if len(outcomes) == 1:
         return outcomes.pop()
     return Outcome.WRONG if Outcome.WRONG in outcomes else Outcome.ERROR
@@ -156,8 +157,12 @@ def _outcome(results: tuple[TestResult, ...]) -> Outcome:
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
     """The known mistake that gives just these answers on the public calls, if there is one."""
     for mistake in question.mistakes:
-        if len(answers) == len(mistake.answers) and all(
-            _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
+        if (
+            answers
+            and len(answers) == len(mistake.answers)
+            and all(
+                _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
+            )
         ):
             return mistake
     return None
@@ -202,19 +207,30 @@ def _try(
     """Put some cases of one test, until one fails."""
     for case in cases:
         answer = _answer(case, function)
-        if isinstance(case, Call) and not case.hidden:
+        if isinstance(case, Call | Choice) and not case.hidden:
             answers[id(case)] = answer
         where = f"a hidden case ({test.also})" if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
             outcome = Outcome.NOT_ATTEMPTED if answer.not_attempted else Outcome.ERROR
             says = f"{where} raised {answer.kind if case.hidden else answer.sentence}"
             return TestResult(test.name, test.weight, outcome, says, case.hidden)
-        judge = question.judge if isinstance(case, Call) else AtMost()
-        found = judge(answer, case.expected)
+        found = _difference(question, case, answer)
         if found is not None:
             says = where if case.hidden else f"{where}: {found}"
             return TestResult(test.name, test.weight, Outcome.WRONG, says, case.hidden)
     return TestResult(test.name, test.weight, Outcome.RIGHT)
+
+
+def _difference(question: Question, case: Case, answer: Any) -> str | None:
+    """How an answer differs from what is expected; None if it does not."""
+    if isinstance(case, Call):
+        return question.judge(answer, case.expected)
+    if isinstance(case, Choice):
+        try:
+            answer = case.measured(answer)
+        except LabkitError as error:
+            return str(error)
+    return AtMost()(answer, case.expected)
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:

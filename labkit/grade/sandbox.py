@@ -13,7 +13,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -124,10 +124,12 @@ class Sandbox:
 
     def close(self) -> None:
         """End everything inside."""
-        self.line.close()
-        with suppress(ProcessLookupError):
+        self.line.close()  # the first process inside sees it, and goes
+        try:
+            self.process.wait(2.0)
+        except subprocess.TimeoutExpired:
             self.process.kill()
-        self.process.wait()
+            self.process.wait()
         os.close(self._log)
         if self.group is not None:
             self.group.remove()

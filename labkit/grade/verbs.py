@@ -10,8 +10,19 @@ from typing import Any
 
 from ..errors import LabkitError
 from .course import Course
+from .term_verbs import course_option
 
 Verbs = Any
+
+
+def add(verbs: Verbs) -> None:
+    """All of them, in the order in which they are needed."""
+    from . import class_verbs
+
+    add_doctor(verbs)
+    add_make_class(verbs)
+    add_grade(verbs)
+    class_verbs.add(verbs)
 
 
 def add_grade(verbs: Verbs) -> None:
@@ -44,7 +55,7 @@ def add_grade(verbs: Verbs) -> None:
         action="store_true",
         help="run students' code with your own rights, able to read and delete your files",
     )
-    course(verb)
+    course_option(verb)
     verb.set_defaults(do=grade)
 
 
@@ -54,7 +65,7 @@ def add_make_class(verbs: Verbs) -> None:
     verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
     verb.add_argument("--seed", type=int, default=2019, help="of the class (default: 2019)")
     verb.add_argument("--count", type=int, default=40, help="how many students (default: 40)")
-    course(verb)
+    course_option(verb)
     verb.set_defaults(do=make_class)
 
 
@@ -69,13 +80,6 @@ def make_class(args: argparse.Namespace) -> int:
     print(f"{len(made)} submissions in {here.submitted}")
     print(f"what they deserve: {expected_file(here, args.name)}")
     return 0
-
-
-def course(verb: argparse.ArgumentParser) -> None:
-    """The option that says which course."""
-    from pathlib import Path
-
-    verb.add_argument("--course", type=Path, metavar="DIR", help="the course; found by default")
 
 
 def grade(args: argparse.Namespace) -> int:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .motion import Motion
 from .page import Dial, Explorer, demo_html, explorer_html, motion_html, run_files, shared_files
+from .recorded import motion_of
 from .widget import demo, show
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "demo_html",
     "explorer_html",
     "motion_html",
+    "motion_of",
     "run_files",
     "shared_files",
     "show",

@@ -46,6 +46,9 @@ def _widget_class() -> type[Any]:
             super().__init__(**traits)
             self.on_msg(_answer)
 
+        def __repr__(self) -> str:
+            return f"Replay: {json.loads(self.data)['alt']}"
+
         @property
         def motion(self) -> dict[str, Any]:
             """What is shown, as the viewer reads it."""

@@ -5,18 +5,15 @@ from __future__ import annotations
 import copy
 import json
 import shutil
-from pathlib import Path
 
 import pytest
+from handmade import ROOT
 
 from labkit.grade.course import Course
-from labkit.grade.limits import Limits
 from labkit.grade.release import release
 from labkit.grade.results import Bundle
 from labkit.grade.sandbox import Sandbox
 
-ROOT = Path(__file__).parents[2]
-QUICK = Limits(cell=2.0, call=1.0, question=20.0, wall=60.0)
 SEED = 7
 
 

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 from attacks import CLASSES
-from conftest import QUICK
-from notebooks import add, put, raw
+from handmade import QUICK, add, put, raw
 
 from labkit.grade.checker import grade
 from labkit.grade.limits import Limits

@@ -12,7 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import QUICK, ROOT
+from handmade import QUICK, ROOT
 
 from labkit.cli import main
 from labkit.grade.batch import Graded, How, common_failures, grade_class, in_shard

@@ -6,8 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from conftest import QUICK
-from notebooks import add, cell_of, put, raw
+from handmade import QUICK, add, cell_of, put, raw
 
 from labkit.check import Call, Loop, mark, read_question
 from labkit.check.judge import Close

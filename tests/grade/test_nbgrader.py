@@ -9,8 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
-from notebooks import add, cell_of, raw
+from handmade import ROOT, add, cell_of, raw
 
 from labkit.grade.engines import grade_with_nbgrader
 from labkit.grade.gradebook import open_gradebook

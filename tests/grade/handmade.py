@@ -3,6 +3,12 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
+
+from labkit.grade.limits import Limits
+
+ROOT = Path(__file__).parents[2]
+QUICK = Limits(cell=2.0, call=1.0, question=20.0, wall=60.0)
 
 
 def cell_of(notebook, question):

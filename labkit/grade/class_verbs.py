@@ -9,12 +9,13 @@ from typing import Any
 
 from ..errors import LabkitError
 from .course import Course
-from .verbs import course, in_part, nobody
+from .term_verbs import course_option
+from .verbs import in_part, nobody
 
 Verbs = Any
 
 
-def add_all(verbs: Verbs) -> None:
+def add(verbs: Verbs) -> None:
     """All of them."""
     verb = _verb(verbs, "feedback", feedback, "write a page for each student")
     verb.add_argument("--student", metavar="S", help="only this one")
@@ -60,7 +61,7 @@ def feedback(args: argparse.Namespace) -> int:
 
 def export(args: argparse.Namespace) -> int:
     """Write the table."""
-    from .export import LAYOUTS, as_csv, rows
+    from .tables import LAYOUTS, as_csv, rows
 
     here = Course.here(args.course)
     marks = list(rows(here, args.name))
@@ -129,7 +130,7 @@ def collect(args: argparse.Namespace) -> int:
 def _verb(verbs: Verbs, name: str, do: Any, says: str) -> argparse.ArgumentParser:
     verb: argparse.ArgumentParser = verbs.add_parser(name, help=says)
     verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
-    course(verb)
+    course_option(verb)
     verb.set_defaults(do=do)
     return verb
 

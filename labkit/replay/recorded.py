@@ -1,0 +1,60 @@
+"""From a log to a motion: a run beside others, drawn as see-through arms."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from .. import metrics
+from ..motion import PoseSample
+from ..run import Log
+from .motion import Motion
+
+
+def motion_of(
+    log: Log,
+    title: str,
+    *,
+    label: str = "",
+    ghosts: Mapping[str, Log] | None = None,
+    reference: bool = True,
+    torque: bool = False,
+) -> Motion:
+    """A run as the viewer shows it.
+
+    Args:
+        log: The run.
+        title: A few words.
+        label: Name of the arm; the controller's by default.
+        ghosts: Other runs by name; where one is shorter, its arm waits at the end.
+        reference: Draw the arm that follows perfectly as a ghost too, where the target is one of
+            joint angles.
+        torque: Keep the torques, which take the most room.
+
+    Returns:
+        The motion, the position error of the tip included.
+    """
+    T_wd = metrics.target_poses(log)
+    arms = {name: _at(log, other) for name, other in (ghosts or {}).items()}
+    if reference and not isinstance(log.target, PoseSample):
+        arms["the target"] = log.target.position
+    return Motion(
+        log.side,
+        log.t,
+        log.q,
+        title=title,
+        label=label or log.controller,
+        target_position=T_wd[:, :3, 3],
+        target_rotation=T_wd[:, :3, :3],
+        path=T_wd[:: max(1, len(log) // 120), :3, 3],
+        error=np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1),
+        tau=log.tau if torque else None,
+        ghosts=arms,
+    )
+
+
+def _at(log: Log, other: Log) -> Any:
+    """The other run's joint angles at this run's times, shape (N, 7)."""
+    return np.column_stack([np.interp(log.t, other.t, column) for column in other.q.T])

@@ -1,0 +1,140 @@
+"""Hidden cases of notebook 02, and the recorded lifts that both kinds of case share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.check import Call
+from labkit.grade.problem import call
+
+Random = np.random.Generator
+MODEL = lk.Model("left")
+FRICTION = np.array([3.0, 3.0, 2.0, 2.0, 0.3, 0.3, 0.3])
+ROUGH = lk.Plant(name="rough", viscous=FRICTION)
+"""A plant with friction, for the power balance to find."""
+
+TIRED = 0.55
+"""The share of their torque that hot motors still give, so that quick lifts meet the limits."""
+
+
+def anywhere(random: Random) -> Any:
+    """Joint angles within the limits."""
+    return random.uniform(0.9 * MODEL.robot.lower, 0.9 * MODEL.robot.upper)
+
+
+def joints(q: Any) -> Any:
+    """Axes, origins and tip at ``q``: what `jacobian` is given."""
+    parts = lk.links(MODEL, q)
+    axes, origins = (np.array([part.T_wl[:3, k] for part in parts]) for k in (2, 3))
+    return axes, origins, MODEL.pose(q)[:3, 3]
+
+
+def bodies(q: Any) -> Any:
+    """Masses, inertias, rotations and Jacobians of the links: what `mass_matrix` is given."""
+    parts = lk.links(MODEL, q)
+    return (
+        np.array([part.mass for part in parts]),
+        np.array([part.inertia for part in parts]),
+        np.array([part.T_wl[:3, :3] for part in parts]),
+        np.array([part.com_jacobian for part in parts]),
+    )
+
+
+def weights(q: Any) -> Any:
+    """Masses and Jacobians of the links: what `gravity` is given."""
+    masses, _, _, jacobians = bodies(q)
+    return masses, jacobians
+
+
+def jacobians(random: Random) -> Iterator[Call]:
+    """Any poses."""
+    for _ in range(4):
+        yield call(*joints(anywhere(random)))
+
+
+def mass_matrices(random: Random) -> Iterator[Call]:
+    """Any poses."""
+    for _ in range(4):
+        yield call(*bodies(anywhere(random)))
+
+
+def gravities(random: Random) -> Iterator[Call]:
+    """Any poses."""
+    for _ in range(4):
+        yield call(*weights(anywhere(random)))
+
+
+def coriolis_any(random: Random) -> Iterator[Call]:
+    """Any states."""
+    for _ in range(2):
+        yield call(MODEL.mass_matrix, anywhere(random), random.uniform(-1.0, 1.0, 7))
+
+
+def lifts(random: Random) -> Iterator[Call]:
+    """A lift of another height and speed, cut by the torque limits."""
+    yield call(lift(random.uniform(0.5, 0.6), random.uniform(0.38, 0.44), 400.0), MODEL)
+
+
+def gentle_lifts(random: Random) -> Iterator[Call]:
+    """A slower lift within the limits."""
+    yield call(lift(random.uniform(0.3, 0.4), random.uniform(0.75, 0.85), 400.0), MODEL)
+
+
+@cache
+def lift(way: float, duration: float, kp: float, rows: int = 71) -> lk.Log:
+    """A torque-controlled lift of the rough arm, computed from the equations of motion.
+
+    Args:
+        way: How far shoulder and elbow turn, in [rad].
+        duration: Of the motion wanted, in [s]; the arm is given as long again to settle.
+        kp: Position gain, in [1/s^2].
+        rows: Of the log.
+    """
+    q = q0 = MODEL.robot.ready
+    turn = way * np.array([0.3, 1.0, 0.0, -1.2, 0.0, 0.2, 0.0])
+    target = lk.Trajectory(lk.Line(q0, q0 + turn), lk.Quintic(duration))
+    limits, dq, steps = TIRED * MODEL.robot.effort, np.zeros(7), 20
+    dt = 2.0 * duration / (rows - 1) / steps
+
+    def wanted(t: float, q: Any, dq: Any) -> Any:
+        x = target(t)
+        pull = x.acceleration + kp * (x.position - q) + 2.0 * np.sqrt(kp) * (x.velocity - dq)
+        return MODEL.mass_matrix(q) @ pull + MODEL.bias(q, dq)
+
+    def slope(t: float, y: Any) -> Any:
+        q, dq = y
+        tau = np.clip(wanted(t, q, dq), -limits, limits)
+        force = tau - FRICTION * dq - MODEL.bias(q, dq)
+        return np.array([dq, np.linalg.solve(MODEL.mass_matrix(q), force)])
+
+    table, y = [], np.array([q, dq])
+    for k in range((rows - 1) * steps + 1):
+        t = k * dt
+        if k % steps == 0:
+            table.append([t, *y[0], *y[1], *wanted(t, *y)])
+        a = slope(t, y)
+        b = slope(t + dt / 2.0, y + a * dt / 2.0)
+        c = slope(t + dt / 2.0, y + b * dt / 2.0)
+        y = y + (a + 2.0 * b + 2.0 * c + slope(t + dt, y + c * dt)) * dt / 6.0
+    columns = np.round(table, 6)
+    times, q, dq, command = columns[:, 0], columns[:, 1:8], columns[:, 8:15], columns[:, 15:]
+    stacked = (np.round(part, 6) for part in zip(*map(target, times), strict=True))
+    return lk.Log(
+        t=times,
+        q=q,
+        dq=dq,
+        tau=np.clip(command, -limits, limits),
+        command=command,
+        target=lk.Sample(*stacked),
+        measured=lk.State(times, q, dq),  # type: ignore[arg-type]
+        saturated=np.any(abs(command) > limits, axis=1),
+        command_type=lk.JointTorque,
+        controller="lift",
+        plant=ROUGH,
+        side="left",
+    )

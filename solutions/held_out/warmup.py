@@ -1,0 +1,92 @@
+"""Hidden cases of notebook 00."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.check import Call
+from labkit.grade.problem import call
+
+Random = np.random.Generator
+DOWN = np.diag([1.0, -1.0, -1.0])
+
+
+def state(random: Random) -> lk.State:
+    """Any state of the joints."""
+    return lk.State(0.0, random.uniform(-1.0, 1.0, 7), random.uniform(-0.5, 0.5, 7))
+
+
+def sample(random: Random) -> lk.Sample:
+    """Any sample of a joint trajectory."""
+    return lk.Sample(*(random.uniform(-1.0, 1.0, 7) for _ in range(3)))
+
+
+def pose(random: Random) -> Any:
+    """Any pose within reach."""
+    return lk.se3.pose(lk.se3.rotation(random.uniform(-1.6, 1.6, 3)), random.uniform(-0.8, 0.8, 3))
+
+
+def errors(random: Random) -> Iterator[Call]:
+    """Any targets and states."""
+    for _ in range(3):
+        yield call(sample(random), state(random))
+
+
+def points_aligned(random: Random) -> Iterator[Call]:
+    """Frames that are only shifted."""
+    for _ in range(2):
+        T = lk.se3.pose(np.eye(3), random.uniform(-0.8, 0.8, 3))
+        yield call(T, random.uniform(-0.5, 0.5, 3))
+
+
+def points(random: Random) -> Iterator[Call]:
+    """Any poses and points."""
+    for _ in range(4):
+        yield call(pose(random), random.uniform(-0.5, 0.5, 3))
+
+
+def poses_aligned(random: Random) -> Iterator[Call]:
+    """Poses that only shift."""
+    for _ in range(2):
+        yield call(lk.se3.pose(np.eye(3), random.uniform(-0.8, 0.8, 3)))
+
+
+def poses(random: Random) -> Iterator[Call]:
+    """Any poses."""
+    for _ in range(4):
+        yield call(pose(random))
+
+
+def turns_about_z(random: Random) -> Iterator[Call]:
+    """A level tool, turned about the vertical."""
+    for angle in random.uniform(0.1, 0.6, 2):
+        start = random.uniform(-1.0, 1.0)
+        yield call(*(lk.se3.rotation([0.0, 0.0, a]) for a in (start + angle, start)))
+
+
+def _tilts(random: Random, axis: int) -> Iterator[Call]:
+    for angle in random.uniform(0.03, 0.3, 2) * random.choice((-1.0, 1.0), 2):
+        down = lk.se3.rotation([0.0, 0.0, random.uniform(-1.5, 1.5)]) @ DOWN
+        yield call(down, down @ lk.se3.rotation(angle * np.eye(3)[axis]))
+
+
+def rolls(random: Random) -> Iterator[Call]:
+    """A gripper that points down, rolled, whatever its yaw."""
+    yield from _tilts(random, 0)
+
+
+def pitches(random: Random) -> Iterator[Call]:
+    """A gripper that points down, pitched, whatever its yaw."""
+    yield from _tilts(random, 1)
+
+
+def big_turns(random: Random) -> Iterator[Call]:
+    """Turns of up to 160 degrees between any orientations."""
+    for angle in random.uniform(1.2, 2.8, 4):
+        axis = random.standard_normal(3)
+        R = lk.se3.rotation(random.uniform(-1.5, 1.5, 3))
+        yield call(lk.se3.rotation(angle * axis / np.linalg.norm(axis)) @ R, R)

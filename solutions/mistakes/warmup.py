@@ -1,0 +1,113 @@
+"""What people write in notebook 00 instead."""
+
+from __future__ import annotations
+
+from math import atan2, hypot
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.arrays import Array
+
+
+def actual_minus_target(target: lk.Sample, state: lk.State) -> Array:
+    """The error with the other sign."""
+    return state.q - target.position
+
+
+def a_column(target: lk.Sample, state: lk.State) -> Array:
+    """Makes the target a column, so that the difference is a table of 49 numbers."""
+    return target.position.reshape(7, 1) - state.q
+
+
+def the_sum(target: lk.Sample, state: lk.State) -> Any:
+    """One number for seven joints."""
+    return (target.position - state.q).sum()
+
+
+def of_the_speeds(target: lk.Sample, state: lk.State) -> Array:
+    """The error of the speeds."""
+    return target.velocity - state.dq
+
+
+def from_a_to_b(T_ab: Any, p_b: Any) -> Array:
+    """The other direction: answers p_b from p_a."""
+    return np.asarray(T_ab[:3, :3].T @ (p_b - T_ab[:3, 3]))
+
+
+def only_turns(T_ab: Any, p_b: Any) -> Array:
+    """The translation is lost."""
+    return np.asarray(T_ab[:3, :3] @ p_b)
+
+
+def shifts_first(T_ab: Any, p_b: Any) -> Array:
+    """Adds the translation, then turns both."""
+    return np.asarray(T_ab[:3, :3] @ (p_b + T_ab[:3, 3]))
+
+
+def turns_backwards(T_ab: Any, p_b: Any) -> Array:
+    """The rotation transposed, so the axes of b are mistaken for those of a."""
+    return np.asarray(T_ab[:3, :3].T @ p_b + T_ab[:3, 3])
+
+
+def minus_the_translation(T_ab: Any) -> Array:
+    """The rotation inverted, the translation only negated."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = T_ab[:3, :3].T, -T_ab[:3, 3]
+    return T
+
+
+def transposed(T_ab: Any) -> Array:
+    """The whole matrix transposed, as if it were a rotation."""
+    return np.array(T_ab.T)
+
+
+def rotation_kept(T_ab: Any) -> Array:
+    """The translation right for a rotation that was never inverted."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = T_ab[:3, :3], -T_ab[:3, :3].T @ T_ab[:3, 3]
+    return T
+
+
+def turned_forwards(T_ab: Any) -> Array:
+    """The translation turned by R, not by its inverse."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = T_ab[:3, :3].T, -T_ab[:3, :3] @ T_ab[:3, 3]
+    return T
+
+
+def _euler(R: Any) -> Array:
+    """Roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll)."""
+    return np.array(
+        [
+            atan2(R[2, 1], R[2, 2]),
+            atan2(-R[2, 0], hypot(R[2, 1], R[2, 2])),
+            atan2(R[1, 0], R[0, 0]),
+        ]
+    )
+
+
+def euler_subtracted(R_wd: Any, R_wt: Any) -> Array:
+    """Roll, pitch and yaw subtracted, as the lab's starter code did for years."""
+    return _euler(R_wd) - _euler(R_wt)
+
+
+def in_tool_axes(R_wd: Any, R_wt: Any) -> Array:
+    """The right turn, in the axes of the tool."""
+    return lk.se3.rotation_log(R_wt.T @ R_wd)
+
+
+def from_wanted_to_actual(R_wd: Any, R_wt: Any) -> Array:
+    """The turn the other way."""
+    return lk.se3.rotation_log(R_wt @ R_wd.T)
+
+
+def sine_of_the_angle(R_wd: Any, R_wt: Any) -> Array:
+    """Reads the skew part instead of the logarithm: right for small angles only."""
+    return lk.se3.vee(R_wd @ R_wt.T)
+
+
+def matrices_subtracted(R_wd: Any, R_wt: Any) -> Array:
+    """Subtracts the matrices and reads the skew part of the difference."""
+    return lk.se3.vee(R_wd - R_wt)

@@ -1,0 +1,122 @@
+"""What the checks give: to answers, stubs, known mistakes and other right answers."""
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from labkit.check import Loop, Outcome, fingerprint, mark
+from labkit.check.mark import recognise
+from labkit.grade.course import Course
+
+COURSE = Course.here(Path(__file__))
+NAMES = COURSE.names()
+PROBLEMS = [problem for name in NAMES for problem in COURSE.problems(name)]
+SEEDS = range(20)
+POINTS = {"00_warmup": 10, "01_paths": 20, "02_model": 20, "03_velocity_control": 20}
+
+each = pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.name)
+
+
+def stub(*args, **kwargs):
+    raise NotImplementedError
+
+
+@each
+def test_the_answer_gets_full_marks(problem):
+    """The reference is right, hidden cases included."""
+    verdict = mark(problem.question(1), problem.answer)
+    assert verdict.outcome is Outcome.RIGHT, verdict.tests
+    assert verdict.earned == problem.points
+
+
+@each
+def test_the_stub_gets_nothing(problem):
+    """A stub counts as not attempted, and a function that gives only zeros earns nothing."""
+    question = problem.question(1)
+    assert mark(question, stub).outcome is Outcome.NOT_ATTEMPTED
+    assert mark(question, stub).earned == 0.0
+    for nothing in (lambda *a, **k: None, lambda *a, **k: 0.0):
+        assert mark(question, nothing).earned == 0.0
+
+
+@each
+def test_zeros_of_the_right_shape_earn_nothing(problem):
+    """A gate stands before the points: the answer's shape, filled with zeros, does not pass it."""
+    question = problem.question(1)
+    assert mark(question, lambda *a, **k: zeros_like(problem.answer(*a, **k))).earned == 0.0
+
+
+@each
+def test_known_mistakes_are_rejected_and_named(problem):
+    """Each earns less than half, and is called by its name."""
+    assert problem.wrong
+    question = problem.question(1)
+    for wrong in problem.wrong:
+        verdict = mark(question, wrong.function)
+        assert verdict.earned < 0.5 * problem.points, wrong.name
+        assert verdict.mistake is not None, wrong.name
+        assert verdict.mistake.name == wrong.name
+
+
+@each
+def test_fingerprints_differ(problem):
+    """No two mistakes answer the public calls alike, and none as the reference does."""
+    question = problem.question(1)
+    assert recognise(question, list(fingerprint(question, problem.answer))) is None
+    for a, b in combinations(problem.wrong, 2):
+        known = [m for m in question.mistakes if m.name == a.name]
+        alone = question.__class__(**{**vars(question), "mistakes": tuple(known)})
+        assert recognise(alone, list(fingerprint(question, b.function))) is None, (a.name, b.name)
+
+
+@each
+def test_right_answers_written_otherwise_are_accepted(problem):
+    """A list, a class, another formula: what is right earns full marks."""
+    for variant in problem.variants:
+        verdict = mark(problem.question(1), variant)
+        assert verdict.outcome is Outcome.RIGHT, (variant, verdict.tests)
+
+
+@pytest.mark.slow
+@each
+def test_seeds_agree(problem):
+    """Twenty draws of the hidden cases give the same marks to the answer, mistakes and variants."""
+    marks = {
+        tuple(
+            mark(question, f).earned
+            for f in (problem.answer, *(w.function for w in problem.wrong), *problem.variants)
+        )
+        for question in map(problem.question, SEEDS)
+    }
+    assert len(marks) == 1
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_points_add_up(name):
+    """Points are as announced, closed loops carry at most 30 %, enough mistakes are known."""
+    problems = COURSE.problems(name)
+    assert sum(p.points for p in problems) == POINTS[name]
+    loops = 0.0
+    for problem in problems:
+        whole = sum(trial.weight for trial in problem.trials)
+        loops += sum(
+            problem.points * trial.weight / whole
+            for trial in problem.trials
+            if any(isinstance(case, Loop) for case in trial.public)
+        )
+        assert len(problem.hints) == 3
+        assert problem.trials[0].weight == 0.0 or problem.points <= 2, "the gate comes first"
+    assert loops <= 0.3 * POINTS[name]
+    assert sum(len(p.wrong) for p in problems) >= 10
+    assert sum(len(p.variants) for p in problems) >= 4
+
+
+def zeros_like(answer):
+    """The same kind of thing, all zeros."""
+    if hasattr(answer, "value"):
+        return type(answer)(0.0 * answer.value)
+    if isinstance(answer, tuple):
+        zeros = [zeros_like(x) for x in answer]
+        return type(answer)(*zeros) if hasattr(answer, "_fields") else tuple(zeros)
+    return 0.0 * answer
