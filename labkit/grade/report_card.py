@@ -4,8 +4,8 @@ Every answer, known mistake and right variant is marked with many draws of the h
 distances from what is expected are measured in tolerances: right answers lie below 1, a mistake
 lies above it wherever it is found out.  Over draws, disturbed inputs, starts and seeds of the noise
 these distances spread; the margin is how many of their standard deviations lie between their mean
-and the tolerance.  Logarithms are compared, since distances spread over decades.  Where nothing spreads
-there is no sigma, and the question is listed apart.
+and the tolerance.  Logarithms are compared, since distances spread over decades.  Where nothing
+spreads there is no sigma, and the question is listed apart.
 """
 
 from __future__ import annotations
