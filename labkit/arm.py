@@ -3,27 +3,29 @@
 from __future__ import annotations
 
 import tempfile
-from collections import deque
 from dataclasses import replace
 from functools import cache
+from operator import le
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .arrays import Array, locked
+from .arrays import Array, as_array, locked, shown
 from .commands import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State, still
-from .errors import Closed, ControllerError, OutOfRange
+from .errors import Closed, ControllerError
 from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
+from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
+from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
 with quiet():
     import pybullet as bullet
 
-_JOINTS = list(range(7))
+_JOINTS = tuple(range(7))
 _ZERO = [0.0] * 7
 
 
@@ -57,12 +59,14 @@ class Arm:
 
         Raises:
             UnknownName: Baxter has no such arm.
+            Closed: The world is closed.
             JointLimitExceeded: q0 is outside the joints' range.
         """
         self.robot: Robot = robot(side)
         self.plant = plant
         self.model = Model(side, plant)
         self.world = World() if world is None else world
+        self._check_open()
         self._random = np.random.default_rng(seed)
         self._client = self.world.client
         with quiet():
@@ -81,27 +85,39 @@ class Arm:
                 jointDamping=0.0 if joint < 0 else plant.viscous[joint],
                 physicsClientId=self._client,
             )
-        # The arm compensates its own weight, not what it carries.
+        bullet.changeDynamics(
+            self._body,
+            6,
+            contactStiffness=TIP_STIFFNESS,
+            contactDamping=TIP_DAMPING,
+            lateralFriction=1.0,
+            restitution=0.0,
+            physicsClientId=self._client,
+        )
+        # PyBullet would show the ball at the tip; what cameras see of the arm is in `looks`.
+        bullet.changeVisualShape(
+            self._body, 6, rgbaColor=[0, 0, 0, 0], physicsClientId=self._client
+        )
+        hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
+        self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
+        # The arm knows its own weight, not what it carries.
         self._own = (
             Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
         )
-        self._publish_every = whole_steps(plant.state_rate, self.world.dt, "plant.state_rate")
+        self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
+        self._reports = Reports(plant, self.world.dt, self._random)
+        self._sensors = TorqueSensors(self._own, plant, self.world.dt)
         self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
-        self._stiction, self._viscous = list(plant.stiction), np.array(plant.viscous)
-        self._noise = np.array(plant.velocity_noise)
+        self._stiction = list(plant.stiction)
         self.reset(q0)
         self.world.add(self)
+        self.world.arms.append(self)
 
     # What a controller may use
 
     def state(self) -> State:
         """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
-        if not self._publish_every:
-            return self.truth()
-        ready = self.world.t - self.plant.state_delay + 1e-9
-        while len(self._mail) > 1 and self._mail[1].t <= ready:
-            self._mail.popleft()
-        return self._mail[0]
+        return self._reported(None)
 
     def apply(self, command: Command) -> None:
         """Follow ``command`` until the next one, or until the plant's command timeout.
@@ -116,6 +132,7 @@ class Arm:
             JointLimitExceeded: A position outside the joints' range.
         """
         kind = type(command)
+        self._check_open()
         if kind is JointTorque:
             wanted, limit = command.value, self._effort
         elif kind is JointVelocity:
@@ -124,13 +141,13 @@ class Arm:
             wanted = self.model.within_limits(command.value, "JointPosition")
             limit = None
         else:
-            raise ControllerError(f"{command!r} is no command; give one of {_names()}")
+            raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
         self._wanted = wanted if limit is None else _cut(wanted, limit)
-        self._asked = wanted
+        self._saturated = self._wanted is not wanted
         if kind is not self._kind:
             self._enter(kind)
         self._fresh = True
-        self._commanded_at = self.world._steps
+        self._deadline = self.world._steps + self._patience
 
     def stop(self) -> None:
         """Come to rest and stay."""
@@ -143,11 +160,11 @@ class Arm:
             JointLimitExceeded: A joint is out of its range.
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
-        if self.world.client < 0:
-            raise Closed("this arm's world was closed; make a new Arm")
+        self._check_open()
         for i in _JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
-        self._mail: deque[State] = deque([State(self.world.t, locked(np.array(q)), _rest())])
+        self._sensors.reset()
+        self._reports.reset(State(self.world.t, locked(np.array(q)), NOTHING))
         self._lagged = np.zeros(7)
         self._total = np.zeros(7)
         self._kind: type = type(None)
@@ -157,8 +174,7 @@ class Arm:
 
     def truth(self) -> State:
         """The joints as they really are."""
-        q, dq, _, _ = zip(*self._read(), strict=True)
-        return State(self.world.t, locked(np.array(q)), locked(np.array(dq)))
+        return self._exact(self._read())
 
     @property
     def torque(self) -> Array:
@@ -169,12 +185,34 @@ class Arm:
         """
         if self._kind is JointTorque:
             return self._total
-        return np.array([joint[3] for joint in self._read()])
+        return motor_torques(self._read())
 
     @property
     def saturated(self) -> bool:
-        """Whether a limit cut the command that the arm follows now."""
-        return self._wanted is not self._asked
+        """Whether a limit cut the command that the arm follows, at any time since it came."""
+        return self._saturated
+
+    def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
+        """Push the tip during the next physics step; world axes, at the tip's origin.
+
+        A force that lasts is a `Push` in the world, which the arm can also feel.
+
+        Args:
+            force: Shape (3,) in [N].
+            moment: Shape (3,) in [N m].
+        """
+        f, m = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
+        R_wt = self.model.pose(angles(self._read()))[:3, :3]
+        # PyBullet's idea of where the link is lags a step behind: count the lever from there.
+        centre = bullet.getLinkState(self._body, 6, physicsClientId=self._client)[0]
+        at = (R_wt @ self._lever + centre).tolist()
+        bullet.applyExternalForce(
+            self._body, 6, f.tolist(), at, bullet.WORLD_FRAME, physicsClientId=self._client
+        )
+        if m.any():
+            bullet.applyExternalTorque(
+                self._body, 6, m.tolist(), bullet.WORLD_FRAME, physicsClientId=self._client
+            )
 
     def lost_ticks(self, ticks: int) -> list[bool]:
         """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
@@ -185,22 +223,28 @@ class Arm:
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
         rows = self._read()
-        q, dq, _, motor = zip(*rows, strict=True)
-        truth = State(self.world.t, locked(np.array(q)), locked(np.array(dq)))
-        torque = self._total if self._kind is JointTorque else np.array(motor)
-        return truth, self.state() if self._publish_every else truth, torque
+        truth = self._exact(rows)
+        torque = self._total if self._kind is JointTorque else motor_torques(rows)
+        return truth, self._reported(rows) if self._reports.every else truth, torque
 
     # The machinery, once per physics step
 
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
         plant, steps = self.plant, self.world._steps
-        if self._publish_every and steps % self._publish_every == 0:
-            self._publish()
-        if (steps - self._commanded_at) * self.world.dt > plant.command_timeout:
+        if steps > self._deadline:
             self._hold()
+        touchable, rows = self._touchable, None
+        if (
+            touchable
+            or self._kind is JointPosition
+            or (self._kind is JointTorque and plant.gravity_compensation)
+        ):
+            rows = self._read()
+        if self._reports.every:
+            self._report(rows)
         if self._kind is JointTorque:
-            self._drive_torque()
+            self._drive_torque(rows)
         elif self._kind is JointVelocity:
             if plant.velocity_lag:
                 self._lagged += (self._wanted - self._lagged) * min(
@@ -210,18 +254,48 @@ class Arm:
             elif self._fresh:  # PyBullet's motors keep their target
                 self._spin(self._wanted)
         else:
-            q = np.array([joint[0] for joint in self._read()])
             gain = min(plant.position_gain or np.inf, 1.0 / self.world.dt)
             speed = self.robot.speed
-            self._spin(np.minimum(np.maximum(gain * (self._wanted - q), -speed), speed))
+            wanted = gain * (self._wanted - angles(rows))
+            allowed = _cut(wanted, speed)
+            self._saturated |= allowed is not wanted
+            self._spin(allowed)
         self._fresh = False
+        if touchable:
+            driven = self._total if self._kind is JointTorque else NOTHING
+            self._sensors.begin(rows, driven, steps)
 
-    def _drive_torque(self) -> None:
+    def _exact(self, rows: Any) -> State:
+        world = self.world
+        a, b, _, _ = zip(*rows, strict=False)  # PyBullet gives the same four for every joint
+        q, dq = np.array(a), np.array(b)
+        q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        dq.setflags(False)  # type: ignore[call-arg]
+        return State(world._steps * world.dt, q, dq, self._sensors.felt(rows, world._steps))
+
+    def _reported(self, rows: Any) -> State:
+        if not self._reports.every:
+            return self.truth()
+        self._report(rows)
+        return self._reports.newest(self.world.t)
+
+    def _report(self, rows: Any) -> None:
+        if self._reports.due(self.world._steps):
+            truth = self.truth() if rows is None else self._exact(rows)
+            self._reports.send(truth, self.world._steps)
+
+    @property
+    def _touchable(self) -> bool:
+        """Whether anything can make the external torque differ from zero."""
+        return bool(self.world.things or self.plant.payload)
+
+    def _drive_torque(self, rows: Any) -> None:
         if self._fresh or self.plant.gravity_compensation:
             total = self._wanted
             if self.plant.gravity_compensation:
-                q = np.array([joint[0] for joint in self._read()])
-                total = _cut(total + self._own.gravity(q), self._effort)
+                wanted = total + self._own.gravity(angles(rows))
+                total = _cut(wanted, self._effort)
+                self._saturated |= total is not wanted
             self._total = total
             self._total_list = total.tolist()
         bullet.setJointMotorControlArray(
@@ -261,24 +335,18 @@ class Arm:
     def _hold(self) -> None:
         """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
         if self._kind is JointPosition:
-            self._commanded_at = self.world._steps
+            self._deadline = self.world._steps + self._patience
             return
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _publish(self) -> None:
-        t, q, dq = self.truth()
-        noisy = dq + self._noise * self._random.standard_normal(7)
-        self._mail.append(State(t, q, locked(noisy)))
-        if len(self._mail) > 100:
-            self.state()
-            while len(self._mail) > 100:
-                self._mail.popleft()
-
-    def _read(self) -> Any:
+    def _check_open(self) -> None:
         if self.world.client < 0:
             raise Closed("this arm's world was closed; make a new Arm")
-        return bullet.getJointStates(self._body, _JOINTS, physicsClientId=self._client)
+
+    def _read(self) -> Any:
+        self._check_open()
+        return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:
         """Close the world it stands in."""
@@ -296,26 +364,9 @@ class Arm:
 
 def _cut(x: Array, limit: Array) -> Array:
     """``x`` itself if it is within ±limit, else a copy that is."""
-    if (abs(x) <= limit).all():
+    if all(map(le, map(abs, x.tolist()), limit.tolist())):  # NumPy is slow with seven numbers
         return x
     return np.minimum(np.maximum(x, -limit), limit)
-
-
-def _rest() -> Array:
-    return locked(np.zeros(7))
-
-
-def whole_steps(rate: float, dt: float, name: str) -> int:
-    """How many physics steps of ``dt`` [s] a period of ``rate`` [Hz] has; 0 for a rate of 0."""
-    if rate == 0.0:
-        return 0
-    steps = 1.0 / (rate * dt)
-    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
-        raise OutOfRange(
-            f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
-            f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
-        )
-    return round(steps)
 
 
 def _names() -> str:
@@ -326,7 +377,12 @@ def _names() -> str:
 def _urdf_file(side: str, plant: Plant) -> str:
     """PyBullet reads only files: one for each kind of arm, gone with the process."""
     path = Path(_folder().name) / f"{side}_{len(list(Path(_folder().name).iterdir()))}.urdf"
-    path.write_text(robot(side).urdf(plant))
+    x, y, z = robot(side).T_hand_tip[:3, 3]
+    ball = (
+        f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="{TIP_RADIUS}"/>'
+        "</geometry></collision></link>"
+    )
+    path.write_text(ball.join(robot(side).urdf(plant).rsplit("</link>", 1)))
     return str(path)
 
 

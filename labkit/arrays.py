@@ -37,7 +37,7 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
     if a.shape != shape:
         raise ShapeError(name, shape, a.shape)
     flat = a.ravel()
-    if not isfinite(flat.dot(flat)):  # one pass; only a suspicious array pays for the second
+    if not isfinite(sum(flat.tolist())):  # quick where all is well
         bad = np.flatnonzero(~np.isfinite(flat))
         if bad.size:
             raise NotFinite(
@@ -59,6 +59,20 @@ def as_vector(x: Any, n: int, name: str) -> Array:
         Shape (n,), read-only.
     """
     return locked(np.array(as_array(x, (n,), name)))
+
+
+def as_numbers(x: Any, name: str) -> Array:
+    """Read ``x`` as finite floats of whatever shape it has; a copy.
+
+    Args:
+        x: Anything NumPy reads as an array of numbers.
+        name: What to call it in the sentence, if it is none.
+
+    Returns:
+        A float64 array.
+    """
+    a = np.array(_converted(x, None, name))
+    return as_array(a, a.shape, name)
 
 
 def as_gains(x: Any, n: int, name: str) -> Array:
@@ -107,7 +121,7 @@ def as_number(
     try:
         value = float(x)
     except (TypeError, ValueError):
-        raise TypeMismatch(f"{name} is {_short(x)}, expected one number") from None
+        raise TypeMismatch(f"{name} is {shown(x)}, expected one number") from None
     if not isfinite(value):
         raise NotFinite(f"{name} is {value}, expected a finite number")
     if above is not None and not value > above:
@@ -119,23 +133,25 @@ def as_number(
 
 def locked(a: Array) -> Array:
     """The same array, made read-only."""
-    a.setflags(write=False)
+    a.setflags(False)  # type: ignore[call-arg]  # half the time of write=False
     return a
 
 
-def _converted(x: Any, shape: tuple[int, ...], name: str) -> Array:
+def _converted(x: Any, shape: tuple[int, ...] | None, name: str) -> Array:
+    many = "" if shape is None else f"{'x'.join(map(str, shape)) or 'one'} "
     try:
         a = np.asarray(x)
-    except ValueError:  # rows of different lengths
-        raise TypeMismatch(f"{name} has rows of different lengths, expected {shape}") from None
-    if a.dtype.kind not in "fiub":
+    except ValueError:
         raise TypeMismatch(
-            f"{name} is {_short(x)}, expected {'x'.join(map(str, shape)) or 'one'} real numbers"
-        )
+            f"{name} has rows of different lengths, expected {many}real numbers"
+        ) from None
+    if a.dtype.kind not in "fiub":
+        raise TypeMismatch(f"{name} is {shown(x)}, expected {many}real numbers")
     return a.astype(np.float64)
 
 
-def _short(x: Any) -> str:
+def shown(x: Any) -> str:
+    """A value and its type, short enough for a sentence."""
     text = repr(x)
     return f"{text if len(text) < 40 else text[:37] + '...'} ({type(x).__name__})"
 

@@ -10,9 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arrays import Array, as_vector
+from .arrays import Array, as_vector, locked
 
 JOINTS = 7
+
+_UNTOUCHED = locked(np.zeros(JOINTS))
 
 
 class State(NamedTuple):
@@ -22,11 +24,14 @@ class State(NamedTuple):
         t: When it was measured, in [s] of the simulation's clock.
         q: Joint angles, shape (7,) in [rad], read-only.
         dq: Joint speeds, shape (7,) in [rad/s], read-only.
+        tau_ext: What the world outside puts on the joints, as the arm estimates it from its torque
+            sensors, shape (7,) in [N m], read-only; `Model.tip_wrench` makes it a wrench.
     """
 
     t: float
     q: Array
     dq: Array
+    tau_ext: Array = _UNTOUCHED
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ chapters 5, 6 and 8.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -18,6 +18,7 @@ import pinocchio as pin
 from . import se3
 from .arrays import Array, as_array
 from .errors import JointLimitExceeded, TypeMismatch, Unreachable
+from .limits import warn_of_singularity, warn_of_speed
 from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 from .paths import Spline
 from .plant import IDEAL, Plant
@@ -25,6 +26,27 @@ from .robot import Robot, Side, robot
 
 _N = 7
 _LOWER = np.tril_indices(_N, -1)
+
+
+class Terms(NamedTuple):
+    r"""The equations of motion at one instant; see the `Model` methods of the same quantities.
+
+    Attributes:
+        T_wt: `Model.pose`, shape (4, 4).
+        J: `Model.tip_jacobian`, shape (6, 7).
+        drift: The tip's acceleration while the joints turn evenly, :math:`\dot J\,\dot q`, shape
+            (6,).
+        M: `Model.mass_matrix`, shape (7, 7) in [kg m^2].
+        c: Coriolis and centrifugal torque, C @ dq, shape (7,) in [N m].
+        g: `Model.gravity`, shape (7,) in [N m].
+    """
+
+    T_wt: Array
+    J: Array
+    drift: Array
+    M: Array
+    c: Array
+    g: Array
 
 
 class Model:
@@ -209,6 +231,52 @@ class Model:
         q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
         return np.array(pin.nonLinearEffects(self._pin, self._data, q, dq))
 
+    def inverse_dynamics(self, q: Any, dq: Any, ddq: Any) -> Array:
+        """The torque that a motion takes, ``M @ ddq + C @ dq + g`` (recursive Newton-Euler).
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
+            ddq: Joint accelerations, shape (7,) in [rad/s^2].
+
+        Returns:
+            Shape (7,) in [N m].
+        """
+        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        ddq = as_array(ddq, (_N,), "ddq")
+        return np.array(pin.rnea(self._pin, self._data, q, dq, ddq))
+
+    def tip_wrench(self, q: Any, tau_ext: Any) -> Array:
+        r"""The wrench on the arm's tip that explains external joint torques, :math:`J^{-T}\tau`.
+
+        Seven torques and six numbers: the least squares solution of
+        :math:`J^T F = \tau_{ext}`.  Near a singularity a small torque error becomes a large force.
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+            tau_ext: External torque, as `State.tau_ext` has it, shape (7,) in [N m].
+
+        Returns:
+            Force [N] and moment [N m] about the tip's origin, world axes, shape (6,).
+        """
+        tau_ext = as_array(tau_ext, (_N,), "tau_ext")
+        return np.asarray(np.linalg.lstsq(self.tip_jacobian(q).T, tau_ext, rcond=None)[0])
+
+    def terms(self, q: Any, dq: Any) -> Terms:
+        """All that a controller of torques needs at one instant, in one sweep over the arm.
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
+        """
+        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        m, d = self._pin, self._data
+        pin.forwardKinematics(m, d, q, dq, _AT_REST)
+        T_wt = pin.updateFramePlacement(m, d, self._tip).homogeneous
+        drift = pin.getFrameClassicalAcceleration(m, d, self._tip, pin.LOCAL_WORLD_ALIGNED).vector
+        M, g = self.mass_matrix(q), self.gravity(q)
+        return Terms(T_wt, self.tip_jacobian(q), drift, M, self.bias(q, dq) - g, g)
+
     def operational_inertia(self, q: Any) -> Array:
         r"""The inertia felt at the tip, :math:`\Lambda = (J M^{-1} J^T)^{-1}`, in world axes.
 
@@ -306,9 +374,7 @@ class Model:
         Returns:
             Position error [m] and orientation error [rad], world axes, shape (6,).
         """
-        T_wt = self.pose(q)
-        turn = se3.rotation_log(T_wd[:3, :3] @ T_wt[:3, :3].T)
-        return np.concatenate([T_wd[:3, 3] - T_wt[:3, 3], turn])
+        return se3.pose_error(T_wd, self.pose(q))
 
     def joint_trajectory(self, target: Any, q0: Any, *, samples: int = 101) -> Any:
         """The joint motion that takes the tip along a workspace target.
@@ -328,6 +394,10 @@ class Model:
         Raises:
             Unreachable: A pose along the way cannot be reached; names s, the pose and the reason.
             TypeMismatch: It is none of these.
+
+        Warns:
+            LabkitWarning: A joint would exceed its speed limit, or the path comes near a
+                singularity.
         """
         q0 = self.within_limits(q0, "q0")
         if isinstance(target, Chain):
@@ -336,11 +406,12 @@ class Model:
                 parts.append(self._joint_trajectory(part, q, q0, samples))
                 q = parts[-1](part.duration).position
             return Chain(parts)
-        if isinstance(target, Hold):
-            return Hold(self.inverse_kinematics(self._posed(target(0.0), q0), q0), target.duration)
         return self._joint_trajectory(target, q0, q0, samples)
 
-    def _joint_trajectory(self, target: Any, q: Array, posture: Array, samples: int) -> Trajectory:
+    def _joint_trajectory(self, target: Any, q: Array, posture: Array, samples: int) -> Any:
+        if isinstance(target, Hold):
+            T_wt = self._posed(target(0.0), posture)
+            return Hold(self.inverse_kinematics(T_wt, q, posture=posture), target.duration)
         if not isinstance(target, Trajectory):
             raise TypeMismatch(
                 f"joint_trajectory takes a Trajectory, Chain or Hold, not {type(target).__name__}"
@@ -362,7 +433,10 @@ class Model:
                 f"the joint angles jump by {jump:.2f} rad between two neighbouring poses: the path "
                 "runs through a singularity; move it, or start from another q0"
             )
-        return Trajectory(Spline(grid, angles), target.scaling)
+        warn_of_singularity(grid, np.array([self.tip_jacobian(q) for q in angles]))
+        joints = Trajectory(Spline(grid, angles), target.scaling)
+        warn_of_speed(joints, self.robot)
+        return joints
 
     def _posed(self, sample: Sample | PoseSample, q0: Array) -> Array:
         if isinstance(sample, PoseSample):
@@ -438,6 +512,7 @@ def links(model: Model, q: Any) -> tuple[Link, ...]:
     return tuple(out)
 
 
+_AT_REST = np.zeros(_N)
 _ITERATIONS = 200
 _SLACK = 1e-9
 

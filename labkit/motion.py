@@ -16,8 +16,8 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_array, as_number, locked
-from .errors import OutOfRange
+from .arrays import Array, as_array, as_number, as_numbers, locked, shown
+from .errors import OutOfRange, TypeMismatch
 
 
 class Sample(NamedTuple):
@@ -86,6 +86,15 @@ class Trajectory:
     path: Path[Any]
     scaling: TimeScaling
 
+    def __post_init__(self) -> None:
+        if not callable(self.path):
+            raise TypeMismatch(f"path is {shown(self.path)}; a path is a function of s")
+        if not callable(self.scaling) or not hasattr(self.scaling, "duration"):
+            raise TypeMismatch(
+                f"scaling is {shown(self.scaling)}; a time scaling is a function of t that has a "
+                "duration: Trajectory(path, scaling)"
+            )
+
     @property
     def duration(self) -> float:
         """How long it lasts, in [s]."""
@@ -114,10 +123,14 @@ class Chain:
 
         Raises:
             OutOfRange: There is none.
+            TypeMismatch: One has no duration.
         """
         self.parts = tuple(parts)
         if not self.parts:
             raise OutOfRange("a Chain needs at least one trajectory")
+        for part in self.parts:
+            if not hasattr(part, "duration"):
+                raise TypeMismatch(f"a part of the Chain is {shown(part)}, which has no duration")
         *self.starts, self.duration = accumulate((p.duration for p in self.parts), initial=0.0)
 
     def __call__(self, t: float) -> Any:
@@ -144,19 +157,22 @@ class PosePath:
     R_goal: Array | None = None
 
     def __post_init__(self) -> None:
-        R_wt = locked(np.array(se3.as_rotation(self.R_wt, "R_wt")))
-        object.__setattr__(self, "R_wt", R_wt)
+        for name in ("R_wt", "R_goal"):
+            R = getattr(self, name)
+            if R is not None or name == "R_wt":
+                object.__setattr__(self, name, locked(np.array(se3.as_rotation(R, name))))
 
     @cached_property
     def _turn(self) -> Array:
         """The whole turn as a rotation vector, world axes, [rad]."""
         if self.R_goal is None:
             return locked(np.zeros(3))
-        return locked(se3.orientation_error(se3.as_rotation(self.R_goal, "R_goal"), self.R_wt))
+        return locked(se3.orientation_error(self.R_goal, self.R_wt))
 
     def __call__(self, s: float) -> PoseSample:
         """Pose and its derivatives with respect to s."""
         p, dp, ddp = self.path(s)
+        p = as_array(p, (3,), "position")
         T, twist, dtwist = np.eye(4), np.zeros(6), np.zeros(6)
         T[:3, :3] = self.R_wt if self.R_goal is None else se3.rotation(s * self._turn) @ self.R_wt
         T[:3, 3], twist[:3], twist[3:], dtwist[:3] = p, dp, self._turn, ddp
@@ -173,9 +189,9 @@ class Hold:
     def __init__(self, place: Any, duration: float) -> None:
         """Hold joint angles (n,) [rad], a point (3,) [m] or a pose (4, 4)."""
         self.duration = as_number(duration, "duration", least=0.0)
-        x = np.array(place, dtype=float)
-        if x.ndim == 2:
-            T = locked(np.array(se3.as_pose(x, "place")))
+        x = as_numbers(place, "place")
+        if x.shape == (4, 4):
+            T = locked(se3.as_pose(x, "place"))
             self._sample: AnySample = PoseSample(T, locked(np.zeros(6)), locked(np.zeros(6)))
         else:
             x = locked(as_array(x, (x.size,), "place"))

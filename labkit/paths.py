@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, as_number, locked
+from .arrays import Array, as_array, as_number, as_numbers, locked
 from .errors import OutOfRange, ShapeError
 from .motion import Sample
 
@@ -111,10 +111,10 @@ class Polyline:
     points: Array
 
     def __post_init__(self) -> None:
-        points = np.array(self.points, dtype=float)
+        points = as_numbers(self.points, "points")
         if points.ndim != 2 or len(points) < 2:
             raise ShapeError("points", (max(2, len(np.atleast_1d(points))), 3), points.shape)
-        object.__setattr__(self, "points", locked(as_array(points, points.shape, "points")))
+        object.__setattr__(self, "points", locked(points))
         if self.length == 0.0:
             raise OutOfRange("all points are the same, so the polyline has no length")
 
@@ -154,11 +154,21 @@ class Spline:
     """
 
     def __init__(self, s: Any, values: Any) -> None:
-        """Interpolate ``values`` at ``s``; needs at least six of them."""
+        """Interpolate ``values`` at ``s``; needs at least six of them.
+
+        Raises:
+            OutOfRange: There are fewer, or ``s`` does not rise.
+            ShapeError: There are not as many values as places.
+        """
         from scipy.interpolate import make_interp_spline  # a slow import, seldom needed
 
-        self.s = locked(np.array(s, dtype=float))
-        self.values = locked(np.array(values, dtype=float))
+        self.s = locked(as_numbers(s, "s"))
+        self.values = locked(as_numbers(values, "values"))
+        if self.s.ndim != 1 or self.s.size < 6 or np.diff(self.s).min() <= 0.0:
+            raise OutOfRange("s must be at least six rising numbers")
+        if self.values.ndim != 2 or len(self.values) != self.s.size:
+            n = self.values.shape[-1] if self.values.ndim > 1 else 1
+            raise ShapeError("values", (self.s.size, n), self.values.shape)
         spline = make_interp_spline(self.s, self.values, k=5)
         self._knots = np.unique(spline.t)[:-1]
         # Each piece as a polynomial, highest power first: scipy's own evaluation takes 30 us a time
@@ -184,6 +194,6 @@ class Spline:
 def _freeze_ends(path: Any, *names: str, size: int | None = None) -> None:
     """Replace the named fields by read-only float copies of one common shape."""
     for name in names:
-        x = np.array(getattr(path, name), dtype=float)
+        x = as_numbers(getattr(path, name), name)
         n = size or np.size(getattr(path, names[0]))
         object.__setattr__(path, name, locked(as_array(x, (n,), name)))

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from .arrays import as_vector
+from .arrays import as_number, as_vector
+from .errors import OutOfRange
 
 
 @dataclass(frozen=True)
@@ -30,6 +31,9 @@ class Plant:
         state_rate: How often the arm publishes its state, in [Hz]; 0 is every physics step.
         state_delay: Age of a state when it arrives, in [s].
         velocity_noise: Standard deviation of the measured joint speeds, shape (7,) in [rad/s].
+        torque_noise: Standard deviation of the external torque that the arm estimates, shape (7,)
+            in [N m].
+        torque_lag: Time constant of that estimate, in [s]; 0 is that of the last physics step.
         lost_ticks: Share of the control ticks whose command comes too late to be used.
         command_timeout: After this long without a command the arm holds its place, in [s].
     """
@@ -45,16 +49,26 @@ class Plant:
     state_rate: float = 0.0
     state_delay: float = 0.0
     velocity_noise: Any = 0.0
+    torque_noise: Any = 0.0
+    torque_lag: float = 0.0
     lost_ticks: float = 0.0
     command_timeout: float = 0.2
 
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if field.name in ("armature", "viscous", "stiction", "velocity_noise"):
+            if field.name in _PER_JOINT:
                 value = (value,) * 7 if isinstance(value, int | float) else value
                 value = tuple(as_vector(value, 7, field.name).tolist())  # hashable, comparable
                 object.__setattr__(self, field.name, value)
+                as_number(min(value), field.name, least=0.0)
+            elif field.name not in ("name", "gravity_compensation"):
+                as_number(value, field.name, least=0.0)
+        if self.lost_ticks > 1.0:
+            raise OutOfRange(f"lost_ticks is {self.lost_ticks:g}; it is a share, at most 1")
+
+
+_PER_JOINT = ("armature", "viscous", "stiction", "velocity_noise", "torque_noise")
 
 
 IDEAL = Plant(name="ideal")
@@ -71,6 +85,8 @@ BAXTER = Plant(
     state_rate=100.0,  # Rethink's default joint_state_publish_rate
     state_delay=0.004,  # four hops of a millisecond each
     velocity_noise=(0.01, 0.01, 0.01, 0.01, 0.03, 0.03, 0.03),  # read off the report's figures
+    torque_noise=(0.3, 0.3, 0.3, 0.3, 0.1, 0.1, 0.1),  # not published; a spring's deflection sensor
+    torque_lag=0.01,
     lost_ticks=0.02,
 )
 """The arm as its users found it."""

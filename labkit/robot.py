@@ -10,7 +10,7 @@ import json
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from math import atan2, hypot
+from math import atan2, cos, hypot, sin
 from typing import Any, Literal
 
 import numpy as np
@@ -141,14 +141,15 @@ def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tu
 
 
 def _rpy(R: Array) -> Array:
-    """URDF's roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll)."""
-    return np.array(
-        [
-            atan2(R[2, 1], R[2, 2]),
-            atan2(-R[2, 0], hypot(R[2, 1], R[2, 2])),
-            atan2(R[1, 0], R[0, 0]),
-        ]
-    )
+    """URDF's roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll).
+
+    Two of Baxter's joints have a pitch of a quarter turn, where roll and yaw turn about one axis:
+    whatever roll is read there, the yaw is read from what it leaves.
+    """
+    roll = atan2(R[2, 1], R[2, 2])
+    pitch = atan2(-R[2, 0], hypot(R[2, 1], R[2, 2]))
+    y = cos(roll) * R[:, 1] - sin(roll) * R[:, 2]  # Rz(yaw) applied to (0, 1, 0)
+    return np.array([roll, pitch, atan2(-y[0], y[1])])
 
 
 def _text(x: Array) -> str:

@@ -4,24 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
-from .arm import Arm, whole_steps
-from .arrays import Array, as_array, as_number, locked
+from .arm import Arm
+from .arrays import Array, as_array, as_number, locked, shown
 from .commands import COMMANDS, JOINTS, Command, State
-from .errors import ControllerError, Diverged, LabkitError, OutOfRange
+from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .motion import AnySample, PoseSample, Sample, Target
 from .plant import Plant
 from .robot import Side
+from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]
 """A function of the state and of the target's sample; nothing to inherit, nothing to register."""
 
 RUNAWAY = 50.0
-"""A joint faster than this, in [rad/s], is out of control: twelve times the quickest's limit."""
+"""Joints faster than this, in [rad/s], are out of control: twelve times the quickest's limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,8 +37,10 @@ class Log:
             included, shape (N, 7) in [N m]; the last row repeats the one before.
         command: What the controller asked for, shape (N, 7), in the unit of `command_type`.
         target: A `Sample` or `PoseSample` of stacked arrays, (N, ...).
-        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7).
-        saturated: Whether a limit cut the command, shape (N,).
+        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7),
+            tau_ext (N, 7).
+        saturated: Whether a limit of speed or torque cut what the arm did until the next tick,
+            shape (N,).
         command_type: `JointPosition`, `JointVelocity` or `JointTorque`.
         controller: The controller's name.
         plant: The plant that was driven.
@@ -95,88 +98,144 @@ def run(
             or no sample; it says which and when.
         Diverged: The arm ran away; the error keeps the `log` up to then.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
+        TypeMismatch: One of the three is not what it should be.
+        Closed: The arm's world is closed.
     """
+    for name, given in (("target", target), ("controller", controller)):
+        if not callable(given):
+            raise TypeMismatch(
+                f"{name} is {shown(given)}, expected a function: run(arm, target, controller)"
+            )
+    if not isinstance(arm, Arm):
+        raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
+    rate = as_number(rate, "rate", above=0.0)
     steps = whole_steps(rate, arm.world.dt, "rate")
     ticks = _ticks(target, duration, steps * arm.world.dt)
     who, whom, world, period = _name(controller), _name(target), arm.world, steps * arm.world.dt
     lost = arm.lost_ticks(ticks)
-    first = _checked_sample(target, whom)
-    book = _Book(ticks, first)
-    kind, sample_type = None, type(first)
-    t, k = 0.0, 0
+    book = _Book(ticks, whom, _first_sample(target, whom))
+    the_target = f"the target {whom}"
+    kind, t, k, asked = None, 0.0, 0, who
+    often = max(1, round(0.01 / period))  # every 10 ms: nothing runs far in so short a time
     try:
         for k in range(ticks):
-            t = k * period
+            t, asked = k * period, the_target
             truth, seen, torque = arm.observe()
-            sample = target(t) if k else first
-            if type(sample) is not sample_type or not book.keep_target(k, sample):
-                raise ControllerError(_bad_sample(sample, whom, t))
+            sample = book.checked(target(t), t)
+            asked = who
             command = controller(seen, sample)
             if type(command) is not kind:
                 kind = _settled(command, kind, who, t)
-            book.keep(k, t, truth, seen, torque, command.value)
-            if truth.dq.dot(truth.dq) > RUNAWAY**2:
+            book.keep(k, truth, seen, torque, command, sample)
+            if not k % often and not truth.dq.dot(truth.dq) <= RUNAWAY**2:  # a NaN runs away too
                 raise Diverged(_runaway(arm, truth, who, t))
             if k < ticks - 1:
                 if not lost[k]:
                     arm.apply(command)
-                book.saturated[k] = arm.saturated
                 world.step(steps)
+                book.saturated[k] = arm.saturated
     except KeyboardInterrupt:
-        return book.log(k, kind, who, arm)
+        if not book.filled:
+            raise
     except Diverged as error:
-        error.log = book.log(k + 1, kind, who, arm)
+        error.log = book.log(kind, who, arm, period)
         raise
-    except ControllerError:
+    except (ControllerError, Closed):
         raise
     except Exception as error:
+        book.blame(t)
         what = str(error) if isinstance(error, LabkitError) else f"{type(error).__name__}: {error}"
-        raise ControllerError(f"{who} failed at t = {t:.3f} s, tick {k}: {what}") from error
+        raise ControllerError(f"{asked} failed at t = {t:.3f} s, tick {k}: {what}") from error
     finally:
         if world.client >= 0:
             arm.stop()
-    return book.log(ticks, kind, who, arm)
+    book.check_target(period)
+    return book.log(kind, who, arm, period)
+
+
+_shape = attrgetter("shape")
 
 
 class _Book:
-    """The columns of a log while it is being written."""
+    """What the log is made of, while it is being written: a row of numbers for each tick."""
 
-    def __init__(self, ticks: int, first: AnySample) -> None:
-        self.t, self.t_seen = np.zeros(ticks), np.zeros(ticks)
-        self.q, self.dq, self.tau, self.command, self.q_seen, self.dq_seen = (
-            np.zeros((ticks, JOINTS)) for _ in range(6)
-        )
+    def __init__(self, ticks: int, whom: str, first: AnySample) -> None:
+        self.filled, self.whom, self.sample_type = 0, whom, type(first)
+        self.shapes = [part.shape for part in first]
+        self.latest = first
+        self.widths = [JOINTS] * 5 + [part.size for part in first]
+        self.rows = np.empty((ticks, sum(self.widths)))
+        self.seen, self.t_seen, self.apart = np.empty((ticks, 3 * JOINTS)), np.empty(ticks), False
         self.saturated = np.zeros(ticks, dtype=bool)
-        self.target = tuple(np.zeros((ticks, *part.shape)) for part in first)
-        self.sample_type = type(first)
 
-    def keep_target(self, k: int, sample: AnySample) -> bool:
-        """Write down the sample and lock it; False if it is not finite."""
-        size = 0.0
-        for column, part in zip(self.target, sample, strict=True):
-            column[k] = part
-            part.setflags(write=False)
-            size += float(np.vdot(part, part))
-        return isfinite(size)
+    def checked(self, sample: Any, t: float) -> AnySample:
+        """The target's sample: of the right kind and shapes, and read-only."""
+        try:
+            good = type(sample) is self.sample_type and [*map(_shape, sample)] == self.shapes
+        except AttributeError:  # lists
+            good = False
+        self.latest = x, dx, ddx = sample if good else self.read(sample, t)
+        x.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        dx.setflags(False)  # type: ignore[call-arg]
+        ddx.setflags(False)  # type: ignore[call-arg]
+        return self.latest
 
-    def keep(self, k: int, t: float, truth: State, seen: State, tau: Array, command: Array) -> None:
-        """Write down one tick; ``tau`` belongs to the tick before."""
-        self.t[k], self.t_seen[k] = t, seen.t
-        self.q[k], self.dq[k], self.command[k] = truth.q, truth.dq, command
-        self.q_seen[k], self.dq_seen[k] = seen.q, seen.dq
-        if k:
-            self.tau[k - 1] = self.tau[k] = tau
+    def read(self, sample: Any, t: float) -> AnySample:
+        """Read a sample with care, or say what is wrong with it."""
+        return _read_sample(sample, self.sample_type, self.shapes, self.whom, t)
 
-    def log(self, rows: int, kind: type | None, who: str, arm: Arm) -> Log:
-        """The first ``rows`` rows, frozen."""
-        cut = {
-            name: locked(getattr(self, name)[:rows]) for name in ("t", "q", "dq", "tau", "command")
-        }
+    def blame(self, t: float) -> None:
+        """Raise if it was the target that broke the controller."""
+        self.read(self.latest, t)
+
+    def keep(
+        self,
+        k: int,
+        truth: State,
+        seen: State,
+        torque: Array,
+        command: Command,
+        sample: AnySample,
+    ) -> None:
+        """Write down one tick; ``torque`` belongs to the tick before."""
+        x, dx, ddx = sample
+        np.concatenate(
+            (truth.q, truth.dq, truth.tau_ext, torque, command.value, x.ravel(), dx, ddx),
+            out=self.rows[k],
+        )
+        if seen is not truth:
+            np.concatenate(seen[1:], out=self.seen[k])
+            self.apart = True
+        self.t_seen[k], self.filled = seen.t, k + 1
+
+    def check_target(self, period: float) -> None:
+        """Raise if a sample held a NaN that did no harm; harmful ones were blamed at once."""
+        target = self.rows[: self.filled, 5 * JOINTS :]
+        for k in np.flatnonzero(~np.isfinite(target).all(axis=1))[:1]:
+            parts = np.split(target[k], np.cumsum(self.widths[5:])[:-1])
+            shaped = zip(parts, self.shapes, strict=True)
+            self.read(self.sample_type(*(x.reshape(shape) for x, shape in shaped)), k * period)
+
+    def log(self, kind: type | None, who: str, arm: Arm, period: float) -> Log:
+        """What was written so far, frozen."""
+        n, edges = self.filled, np.cumsum(self.widths)[:-1]
+        q, dq, tau_ext, torque, command, *target = np.split(self.rows[:n], edges, axis=1)
+        reported = np.split(self.seen[:n], 3, axis=1) if self.apart else (q, dq, tau_ext)
+        shaped = zip(target, self.shapes, strict=True)
+        seen = (self.t_seen[:n], *reported)
+        tau = np.concatenate([torque[1:], torque[-1:]])
+        at_limit = (np.abs(tau) >= arm.robot.effort * (1.0 - 1e-9)).any(axis=1)
+        saturated = self.saturated[:n] | at_limit
+        saturated.setflags(write=False)
         return Log(
-            **cut,
-            target=self.sample_type(*(locked(column[:rows]) for column in self.target)),
-            measured=State(*(locked(x[:rows]) for x in (self.t_seen, self.q_seen, self.dq_seen))),  # type: ignore[arg-type]
-            saturated=self.saturated[:rows],
+            t=locked(period * np.arange(n, dtype=np.float64)),
+            q=locked(q),
+            dq=locked(dq),
+            tau=locked(tau),
+            command=locked(command),
+            target=self.sample_type(*(locked(x.reshape(n, *shape)) for x, shape in shaped)),
+            measured=State(*map(locked, seen)),  # type: ignore[arg-type]
+            saturated=saturated,
             command_type=kind or type(None),
             controller=who,
             plant=arm.plant,
@@ -195,31 +254,34 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _checked_sample(target: Target, whom: str) -> AnySample:
-    """The target's first sample, read carefully, so that the loop can be quick about the rest."""
+def _first_sample(target: Target, whom: str) -> AnySample:
+    """The target's first sample, a copy: what kind it is settles what the others must be."""
     try:
-        sample = target(0.0)
+        sample: Any = target(0.0)
     except Exception as error:
+        what = f"{type(error).__name__}: {error}"
+        raise ControllerError(f"the target {whom} failed at t = 0: {what}") from error
+    shapes: list[tuple[int, ...]] = [(4, 4), (6,), (6,)]
+    if isinstance(sample, Sample):
+        shapes = [(np.size(sample.position),)] * 3
+    return _read_sample(sample, type(sample), shapes, whom, 0.0)
+
+
+def _read_sample(
+    sample: Any, kind: type, shapes: list[tuple[int, ...]], whom: str, t: float
+) -> AnySample:
+    """Read a sample with care, or say what is wrong with it."""
+    if type(sample) is not kind or not isinstance(sample, Sample | PoseSample):
         raise ControllerError(
-            f"the target {whom} failed at t = 0: {type(error).__name__}: {error}"
-        ) from error
-    if isinstance(sample, PoseSample):
-        shapes: tuple[tuple[int, ...], ...] = ((4, 4), (6,), (6,))
-    elif isinstance(sample, Sample):
-        shapes = (np.shape(sample.position),) * 3
-        if len(shapes[0]) != 1:
-            raise ControllerError(_bad_sample(sample, whom, 0.0))
-    else:
-        raise ControllerError(_bad_sample(sample, whom, 0.0))
+            f"the target {whom} gave {str(sample)[:80]} ({type(sample).__name__}) at t = {t:.3f} s;"
+            " a target gives lk.Sample(position, velocity, acceleration) or"
+            " lk.PoseSample(pose, twist, dtwist), the same kind at all times"
+        )
     parts = zip(sample._fields, sample, shapes, strict=True)
-    return type(sample)(*(np.array(as_array(x, n, f"{whom}'s {name}")) for name, x, n in parts))
-
-
-def _bad_sample(sample: object, whom: str, t: float) -> str:
-    return (
-        f"the target {whom} gave {str(sample)[:120]} at t = {t:.3f} s; a target gives "
-        "lk.Sample(position, velocity, acceleration) or lk.PoseSample(pose, twist, dtwist), finite"
-    )
+    try:
+        return type(sample)(*(np.array(as_array(x, n, name)) for name, x, n in parts))
+    except LabkitError as error:
+        raise ControllerError(f"the target {whom} at t = {t:.3f} s: {error}") from error
 
 
 def _settled(command: object, kind: type | None, who: str, t: float) -> type:

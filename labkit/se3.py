@@ -15,6 +15,7 @@ import numpy as np
 from .arrays import Array, as_array
 from .errors import OutOfRange
 
+_IDENTITY = np.eye(3)
 _SMALL = 1e-4  # below this angle the closed forms lose digits and the series are exact
 
 
@@ -75,8 +76,9 @@ def rotation_log(R: Any) -> Array:
         OutOfRange: R is no rotation matrix.
     """
     R = as_rotation(R, "R")
-    v = vee(R)  # sin(theta) * axis
-    s, c = sqrt(v @ v), 0.5 * (R[0, 0] + R[1, 1] + R[2, 2] - 1.0)
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R.tolist()  # quicker than arrays of three
+    v = np.array([0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)])  # sin(theta) * axis
+    s, c = sqrt(v @ v), 0.5 * (xx + yy + zz - 1.0)
     theta = atan2(s, c)
     if theta < _SMALL:
         return v * (1.0 + theta * theta / 6.0)
@@ -121,6 +123,22 @@ def orientation_error(R_wd: Any, R_wt: Any) -> Array:
     """
     R_wd = as_array(R_wd, (3, 3), "R_wd")
     return rotation_log(R_wd @ as_array(R_wt, (3, 3), "R_wt").T)
+
+
+def pose_error(T_wd: Any, T_wt: Any) -> Array:
+    """Target minus actual of two poses, world axes: the way to go and the turn to make.
+
+    Args:
+        T_wd: Desired pose, shape (4, 4).
+        T_wt: Actual pose of the tip, shape (4, 4).
+
+    Returns:
+        Position error [m] and `orientation_error` [rad], shape (6,).
+    """
+    e = np.empty(6)
+    e[:3] = T_wd[:3, 3] - T_wt[:3, 3]
+    e[3:] = orientation_error(T_wd[:3, :3], T_wt[:3, :3])
+    return e
 
 
 def pose(R: Any, p: Any) -> Array:
@@ -211,6 +229,21 @@ def angle_between(R_a: Any, R_b: Any) -> float:
     return atan2(s, c)
 
 
+def quaternion(R: Any) -> Array:
+    """The unit quaternion (x, y, z, w) of a rotation matrix, the real part last and not negative.
+
+    Args:
+        R: Rotation matrix, shape (3, 3).
+
+    Returns:
+        Shape (4,).
+    """
+    phi = rotation_log(R)
+    angle = sqrt(phi @ phi)
+    scale = 0.5 if angle < _SMALL else sin(0.5 * angle) / angle
+    return np.array([*(scale * phi), cos(0.5 * angle)])
+
+
 def as_rotation(x: Any, name: str) -> Array:
     """Read ``x`` as a rotation matrix.
 
@@ -225,13 +258,14 @@ def as_rotation(x: Any, name: str) -> Array:
         OutOfRange: Its columns are not orthonormal, or it mirrors.
     """
     R: Array = as_array(x, (3, 3), name)
-    off = float(np.abs(R.T @ R - np.eye(3)).max())
+    off = abs(R.T @ R - _IDENTITY).max()
     if off > 1e-6:
         raise OutOfRange(
             f"{name} is no rotation: {name}.T @ {name} differs from the identity by {off:.2g}; "
             "rotations are made by products and se3.rotation, not by sums"
         )
-    if float(np.linalg.det(R)) < 0.0:
+    (a, b, c), (d, e, f), (g, h, i) = R.tolist()
+    if a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g) < 0.0:
         raise OutOfRange(f"{name} has determinant -1: it mirrors; two of its columns are swapped")
     return R
 
@@ -261,5 +295,5 @@ def _coefficients(theta: float) -> tuple[float, float, float]:
     if theta < _SMALL:
         t2 = theta * theta
         return 1.0 - t2 / 6.0, 0.5 - t2 / 24.0, 1.0 / 6.0 - t2 / 120.0
-    s, c = sin(theta), cos(theta)
-    return s / theta, (1.0 - c) / theta**2, (theta - s) / theta**3
+    s, h = sin(theta), sin(0.5 * theta)  # 1 - cos t = 2 sin^2(t/2), without the cancellation
+    return s / theta, 2.0 * (h / theta) ** 2, (theta - s) / theta**3

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from types import TracebackType
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
-from .arrays import as_number
-from .errors import Closed
+from .arrays import Array, as_number
+from .errors import Closed, OutOfRange
 from .quiet import quiet
 
 with quiet():
@@ -20,37 +21,101 @@ class Actor(Protocol):
         """Apply forces and motor targets for the next step."""
 
 
+class Thing(Protocol):
+    """Something to put into a world: a value that knows how to build itself there."""
+
+    def put_into(self, world: World) -> Actor | None:
+        """Build it; what it gives, if anything, acts before each physics step from now on."""
+
+
+class Pushable(Protocol):
+    """An arm, as far as the things around it need to know it."""
+
+    def truth(self) -> Any:
+        """The joints as they really are."""
+
+    def push(self, force: Array, moment: Array) -> None:
+        """Push the tip during the next physics step."""
+
+    @property
+    def robot(self) -> Any:
+        """Its names."""
+
+    @property
+    def model(self) -> Any:
+        """Its equations."""
+
+
+class Shown(Protocol):
+    """Something that cameras see and the physics does not."""
+
+    @property
+    def bodies(self) -> Iterable[int]:
+        """PyBullet's numbers of what is seen."""
+
+    def update(self) -> None:
+        """Put its looks where they belong now."""
+
+
 class World:
     """One physics world; two of them never share anything.
 
     Attributes:
         dt: The physics step, in [s].
-        client: PyBullet's number of this world.
+        client: PyBullet's number of this world, -1 once it is closed.
+        things: What was put into it, the arms apart.
+        arms: The arms that stand in it.
+        shown: What only cameras see.
     """
 
-    def __init__(self, dt: float = 1e-3) -> None:
-        """Open an empty world with gravity.
+    client: int = -1
+
+    def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
+        """Open a world with gravity.
 
         Args:
             dt: The physics step, in [s].
+            things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.client: int = bullet.connect(bullet.DIRECT)
+        self.client = bullet.connect(bullet.DIRECT)
         self._steps = 0
         self._actors: list[Actor] = []
+        self.things: list[Thing] = []
+        self.arms: list[Pushable] = []
+        self.shown: list[Shown] = []
         bullet.setTimeStep(self.dt, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
         # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
         bullet.setPhysicsEngineParameter(solverResidualThreshold=0.0, physicsClientId=self.client)
+        for thing in things:
+            self.put(thing)
 
     @property
     def t(self) -> float:
         """The time in this world, in [s]."""
         return self._steps * self.dt
 
+    def put(self, thing: Thing) -> None:
+        """Put a thing into the world, where it stays.
+
+        Raises:
+            Closed: The world is closed.
+        """
+        if self.client < 0:
+            raise Closed("this world was closed; make a new World")
+        actor = thing.put_into(self)
+        self.things.append(thing)
+        if actor is not None:
+            self.add(actor)
+
     def add(self, actor: Actor) -> None:
         """Let ``actor`` act before each physics step from now on."""
         self._actors.append(actor)
+
+    def show(self, thing: Shown) -> None:
+        """Let ``thing`` be brought up to date before each picture from now on."""
+        self.shown.append(thing)
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
@@ -85,3 +150,16 @@ class World:
 
     def __del__(self) -> None:
         self.close()
+
+
+def whole_steps(rate: float, dt: float, name: str) -> int:
+    """How many physics steps of ``dt`` [s] a period of ``rate`` [Hz] has; 0 for a rate of 0."""
+    if rate == 0.0:
+        return 0
+    steps = 1.0 / (rate * dt)
+    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
+        raise OutOfRange(
+            f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
+            f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"
+        )
+    return round(steps)

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import as_array
-from ..commands import COMMANDS
+from ..arrays import Array, as_array, as_gains
+from ..commands import COMMANDS, JOINTS
 from ..errors import LabkitError
 from ..motion import PoseSample, Sample
 
@@ -137,6 +137,10 @@ class Within:
         return min(float(abs(x - (a + b) / 2) / ((b - a) / 2)) for a, b in expected)
 
 
+_UNITS = {"_mm_s": " mm/s", "_mm": " mm", "_deg": " degrees"}
+"""What the end of a measure's name stands for."""
+
+
 @dataclass(frozen=True)
 class AtMost:
     """The measures of a run, each at most its expected limit."""
@@ -145,9 +149,9 @@ class AtMost:
         """None if all are, else the first that is not."""
         for name, limit in expected.items():
             if not answer[name] <= limit:
-                unit = name.rsplit("_", 1)[-1] if "_" in name else ""
-                what = name.removesuffix(f"_{unit}").replace("_", " ")
-                return f"{what} {answer[name]:.3g} {unit}, allowed {limit:.3g} {unit}"
+                end = next((end for end in _UNITS if name.endswith(end)), "")
+                what, unit = name.removesuffix(end).replace("_", " "), _UNITS.get(end, "")
+                return f"{what} {answer[name]:.3g}{unit}, allowed {limit:.3g}{unit}"
         return None
 
     def same(self, answer: dict[str, float], other: dict[str, float]) -> bool:
@@ -159,8 +163,102 @@ class AtMost:
         return max(answer[name] / limit for name, limit in expected.items())
 
 
-Judge = Close | Within | AtMost
-JUDGES: dict[str, Any] = {kind.__name__: kind for kind in (Close, Within, AtMost)}
+@dataclass(frozen=True)
+class Ratio:
+    """A transfer function as data: two polynomials, highest power first.
+
+    Attributes:
+        num: Numerator.
+        den: Denominator.
+    """
+
+    num: tuple[float, ...]
+    den: tuple[float, ...]
+
+    def __call__(self, s: complex) -> complex:
+        """Its value at ``s``."""
+        return complex(np.polyval(self.num, s) / np.polyval(self.den, s))
+
+
+@dataclass(frozen=True)
+class Response:
+    """A transfer function judged by its frequency response, whatever its form.
+
+    Attributes:
+        omega: Where to compare, in [rad/s].
+        rtol: Largest difference, as a share of the expected value.
+    """
+
+    omega: tuple[float, ...]
+    rtol: float = 0.02
+
+    def __call__(self, answer: Any, expected: Any) -> str | None:
+        """None if they agree, else where they do not."""
+        try:
+            pairs = [(w, complex(answer(1j * w)), complex(expected(1j * w))) for w in self.omega]
+        except (TypeError, ValueError):
+            return f"it should be a transfer function, not {_shown(answer)}"
+        for w, a, b in pairs:
+            if not abs(a - b) <= self.rtol * abs(b):
+                return f"at {w:g} rad/s expected {_polar(b)}, got {_polar(a)}"
+        return None
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, respond alike."""
+        return self(answer, other) is None
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """How far the answer is off, in tolerances."""
+        try:
+            return max(
+                abs(complex(answer(1j * w)) / complex(expected(1j * w)) - 1.0) / self.rtol
+                for w in self.omega
+            )
+        except (TypeError, ValueError, ZeroDivisionError):
+            return float("inf")
+
+
+def _polar(z: complex) -> str:
+    return f"{abs(z):.4g} at {np.degrees(np.angle(z)):.4g} degrees"
+
+
+@dataclass(frozen=True)
+class Gains:
+    """A pair (kp, kd) of which many are right; a run tells how good they are.
+
+    Each is one number or one for each joint, none below 0.
+    """
+
+    def __call__(self, answer: Any, expected: Any) -> str | None:
+        """None if it is such a pair, else what it is instead."""
+        try:
+            self._read(answer)
+        except LabkitError as error:
+            return str(error)
+        except (TypeError, ValueError):
+            return f"it should be two things (kp, kd), not {_shown(answer)}"
+        return None
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two pairs are alike: every gain within a factor of 1.5."""
+        try:
+            a, b = self._read(answer), self._read(other)
+        except (LabkitError, TypeError, ValueError):
+            return False
+        return bool(((a <= 1.5 * b) & (b <= 1.5 * a)).all())
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """Zero for such a pair, else infinite."""
+        return 0.0 if self(answer, expected) is None else float("inf")
+
+    @staticmethod
+    def _read(answer: Any) -> Array:
+        kp, kd = answer
+        return np.concatenate([as_gains(kp, JOINTS, "kp"), as_gains(kd, JOINTS, "kd")])
+
+
+Judge = Close | Within | AtMost | Response | Gains
+JUDGES: dict[str, Any] = {k.__name__: k for k in (Close, Within, AtMost, Response, Gains)}
 
 
 def _flat(value: Any) -> list[Any]:

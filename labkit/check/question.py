@@ -14,9 +14,13 @@ from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from ..arm import Arm
+from ..controllers import springs
+from ..errors import TypeMismatch
 from ..metrics import since, summary
 from ..plant import IDEAL, Plant
 from ..run import run
+from ..trials import Runner, Trials
+from ..world import Thing, World
 from .codec import decode, encode
 from .judge import JUDGES, Judge
 
@@ -57,6 +61,7 @@ class Loop:
         kwargs: What the controller is given besides state and target.
         side: Which arm.
         plant: What it is like.
+        things: What it meets, such as a `labkit.Push`.
         seed: Of its noise.
         q0: Where it starts, shape (7,) in [rad]; None is its ready pose.
         rate: Control rate, in [Hz].
@@ -70,6 +75,7 @@ class Loop:
     kwargs: Mapping[str, Any] = field(default_factory=dict)
     side: Any = "left"
     plant: Plant = IDEAL
+    things: tuple[Thing, ...] = ()
     seed: int = 0
     q0: Any = None
     rate: float = 200.0
@@ -84,7 +90,7 @@ class Loop:
         def controller(state: Any, target: Any) -> Any:
             return function(state, target, **self.kwargs)
 
-        arm = Arm(self.side, self.plant, self.seed)
+        arm = Arm(self.side, self.plant, self.seed, world=World(things=self.things))
         arm.reset(arm.robot.ready if self.q0 is None else self.q0)
         try:
             log = run(arm, self.target, controller, self.rate, self.duration)
@@ -97,8 +103,78 @@ class Loop:
         return f"a run of the {self.plant.name} {self.side} arm with {name} as its controller"
 
 
-Case = Call | Loop
-_CASES: dict[str, Any] = {"Call": Call, "Loop": Loop}
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """The student's function chooses gains with a runner that has a limited number of tries.
+
+    Attributes:
+        trials: What the runner knows.
+        expected: Largest allowed ``worst_mm``.
+        unseen: What the choice is tried on instead; None takes ``trials`` again.
+        budget: How many tries the runner has.
+        hidden: Whether the student never sees it.
+    """
+
+    trials: Trials
+    expected: Any
+    unseen: Trials | None = None
+    budget: int = 20
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The gains that the function chooses, with a fresh runner."""
+        return function(Runner(self.trials, self.budget))
+
+    def measured(self, answer: Any) -> dict[str, float]:
+        """The worst error that the chosen gains give, in [mm].
+
+        Raises:
+            LabkitError: The answer is no pair of gains that were recorded.
+        """
+        try:
+            Kp, Kd = answer
+        except (TypeError, ValueError):
+            raise TypeMismatch("the answer should be two gains, (Kp, Kd)") from None
+        return {"worst_mm": (self.unseen or self.trials).worst(Kp, Kd)}
+
+    def shown(self, name: str) -> str:
+        """The choice in words."""
+        return f"{name}(runner) with {self.budget} tries"
+
+
+@dataclass(frozen=True, eq=False)
+class Tuned:
+    """One closed-loop run with gains that the student's function chose.
+
+    The law is `labkit.controllers.springs`, which is given to students as it stands: a law with
+    more in it would be the answer to some other question.
+
+    Attributes:
+        args: What the function is given; it answers (kp, kd).
+        loop: The run, its ``kwargs`` and ``expected`` unused.
+        expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
+        hidden: Whether the student never sees it.
+    """
+
+    args: tuple[Any, ...]
+    loop: Loop
+    expected: Any = field(default_factory=dict)
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
+        """The measures of the run that the function's gains make."""
+        kp, kd = function(*self.args)
+        return self.loop.ask(springs(kp, kd))
+
+    def shown(self, name: str) -> str:
+        """The run in words."""
+        plant = self.loop.plant
+        carries = f" with {plant.payload:g} kg in its gripper" if plant.payload else ""
+        return f"a run of the {plant.name} {self.loop.side} arm{carries} with the gains of {name}"
+
+
+Case = Call | Loop | Choice | Tuned
+_CASES: dict[str, Any] = {kind.__name__: kind for kind in (Call, Loop, Choice, Tuned)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,10 +247,10 @@ class Question:
     mistakes: tuple[Mistake, ...] = ()
 
     @property
-    def calls(self) -> tuple[Call, ...]:
+    def calls(self) -> tuple[Call | Choice, ...]:
         """The public calls, on which fingerprints are taken."""
         cases = (case for test in self.tests for case in test.cases)
-        return tuple(case for case in cases if isinstance(case, Call) and not case.hidden)
+        return tuple(case for case in cases if isinstance(case, Call | Choice) and not case.hidden)
 
     def public(self) -> Question:
         """The same question without its hidden cases."""
@@ -236,8 +312,7 @@ def read_question(data: Mapping[str, Any]) -> Question:
     """The question that `Question.data` wrote."""
     judge = dict(data["judge"])
     kind = JUDGES[judge.pop("kind")]
-    if "parts" in judge:
-        judge["parts"] = tuple(judge["parts"])
+    judge = {key: tuple(x) if isinstance(x, list) else x for key, x in judge.items()}
     return Question(
         name=data["name"],
         points=data["points"],
@@ -257,12 +332,19 @@ def read_question(data: Mapping[str, Any]) -> Question:
 
 
 def _case_data(case: Case) -> dict[str, Any]:
-    fields = {key: encode(value) for key, value in vars(case).items()}
+    fields = {
+        key: _case_data(value) if isinstance(value, Loop) else encode(value)
+        for key, value in vars(case).items()
+    }
     return {"case": type(case).__name__, **fields}
 
 
 def _case(data: Mapping[str, Any]) -> Case:
-    fields = {key: decode(value) for key, value in data.items() if key != "case"}
+    fields = {
+        key: _case(value) if isinstance(value, dict) and "case" in value else decode(value)
+        for key, value in data.items()
+        if key != "case"
+    }
     case: Case = _CASES[data["case"]](**fields)
     return case
 

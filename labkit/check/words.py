@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import textwrap
+
 from .mark import Outcome, TestResult, Verdict
 from .question import Question
 
@@ -53,7 +55,13 @@ def tell(
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         lines.append(f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees it.')
-    return "\n".join(lines)
+    return "\n".join(_wrapped(line) for line in lines)
+
+
+def _wrapped(line: str) -> str:
+    """A line folded where a notebook would otherwise break it within a word."""
+    margin = " " * (len(line) - len(line.lstrip()))
+    return textwrap.fill(line, 92, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
 def _line(result: TestResult) -> str:

@@ -1,0 +1,95 @@
+# One verb for each thing that one does here; `make help` lists them.
+.DEFAULT_GOAL := help
+SHELL := /bin/sh
+BIN := .venv/bin
+INSTALL = $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
+SEED ?= 2019
+ASSIGNMENT ?= 01_paths
+
+.PHONY: help demo test quick lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
+
+help: ## list the verbs
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
+
+demo: .venv/.course .venv/.programs ## release, grade a small class, build the book, say where to look
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/demo.py
+
+test: .venv/.dev .venv/.test-programs lint types ## everything: style, types, all tests
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
+
+quick: .venv/.dev ## the quick tests, under two minutes
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow" --ignore tests/book --ignore tests/replay
+
+lab: .venv/.student ## open the students' notebooks
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments
+
+release: .venv/.course ## make the students' notebooks; SEED=n for hidden cases of your own
+	@$(BIN)/labkit release $(if $(filter command line environment,$(origin SEED)),--seed $(SEED))
+
+grade: .venv/.course .venv/.programs ## grade submitted/ ; ASSIGNMENT=01_paths
+	@$(BIN)/labkit grade $(ASSIGNMENT)
+
+book: .venv/.course ## build the book: book/_build/html/index.html
+	@$(BIN)/python tools/build_book.py
+
+book-zip: .venv/.course ## the book as one file to hand out
+	@$(BIN)/python tools/build_book.py --zip
+
+book-pdf: .venv/.course .venv/.test-programs ## the book to print
+	@$(BIN)/python tools/build_book.py --pdf
+
+vendor: .venv/.dev ## make the book's browser files again (node 20)
+	@sh tools/need.sh node:nodejs npm:npm
+	@PYTHON="$(CURDIR)/$(BIN)/python" sh tools/vendor.sh
+
+campaign: .venv/.course ## every controller on every task: build/campaign.json
+	@$(BIN)/python -m solutions.campaign
+
+bench: .venv/.dev ## measure speeds as ratios: build/bench.json
+	@$(BIN)/python -m bench
+
+tag-bench: .venv/.course ## precision of the tag sensor; SEED=n
+	@$(BIN)/python -m bench.tags --seed $(SEED)
+
+report-card: .venv/.course ## do the checks reject what is wrong and accept what is right?
+	@$(BIN)/labkit report-card
+
+doctor: .venv/.course ## what isolation this machine can give to submissions
+	@$(BIN)/labkit doctor
+
+lint: .venv/.dev
+	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . || { $(BIN)/ruff format --diff . ; exit 1; }
+
+types: .venv/.dev
+	@$(BIN)/mypy --no-error-summary
+
+format: .venv/.dev ## put the code in order
+	@$(BIN)/ruff check --fix . && $(BIN)/ruff format .
+
+clean: ## forget everything that was made
+	rm -rf .venv build dist book/_build book/generated autograded feedback results gradebook.db
+
+# Environments: a student's, an instructor's, a developer's, each one more than the one before.
+
+.venv/.made:
+	@python=$$(sh tools/find_python.sh) && "$$python" -c 'import ensurepip, venv' 2>/dev/null || sh tools/need.sh none:python3.11-venv
+	@echo "making .venv with $$(sh tools/find_python.sh)"
+	@"$$(sh tools/find_python.sh)" -m venv .venv && touch $@
+
+.venv/.student: .venv/.made pyproject.toml constraints.txt
+	@echo "installing what a student needs"
+	@$(INSTALL) -e . && touch $@
+
+.venv/.course: .venv/.student
+	@echo "installing what an instructor needs"
+	@$(INSTALL) -e '.[instructor,book]' && touch $@
+
+.venv/.dev: .venv/.course
+	@echo "installing what a developer needs"
+	@$(INSTALL) -e '.[dev]' && touch $@
+
+.venv/.programs: .venv/.made
+	@sh tools/need.sh bwrap:bubblewrap && touch $@
+
+.venv/.test-programs: .venv/.programs
+	@sh tools/need.sh chromium,chromium-browser,google-chrome:chromium node:nodejs && touch $@

@@ -1,0 +1,137 @@
+"""Before handing in: is the notebook whole, is it run, and what do its checks say?
+
+It reads the file and runs nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+import re
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError
+from .notebook import FILE
+
+LARGEST = 10.0
+"""Above this many megabytes a notebook may not pass a learning platform's upload."""
+
+
+@dataclass(frozen=True)
+class HandIn:
+    """What a look at a notebook found.
+
+    Attributes:
+        assignment: Which.
+        problems: What to mend before handing in, sentences.
+        notes: What is worth knowing.
+        verdicts: The last verdict in the file for each question, or "not run".
+    """
+
+    assignment: str
+    problems: tuple[str, ...]
+    notes: tuple[str, ...]
+    verdicts: Mapping[str, str]
+
+    def __str__(self) -> str:
+        lines = [f"[mend] {text}" for text in self.problems]
+        lines += [f"[note] {text}" for text in self.notes]
+        lines += [f"  {verdict}" for verdict in self.verdicts.values()]
+        end = "mend the above first." if self.problems else "ready to hand in."
+        return "\n".join([*lines, f"{self.assignment}: {end}"])
+
+    def for_the_forum(self) -> str:
+        """A block to copy into a question to others: verdicts and versions, and no answer."""
+        tools = ", ".join(
+            f"{name} {version(name)}" for name in ("labkit", "numpy", "pybullet", "pin")
+        )
+        lines = [f"{self.assignment}; {tools}; Python {platform.python_version()}"]
+        return "\n".join(["```", *lines, *self.verdicts.values(), "```"])
+
+
+def look(path: Path) -> HandIn:
+    """Look through a notebook that is about to be handed in.
+
+    Args:
+        path: The notebook; the assignment's ``checks.json`` must lie beside it.
+
+    Raises:
+        LabkitError: The file is missing or no notebook, or its questions are not there.
+    """
+    cells = read_cells(path)
+    checks = path.parent / FILE
+    if not checks.exists():
+        raise LabkitError(f"{FILE} is not beside {path.name}; it came with the assignment")
+    data = json.loads(checks.read_text(encoding="utf-8"))
+    name, questions = data["assignment"], [q["name"] for q in data["questions"]]
+    problems, notes = [], []
+    if path.name != f"{name}.ipynb":
+        problems.append(f"the file is called {path.name}; rename it to {name}.ipynb")
+    size = path.stat().st_size / 1e6
+    if size > LARGEST:
+        problems.append(
+            f"it has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
+        )
+    ids = Counter(cell.get("metadata", {}).get("nbgrader", {}).get("grade_id") for cell in cells)
+    verdicts = {}
+    for question in questions:
+        if not any(defines(cell, question) for cell in cells):
+            problems.append(f"no cell defines {question}; bring it back with: labkit merge")
+        for grade_id in (question, f"{question}-check"):
+            if not ids[grade_id]:
+                notes.append(
+                    f"the cell of {grade_id} is gone or damaged; it is marked all the same"
+                )
+            elif ids[grade_id] > 1:
+                problems.append(
+                    f"the cell of {grade_id} is there {ids[grade_id]} times; keep one, for the "
+                    "last one counts"
+                )
+        verdicts[question] = _verdict(cells, question)
+    unrun = [name for name, verdict in verdicts.items() if verdict.endswith("not run")]
+    if unrun:
+        notes.append(f"not run since it was opened: {', '.join(unrun)}; marking runs them again")
+    return HandIn(name, tuple(problems), tuple(notes), verdicts)
+
+
+def read_cells(path: Path) -> list[dict[str, Any]]:
+    """The cells of a notebook file.
+
+    Raises:
+        LabkitError: It is not there, or is no notebook.
+    """
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        cells = data["cells"]
+        for cell in cells:
+            cell["source"] = "".join(cell["source"])
+    except FileNotFoundError:
+        raise LabkitError(f"there is no file {path}") from None
+    except (ValueError, KeyError, TypeError, UnicodeDecodeError):
+        raise LabkitError(
+            f"{path.name} is no notebook, or was cut off while saving; open it in Jupyter, or "
+            "restore an older version"
+        ) from None
+    found: list[dict[str, Any]] = cells
+    return found
+
+
+def defines(cell: Mapping[str, Any], name: str) -> bool:
+    """Whether a code cell defines a function, a class or a value of that name."""
+    pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
+    return cell["cell_type"] == "code" and bool(re.search(pattern, cell["source"], re.MULTILINE))
+
+
+def _verdict(cells: list[dict[str, Any]], question: str) -> str:
+    """The first line that the question's check printed last."""
+    for cell in reversed(cells):
+        for output in cell.get("outputs", ()):
+            text = "".join(output.get("text", ()))
+            if match := re.search(rf"^{question}: .*points\.$", text, re.MULTILINE):
+                return match.group()
+    return f"{question}: not run"

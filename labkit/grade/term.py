@@ -1,0 +1,87 @@
+"""A new term: a seed of one's own, and a record of what was released."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import shutil
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError
+from .course import Course
+from .release import release
+
+PUBLIC_SEED = 2019
+"""The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
+
+NAMED = ("submitted", "autograded", "feedback", "results", "gradebook.db")
+"""Where students' names stand; all of it is ignored by git."""
+
+
+def _private(course: Course) -> Path:
+    return course.root / "course_private"
+
+
+def seed_of(course: Course) -> int:
+    """The course's own seed, or the public one if no term was begun."""
+    file = _private(course) / "term.json"
+    return int(json.loads(file.read_text())["seed"]) if file.exists() else PUBLIC_SEED
+
+
+def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Begin a term: archive the last one's, release with a new seed, keep a record.
+
+    Args:
+        course: The course.
+        seed: Of the hidden cases; None draws one.
+        names: What to release; all by default.
+
+    Returns:
+        The record: seed, date, and the hash of each bundle, which every result names.
+
+    Raises:
+        LabkitError: The seed is the public one, or the last term's.
+    """
+    if seed in (PUBLIC_SEED, seed_of(course)):
+        raise LabkitError(f"seed {seed} was used before, so its cases may be known; take another")
+    seed = secrets.randbelow(2**31) if seed is None else seed
+    archive(course)
+    for name in names or course.names():
+        release(course, name, seed)
+    bundles = {
+        path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
+        for path in sorted(course.bundle.glob("*.json"))
+    }
+    record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": bundles}
+    _private(course).mkdir(exist_ok=True)
+    (_private(course) / "term.json").write_text(json.dumps(record, indent=1) + "\n")
+    return record
+
+
+def archive(course: Course) -> Path | None:
+    """Move what holds the last term's names into one folder; None if there is nothing."""
+    there = [course.root / name for name in NAMED if (course.root / name).exists()]
+    if not there:
+        return None
+    folder = _private(course) / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
+    folder.mkdir(parents=True)
+    for path in there:
+        shutil.move(path, folder / path.name)
+    record = _private(course) / "term.json"
+    if record.exists():
+        shutil.move(record, folder / record.name)
+    return folder
+
+
+def forget(course: Course) -> list[Path]:
+    """Delete every archived term, and the names with it.
+
+    Returns:
+        The folders that are gone.
+    """
+    folders = sorted(_private(course).glob("archive-*"))
+    for folder in folders:
+        shutil.rmtree(folder)
+    return folders

@@ -1,0 +1,261 @@
+r"""The scene: what an arm can meet in its world, as frozen values.
+
+A `Table` and a `Wall` are solid; the tip, a small ball, is all of the arm that they meet.  A
+`Spring` and a `Push` act on the tip without touching it.  PyBullet makes a contact as stiff as
+the two bodies' stiffnesses in series and as damped as their dampings together:
+
+.. math:: 1/k = 1/k_{thing} + 1/k_{tip}, \qquad d = d_{thing} + d_{tip}
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import se3
+from .arrays import Array, as_number, as_vector
+from .errors import OutOfRange, UnknownName
+from .quiet import quiet
+from .robot import Side
+from .world import Actor, Pushable, World
+
+with quiet():
+    import pybullet as bullet
+
+TIP_RADIUS = 0.01
+"""Radius of the ball about the tip's origin, in [m]: contact begins this far from it."""
+
+TIP_STIFFNESS = 10_000.0
+"""Of the finger's rubber pad, in [N/m]."""
+
+TIP_DAMPING = 20.0
+"""Of the finger's rubber pad, in [N s/m]."""
+
+FACE = 0.02  # thickness of a wall or a table top, in [m]
+
+
+def contact_stiffness(thing: Wall | Table) -> float:
+    """What the tip feels when it presses on a thing, the two stiffnesses in series, in [N/m]."""
+    return 1.0 / (1.0 / thing.stiffness + 1.0 / TIP_STIFFNESS)
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """A flat solid face; with a low stiffness, a compliant surface.
+
+    Attributes:
+        point: The middle of the face, shape (3,) in [m], world axes.
+        normal: Out of the face, shape (3,), of any length.
+        size: Width and height of the face, shape (2,) in [m].
+        stiffness: Of the wall alone, in [N/m]; see `contact_stiffness`.
+        damping: Of the wall alone, in [N s/m].
+        friction: Coefficient of dry friction; 0 keeps the force along the normal.
+        colour: Red, green, blue, opacity, from 0 to 1.
+    """
+
+    point: Any
+    normal: Any
+    size: Any = (1.0, 1.0)
+    stiffness: float = 5_000.0
+    damping: float = 100.0
+    friction: float = 0.0
+    colour: tuple[float, float, float, float] = (0.75, 0.75, 0.8, 1.0)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "point", as_vector(self.point, 3, "point"))
+        normal = as_vector(self.normal, 3, "normal")
+        length = float(np.linalg.norm(normal))
+        if length < 1e-9:
+            raise OutOfRange("normal is zero; a wall faces some way")
+        object.__setattr__(self, "normal", as_vector(normal / length, 3, "normal"))
+        object.__setattr__(self, "size", as_vector(self.size, 2, "size"))
+        for side in self.size:
+            as_number(side, "size", above=0.0)
+        _check_material(self)
+
+    @property
+    def T_wf(self) -> Array:
+        """Pose of the face in the world, its z axis along the normal, shape (4, 4)."""
+        z = self.normal
+        x = np.cross(np.eye(3)[1 if abs(z[1]) < 0.9 else 2], z)
+        x /= np.linalg.norm(x)
+        return se3.pose(np.column_stack([x, np.cross(z, x), z]), self.point)
+
+    def put_into(self, world: World) -> None:
+        """Build it."""
+        _build_box(world, self.T_wf, self)
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """A level table top.
+
+    Attributes:
+        height: Of its upper face, in [m] of the world; the default is out of the way of motions
+            that stay within 0.25 m of `Robot.ready`.
+        centre: Of its upper face, seen from above, shape (2,) in [m].
+        size: Along x and y, shape (2,) in [m].
+        stiffness: Of the table alone, in [N/m]; see `contact_stiffness`.
+        damping: Of the table alone, in [N s/m].
+        friction: Coefficient of dry friction.
+        colour: Red, green, blue, opacity, from 0 to 1.
+    """
+
+    height: float = -0.25
+    centre: Any = (0.8, 0.0)
+    size: Any = (0.8, 1.6)
+    stiffness: float = 20_000.0
+    damping: float = 200.0
+    friction: float = 0.4
+    colour: tuple[float, float, float, float] = (0.72, 0.56, 0.38, 1.0)
+
+    def __post_init__(self) -> None:
+        as_number(self.height, "height")
+        object.__setattr__(self, "centre", as_vector(self.centre, 2, "centre"))
+        object.__setattr__(self, "size", as_vector(self.size, 2, "size"))
+        for side in self.size:
+            as_number(side, "size", above=0.0)
+        _check_material(self)
+
+    @property
+    def T_wf(self) -> Array:
+        """Pose of the upper face in the world, shape (4, 4)."""
+        return se3.pose(np.eye(3), np.array([*self.centre, self.height]))
+
+    def put_into(self, world: World) -> None:
+        """Build it."""
+        _build_box(world, self.T_wf, self)
+
+
+@dataclass(frozen=True, eq=False)
+class Push:
+    """A scripted hand: a constant wrench on the tip during a window of time.
+
+    Attributes:
+        force: On the arm, at the tip's origin, world axes, shape (3,) in [N].
+        moment: On the arm, world axes, shape (3,) in [N m].
+        start: When it begins, in [s] of the world's clock.
+        duration: How long it lasts, in [s].
+        side: Whose tip; None where the world has only one arm.
+    """
+
+    force: Any = (0.0, 0.0, 0.0)
+    moment: Any = (0.0, 0.0, 0.0)
+    start: float = 0.0
+    duration: float = np.inf
+    side: Side | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "force", as_vector(self.force, 3, "force"))
+        object.__setattr__(self, "moment", as_vector(self.moment, 3, "moment"))
+        as_number(self.start, "start")
+        if not self.duration > 0.0:
+            raise OutOfRange(f"duration is {self.duration}, it must be greater than 0")
+
+    def put_into(self, world: World) -> Actor:
+        """Wait for the window."""
+        return _Pushing(self, world)
+
+
+@dataclass(frozen=True, eq=False)
+class Spring:
+    r"""A spring of no length of its own between the tip and an anchor: :math:`f = k(a - p) - d v`.
+
+    Attributes:
+        anchor: Where it pulls the tip to, world axes, shape (3,) in [m].
+        stiffness: k in [N/m].
+        damping: d in [N s/m].
+        side: Whose tip; None where the world has only one arm.
+    """
+
+    anchor: Any
+    stiffness: float
+    damping: float = 0.0
+    side: Side | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "anchor", as_vector(self.anchor, 3, "anchor"))
+        as_number(self.stiffness, "stiffness", least=0.0)
+        as_number(self.damping, "damping", least=0.0)
+
+    def force(self, p: Array, v: Array) -> Array:
+        """On the arm, for a tip at ``p`` [m] moving at ``v`` [m/s], shape (3,) in [N]."""
+        return np.asarray(self.stiffness * (self.anchor - p) - self.damping * v)
+
+    def put_into(self, world: World) -> Actor:
+        """Hook it on."""
+        return _Pulling(self, world)
+
+
+@dataclass(frozen=True)
+class _Pushing:
+    push: Push
+    world: World
+
+    def act(self) -> None:
+        """Push, if it is time."""
+        push, half = self.push, 0.5 * self.world.dt
+        if push.start - half < self.world.t < push.start + push.duration - half:
+            _arm_of(self.world, push.side).push(push.force, push.moment)
+
+
+@dataclass(frozen=True)
+class _Pulling:
+    spring: Spring
+    world: World
+
+    def act(self) -> None:
+        """Pull on the tip."""
+        arm = _arm_of(self.world, self.spring.side)
+        _, q, dq, *_ = arm.truth()
+        p, v = arm.model.pose(q)[:3, 3], arm.model.tip_jacobian(q)[:3] @ dq
+        arm.push(self.spring.force(p, v), np.zeros(3))
+
+
+def _arm_of(world: World, side: Side | None) -> Pushable:
+    arms = [arm for arm in world.arms if side in (None, arm.robot.side)]
+    if len(arms) == 1:
+        return arms[0]
+    known = [arm.robot.side for arm in world.arms]
+    if arms:
+        raise OutOfRange(f"this world has {len(known)} arms: give side={known[0]!r} or the other")
+    raise UnknownName("arm in this world", str(side), known)
+
+
+def _check_material(thing: Any) -> None:
+    as_number(thing.stiffness, "stiffness", above=0.0)
+    as_number(thing.damping, "damping", least=0.0)
+    as_number(thing.friction, "friction", least=0.0)
+
+
+def _build_box(world: World, T_wf: Array, thing: Any) -> None:
+    """A fixed box whose upper face is the frame's xy plane."""
+    half = [*(0.5 * thing.size).tolist(), 0.5 * FACE]
+    shape = bullet.createCollisionShape(
+        bullet.GEOM_BOX, halfExtents=half, physicsClientId=world.client
+    )
+    look = bullet.createVisualShape(
+        bullet.GEOM_BOX,
+        halfExtents=half,
+        rgbaColor=list(thing.colour),
+        physicsClientId=world.client,
+    )
+    body = bullet.createMultiBody(
+        baseMass=0.0,
+        baseCollisionShapeIndex=shape,
+        baseVisualShapeIndex=look,
+        basePosition=(T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
+        baseOrientation=se3.quaternion(T_wf[:3, :3]).tolist(),
+        physicsClientId=world.client,
+    )
+    bullet.changeDynamics(
+        body,
+        -1,
+        contactStiffness=thing.stiffness,
+        contactDamping=thing.damping,
+        lateralFriction=thing.friction,
+        restitution=0.0,
+        physicsClientId=world.client,
+    )

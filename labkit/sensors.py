@@ -1,0 +1,125 @@
+"""What an arm can know of itself: its joints as they are published, and torque from outside.
+
+`rows` are PyBullet's joint states: angle, speed, reaction and motor torque of each joint.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+
+from .arrays import Array, locked
+from .commands import JOINTS, State
+from .model import Model
+from .plant import Plant
+from .world import whole_steps
+
+NOTHING = locked(np.zeros(JOINTS))
+"""No torque, or no speed."""
+
+
+def angles(rows: Any) -> Array:
+    """The joint angles, shape (7,) in [rad]."""
+    return np.array([joint[0] for joint in rows])
+
+
+def speeds(rows: Any) -> Array:
+    """The joint speeds, shape (7,) in [rad/s]."""
+    return np.array([joint[1] for joint in rows])
+
+
+def motor_torques(rows: Any) -> Array:
+    """What the motors gave in the last step, in torque mode the dry friction, (7,) in [N m]."""
+    return np.array([joint[3] for joint in rows])
+
+
+class Reports:
+    """States on their way from the joints to whoever asks: seldom, late and noisy.
+
+    Attributes:
+        every: Physics steps between two reports; 0 for an arm whose state is always at hand.
+    """
+
+    def __init__(self, plant: Plant, dt: float, random: np.random.Generator) -> None:
+        """Report as ``plant`` says, in a world of steps of ``dt`` [s]."""
+        self._delay, self._random = plant.state_delay, random
+        self._noise, self._torque_noise = (
+            np.array(plant.velocity_noise),
+            np.array(plant.torque_noise),
+        )
+        self._noisy = bool(self._noise.any() or self._torque_noise.any())
+        self.every = whole_steps(plant.state_rate, dt, "plant.state_rate")
+        if not self.every and (self._noisy or self._delay):
+            self.every = 1
+
+    def reset(self, state: State) -> None:
+        """Forget what came before ``state``."""
+        self._mail, self._last = deque([state]), -1
+
+    def due(self, steps: int) -> bool:
+        """Whether a report is to be sent at this physics step."""
+        return self.every > 0 and steps % self.every == 0 and steps != self._last
+
+    def send(self, truth: State, steps: int) -> None:
+        """Send a report of the joints as they are."""
+        self._last = steps
+        t, q, dq, felt = truth
+        if self._noisy:
+            dq = locked(dq + self._noise * self._random.standard_normal(JOINTS))
+            felt = locked(felt + self._torque_noise * self._random.standard_normal(JOINTS))
+        self.newest(t)  # forgets those that nobody asked for
+        self._mail.append(State(t, q, dq, felt))
+
+    def newest(self, t: float) -> State:
+        """The newest report that has arrived by time ``t`` [s]."""
+        while len(self._mail) > 1 and self._mail[1].t <= t - self._delay + 1e-9:
+            self._mail.popleft()
+        return self._mail[0]
+
+
+class TorqueSensors:
+    r"""Torque sensors behind the gears, and what they tell of the world outside.
+
+    .. math:: \tau_{ext} = M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) - \tau_{joint}
+
+    The sensors feel motor and friction together, so friction is no part of the estimate; gravity,
+    inertia and Coriolis terms are taken off with the model that the arm has of itself, which knows
+    of its rotors and not of what it carries.  The acceleration is that of the last physics step.
+    """
+
+    def __init__(self, own: Model, plant: Plant, dt: float) -> None:
+        """Sense with the model ``own``, in a world of steps of ``dt`` [s]."""
+        self._own, self._dt, self._lag = own, dt, plant.torque_lag
+        self._viscous = np.array(plant.viscous)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget what was felt."""
+        self._felt, self._at = NOTHING, -1
+        self._begun: tuple[Any, Array] | None = None
+
+    def begin(self, rows: Any, driven: Array, steps: int) -> None:
+        """Take note of how a physics step begins.
+
+        Args:
+            rows: The joints' states now.
+            driven: Torque that drives the joints beside their motors, shape (7,) in [N m].
+            steps: Which step.
+        """
+        if self._lag:  # it averages over all steps, not only over those that someone asks about
+            self.felt(rows, steps)
+        self._begun = rows, driven
+
+    def felt(self, rows: Any, steps: int) -> Array:
+        """The external torque, shape (7,) in [N m], before physics step ``steps``."""
+        if self._begun is not None and self._at != steps:
+            then, driven = self._begun
+            q, dq, dt = angles(then), speeds(then), self._dt
+            joint = driven + motor_torques(rows) - self._viscous * dq
+            felt = self._own.inverse_dynamics(q, dq, (speeds(rows) - dq) / dt) - joint
+            if self._lag > dt:
+                felt = self._felt + dt / self._lag * (felt - self._felt)
+            self._felt, self._at = locked(felt), steps
+        return self._felt

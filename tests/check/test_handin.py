@@ -1,0 +1,95 @@
+"""Before handing in: what a look at the file tells."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from labkit import LabkitError
+from labkit.check.handin import look, read_cells
+from labkit.check.merging import merge
+
+ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return Path(shutil.copytree(ASSIGNMENT, tmp_path / "01_paths"))
+
+
+def edited(path, change):
+    """Change the notebook's cells and save it."""
+    data = json.loads(path.read_text())
+    data["cells"] = change(data["cells"])
+    path.write_text(json.dumps(data))
+    return path
+
+
+def test_an_untouched_notebook_is_whole_and_not_run(folder):
+    """The release itself has nothing to mend, and says that nothing was run."""
+    found = look(folder / "01_paths.ipynb")
+    assert found.problems == ()
+    assert set(found.verdicts.values()) >= {"bang_bang: not run"}
+    assert str(found).endswith("01_paths: ready to hand in.")
+
+
+def test_another_name_is_to_be_mended(folder):
+    """A notebook that a browser renamed is told its right name."""
+    path = (folder / "01_paths.ipynb").rename(folder / "01_paths(3).ipynb")
+    assert look(path).problems == (
+        "the file is called 01_paths(3).ipynb; rename it to 01_paths.ipynb",
+    )
+
+
+def test_missing_and_doubled_cells_are_named(folder):
+    """A stub that is gone and one that is there twice are named."""
+
+    def change(cells):
+        stub = next(c for c in cells if "def circle" in "".join(c["source"]))
+        kept = [c for c in cells if "def bang_bang" not in "".join(c["source"])]
+        return [*kept, stub]
+
+    problems = look(edited(folder / "01_paths.ipynb", change)).problems
+    assert any(text.startswith("no cell defines bang_bang") for text in problems)
+    assert any("circle is there 2 times" in text for text in problems)
+
+
+def test_the_forum_block_holds_verdicts_and_no_answer(folder):
+    """The block for the forum has a line for each question and none of the code."""
+    block = look(folder / "01_paths.ipynb").for_the_forum()
+    assert "witness: not run" in block
+    assert "def " not in block
+
+
+@pytest.mark.parametrize("text", ["", "{", '{"cells": 3}', "\x00\x01"])
+def test_a_damaged_file_is_a_sentence(folder, text):
+    """What is no notebook is said to be none, with the way out."""
+    path = folder / "01_paths.ipynb"
+    path.write_text(text)
+    with pytest.raises(LabkitError, match="no notebook, or was cut off"):
+        look(path)
+
+
+def test_merging_keeps_answers_and_own_cells(folder):
+    """A corrected release takes over the answer and the student's own cell, in its place."""
+    new = read_cells(folder / "01_paths.ipynb")
+    mine = read_cells(folder / "01_paths.ipynb")
+    at = next(k for k, c in enumerate(mine) if c["source"].startswith("def witness"))
+    mine[at]["source"] = "def witness(theta, duration):\n    return duration / 2"
+    mine.insert(
+        at + 1, {"cell_type": "code", "metadata": {}, "source": "print('mine')", "outputs": []}
+    )
+    new[0]["source"] = "# corrected"
+    merged = merge(mine, new)
+    assert merged[0]["source"] == "# corrected"
+    where = next(k for k, c in enumerate(merged) if c["source"].startswith("def witness"))
+    assert "duration / 2" in merged[where]["source"]
+    assert merged[where + 1]["source"] == "print('mine')"
+    assert len(merged) == len(new) + 1
+
+
+def test_merging_an_untouched_notebook_gives_the_new_release(folder):
+    """Without any work of the student's, the merge is the new release."""
+    cells = read_cells(folder / "01_paths.ipynb")
+    assert merge(cells, cells) == cells

@@ -1,0 +1,92 @@
+"""What the tests share: hypothesis that repeats itself, states drawn from a seed, a browser."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, settings
+
+import labkit as lk
+
+settings.register_profile(
+    "labkit",
+    max_examples=40,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("labkit")
+
+CHROMIUM = "/usr/bin/chromium"
+ARGUMENTS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+]  # fmt: skip
+
+
+@pytest.fixture(params=["left", "right"])
+def side(request):
+    """Each of Baxter's arms."""
+    return request.param
+
+
+@pytest.fixture
+def random():
+    """Random numbers, the same in every run."""
+    return np.random.default_rng(2019)
+
+
+@pytest.fixture
+def states(random):
+    """Call with a side and a count: joint angles inside their limits, and speeds."""
+
+    def draw(side="left", count=20):
+        r = lk.robot(side)
+        q = random.uniform(r.lower, r.upper, (count, 7))
+        return list(zip(q, random.uniform(-r.speed, r.speed, (count, 7)), strict=True))
+
+    return draw
+
+
+@pytest.fixture
+def ideal():
+    """An ideal left arm at rest in its neutral pose."""
+    with lk.Arm() as arm:
+        yield arm
+
+
+@pytest.fixture(scope="session")
+def playwright():
+    """Playwright's driver."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        yield driver
+
+
+@pytest.fixture(scope="session")
+def chromium(playwright):
+    """Debian's Chromium, with WebGL in software."""
+    assert Path(CHROMIUM).exists(), "Chromium is missing: apt-get install chromium"
+    flags = [*ARGUMENTS, "--enable-unsafe-swiftshader"]
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
+    yield browser
+    browser.close()
+
+
+@pytest.fixture(scope="session")
+def blind_chromium(playwright):
+    """The same without WebGL."""
+    flags = [*ARGUMENTS, "--disable-3d-apis"]
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
+    yield browser
+    browser.close()
+
+
+@pytest.fixture(scope="session")
+def open_chromium(playwright):
+    """A Chromium in which axe-core may read the style sheets of a page from the disk."""
+    flags = [*ARGUMENTS, "--enable-unsafe-swiftshader", "--allow-file-access-from-files"]
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
+    yield browser
+    browser.close()

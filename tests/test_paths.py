@@ -1,0 +1,157 @@
+"""Paths: exact derivatives, exact ends, lengths that are true."""
+
+import numpy as np
+import pytest
+from curves import assert_slopes
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose, assert_array_equal
+
+from labkit import Circle, Line, Polyline, Spline
+from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError
+
+points = arrays(np.float64, 3, elements=st.floats(-2.0, 2.0))
+fractions = st.floats(0.001, 0.999)
+turns = st.floats(-3.0, 3.0).filter(lambda n: abs(n) > 0.01)
+
+
+def circles():
+    return st.tuples(points, points, turns).filter(
+        lambda x: np.linalg.norm((x[0] - x[1])[:2]) > 0.01
+    )
+
+
+def measured(path, n=4001):
+    p = np.array([path(s).position for s in np.linspace(0.0, 1.0, n)])
+    return np.linalg.norm(np.diff(p, axis=0), axis=1).sum()
+
+
+@given(points, points, fractions)
+def test_a_line_has_its_slopes_and_exact_ends(a, b, s):
+    line = Line(a, b)
+    assert_slopes(line, s)
+    assert_array_equal(line(0.0).position, a)
+    assert_allclose(line(1.0).position, b, atol=1e-15)
+    assert line.length == pytest.approx(np.linalg.norm(b - a))
+
+
+def test_a_line_may_run_through_joint_angles():
+    q = np.linspace(-1.0, 1.0, 7)
+    assert_allclose(Line(q, -q)(0.5).position, np.zeros(7))
+
+
+def test_a_line_without_length_stands_still():
+    x, dx, ddx = Line([1, 2, 3], [1, 2, 3])(0.3)
+    assert x.tolist() == [1.0, 2.0, 3.0]
+    assert not dx.any()
+    assert not ddx.any()
+
+
+@given(circles(), fractions)
+def test_a_circle_has_its_slopes(x, s):
+    assert_slopes(Circle(*x), s, tolerance=1e-5)
+
+
+@given(circles(), fractions)
+def test_a_circle_keeps_its_radius_and_its_height(x, s):
+    start, centre, turns = x
+    p = Circle(start, centre, turns)(s).position
+    assert np.linalg.norm((p - centre)[:2]) == pytest.approx(np.linalg.norm((start - centre)[:2]))
+    assert p[2] == start[2]
+
+
+@given(points, points, st.sampled_from([-2, -1, 1, 2, 3]))
+def test_a_whole_number_of_turns_returns_exactly(start, centre, turns):
+    assume(np.linalg.norm((start - centre)[:2]) > 1e-6)
+    circle = Circle(start, centre, turns)
+    assert_array_equal(circle(1.0).position, circle(0.0).position)
+    assert_array_equal(circle(1.0).velocity, circle(0.0).velocity)
+    assert_allclose(circle(0.0).position, start, atol=1e-15)
+
+
+def test_a_circle_goes_counter_clockwise_seen_from_above():
+    assert_allclose(Circle([1, 0, 0], [0, 0, 0])(0.25).position, [0, 1, 0], atol=1e-15)
+    assert_allclose(Circle([1, 0, 0], [0, 0, 5], -1)(0.25).position, [0, -1, 0], atol=1e-15)
+
+
+@given(circles())
+def test_a_circles_length_is_the_way_travelled(x):
+    assert Circle(*x).length == pytest.approx(measured(Circle(*x)), rel=1e-4)
+
+
+def test_a_polyline_passes_its_corners_in_proportion_to_the_way():
+    path = Polyline([[0, 0, 0], [1, 0, 0], [1, 3, 0]])
+    assert path.length == 4.0
+    assert_allclose(path(0.25).position, [1, 0, 0])
+    assert_allclose(path(0.625).position, [1, 1.5, 0])
+    assert_allclose(path(0.1).velocity, [4, 0, 0])
+    assert_allclose(path(0.25).velocity, [0, 4, 0])
+    assert_allclose(path(1.0).position, [1, 3, 0])
+    assert [line.length for line in path.lines] == [1.0, 3.0]
+
+
+@given(arrays(np.float64, (4, 3), elements=st.floats(-2.0, 2.0)), fractions)
+def test_a_polyline_runs_at_one_speed_and_has_its_slopes(corners, s):
+    assume(np.linalg.norm(np.diff(corners, axis=0), axis=1).min() > 0.05)
+    path = Polyline(corners)
+    assume(np.abs(path._ends - s).min() > 1e-4)
+    assert_slopes(path, s)
+    assert np.linalg.norm(path(s).velocity) == pytest.approx(path.length)
+
+
+@pytest.mark.parametrize("s", [0.0, 0.2, 0.5, 0.9, 1.0])
+def test_a_corner_given_twice_does_no_harm(s):
+    once, twice = Polyline([[0, 0], [1, 0], [1, 1]]), Polyline([[0, 0], [1, 0], [1, 0], [1, 1]])
+    last = Polyline([[0, 0], [1, 0], [1, 1], [1, 1]])
+    first = Polyline([[0, 0], [0, 0], [1, 0], [1, 1]])
+    for path in (twice, last, first):
+        for a, b in zip(path(s), once(s), strict=True):
+            assert_allclose(a, b, atol=1e-15)
+
+
+@given(fractions)
+def test_a_spline_is_smooth_and_passes_its_values(s):
+    grid = np.linspace(0.0, 1.0, 11)
+    values = np.stack([np.sin(3 * grid), np.exp(grid)], axis=1)
+    spline = Spline(grid, values)
+    assert_slopes(spline, s)
+    for x, value in zip(grid, values, strict=True):
+        assert_allclose(spline(x).position, value, atol=1e-13)
+    assert_allclose(spline(s).position, [np.sin(3 * s), np.exp(s)], atol=1e-5)
+
+
+def test_what_a_path_was_given_may_change_later_without_harm():
+    start = np.zeros(3)
+    line = Line(start, np.ones(3))
+    start[0] = 9.0
+    assert line.start[0] == 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        line.start[0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: Line([0, 0, 0], [1, 0]), ShapeError, "goal has shape"),
+        (lambda: Line([[0], [0], [0]], [1, 0, 0]), ShapeError, "start has shape.*ravel"),
+        (lambda: Line([0, 0, np.nan], [1, 0, 0]), NotFinite, "start holds nan at index 2"),
+        (lambda: Line("here", "there"), LabkitError, "start is 'here'"),
+        (lambda: Line(None, [0, 0, 0]), LabkitError, "start"),
+        (lambda: Circle([0, 0], [1, 0]), ShapeError, "start has shape"),
+        (lambda: Circle([1, 2, 0], [1, 2, 3]), OutOfRange, "lies on the circle's axis"),
+        (lambda: Circle([1, 2, 0], [0, 0, 0], np.nan), NotFinite, "turns is nan"),
+        (lambda: Polyline([[0, 0, 0]]), LabkitError, "points"),
+        (lambda: Polyline([0, 0, 0]), LabkitError, "points"),
+        (lambda: Polyline([[0, 0], [1]]), LabkitError, "rows of different lengths"),
+        (lambda: Polyline([[0, 0, 0], [0, 0, 0]]), OutOfRange, "all points are the same"),
+        (lambda: Polyline([[0, 0, 0], [0, np.inf, 0]]), NotFinite, "points holds inf"),
+        (lambda: Spline([0, 1], [[0], [1]]), OutOfRange, "at least six"),
+        (lambda: Spline(np.linspace(1, 0, 9), np.zeros((9, 2))), OutOfRange, "rising"),
+        (lambda: Spline(np.linspace(0, 1, 9), np.zeros((8, 2))), ShapeError, "values has shape"),
+    ],
+)
+def test_a_path_that_cannot_be_is_refused_in_a_sentence(call, error, words):
+    with pytest.raises(error, match=words) as caught:
+        call()
+    assert isinstance(caught.value, LabkitError)

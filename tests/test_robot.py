@@ -1,0 +1,182 @@
+"""Baxter's data: the lumped arm is the whole robot's arm, whoever computes it."""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+import pybullet as bullet
+import pytest
+from numpy.testing import assert_allclose
+
+import labkit as lk
+from labkit.errors import LabkitError, UnknownName
+from labkit.robot import _rpy
+from tools.make_urdf import JOINTS, full_model
+
+FULL = full_model()
+ROTORS = lk.Plant(name="rotors", armature=lk.BAXTER.armature)
+
+
+@pytest.fixture(params=[lk.IDEAL, ROTORS], ids=lambda plant: plant.name)
+def plant(request):
+    """With and without rotor inertia."""
+    return request.param
+
+
+@pytest.fixture
+def body(side, plant):
+    """The arm of the URDF text alone in PyBullet, without motors: its client and its body."""
+    from bench.hand_loop import open_arm
+
+    client, body = open_arm(lk.robot(side).urdf(plant))
+    yield client, body
+    bullet.disconnect(client)
+
+
+@pytest.fixture
+def mj(side, plant):
+    """The arm of the same text in MuJoCo."""
+    model = mujoco.MjModel.from_xml_string(lk.robot(side).urdf(plant))
+    return model, mujoco.MjData(model)
+
+
+def expanded(side, x, fill):
+    """A vector of the whole robot that is ``x`` at this arm's joints and ``fill`` elsewhere."""
+    out = np.array(fill, dtype=float)
+    for joint, value in zip(JOINTS, x, strict=True):
+        out[FULL.joints[FULL.getJointId(f"{side}_{joint}")].idx_v] = value
+    return out
+
+
+def test_the_lumped_arm_has_the_dynamics_of_the_whole_robot(side, states, random):
+    """Torques for random motions agree to 1e-9 N m with all of Baxter, every fixed link kept."""
+    data, model = FULL.createData(), lk.Model(side)
+    idle = np.zeros(FULL.nv)
+    arm = expanded(side, np.ones(7), idle).astype(bool)
+    for q, dq in states(side, 500):
+        ddq = random.uniform(-10.0, 10.0, 7)
+        full = pin.rnea(FULL, data, *(expanded(side, x, idle) for x in (q, dq, ddq)))
+        lumped = model.mass_matrix(q) @ ddq + model.bias(q, dq)
+        assert_allclose(lumped, full[arm], atol=1e-9)
+
+
+def test_the_tip_is_where_the_whole_robot_has_its_gripper(side, states):
+    data, model = FULL.createData(), lk.Model(side)
+    tip = FULL.getFrameId(f"{side}_gripper")
+    for q, _ in states(side, 50):
+        pin.framesForwardKinematics(FULL, data, expanded(side, q, np.zeros(FULL.nq)))
+        assert_allclose(model.pose(q), data.oMf[tip].homogeneous, atol=1e-12)
+
+
+def test_limits_are_rethinks(side):
+    r = lk.robot(side)
+    assert r.effort.tolist() == [50, 100, 50, 50, 15, 15, 15]
+    assert r.speed.tolist() == [1.5, 1.5, 1.5, 1.5, 4, 4, 4]
+    for i, joint in enumerate(JOINTS):
+        v = FULL.joints[FULL.getJointId(f"{side}_{joint}")].idx_v
+        assert (r.lower[i], r.upper[i]) == pytest.approx(
+            (FULL.lowerPositionLimit[v], FULL.upperPositionLimit[v])
+        )
+    assert r.joint_names == tuple(f"{side}_{j}" for j in JOINTS)
+
+
+@pytest.mark.parametrize("pose", ["neutral", "ready"])
+def test_named_poses_lie_inside_the_limits(side, pose):
+    r = lk.robot(side)
+    q = getattr(r, pose)
+    assert (r.lower < q).all()
+    assert (q < r.upper).all()
+
+
+def test_pybullets_dynamics_are_pinocchios(side, plant, body, states, random):
+    """Torque and mass matrix over 1,000 random states inside the limits."""
+    client, number = body
+    model = lk.Model(side, plant)
+    for q, dq in states(side, 1000):
+        ddq = random.uniform(-10.0, 10.0, 7)
+        M, bias = model.mass_matrix(q), model.bias(q, dq)
+        motion = (list(x) for x in (q, dq, ddq))
+        tau = bullet.calculateInverseDynamics(number, *motion, physicsClientId=client)
+        assert_allclose(tau, M @ ddq + bias, atol=1e-6)
+        inertia = bullet.calculateMassMatrix(number, list(q), physicsClientId=client)
+        assert_allclose(inertia, M, atol=1e-6)
+
+
+def test_one_physics_step_gives_the_acceleration_of_the_equations_of_motion(
+    side, plant, body, states, random
+):
+    """What the simulator does, not what it says: speeds after 1 ms over 1,000 random states."""
+    client, number = body
+    model, r = lk.Model(side, plant), lk.robot(side)
+    for q, dq in states(side, 1000):
+        q = r.lower + (0.01 + 0.98 * (q - r.lower) / (r.upper - r.lower)) * (r.upper - r.lower)
+        ddq = random.uniform(-10.0, 10.0, 7)
+        tau = model.mass_matrix(q) @ ddq + model.bias(q, dq)
+        for j in range(7):
+            bullet.resetJointState(number, j, q[j], dq[j], physicsClientId=client)
+        bullet.setJointMotorControlArray(
+            number, range(7), bullet.TORQUE_CONTROL, forces=list(tau), physicsClientId=client
+        )
+        bullet.stepSimulation(physicsClientId=client)
+        joints = bullet.getJointStates(number, range(7), physicsClientId=client)
+        assert_allclose(
+            [(j[1] - v) / 1e-3 for j, v in zip(joints, dq, strict=True)], ddq, atol=1e-6
+        )
+
+
+def test_mujocos_dynamics_are_pinocchios(side, plant, mj, states):
+    m, d = mj
+    model = lk.Model(side, plant)
+    M = np.zeros((7, 7))
+    for q, dq in states(side, 300):
+        d.qpos[:], d.qvel[:] = q, dq
+        mujoco.mj_forward(m, d)
+        for column, unit in zip(M, np.eye(7), strict=True):
+            mujoco.mj_mulM(m, d, column, unit)
+        assert_allclose(M, model.mass_matrix(q), atol=1e-9)
+        assert_allclose(d.qfrc_bias, model.bias(q, dq), atol=1e-9)
+
+
+def test_a_payload_hangs_at_the_tip(side, states):
+    """The torque it adds is J^T times its weight."""
+    light, heavy = lk.Model(side), lk.Model(side, lk.Plant(payload=2.0))
+    for q, _ in states(side, 20):
+        weight = light.tip_jacobian(q)[2] * 2.0 * 9.81
+        assert_allclose(heavy.gravity(q) - light.gravity(q), weight, atol=1e-12)
+
+
+def test_rotors_add_the_inertia_of_flat_discs_and_no_weight(side, states):
+    light, heavy = lk.Model(side), lk.Model(side, ROTORS)
+    for q, _ in states(side, 20):
+        more = np.zeros((7, 7))
+        for link, A in zip(lk.links(light, q), ROTORS.armature, strict=True):
+            turning = link.T_wl[:3, :3].T @ link.com_jacobian[3:]
+            more += turning.T @ np.diag([A / 2, A / 2, A]) @ turning
+        assert_allclose(heavy.mass_matrix(q) - light.mass_matrix(q), more, atol=1e-12)
+        assert_allclose(heavy.gravity(q), light.gravity(q), atol=1e-12)
+
+
+def test_a_rotation_survives_being_written_as_roll_pitch_yaw(side, random):
+    """Also at a pitch of a quarter turn, where roll and yaw are one, and next to it."""
+    for nearly in (0.0, 1e-16, 5e-12, 1e-8, 1e-3, 1.0):
+        for pitch in (np.pi / 2 - nearly, nearly - np.pi / 2):
+            R = pin.rpy.rpyToMatrix(random.uniform(-3, 3), pitch, random.uniform(-3, 3))
+            assert_allclose(pin.rpy.rpyToMatrix(_rpy(R)), R, atol=5e-12)
+
+
+def test_there_is_no_middle_arm():
+    with pytest.raises(UnknownName, match="no arm 'middle'; there is 'left', 'right'") as caught:
+        lk.robot("middle")
+    assert isinstance(caught.value, LabkitError)
+    for thing in (lk.Arm, lk.Model):
+        with pytest.raises(UnknownName):
+            thing("Left")
+
+
+def test_the_data_cannot_be_changed_by_accident(side):
+    r = lk.robot(side)
+    with pytest.raises(ValueError, match="read-only"):
+        r.effort[0] = 1e9
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        r.effort = np.ones(7)

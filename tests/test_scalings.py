@@ -1,0 +1,142 @@
+"""Time scalings: slopes, rest outside, limits kept."""
+
+import numpy as np
+import pytest
+from curves import assert_slopes
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from labkit import BangBang, Cubic, Quintic, Trapezoid
+from labkit.errors import LabkitError, NotFinite, OutOfRange, TypeMismatch
+
+PROFILES = (BangBang, Cubic, Quintic)
+durations = st.floats(0.1, 20.0)
+fractions = st.floats(0.01, 0.99)
+lengths, speeds = st.floats(1e-4, 10.0), st.floats(0.05, 4.0)
+scalings = st.one_of(
+    st.builds(lambda kind, T: kind(T), st.sampled_from(PROFILES), durations),
+    st.builds(Trapezoid, lengths, speeds, speeds),
+)
+
+
+def corners(s):
+    """Where the acceleration jumps."""
+    if isinstance(s, Trapezoid):
+        ramp = s.peak_speed / s.a_max
+        return [0.0, ramp, s.duration - ramp, s.duration]
+    return [0.0, s.duration / 2, s.duration]
+
+
+@given(scalings, fractions)
+def test_speed_and_acceleration_are_the_slopes(s, x):
+    T = s.duration
+    assume(all(abs(x * T - c) > 1e-4 * T for c in corners(s)))
+    assert_slopes(s, x * T, step=1e-5 * T)
+
+
+@given(scalings, st.floats(0.0, 1e6))
+def test_before_the_start_and_from_the_end_on_it_is_at_rest(s, t):
+    assert s(-1e-9 - t) == (0.0, 0.0, 0.0)
+    assert s(s.duration + t) == (1.0, 0.0, 0.0)
+
+
+@given(scalings)
+def test_it_starts_at_0_ends_at_1_and_both_at_rest(s):
+    T = s.duration
+    assert s(0.0)[:2] == (0.0, 0.0)
+    near = s(T * (1 - 1e-12))
+    assert near[0] == pytest.approx(1.0, abs=1e-8)
+    assert near[1] * T == pytest.approx(0.0, abs=1e-6)
+
+
+@given(scalings)
+def test_it_never_goes_back(s):
+    values = np.array([s(t) for t in np.linspace(0.0, s.duration, 301)])
+    assert (np.diff(values[:, 0]) >= -1e-15).all()
+    assert (values[:, 1] >= 0.0).all()
+    assert values[:, 0].max() <= 1.0
+
+
+@given(scalings, fractions)
+def test_it_is_as_quick_after_as_before_the_middle(s, x):
+    T = s.duration
+    a, b = s(x * T), s((1.0 - x) * T)
+    assert a[0] + b[0] == pytest.approx(1.0, abs=1e-9)
+    assert a[1] * T == pytest.approx(b[1] * T, abs=1e-7)
+
+
+@pytest.mark.parametrize("kind", PROFILES)
+def test_a_duration_of_zero_is_already_there_and_never_nan(kind):
+    s = kind(0.0)
+    assert s(0.0) == s(1.0) == (1.0, 0.0, 0.0)
+    assert s(-1.0) == (0.0, 0.0, 0.0)
+    assert kind.within(0.0, 1.0, 1.0).duration == 0.0
+
+
+def test_no_distance_takes_the_trapezoid_no_time():
+    s = Trapezoid(0.0, 1.0, 1.0)
+    assert s.duration == 0.0
+    assert s(0.0) == (1.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("kind", PROFILES)
+def test_the_peaks_are_what_they_are_said_to_be(kind):
+    rows = np.array([kind(1.0)(t) for t in np.linspace(0.0, 1.0 - 1e-12, 20001)])
+    assert rows[:, 1].max() == pytest.approx(kind.PEAK_SPEED, rel=1e-6)
+    assert np.abs(rows[:, 2]).max() == pytest.approx(kind.PEAK_ACCELERATION, rel=1e-6)
+
+
+@given(st.sampled_from(PROFILES), lengths, speeds, speeds)
+def test_the_quickest_within_limits_touches_one_and_passes_none(kind, d, v, a):
+    s = kind.within(d, v, a)
+    rows = np.array([s(t) for t in np.linspace(0.0, s.duration * (1 - 1e-12), 2001)])
+    fast, hard = d * rows[:, 1].max() / v, d * np.abs(rows[:, 2]).max() / a
+    assert max(fast, hard) <= 1.0 + 1e-9
+    assert max(fast, hard) >= 1.0 - 1e-4
+
+
+@given(lengths, speeds, speeds)
+def test_the_trapezoid_keeps_its_limits_and_is_the_quickest_that_does(d, v, a):
+    s = Trapezoid(d, v, a)
+    rows = np.array([s(t) for t in np.linspace(0.0, s.duration * (1 - 1e-12), 1001)])
+    assert d * rows[:, 1].max() <= v * (1 + 1e-9)
+    assert d * np.abs(rows[:, 2]).max() <= a * (1 + 1e-9)
+    for kind in PROFILES:
+        assert s.duration <= kind.within(d, v, a).duration * (1 + 1e-9)
+
+
+@given(lengths, speeds, speeds)
+def test_a_way_too_short_to_cruise_is_a_triangle(d, v, a):
+    s = Trapezoid(d, v, a)
+    if d < v * v / a:
+        assert s.peak_speed == pytest.approx(np.sqrt(d * a))
+        assert s.duration == pytest.approx(BangBang.within(d, 1e9, a).duration)
+    else:
+        assert s.peak_speed == v
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: Cubic(-1.0), OutOfRange, "duration is -1, it must be at least 0"),
+        (lambda: Quintic(np.nan), NotFinite, "duration is nan"),
+        (lambda: BangBang("2 s"), TypeMismatch, "duration is '2 s'"),
+        (lambda: Trapezoid(1.0, 0.0, 1.0), OutOfRange, "v_max is 0, it must be greater than 0"),
+        (lambda: Trapezoid(1.0, 1.0, -2.0), OutOfRange, "a_max is -2"),
+        (lambda: Trapezoid(-1.0, 1.0, 2.0), OutOfRange, "distance is -1"),
+        (lambda: Trapezoid([1, 2], 1.0, 2.0), TypeMismatch, "distance"),
+        (lambda: Quintic.within(1.0, 0.0, 1.0), OutOfRange, "v_max"),
+    ],
+)
+def test_impossible_limits_are_refused(call, error, words):
+    with pytest.raises(error, match=words) as caught:
+        call()
+    assert isinstance(caught.value, LabkitError)
+
+
+def test_a_scaling_is_a_value():
+    assert Cubic(2.0) == Cubic(2)
+    assert hash(Cubic(2.0)) == hash(Cubic(2.0))
+    assert Cubic(2.0) != Quintic(2.0)
+    with pytest.raises(AttributeError):
+        Cubic(2.0).duration = 3.0

@@ -1,0 +1,150 @@
+"""Rigid motion against the matrix exponential, Pinocchio and its own inverses."""
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose
+from scipy.linalg import expm, logm
+
+from labkit import se3
+from labkit.errors import LabkitError, OutOfRange, ShapeError
+
+vectors = arrays(np.float64, 3, elements=st.floats(-2.0, 2.0))
+unit = vectors.filter(lambda v: np.linalg.norm(v) > 1e-3).map(lambda v: v / np.linalg.norm(v))
+angles = st.one_of(
+    st.floats(0.0, np.pi - 1e-9),
+    st.floats(0.0, 2e-4),  # around the switch to the series
+    st.floats(2.9, np.pi - 1e-9),  # around the switch to the symmetric part
+    st.sampled_from([0.0, 1e-12, 1e-8, 1e-4, 3.0, np.pi - 1e-7]),
+)
+turns = st.builds(lambda axis, angle: axis * angle, unit, angles)
+twists = st.builds(lambda v, w: np.concatenate([v, w]), vectors, turns)
+poses = twists.map(se3.exp)
+
+
+@given(vectors, vectors)
+def test_hat_is_the_cross_product_and_vee_undoes_it(w, x):
+    assert_allclose(se3.hat(w) @ x, np.cross(w, x), atol=1e-14)
+    assert_allclose(se3.vee(se3.hat(w)), w, atol=0)
+
+
+@given(turns)
+def test_rotation_is_the_matrix_exponential(phi):
+    R = se3.rotation(phi)
+    assert_allclose(R, expm(se3.hat(phi)), atol=2e-14)
+    assert_allclose(R.T @ R, np.eye(3), atol=2e-14)
+
+
+@given(turns)
+def test_log_undoes_rotation_up_to_half_a_turn(phi):
+    assert_allclose(se3.rotation_log(se3.rotation(phi)), phi, atol=2e-9)
+
+
+@given(turns.filter(lambda phi: 1e-3 < np.linalg.norm(phi) < 3.0))
+def test_log_is_the_matrix_logarithm(phi):
+    R = se3.rotation(phi)
+    assert_allclose(se3.hat(se3.rotation_log(R)), logm(R).real, atol=1e-11)
+
+
+@given(unit)
+def test_half_a_turn_gives_back_the_same_rotation(axis):
+    R = 2.0 * np.outer(axis, axis) - np.eye(3)
+    phi = se3.rotation_log(R)
+    assert_allclose(np.linalg.norm(phi), np.pi, atol=1e-9)
+    assert_allclose(se3.rotation(phi), R, atol=1e-9)
+
+
+@given(unit, st.floats(-10.0, 10.0))
+def test_rotation_about_takes_an_axis_of_any_length(axis, angle):
+    assert_allclose(se3.rotation_about(3.0 * axis, angle), se3.rotation(axis * angle), atol=1e-13)
+
+
+def test_an_axis_without_length_is_refused():
+    with pytest.raises(OutOfRange, match="axis is zero"):
+        se3.rotation_about([0, 0, 0], 1.0)
+
+
+@given(twists)
+def test_exp_is_the_matrix_exponential_and_log_undoes_it(V):
+    T, V_hat = se3.exp(V), np.zeros((4, 4))
+    V_hat[:3, :3], V_hat[:3, 3] = se3.hat(V[3:]), V[:3]
+    assert_allclose(T, expm(V_hat), atol=2e-13)
+    assert_allclose(se3.log(T), V, atol=1e-8)
+
+
+@given(twists)
+def test_exp_and_log_are_pinocchios(V):
+    assert_allclose(se3.exp(V), pin.exp6(V).homogeneous, atol=1e-12)
+    if np.linalg.norm(V[3:]) < 3.0:
+        assert_allclose(se3.log(se3.exp(V)), pin.log6(pin.SE3(se3.exp(V))).vector, atol=1e-9)
+
+
+@given(poses, poses)
+def test_the_inverse_undoes_and_reverses_products(T_ab, T_bc):
+    assert_allclose(se3.inverse(T_ab) @ T_ab, np.eye(4), atol=1e-13)
+    product = se3.inverse(T_bc) @ se3.inverse(T_ab)
+    assert_allclose(se3.inverse(T_ab @ T_bc), product, atol=1e-13)
+
+
+@given(poses, poses)
+def test_the_adjoint_of_a_product_is_the_product_of_adjoints(T_ab, T_bc):
+    product = se3.adjoint(T_ab) @ se3.adjoint(T_bc)
+    assert_allclose(se3.adjoint(T_ab @ T_bc), product, atol=1e-12)
+
+
+@given(poses, twists)
+def test_the_adjoint_moves_a_twist_to_another_frame(T_ab, V_b):
+    moved = se3.exp(se3.adjoint(T_ab) @ V_b)
+    assert_allclose(moved, T_ab @ se3.exp(V_b) @ se3.inverse(T_ab), atol=1e-10)
+
+
+@given(poses)
+def test_the_adjoint_is_pinocchios(T):
+    assert_allclose(se3.adjoint(T), pin.SE3(T).toActionMatrix(), atol=1e-13)
+
+
+@given(turns, turns)
+def test_the_orientation_error_takes_the_actual_to_the_desired(a, b):
+    R_wd, R_wt = se3.rotation(a), se3.rotation(b)
+    e = se3.orientation_error(R_wd, R_wt)
+    assert_allclose(se3.rotation(e) @ R_wt, R_wd, atol=1e-8)
+    assert_allclose(np.linalg.norm(e), se3.angle_between(R_wd, R_wt), atol=1e-9)
+
+
+@given(turns, vectors)
+def test_the_orientation_error_has_the_sign_of_target_minus_actual(phi, w):
+    """A body that turns at w on its way to the target makes the error shrink along w."""
+    R_wt, small = se3.rotation(phi), 1e-4 * w
+    assert_allclose(se3.orientation_error(se3.rotation(small) @ R_wt, R_wt), small, atol=1e-12)
+
+
+def test_a_pose_is_made_of_its_parts():
+    R, p = se3.rotation([0.1, 0.2, 0.3]), [1.0, 2.0, 3.0]
+    T = se3.pose(R, p)
+    assert_allclose(T[:3, :3], R)
+    assert_allclose(T @ [0, 0, 0, 1], [1, 2, 3, 1])
+
+
+mirror = np.diag([1.0, 1.0, -1.0])
+transposed = se3.pose(np.eye(3), [1.0, 2.0, 3.0]).T
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: se3.rotation_log(np.ones((3, 3))), OutOfRange, "R is no rotation.*not by sums"),
+        (lambda: se3.rotation_log(mirror), OutOfRange, "determinant -1.*swapped"),
+        (lambda: se3.as_pose(transposed, "T_wt"), OutOfRange, "T_wt's last row.*transposed"),
+        (lambda: se3.as_pose(np.eye(3), "T_wt"), ShapeError, "T_wt has shape"),
+        (lambda: se3.hat([1.0, 2.0]), ShapeError, "give 3 numbers, not 2"),
+        (lambda: se3.exp(np.zeros((6, 1))), ShapeError, "ravel"),
+        (lambda: se3.pose(np.eye(3), [np.nan, 0, 0]), LabkitError, "p holds nan"),
+        (lambda: se3.log(2.0 * np.eye(4)), OutOfRange, "no rotation"),
+    ],
+)
+def test_what_is_no_motion_is_refused(call, error, words):
+    with pytest.raises(error, match=words):
+        call()
