@@ -109,7 +109,7 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
 
 
 def run_kernel(name, parts, folder):
-    """Run a notebook in a real kernel; returns it, and the kernel's CPU time and memory."""
+    """Run a notebook in a real kernel; returns it executed, its CPU time [s] and memory [MB]."""
     from nbclient import NotebookClient
 
     shutil.copy(COURSE.release / name / desk.FILE, folder)
