@@ -17,6 +17,7 @@ EXAMPLES = """examples:
   labkit release 01_paths --seed 7  one of them, with hidden cases of your own
   labkit student-bundle             a zip for students, with a start page
   labkit grade 01_paths             grade everything under submitted/
+  labkit report-card                how well the checks tell right from wrong
 """
 
 
@@ -74,6 +75,15 @@ def parser() -> argparse.ArgumentParser:
     verb.add_argument("--student", metavar="S", help="only this one")
     _course(verb)
     verb.set_defaults(do=_grade)
+
+    verb = verbs.add_parser("report-card", help="try the checks on known mistakes")
+    verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
+    verb.add_argument("--seed", type=int, default=2019, help="of the first draw (default: 2019)")
+    of = "a Python file with a dict {} = {{question: [functions]}}"
+    verb.add_argument("--mistakes", type=Path, metavar="FILE", help=of.format("MISTAKES"))
+    verb.add_argument("--variants", type=Path, metavar="FILE", help=of.format("VARIANTS"))
+    _course(verb)
+    verb.set_defaults(do=_report_card)
     return top
 
 
@@ -186,6 +196,31 @@ def _grade(args: argparse.Namespace) -> int:
             f"[{number}/{len(who)}] {student}: {got}{'; ' * bool(mark.says)}{mark.says}", flush=True
         )
     return 0
+
+
+def _report_card(args: argparse.Namespace) -> int:
+    from .grade.course import Course
+    from .grade.report_card import functions_from, report_card, write
+
+    course = Course.here(args.course)
+    mistakes = functions_from(args.mistakes)[0] if args.mistakes else None
+    variants = functions_from(args.variants)[1] if args.variants else None
+    card = report_card(
+        course,
+        args.names or course.names(),
+        args.seed,
+        mistakes,
+        variants,
+        progress=lambda row: print(
+            f"{row.assignment} {row.question}: {row.rejected} of {row.mistakes} mistakes rejected, "
+            f"{row.accepted} of {row.variants} right answers accepted",
+            flush=True,
+        ),
+    )
+    table, page = write(card, course.root / "build")
+    print(page.read_text(encoding="utf-8"))
+    print(f"written: {table} and {page}")
+    return int(any(row.failures for row in card.rows))
 
 
 if __name__ == "__main__":

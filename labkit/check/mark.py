@@ -145,7 +145,7 @@ class _Failure(Raised):
 def _answer(case: Case, function: Callable[..., Any]) -> Any:
     try:
         return case.ask(function)
-    except Exception as error:
+    except (Exception, SystemExit) as error:  # exit() in a function must not end the notebook
         return _failure(error)
 
 

@@ -115,27 +115,31 @@ def hint(name: str, level: int = 1) -> None:
     print(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}{more}")
 
 
-def use(name: str, function: Callable[..., Any], given: Callable[..., Any]) -> Callable[..., Any]:
+def use(
+    name: str,
+    function: Callable[..., Any],
+    given: Callable[..., Any],
+    yours: Callable[..., Any] | None = None,
+) -> Callable[..., Any]:
     """Your function if it is right, else the one given; so the notebook always goes on.
 
     Args:
         name: The question's name.
         function: What you wrote.
-        given: What takes its place.
+        given: What takes its place: a tool of labkit's, or something simpler.
+        yours: What to use instead of `function` itself, where the notebook wraps it first.
 
     Returns:
-        One of the two; a badge says once which, if it is not yours.
+        One of them; a badge says once which, if it is not yours.
     """
     known, verdict = desk().seen.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, _ = desk().verdict(name, function)
     if verdict.outcome is Outcome.RIGHT:
-        return function
+        return yours or function
     if name not in desk().badges:
         desk().badges.add(name)
-        print(
-            f"[stand-in] {name}: yours is not ready, so from here on labkit's own takes its place."
-        )
+        print(f"[stand-in] {name}: yours is not ready, so from here on a stand-in takes its place.")
     return given
 
 

@@ -121,18 +121,18 @@ def lift(way: float, duration: float, kp: float, rows: int = 71) -> lk.Log:
         b = slope(t + dt / 2.0, y + a * dt / 2.0)
         c = slope(t + dt / 2.0, y + b * dt / 2.0)
         y = y + (a + 2.0 * b + 2.0 * c + slope(t + dt, y + c * dt)) * dt / 6.0
-    t, q, dq, command = np.split(np.round(table, 6), (1, 8, 15), axis=1)
-    samples = [target(x) for x in t.ravel()]
-    stacked = (np.round(part, 6) for part in zip(*samples, strict=True))
+    columns = np.round(table, 6)
+    times, q, dq, command = columns[:, 0], columns[:, 1:8], columns[:, 8:15], columns[:, 15:]
+    stacked = (np.round(part, 6) for part in zip(*map(target, times), strict=True))
     return lk.Log(
-        t=t.ravel(),
+        t=times,
         q=q,
         dq=dq,
         tau=np.clip(command, -limits, limits),
         command=command,
         target=lk.Sample(*stacked),
-        measured=lk.State(t.ravel(), q, dq),  # type: ignore[arg-type]
-        saturated=(abs(command) > limits).any(axis=1),
+        measured=lk.State(times, q, dq),  # type: ignore[arg-type]
+        saturated=np.any(abs(command) > limits, axis=1),
         command_type=lk.JointTorque,
         controller="lift",
         plant=ROUGH,

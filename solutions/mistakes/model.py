@@ -113,7 +113,7 @@ def kinetic_only(log: lk.Log, model: lk.Model) -> Array:
 
 def commanded_torque(log: lk.Log, model: lk.Model) -> Array:
     """The torque that was asked for, not the one that the motors gave."""
-    return power_balance(log, model) + np.sum((log.tau - log.command) * log.dq, axis=1)
+    return np.asarray(power_balance(log, model) + np.sum((log.tau - log.command) * log.dq, axis=1))
 
 
 def motors_minus_energy(log: lk.Log, model: lk.Model) -> Array:
@@ -125,4 +125,4 @@ def steps_not_seconds(log: lk.Log, model: lk.Model) -> Array:
     """The growth per row, not per second."""
     power = np.sum(log.tau * log.dq, axis=1)
     dt = float(log.t[1] - log.t[0])
-    return (power_balance(log, model) + power) * dt - power
+    return np.asarray((power_balance(log, model) + power) * dt - power)

@@ -15,8 +15,8 @@
 # A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling*
 # is the schedule `s(t)`. Together they are a *trajectory*. Kept apart, any path goes with any schedule.
 #
-# Every cell below runs from the start, solved or not: where your part is missing, labkit's own stands
-# in and says so. After each stub a check tells you in words what it found. Only the functions are
+# Every cell below runs from the start, solved or not: where your part is missing, a stand-in takes its
+# place and says so. After each stub a check tells you in words what it found. Only the functions are
 # marked, so play with everything else as you like.
 
 # %% setup=true
@@ -85,7 +85,10 @@ class Schedule:
 
 bang = Schedule(my_bang_bang, 3.0, 3.0)
 lk.plotting.scaling(("bang-bang", bang), ("cubic", lk.Cubic(3.0)), ("quintic", lk.Quintic(3.0)))
-plt.show()
+lk.plotting.show(
+    "s, its speed and its acceleration over 3 s: bang-bang jumps in acceleration at the ends and in the "
+    "middle, the cubic at the ends, the quintic nowhere."
+)
 
 # %% [markdown]
 # ## Limits are in metres
@@ -133,8 +136,12 @@ def within_limits(distance, v_max=0.2, a_max=0.4):
     return Schedule(my_trapezoid, duration, distance, v_max, a_max)
 
 
-lk.plotting.scaling(("0.30 m: a trapezoid", within_limits(0.30)), ("0.05 m: a triangle", within_limits(0.05)))
-plt.show()
+long, short = within_limits(0.30), within_limits(0.05)
+lk.plotting.scaling(("0.30 m: a trapezoid", long), ("0.05 m: a triangle", short))
+lk.plotting.show(
+    f"Two ways within the same limits: 0.30 m takes {long.duration:.2f} s and cruises, 0.05 m takes "
+    f"{short.duration:.2f} s and never reaches the top speed."
+)
 
 # %% [markdown]
 # ## The path: where
@@ -237,8 +244,7 @@ goal = start + [0.1, -0.15, 0.1]
 line = lk.Line(start, goal)
 log = follow(line, within_limits(line.length))
 lk.plotting.tracking(log)
-plt.show()
-print(lk.plotting.describe(log))
+lk.plotting.show(lk.plotting.describe(log))
 
 # %% [markdown]
 # And the circle, your own, about an axis 15 cm to the side. If your `compose` is right, the arm's speed
@@ -249,7 +255,7 @@ centre = start + [0.0, -0.15, -0.2]
 ring = lambda s: my_circle(s, start, centre)
 log = follow(ring, lk.Quintic(6.0))
 lk.plotting.tracking(log)
-plt.show()
+lk.plotting.show(lk.plotting.describe(log))
 
 speed = [np.linalg.norm(my_compose(ring, lk.Quintic(6.0), t).velocity) for t in log.t]
 plt.figure(figsize=(8, 2.5), layout="constrained")
@@ -259,7 +265,10 @@ plt.plot(log.t, actual, "--", label="of the arm")
 plt.xlabel("time [s]")
 plt.ylabel("speed [m/s]")
 plt.legend(frameon=False)
-plt.show()
+lk.plotting.show(
+    f"Speed of the tip on the circle: at most {max(speed):.2f} m/s as promised, {max(actual):.2f} m/s by "
+    "the arm."
+)
 
 # %% [markdown]
 # ## Several segments
@@ -309,12 +318,24 @@ def square(t):
 t = np.linspace(0.0, sum(durations), 400)
 points = np.array([square(x).position for x in t])
 plt.figure(figsize=(4, 4), layout="constrained")
-plt.plot(points[:, 0], points[:, 1])
-plt.plot(*corners[:, :2].T, "o", mfc="none")
+plt.plot(points[:, 0], points[:, 1], label="the tip's path")
+plt.plot(*corners[:, :2].T, "o", mfc="none", label="corners")
 plt.axis("equal")
 plt.xlabel("x [m]")
 plt.ylabel("y [m]")
-plt.show()
+plt.legend(frameon=False)
+lk.plotting.show(f"The square from above: four sides of 12 cm, gone round in {t[-1]:.1f} s.")
+
+# %% [markdown]
+# Let the arm go round it. Its target is made of labkit's own parts, in the same order; the see-through
+# arm is your circle from above, for comparison. Drag to look around, move the slider to go back and
+# forth in time.
+
+# %%
+arm.reset(q0)
+tour = lk.Chain([lk.Trajectory(side, lk.Trapezoid(side.length, 0.2, 0.4)) for side in sides])
+log_square = lk.run(arm, model.joint_trajectory(tour, q0), passes_on)
+lk.replay.show(lk.replay.motion_of(log_square, "Round four corners", ghosts={"the circle": log}))
 
 # %% [markdown]
 # ## A witness

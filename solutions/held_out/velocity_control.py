@@ -1,0 +1,166 @@
+"""Hidden cases of notebook 03."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.check import Call, Loop
+from labkit.grade.problem import call
+
+Random = np.random.Generator
+MODEL = lk.Model("left")
+READY = MODEL.robot.ready
+REST = np.zeros(7)
+STRETCHED = np.array([-0.3, -0.4, 0.1, 0.06, 0.2, 0.5, 0.0])
+"""Elbow almost straight: a singularity is near."""
+
+
+def state(q: Any, dq: Any = REST) -> lk.State:
+    """The joints at the angles q."""
+    return lk.State(0.0, np.array(q, dtype=float), np.array(dq, dtype=float))
+
+
+def sample(q: Any, dq: Any = REST) -> lk.Sample:
+    """A target of joint angles."""
+    return lk.Sample(np.array(q, dtype=float), np.array(dq, dtype=float), REST)
+
+
+def pose_sample(q: Any, shift: Any = (0, 0, 0), turn: Any = (0, 0, 0), twist: Any = None) -> Any:
+    """A target pose beside the tip's at q: shifted in [m], turned about tool axes in [rad]."""
+    T = MODEL.pose(q)
+    T_wd = lk.se3.pose(T[:3, :3] @ lk.se3.rotation(turn), T[:3, 3] + shift)
+    return lk.PoseSample(T_wd, np.zeros(6) if twist is None else np.array(twist), np.zeros(6))
+
+
+def near(random: Random) -> Any:
+    """Joint angles near the ready pose."""
+    return READY + random.uniform(-0.3, 0.3, 7)
+
+
+def joint_offsets(random: Random) -> Iterator[Call]:
+    """Offsets of all joints, everything at rest."""
+    for kp in random.uniform(1.0, 8.0, 2):
+        yield call(state(near(random)), sample(near(random)), kp=kp, kd=0.0)
+
+
+def joint_speeds(random: Random) -> Iterator[Call]:
+    """A joint that moves, at its target."""
+    for _ in range(2):
+        q = near(random)
+        yield call(
+            state(q, random.uniform(-0.5, 0.5, 7)), sample(q), kp=3.0, kd=random.uniform(0.1, 0.8)
+        )
+
+
+def joint_targets(random: Random) -> Iterator[Call]:
+    """Moving targets, a gain for each joint."""
+    for _ in range(3):
+        yield call(
+            state(near(random), random.uniform(-0.5, 0.5, 7)),
+            sample(near(random), random.uniform(-0.5, 0.5, 7)),
+            kp=random.uniform(1.0, 8.0, 7),
+            kd=random.uniform(0.1, 0.8, 7),
+        )
+
+
+def joint_run(start: Any, way: Any) -> Loop:
+    """After a moving target, from a wrong start, with half a second and more to recover."""
+    target = lk.Trajectory(lk.Line(READY, READY + way), lk.Quintic(2.5))
+    return Loop(
+        target,
+        {"kp": 4.0, "kd": 0.3},
+        q0=READY + start,
+        settle=2.0,
+        expected={"max_mm": 4.0, "max_deg": 0.6},
+    )
+
+
+def joint_runs(random: Random) -> Iterator[Loop]:
+    """Another start and another way."""
+    yield joint_run(random.uniform(-0.1, 0.1, 7), 0.5 * np.array([1, -0.6, 0.3, 1, 0.4, -0.5, 0.8]))
+
+
+def rates(random: Random) -> Iterator[Call]:
+    """Other gains."""
+    for _ in range(3):
+        yield call(random.uniform(0.5, 9.0), random.uniform(0.2, 4.0))
+
+
+def rates_without_d(random: Random) -> Iterator[Call]:
+    """Other gains, kd = 0."""
+    yield call(random.uniform(0.5, 9.0), 0.0)
+
+
+def inverses_plain(random: Random) -> Iterator[Call]:
+    """Other poses, no damping."""
+    yield call(MODEL.tip_jacobian(near(random)), 0.0)
+
+
+def inverses(random: Random) -> Iterator[Call]:
+    """Any poses and dampings."""
+    for q in (near(random), STRETCHED + random.uniform(-0.03, 0.03, 7)):
+        yield call(MODEL.tip_jacobian(q), random.uniform(1e-3, 1e-2))
+
+
+def pose_shifts(random: Random) -> Iterator[Call]:
+    """Other offsets of position."""
+    q = near(random)
+    yield call(state(q), pose_sample(q, random.uniform(-0.05, 0.05, 3)), MODEL, kp=2.0, damping=0.0)
+
+
+def pose_turns(random: Random) -> Iterator[Call]:
+    """Roll, pitch and yaw offsets, one by one, at other poses."""
+    for axis in np.eye(3):
+        q = near(random)
+        x = pose_sample(q, turn=random.choice((-1, 1)) * random.uniform(0.05, 0.3) * axis)
+        yield call(state(q), x, MODEL, kp=random.uniform(1.0, 5.0, 6), damping=0.003)
+
+
+def pose_moves(random: Random) -> Iterator[Call]:
+    """Other twists."""
+    for _ in range(2):
+        q = near(random)
+        x = pose_sample(q, twist=random.uniform(-0.2, 0.2, 6))
+        yield call(state(q), x, MODEL, kp=3.0, damping=0.004)
+
+
+def pose_stretched(random: Random) -> Iterator[Call]:
+    """Other stretched poses."""
+    q = STRETCHED + random.uniform(-0.03, 0.03, 7)
+    x = pose_sample(q, random.uniform(-0.03, 0.03, 3))
+    yield call(state(q), x, MODEL, kp=2.0, damping=random.uniform(0.002, 0.005))
+
+
+def pose_run(shift: Any, turn: Any) -> Loop:
+    """After a circle, from a start that is shifted and tilted, with time to recover."""
+    T = MODEL.pose(READY)
+    circle = lk.Circle(T[:3, 3], T[:3, 3] + [0.0, -0.1, 0.0])
+    tilted = lk.se3.pose(T[:3, :3] @ lk.se3.rotation(turn), T[:3, 3] + shift)
+    return Loop(
+        lk.Trajectory(lk.PosePath(circle, T[:3, :3]), lk.Quintic(4.0)),
+        {"model": MODEL, "kp": 4.0, "damping": 1e-5},
+        q0=MODEL.inverse_kinematics(tilted, READY),
+        settle=1.5,
+        expected={"max_mm": 2.0, "max_deg": 0.5},
+    )
+
+
+def pose_runs(random: Random) -> Iterator[Loop]:
+    """Another start."""
+    yield pose_run(random.uniform(-0.03, 0.03, 3), random.choice((-0.15, 0.15), 3))
+
+
+def postures(random: Random) -> Iterator[Call]:
+    """Any poses and wishes."""
+    for _ in range(4):
+        yield call(MODEL.tip_jacobian(near(random)), random.uniform(-1.0, 1.0, 7))
+
+
+def postures_orthonormal(random: Random) -> Iterator[Call]:
+    """Other such matrices."""
+    J = np.linalg.qr(random.standard_normal((7, 6)))[0].T
+    yield call(J, random.uniform(-1.0, 1.0, 7))

@@ -1,0 +1,127 @@
+"""A student for the tests: fills in some stubs, runs every cell, and keeps what was printed."""
+
+import json
+import shutil
+from collections.abc import Mapping
+from contextlib import redirect_stdout
+from dataclasses import dataclass, field
+from io import StringIO
+from pathlib import Path
+
+import matplotlib
+import nbformat
+
+import labkit
+from labkit.check import notebook as desk
+from labkit.grade.course import Course
+from labkit.grade.notebook import inlined
+
+matplotlib.use("Agg")
+COURSE = Course.here(Path(__file__))
+
+STUB = ""
+"""As it was released."""
+BROKEN = "def {name}(*args, **kwargs):\n    return 1 / 0\n"
+FORGETS = "def {name}(*args, **kwargs):\n    pass\n"
+"""What else an unsolved part may look like."""
+
+
+@dataclass
+class Sheet:
+    """What came of running a notebook.
+
+    Attributes:
+        printed: Everything on stdout.
+        earned: Points by question.
+        used: Questions whose function the notebook uses further down.
+    """
+
+    printed: str = ""
+    earned: dict[str, float] = field(default_factory=dict)
+    used: tuple[str, ...] = ()
+
+    def badges(self, name: str) -> int:
+        """How often the notebook said that a stand-in takes a part's place."""
+        return self.printed.count(f"[stand-in] {name}:")
+
+
+def questions(name):
+    """The questions of an assignment, in order."""
+    return tuple(problem.name for problem in COURSE.problems(name))
+
+
+def fill(name, parts: Mapping[str, str]):
+    """The released notebook with each part's cell as given; "" leaves the stub."""
+    notebook = nbformat.read(COURSE.release / name / f"{name}.ipynb", as_version=4)
+    for cell in notebook.cells:
+        grade_id = cell.metadata.get("nbgrader", {}).get("grade_id")
+        if cell.metadata["lab"] == "answer" and parts.get(grade_id):
+            cell.source = parts[grade_id].format(name=grade_id)
+    return notebook
+
+
+def solved(name):
+    """Every part with the answer's own source."""
+    return {p.name: inlined(p).replace("{", "{{").replace("}", "}}") for p in COURSE.problems(name)}
+
+
+def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
+    """Run a notebook cell by cell in this process, simulations cut short, closed loops unmarked.
+
+    Args:
+        name: The assignment.
+        parts: As for `fill`.
+        folder: An empty one.
+        monkeypatch: pytest's.
+        shortest: How long a simulation may last, in [s].
+    """
+    checks = json.loads((COURSE.release / name / desk.FILE).read_text(encoding="utf-8"))
+    for question in checks["questions"]:
+        question["tests"] = [
+            t for t in question["tests"] if all(case["case"] == "Call" for case in t["cases"])
+        ]
+    (folder / desk.FILE).write_text(json.dumps(checks), encoding="utf-8")
+    monkeypatch.chdir(folder)
+    desk._desks.clear()
+    run = labkit.run
+
+    def short_run(arm, target, controller, rate=200.0, duration=None):
+        duration = getattr(target, "duration", None) if duration is None else duration
+        return run(arm, target, controller, rate, min(duration, shortest))
+
+    monkeypatch.setattr(labkit, "run", short_run)
+    notebook, out, names = fill(name, parts), StringIO(), {"__name__": "__main__"}
+    with redirect_stdout(out):
+        for cell in notebook.cells:
+            if cell.cell_type == "code":
+                code = compile(cell.source, f"{name}, cell {cell.id}", "exec")
+                exec(code, names)
+    for value in names.values():
+        if isinstance(value, labkit.Arm):
+            value.close()
+    matplotlib.pyplot.close("all")
+    text = "\n".join(cell.source for cell in notebook.cells)
+    return Sheet(
+        out.getvalue(),
+        {key: verdict.earned for key, (_, verdict) in desk.desk().seen.items()},
+        tuple(q for q in questions(name) if f'use("{q}"' in text),
+    )
+
+
+def run_kernel(name, parts, folder):
+    """Run a notebook in a real kernel; returns it executed, its CPU time [s] and memory [MB]."""
+    from nbclient import NotebookClient
+
+    shutil.copy(COURSE.release / name / desk.FILE, folder)
+    notebook = fill(name, parts)
+    notebook.cells.append(
+        nbformat.v4.new_code_cell(
+            "import resource as _r, time as _t\n"
+            "print(_t.process_time(), _r.getrusage(_r.RUSAGE_SELF).ru_maxrss / 1024)"
+        )
+    )
+    NotebookClient(
+        notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
+    ).execute()
+    seconds, megabytes = map(float, notebook.cells.pop().outputs[0].text.split())
+    return notebook, seconds, megabytes

@@ -1,0 +1,96 @@
+"""Every notebook runs from its first cell to its last, whatever is solved."""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from student import BROKEN, COURSE, FORGETS, STUB, questions, run_here, run_kernel, solved
+
+NAMES = COURSE.names()
+RANDOM = 10
+POINTS = {p.name: p.points for name in NAMES for p in COURSE.problems(name)}
+
+
+def subsets(name):
+    """None solved, all, each alone, each left out, and ten at random."""
+    every = questions(name)
+    random = np.random.default_rng(list(name.encode()))
+    yield "none", ()
+    yield "all", every
+    for one in every:
+        yield f"only {one}", (one,)
+        yield f"all but {one}", tuple(q for q in every if q != one)
+    for k in range(RANDOM):
+        yield f"random {k}", tuple(q for q in every if random.random() < 0.5)
+
+
+CASES = [
+    pytest.param(
+        name,
+        which,
+        id=f"{name}: {label}",
+        marks=() if label in {"none", "all"} else pytest.mark.slow,  # ninety runs together
+    )
+    for name in NAMES
+    for label, which in subsets(name)
+]
+
+
+@pytest.mark.parametrize(("name", "which"), CASES)
+def test_it_runs_to_the_end(name, which, tmp_path, monkeypatch):
+    """No cell raises; one badge for each unsolved part that is used; marks do not depend on it."""
+    random = np.random.default_rng([len(which), *name.encode()])
+    answers = solved(name)
+    parts = {
+        q: answers[q] if q in which else str(random.choice([STUB, BROKEN, FORGETS]))
+        for q in questions(name)
+    }
+    sheet = run_here(name, parts, tmp_path, monkeypatch)
+    for q in questions(name):
+        assert sheet.earned[q] == (POINTS[q] if q in which else 0.0), q
+        assert sheet.badges(q) == (q in sheet.used and q not in which), q
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_most_parts_are_used_further_down(name):
+    """What is written is used: the arm moves with it, or a picture shows it."""
+    text = (COURSE.release / name / f"{name}.ipynb").read_text()
+    assert sum(f'use(\\"{q}\\"' in text for q in questions(name)) >= len(questions(name)) - 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_solved_in_a_kernel(name, tmp_path):
+    """Solved, it gives full marks within 20 s, 1 GB and 1 MB; every picture has words."""
+    notebook, seconds, megabytes = run_kernel(name, solved(name), tmp_path)
+    assert seconds < 20.0 and megabytes < 1024.0
+    size = len(json.dumps(notebook).encode())
+    assert size < 1_000_000
+    replays = 0
+    for cell in notebook.cells:
+        for output in cell.get("outputs", ()):
+            assert output.output_type != "stream" or output.name == "stdout", output
+            replays += "Replay" in output.get("data", {}).get("text/plain", "")
+            if "image/png" in output.get("data", {}):
+                alt = output.metadata["image/png"]["alt"]
+                assert len(alt) > 40
+        if cell.metadata["lab"] == "check":
+            points = cell.metadata.nbgrader.points
+            assert float(cell.outputs[-1].data["text/plain"]) == points, cell.source
+    assert replays >= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_released_in_a_kernel(name, tmp_path):
+    """As it is handed out, it runs, earns nothing and writes nothing to stderr."""
+    notebook, _, _ = run_kernel(name, {}, tmp_path)
+    for cell in notebook.cells:
+        assert all(o.get("name") != "stderr" for o in cell.get("outputs", ()))
+        if cell.metadata["lab"] == "check":
+            assert cell.outputs[-1].data["text/plain"] == "0.0"
+            assert "not attempted yet" in cell.outputs[0].text

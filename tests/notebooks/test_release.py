@@ -1,0 +1,116 @@
+"""What is committed for students: in sync with its sources, no answers, no hidden cases."""
+
+import ast
+import inspect
+import json
+import math
+import re
+import shutil
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from labkit.grade.course import Course
+from labkit.grade.notebook import source_notebook
+from labkit.grade.release import FORBIDDEN, release
+
+COURSE = Course.here(Path(__file__))
+NAMES = COURSE.names()
+OTHER_SEED = 77
+
+each = pytest.mark.parametrize("name", NAMES)
+
+
+@pytest.fixture(scope="module")
+def elsewhere(tmp_path_factory):
+    """The same course in another folder, released anew with hidden cases of another seed."""
+    root = tmp_path_factory.mktemp("course")
+    shutil.copytree(COURSE.root / "solutions", root / "solutions")
+    shutil.copy(COURSE.root / "nbgrader_config.py", root)
+    course = Course(root)
+    for name in NAMES:
+        release(course, name, OTHER_SEED)
+    return course
+
+
+def files(name):
+    """The committed files of an assignment."""
+    return {p.name: p for p in (COURSE.release / name).iterdir() if p.is_file()}
+
+
+@pytest.mark.slow
+@each
+def test_in_sync_and_the_same_for_every_seed(name, elsewhere):
+    """Released again elsewhere, with another seed, students get the same files."""
+    again = {p.name: p for p in (elsewhere.release / name).iterdir()}
+    assert set(again) == set(files(name)) == {f"{name}.ipynb", "checks.json"}
+    mine = files(name)[f"{name}.ipynb"].read_text(encoding="utf-8")
+    assert mine == again[f"{name}.ipynb"].read_text(encoding="utf-8"), "run: labkit release"
+    ours, theirs = (
+        json.loads(f["checks.json"].read_text(encoding="utf-8")) for f in (files(name), again)
+    )
+    assert alike(ours, theirs), "run: labkit release"
+
+
+@each
+def test_cells_are_deterministic(name):
+    """Made twice, the source notebook is the same, ids included, and no id occurs twice."""
+    questions = {p.name: p.question(1) for p in COURSE.problems(name)}
+    a, b = (source_notebook(COURSE.notebook_source(name), questions) for _ in range(2))
+    assert nbformat.writes(a) == nbformat.writes(b)
+    assert len({cell.id for cell in a.cells}) == len(a.cells)
+
+
+@each
+def test_no_answer_leaves(name):
+    """No solution region, no import of the solutions, and no line of any answer in its stub."""
+    for path in files(name).values():
+        text = path.read_text(encoding="utf-8")
+        assert not [word for word in FORBIDDEN if word in text]
+    notebook = nbformat.read(files(name)[f"{name}.ipynb"], as_version=4)
+    answers = [cell.source for cell in notebook.cells if cell.metadata["lab"] == "answer"]
+    for problem, stub in zip(COURSE.problems(name), answers, strict=True):
+        body = ast.parse(inspect.getsource(inspect.unwrap(problem.answer))).body[0].body
+        for statement in body[1:]:
+            assert ast.unparse(statement) not in stub
+        assert stub.rstrip().endswith("raise NotImplementedError")
+
+
+@each
+def test_no_hidden_case_leaves(name):
+    """No number of a hidden case is to be found in what students get, whatever its seed."""
+    text = files(name)["checks.json"].read_text(encoding="utf-8")
+    for problem in COURSE.problems(name):
+        public = json.dumps(problem.question(2019).public().data())
+        for test in problem.question(2019).data()["tests"]:
+            for case in test["cases"]:
+                if case["hidden"]:
+                    numbers = set(re.findall(r"\d\.\d{12,}(?![\de])", json.dumps(case)))
+                    assert not {x for x in numbers if x in text and x not in public}
+
+
+@each
+def test_it_stands_alone(name):
+    """It opens with what is needed and given, and links to nothing that may not be there."""
+    notebook = nbformat.read(files(name)[f"{name}.ipynb"], as_version=4)
+    first = notebook.cells[0].source
+    for word in ("You need", "Given", "You write", "Time", "points"):
+        assert word in first
+    assert len(first.splitlines()) < 30
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            assert not re.findall(r"\]\((?!https://)[^)]*\)", cell.source)
+    points = sum(p.points for p in COURSE.problems(name))
+    assert f"{points:g} points" in first
+
+
+def alike(a, b):
+    """Equal, numbers to eight digits: another machine may round the last ones otherwise."""
+    if isinstance(a, dict) and isinstance(b, dict):
+        return a.keys() == b.keys() and all(alike(a[k], b[k]) for k in a)
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(map(alike, a, b))
+    if isinstance(a, float) and isinstance(b, int | float):
+        return math.isclose(a, b, rel_tol=1e-8, abs_tol=1e-8)
+    return a == b
