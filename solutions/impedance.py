@@ -1,4 +1,4 @@
-"""Answers of notebook 05: one mass, the inertia at the tip, impedance at the tip, stiffness in data."""
+"""Answers of notebook 05: one mass, inertia at the tip, two impedances, stiffness from data."""
 
 from __future__ import annotations
 

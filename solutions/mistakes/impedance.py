@@ -34,7 +34,7 @@ def damps_all_motion(
     state: Any, target: Any, force: float, *, m: float, b: float, k: float
 ) -> float:
     """The damper tied to the wall instead of to the target."""
-    return right.msd(state, target, force, m=m, b=b, k=k) - b * target[1] / m
+    return right.msd(state, target, force, m=m, b=b, k=k) - b * float(target[1]) / m
 
 
 def forgets_the_targets_acceleration(
