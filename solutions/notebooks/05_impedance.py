@@ -272,7 +272,7 @@ plt.axhline(1e3 * 10.0 / K[1], color="0.5", linestyle=":", label="10 N / K")
 plt.xlabel("time [s]")
 plt.ylabel("displacement along y [mm]")
 plt.legend(frameon=False)
-at_two = {name: displacement(log)[int(2 * rate) - 1, 1] for name, log in pushed.items()}
+at_two = {name: np.interp(1.99, log.t, displacement(log)[:, 1]) for name, log in pushed.items()}
 lk.plotting.show(
     "The tip under a push of 10 N along y (grey). After 2 s it has gone "
     + ", ".join(f"{x:.1f} mm ({name})" for name, x in at_two.items())
@@ -545,7 +545,7 @@ early = {}
 for kilograms, style in ((1.0, "-"), (5.0, "--"), (20.0, "-.")):
     log = meet(as_heavy_as(kilograms), lk.Hold(T_ready, 2.0), lk.Push((0.0, 10.0, 0.0)))
     plt.plot(log.t, displacement(log)[:, 1], style, label=f"{kilograms:g} kg")
-    early[kilograms] = displacement(log)[int(0.1 * rate), 1], displacement(log)[-1, 1]
+    early[kilograms] = np.interp([0.1, 2.0], log.t, displacement(log)[:, 1])
 plt.xlabel("time [s]")
 plt.ylabel("displacement along y [mm]")
 plt.legend(frameon=False)
