@@ -13,3 +13,21 @@ c.ClearSolutions.code_stub = {
     "python": "# Your code goes here, in place of the next line\nraise NotImplementedError"
 }
 c.Execute.timeout = 120
+
+# Students' code never runs in nbgrader's own process: a submission is brought into the release's
+# form and graded in a sandbox.  `labkit grade --engine nbgrader` takes nbgrader's steps instead.
+c.Autograde.sanitize_preprocessors = [
+    "labkit.grade.autograde.Repair",
+    "nbgrader.preprocessors.ClearOutput",
+    "nbgrader.preprocessors.DeduplicateIds",
+    "nbgrader.preprocessors.OverwriteKernelspec",
+    "nbgrader.preprocessors.OverwriteCells",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]
+c.Autograde.autograde_preprocessors = [
+    "labkit.grade.autograde.Isolated",
+    "nbgrader.preprocessors.LimitOutput",
+    "nbgrader.preprocessors.SaveAutoGrades",
+    "nbgrader.preprocessors.AssignLatePenalties",
+    "nbgrader.preprocessors.CheckCellMetadata",
+]

@@ -3,9 +3,12 @@
 import tempfile
 
 import numpy as np
-import pybullet as bullet
 
 import labkit as lk
+from labkit.quiet import quiet
+
+with quiet():
+    import pybullet as bullet
 
 JOINTS = range(7)
 
@@ -13,7 +16,7 @@ JOINTS = range(7)
 def open_arm(urdf):
     """Load the arm of a URDF text into a world of its own; its client and its body."""
     client = bullet.connect(bullet.DIRECT)
-    with tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
+    with quiet(), tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
         file.write(urdf)
         file.flush()
         flags = bullet.URDF_USE_INERTIA_FROM_FILE

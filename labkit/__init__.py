@@ -26,11 +26,33 @@ from .world import World
 
 if TYPE_CHECKING:
     from . import check, plotting, replay
+    from .board import Board
+    from .camera import Camera, looking_at
+    from .detection import detect_tags, find_tag
     from .dials import dials
+    from .intrinsics import Intrinsics
+    from .looking import Following, Lookups, Reading
     from .ready import ready
+    from .tags import Tag
 
 __version__ = "0.1.0"
 
+_LATER = {
+    "Board": "board",
+    "Camera": "camera",
+    "Following": "looking",
+    "Intrinsics": "intrinsics",
+    "Lookups": "looking",
+    "Reading": "looking",
+    "Tag": "tags",
+    "check": "",
+    "detect_tags": "detection",
+    "find_tag": "detection",
+    "looking_at": "camera",
+    "plotting": "",
+    "ready": "ready",
+}
+"""Where to find what is loaded when first asked for: OpenCV and Matplotlib are slow to import."""
 _LATER = {"check": "", "dials": "dials", "plotting": "", "ready": "ready", "replay": ""}
 """Loaded when first asked for: drawing packages are slow to import."""
 
@@ -38,8 +60,8 @@ _LATER = {"check": "", "dials": "dials", "plotting": "", "ready": "ready", "repl
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'labkit' has no attribute {name!r}")
-    module = import_module(f".{name}", __name__)
-    value = getattr(module, _LATER[name]) if _LATER[name] else module
+    module = import_module(f".{_LATER[name] or name}", __name__)
+    value = getattr(module, name) if _LATER[name] else module
     globals()[name] = value
     return value
 
@@ -49,12 +71,16 @@ __all__ = [
     "IDEAL",
     "Arm",
     "BangBang",
+    "Board",
+    "Camera",
     "Chain",
     "Circle",
     "Command",
     "Controller",
     "Cubic",
+    "Following",
     "Hold",
+    "Intrinsics",
     "JointPosition",
     "JointTorque",
     "JointVelocity",
@@ -62,6 +88,7 @@ __all__ = [
     "Line",
     "Link",
     "Log",
+    "Lookups",
     "Model",
     "Plant",
     "Polyline",
@@ -69,11 +96,13 @@ __all__ = [
     "PoseSample",
     "Push",
     "Quintic",
+    "Reading",
     "Sample",
     "Spline",
     "Spring",
     "State",
     "Table",
+    "Tag",
     "Trajectory",
     "Trapezoid",
     "Wall",
@@ -81,11 +110,14 @@ __all__ = [
     "as_array",
     "check",
     "controllers",
+    "detect_tags",
     "dials",
     "energy",
     "errors",
+    "find_tag",
     "impedance",
     "links",
+    "looking_at",
     "metrics",
     "plotting",
     "ready",

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, locked
+from .arrays import Array, as_array, locked, shown
 from .commands import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State, still
 from .errors import Closed, ControllerError
 from .model import Model
@@ -19,7 +19,7 @@ from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
 from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
-from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques, speeds
+from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
 with quiet():
@@ -59,12 +59,14 @@ class Arm:
 
         Raises:
             UnknownName: Baxter has no such arm.
+            Closed: The world is closed.
             JointLimitExceeded: q0 is outside the joints' range.
         """
         self.robot: Robot = robot(side)
         self.plant = plant
         self.model = Model(side, plant)
         self.world = World() if world is None else world
+        self._check_open()
         self._random = np.random.default_rng(seed)
         self._client = self.world.client
         with quiet():
@@ -91,6 +93,10 @@ class Arm:
             lateralFriction=1.0,
             restitution=0.0,
             physicsClientId=self._client,
+        )
+        # PyBullet would show the ball at the tip; what cameras see of the arm is in `looks`.
+        bullet.changeVisualShape(
+            self._body, 6, rgbaColor=[0, 0, 0, 0], physicsClientId=self._client
         )
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
@@ -126,6 +132,7 @@ class Arm:
             JointLimitExceeded: A position outside the joints' range.
         """
         kind = type(command)
+        self._check_open()
         if kind is JointTorque:
             wanted, limit = command.value, self._effort
         elif kind is JointVelocity:
@@ -134,7 +141,7 @@ class Arm:
             wanted = self.model.within_limits(command.value, "JointPosition")
             limit = None
         else:
-            raise ControllerError(f"{command!r} is no command; give one of {_names()}")
+            raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
         self._wanted = wanted if limit is None else _cut(wanted, limit)
         self._saturated = self._wanted is not wanted
         if kind is not self._kind:
@@ -153,8 +160,7 @@ class Arm:
             JointLimitExceeded: A joint is out of its range.
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
-        if self.world.client < 0:
-            raise Closed("this arm's world was closed; make a new Arm")
+        self._check_open()
         for i in _JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
         self._sensors.reset()
@@ -235,7 +241,8 @@ class Arm:
             or (self._kind is JointTorque and plant.gravity_compensation)
         ):
             rows = self._read()
-        self._report(rows)
+        if self._reports.every:
+            self._report(rows)
         if self._kind is JointTorque:
             self._drive_torque(rows)
         elif self._kind is JointVelocity:
@@ -259,8 +266,12 @@ class Arm:
             self._sensors.begin(rows, driven, steps)
 
     def _exact(self, rows: Any) -> State:
-        felt = self._sensors.felt(rows, self.world._steps)
-        return State(self.world.t, locked(angles(rows)), locked(speeds(rows)), felt)
+        world = self.world
+        a, b, _, _ = zip(*rows, strict=False)  # PyBullet gives the same four for every joint
+        q, dq = np.array(a), np.array(b)
+        q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        dq.setflags(False)  # type: ignore[call-arg]
+        return State(world._steps * world.dt, q, dq, self._sensors.felt(rows, world._steps))
 
     def _reported(self, rows: Any) -> State:
         if not self._reports.every:
@@ -329,9 +340,12 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _read(self) -> Any:
+    def _check_open(self) -> None:
         if self.world.client < 0:
             raise Closed("this arm's world was closed; make a new Arm")
+
+    def _read(self) -> Any:
+        self._check_open()
         return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:

@@ -109,6 +109,10 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
     return float("inf") if outside[-1] == len(e) - 1 else float(t[outside[-1] + 1] - t[0])
 
 
+SETTLED = 5e-3
+"""The tip has settled when it is no further than this from its target, in [m]."""
+
+
 def since(log: Log, t: float) -> Log:
     """The rows of a run from a time ``t`` [s] on; its clock runs on."""
     first = int(np.searchsorted(log.t, t - 1e-9))
@@ -128,8 +132,11 @@ class Summary:
     Attributes:
         rms_mm: RMS position error of the tip, in [mm].
         max_mm: Largest position error of the tip, in [mm].
+        rms_deg: RMS orientation error of the tip, in [degrees].
         max_deg: Largest orientation error, in [degrees].
         rms_velocity_mm_s: RMS error of the tip's velocity, in [mm/s].
+        settling: The time after which the tip stays within `SETTLED` of its target, in [s];
+            infinite if it is outside at the end.
         effort: RMS length of the motor torque, in [N m].
         saturated: Share of the ticks in which a limit cut the command.
         duration: In [s].
@@ -137,8 +144,10 @@ class Summary:
 
     rms_mm: float
     max_mm: float
+    rms_deg: float
     max_deg: float
     rms_velocity_mm_s: float
+    settling: float
     effort: float
     saturated: float
     duration: float
@@ -155,24 +164,39 @@ def summary(log: Log, model: Model | None = None) -> Summary:
     """The usual numbers of a run."""
     model = model or model_of(log)
     e = tip_error(log, model)
-    off = np.linalg.norm(e[:, :3], axis=1)
+    off, turned = (np.linalg.norm(part, axis=1) for part in (e[:, :3], e[:, 3:]))
     return Summary(
         rms_mm=1e3 * rms(e[:, :3]),
         max_mm=1e3 * float(off.max()),
-        max_deg=float(np.degrees(np.linalg.norm(e[:, 3:], axis=1).max())),
+        rms_deg=float(np.degrees(rms(turned))),
+        max_deg=float(np.degrees(turned.max())),
         rms_velocity_mm_s=1e3 * rms(velocity_error(log, model)),
+        settling=settling_time(log.t, off, SETTLED),
         effort=rms(log.tau),
         saturated=float(log.saturated.mean()),
         duration=float(log.t[-1]),
     )
 
 
+def tip_velocities(log: Log, model: Model | None = None) -> Array:
+    """Velocity of the tip's origin at each tick, world axes, shape (N, 3) in [m/s]."""
+    return _tip_velocities(model or model_of(log), log.q, log.dq)
+
+
+def target_velocities(log: Log, model: Model | None = None) -> Array:
+    """Velocity that the tip's origin should have had, world axes, shape (N, 3) in [m/s]."""
+    if isinstance(log.target, PoseSample):
+        return log.target.twist[:, :3]
+    joint_error(log)  # says so, if these are no joint angles
+    return _tip_velocities(model or model_of(log), log.target.position, log.target.velocity)
+
+
 def velocity_error(log: Log, model: Model | None = None) -> Array:
     """Target minus actual velocity of the tip's origin, world axes, shape (N, 3) in [m/s]."""
     model = model or model_of(log)
-    actual = np.array([model.tip_jacobian(q)[:3] @ dq for q, dq in zip(log.q, log.dq, strict=True)])
-    if isinstance(log.target, PoseSample):
-        return np.asarray(log.target.twist[:, :3] - actual)
-    pairs = zip(log.target.position, log.target.velocity, strict=True)
-    wanted = np.array([model.tip_jacobian(q)[:3] @ dq for q, dq in pairs])
-    return np.asarray(wanted - actual)
+    return target_velocities(log, model) - tip_velocities(log, model)
+
+
+def _tip_velocities(model: Model, q: Array, dq: Array) -> Array:
+    pairs = zip(q, dq, strict=True)
+    return np.array([model.tip_jacobian(angles)[:3] @ speeds for angles, speeds in pairs])

@@ -406,11 +406,12 @@ class Model:
                 parts.append(self._joint_trajectory(part, q, q0, samples))
                 q = parts[-1](part.duration).position
             return Chain(parts)
-        if isinstance(target, Hold):
-            return Hold(self.inverse_kinematics(self._posed(target(0.0), q0), q0), target.duration)
         return self._joint_trajectory(target, q0, q0, samples)
 
-    def _joint_trajectory(self, target: Any, q: Array, posture: Array, samples: int) -> Trajectory:
+    def _joint_trajectory(self, target: Any, q: Array, posture: Array, samples: int) -> Any:
+        if isinstance(target, Hold):
+            T_wt = self._posed(target(0.0), posture)
+            return Hold(self.inverse_kinematics(T_wt, q, posture=posture), target.duration)
         if not isinstance(target, Trajectory):
             raise TypeMismatch(
                 f"joint_trajectory takes a Trajectory, Chain or Hold, not {type(target).__name__}"

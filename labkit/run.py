@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import isfinite
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from .arm import Arm
-from .arrays import Array, as_array, as_number, locked
+from .arrays import Array, as_array, as_number, locked, shown
 from .commands import COMMANDS, JOINTS, Command, State
-from .errors import ControllerError, Diverged, LabkitError, OutOfRange
+from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .motion import AnySample, PoseSample, Sample, Target
 from .plant import Plant
 from .robot import Side
@@ -99,7 +98,17 @@ def run(
             or no sample; it says which and when.
         Diverged: The arm ran away; the error keeps the `log` up to then.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
+        TypeMismatch: One of the three is not what it should be.
+        Closed: The arm's world is closed.
     """
+    for name, given in (("target", target), ("controller", controller)):
+        if not callable(given):
+            raise TypeMismatch(
+                f"{name} is {shown(given)}, expected a function: run(arm, target, controller)"
+            )
+    if not isinstance(arm, Arm):
+        raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
+    rate = as_number(rate, "rate", above=0.0)
     steps = whole_steps(rate, arm.world.dt, "rate")
     ticks = _ticks(target, duration, steps * arm.world.dt)
     who, whom, world, period = _name(controller), _name(target), arm.world, steps * arm.world.dt
@@ -107,6 +116,7 @@ def run(
     book = _Book(ticks, whom, _first_sample(target, whom))
     the_target = f"the target {whom}"
     kind, t, k, asked = None, 0.0, 0, who
+    often = max(1, round(0.01 / period))  # every 10 ms: nothing runs far in so short a time
     try:
         for k in range(ticks):
             t, asked = k * period, the_target
@@ -116,8 +126,8 @@ def run(
             command = controller(seen, sample)
             if type(command) is not kind:
                 kind = _settled(command, kind, who, t)
-            book.keep(k, t, truth, seen, torque, command, sample)
-            if not truth.dq.dot(truth.dq) <= RUNAWAY**2:  # a NaN runs away too
+            book.keep(k, truth, seen, torque, command, sample)
+            if not k % often and not truth.dq.dot(truth.dq) <= RUNAWAY**2:  # a NaN runs away too
                 raise Diverged(_runaway(arm, truth, who, t))
             if k < ticks - 1:
                 if not lost[k]:
@@ -128,9 +138,9 @@ def run(
         if not book.filled:
             raise
     except Diverged as error:
-        error.log = book.log(kind, who, arm)
+        error.log = book.log(kind, who, arm, period)
         raise
-    except ControllerError:
+    except (ControllerError, Closed):
         raise
     except Exception as error:
         book.blame(t)
@@ -139,7 +149,8 @@ def run(
     finally:
         if world.client >= 0:
             arm.stop()
-    return book.log(kind, who, arm)
+    book.check_target(period)
+    return book.log(kind, who, arm, period)
 
 
 _shape = attrgetter("shape")
@@ -152,10 +163,9 @@ class _Book:
         self.filled, self.whom, self.sample_type = 0, whom, type(first)
         self.shapes = [part.shape for part in first]
         self.latest = first
-        self.widths = [JOINTS] * 7 + [part.size for part in first]
+        self.widths = [JOINTS] * 5 + [part.size for part in first]
         self.rows = np.empty((ticks, sum(self.widths)))
-        self.ones = np.ones(sum(self.widths))
-        self.t, self.t_seen = np.empty(ticks), np.empty(ticks)
+        self.seen, self.t_seen, self.apart = np.empty((ticks, 3 * JOINTS)), np.empty(ticks), False
         self.saturated = np.zeros(ticks, dtype=bool)
 
     def checked(self, sample: Any, t: float) -> AnySample:
@@ -164,9 +174,10 @@ class _Book:
             good = type(sample) is self.sample_type and [*map(_shape, sample)] == self.shapes
         except AttributeError:  # lists
             good = False
-        self.latest = sample if good else self.read(sample, t)
-        for part in self.latest:
-            part.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        self.latest = x, dx, ddx = sample if good else self.read(sample, t)
+        x.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        dx.setflags(False)  # type: ignore[call-arg]
+        ddx.setflags(False)  # type: ignore[call-arg]
         return self.latest
 
     def read(self, sample: Any, t: float) -> AnySample:
@@ -180,7 +191,6 @@ class _Book:
     def keep(
         self,
         k: int,
-        t: float,
         truth: State,
         seen: State,
         torque: Array,
@@ -188,33 +198,37 @@ class _Book:
         sample: AnySample,
     ) -> None:
         """Write down one tick; ``torque`` belongs to the tick before."""
-        row, (x, dx, ddx) = self.rows[k], sample
+        x, dx, ddx = sample
         np.concatenate(
-            (
-                *(truth.q, truth.dq, torque, command.value),
-                *(seen.q, seen.dq, seen.tau_ext),
-                *(x.ravel(), dx, ddx),
-            ),
-            out=row,
+            (truth.q, truth.dq, truth.tau_ext, torque, command.value, x.ravel(), dx, ddx),
+            out=self.rows[k],
         )
-        if not isfinite(row.dot(self.ones)):
-            self.read(sample, t)
-        self.t[k], self.t_seen[k], self.filled = t, seen.t, k + 1
+        if seen is not truth:
+            np.concatenate(seen[1:], out=self.seen[k])
+            self.apart = True
+        self.t_seen[k], self.filled = seen.t, k + 1
 
-    def log(self, kind: type | None, who: str, arm: Arm) -> Log:
+    def check_target(self, period: float) -> None:
+        """Raise if a sample held a NaN that did no harm; harmful ones were blamed at once."""
+        target = self.rows[: self.filled, 5 * JOINTS :]
+        for k in np.flatnonzero(~np.isfinite(target).all(axis=1))[:1]:
+            parts = np.split(target[k], np.cumsum(self.widths[5:])[:-1])
+            shaped = zip(parts, self.shapes, strict=True)
+            self.read(self.sample_type(*(x.reshape(shape) for x, shape in shaped)), k * period)
+
+    def log(self, kind: type | None, who: str, arm: Arm, period: float) -> Log:
         """What was written so far, frozen."""
         n, edges = self.filled, np.cumsum(self.widths)[:-1]
-        q, dq, torque, command, q_seen, dq_seen, tau_seen, *target = (
-            np.ascontiguousarray(column) for column in np.split(self.rows[:n], edges, axis=1)
-        )
+        q, dq, tau_ext, torque, command, *target = np.split(self.rows[:n], edges, axis=1)
+        reported = np.split(self.seen[:n], 3, axis=1) if self.apart else (q, dq, tau_ext)
         shaped = zip(target, self.shapes, strict=True)
-        seen = (self.t_seen[:n], q_seen, dq_seen, tau_seen)
+        seen = (self.t_seen[:n], *reported)
         tau = np.concatenate([torque[1:], torque[-1:]])
         at_limit = (np.abs(tau) >= arm.robot.effort * (1.0 - 1e-9)).any(axis=1)
         saturated = self.saturated[:n] | at_limit
         saturated.setflags(write=False)
         return Log(
-            t=locked(self.t[:n]),
+            t=locked(period * np.arange(n, dtype=np.float64)),
             q=locked(q),
             dq=locked(dq),
             tau=locked(tau),

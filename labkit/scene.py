@@ -33,7 +33,7 @@ TIP_STIFFNESS = 10_000.0
 TIP_DAMPING = 20.0
 """Of the finger's rubber pad, in [N s/m]."""
 
-_FACE = 0.02  # thickness of a wall or a table top, in [m]
+FACE = 0.02  # thickness of a wall or a table top, in [m]
 
 
 def contact_stiffness(thing: Wall | Table) -> float:
@@ -232,7 +232,7 @@ def _check_material(thing: Any) -> None:
 
 def _build_box(world: World, T_wf: Array, thing: Any) -> None:
     """A fixed box whose upper face is the frame's xy plane."""
-    half = [*(0.5 * thing.size).tolist(), 0.5 * _FACE]
+    half = [*(0.5 * thing.size).tolist(), 0.5 * FACE]
     shape = bullet.createCollisionShape(
         bullet.GEOM_BOX, halfExtents=half, physicsClientId=world.client
     )
@@ -246,8 +246,8 @@ def _build_box(world: World, T_wf: Array, thing: Any) -> None:
         baseMass=0.0,
         baseCollisionShapeIndex=shape,
         baseVisualShapeIndex=look,
-        basePosition=(T_wf[:3, 3] - 0.5 * _FACE * T_wf[:3, 2]).tolist(),
-        baseOrientation=_quaternion(T_wf[:3, :3]),
+        basePosition=(T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
+        baseOrientation=se3.quaternion(T_wf[:3, :3]).tolist(),
         physicsClientId=world.client,
     )
     bullet.changeDynamics(
@@ -259,11 +259,3 @@ def _build_box(world: World, T_wf: Array, thing: Any) -> None:
         restitution=0.0,
         physicsClientId=world.client,
     )
-
-
-def _quaternion(R: Array) -> list[float]:
-    """(x, y, z, w), as PyBullet wants it."""
-    phi = se3.rotation_log(R)
-    angle = float(np.linalg.norm(phi))
-    axis = phi / angle if angle > 0.0 else phi
-    return [*(np.sin(0.5 * angle) * axis).tolist(), float(np.cos(0.5 * angle))]

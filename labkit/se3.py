@@ -229,6 +229,21 @@ def angle_between(R_a: Any, R_b: Any) -> float:
     return atan2(s, c)
 
 
+def quaternion(R: Any) -> Array:
+    """The unit quaternion (x, y, z, w) of a rotation matrix, the real part last and not negative.
+
+    Args:
+        R: Rotation matrix, shape (3, 3).
+
+    Returns:
+        Shape (4,).
+    """
+    phi = rotation_log(R)
+    angle = sqrt(phi @ phi)
+    scale = 0.5 if angle < _SMALL else sin(0.5 * angle) / angle
+    return np.array([*(scale * phi), cos(0.5 * angle)])
+
+
 def as_rotation(x: Any, name: str) -> Array:
     """Read ``x`` as a rotation matrix.
 

@@ -46,15 +46,29 @@ class Pushable(Protocol):
         """Its equations."""
 
 
+class Shown(Protocol):
+    """Something that cameras see and the physics does not."""
+
+    @property
+    def bodies(self) -> Iterable[int]:
+        """PyBullet's numbers of what is seen."""
+
+    def update(self) -> None:
+        """Put its looks where they belong now."""
+
+
 class World:
     """One physics world; two of them never share anything.
 
     Attributes:
         dt: The physics step, in [s].
-        client: PyBullet's number of this world.
+        client: PyBullet's number of this world, -1 once it is closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
+        shown: What only cameras see.
     """
+
+    client: int = -1
 
     def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
         """Open a world with gravity.
@@ -64,11 +78,12 @@ class World:
             things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.client: int = bullet.connect(bullet.DIRECT)
+        self.client = bullet.connect(bullet.DIRECT)
         self._steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
         self.arms: list[Pushable] = []
+        self.shown: list[Shown] = []
         bullet.setTimeStep(self.dt, physicsClientId=self.client)
         bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
         # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
@@ -97,6 +112,10 @@ class World:
     def add(self, actor: Actor) -> None:
         """Let ``actor`` act before each physics step from now on."""
         self._actors.append(actor)
+
+    def show(self, thing: Shown) -> None:
+        """Let ``thing`` be brought up to date before each picture from now on."""
+        self.shown.append(thing)
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.

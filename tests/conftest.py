@@ -1,4 +1,6 @@
-"""What the tests share: hypothesis set to repeat itself, and states of the arm drawn from a seed."""
+"""What the tests share: hypothesis that repeats itself, states drawn from a seed, a browser."""
+
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +16,12 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("labkit")
+
+CHROMIUM = "/usr/bin/chromium"
+ARGUMENTS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+    "--disable-background-networking", "--disable-component-update", "--disable-sync",
+]  # fmt: skip
 
 
 @pytest.fixture(params=["left", "right"])
@@ -41,7 +49,44 @@ def states(random):
 
 
 @pytest.fixture
-def arm():
+def ideal():
     """An ideal left arm at rest in its neutral pose."""
     with lk.Arm() as arm:
         yield arm
+
+
+@pytest.fixture(scope="session")
+def playwright():
+    """Playwright's driver."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        yield driver
+
+
+@pytest.fixture(scope="session")
+def chromium(playwright):
+    """Debian's Chromium, with WebGL in software."""
+    assert Path(CHROMIUM).exists(), "Chromium is missing: apt-get install chromium"
+    flags = [*ARGUMENTS, "--enable-unsafe-swiftshader"]
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
+    yield browser
+    browser.close()
+
+
+@pytest.fixture(scope="session")
+def blind_chromium(playwright):
+    """The same without WebGL."""
+    flags = [*ARGUMENTS, "--disable-3d-apis"]
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
+    yield browser
+    browser.close()
+
+
+@pytest.fixture(scope="session")
+def open_chromium(playwright):
+    """A Chromium in which axe-core may read the style sheets of a page from the disk."""
+    flags = [*ARGUMENTS, "--enable-unsafe-swiftshader", "--allow-file-access-from-files"]
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
+    yield browser
+    browser.close()

@@ -46,9 +46,7 @@ def test_the_jacobians_are_one_another_seen_from_elsewhere(side, model, states):
 
 def test_the_jacobians_rate_is_its_slope(side, model, states):
     for q, dq in states(side):
-        assert_allclose(
-            model.tip_jacobian_rate(q, dq), slope(model.tip_jacobian, q, dq), atol=2e-8
-        )
+        assert_allclose(model.tip_jacobian_rate(q, dq), slope(model.tip_jacobian, q, dq), atol=2e-8)
 
 
 def test_the_mass_matrix_is_symmetric_and_positive_definite(side, model, states):
@@ -66,12 +64,16 @@ def test_mdot_minus_2c_is_skew(side, model, states):
 
 def test_gravity_is_the_slope_of_the_potential_energy(side, model, states):
     for q, dq in states(side):
-        assert slope(model.potential_energy, q, dq) == pytest.approx(model.gravity(q) @ dq, abs=1e-6)
+        assert slope(model.potential_energy, q, dq) == pytest.approx(
+            model.gravity(q) @ dq, abs=1e-6
+        )
 
 
 def test_the_bias_is_coriolis_and_gravity(side, model, states):
     for q, dq in states(side):
-        assert_allclose(model.bias(q, dq), model.coriolis(q, dq) @ dq + model.gravity(q), atol=1e-10)
+        assert_allclose(
+            model.bias(q, dq), model.coriolis(q, dq) @ dq + model.gravity(q), atol=1e-10
+        )
         assert_allclose(model.bias(q, np.zeros(7)), model.gravity(q), atol=1e-12)
 
 
@@ -241,7 +243,9 @@ def test_a_hold_becomes_a_hold_of_joint_angles(model):
 def test_a_pose_out_of_reach_is_refused_with_the_reach(model):
     T = model.pose(model.robot.ready)
     T[:3, 3] += [1.0, 0.0, 0.0]
-    with pytest.raises(Unreachable, match=r"m from the shoulder and the arm spans .* bring it nearer"):
+    with pytest.raises(
+        Unreachable, match=r"m from the shoulder and the arm spans .* bring it nearer"
+    ):
         model.inverse_kinematics(T, model.robot.ready)
 
 

@@ -164,7 +164,11 @@ skewed = np.diag([1.0, 1.0, 1.1])
         (lambda: PosePath(Line(A, B), np.eye(3), skewed), OutOfRange, "R_goal is no rotation"),
         (lambda: PosePath(Line(A, B), np.eye(4)), ShapeError, "R_wt has shape"),
         (lambda: PosePath(Line(A, B), "down"), LabkitError, "R_wt is 'down'"),
-        (lambda: PosePath(Line([0] * 7, [1] * 7), np.eye(3))(0.0), ShapeError, "position has shape"),
+        (
+            lambda: PosePath(Line([0] * 7, [1] * 7), np.eye(3))(0.0),
+            ShapeError,
+            "position has shape",
+        ),
         (lambda: Hold([0, 0, np.nan], 1.0), NotFinite, "place holds nan"),
         (lambda: Hold([0, 0, 0], -1.0), OutOfRange, "duration is -1"),
         (lambda: Hold(np.eye(4) * 2, 1.0), OutOfRange, "place"),

@@ -120,7 +120,9 @@ def test_one_physics_step_gives_the_acceleration_of_the_equations_of_motion(
         )
         bullet.stepSimulation(physicsClientId=client)
         joints = bullet.getJointStates(number, range(7), physicsClientId=client)
-        assert_allclose([(j[1] - v) / 1e-3 for j, v in zip(joints, dq, strict=True)], ddq, atol=1e-6)
+        assert_allclose(
+            [(j[1] - v) / 1e-3 for j, v in zip(joints, dq, strict=True)], ddq, atol=1e-6
+        )
 
 
 def test_mujocos_dynamics_are_pinocchios(side, plant, mj, states):

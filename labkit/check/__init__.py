@@ -5,14 +5,15 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
-from .judge import AtMost, Close, Gains, Within
+from .judge import AtMost, Close, Gains, Response, Within
 from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
-from .question import Call, Loop, Mistake, Question, Raised, Test, Tuned, read_question
+from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned, read_question
 
 __all__ = [
     "AtMost",
     "Call",
+    "Choice",
     "Close",
     "Failed",
     "Gains",
@@ -21,6 +22,7 @@ __all__ = [
     "Outcome",
     "Question",
     "Raised",
+    "Response",
     "Test",
     "TestResult",
     "Tuned",

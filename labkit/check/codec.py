@@ -17,6 +17,8 @@ from ..arrays import locked
 from ..errors import TypeMismatch
 from ..model import Model
 from ..run import Log
+from ..trials import Runner, Trials
+from .judge import Ratio
 
 DATA = (
     commands.State,
@@ -25,6 +27,7 @@ DATA = (
     commands.JointPosition,
     commands.JointVelocity,
     commands.JointTorque,
+    Ratio,
 )
 """What a student's function may give back, beside numbers, arrays, texts, lists and tables."""
 
@@ -44,6 +47,8 @@ GIVEN = (
     scene.Table,
     scene.Wall,
     Log,
+    Trials,
+    Runner,
 )
 """What a student's function may be given on top: frozen values, sent as their fields."""
 
@@ -82,7 +87,9 @@ def encode(value: Any) -> Any:
     name = type(value).__name__
     if type(value) is _ALL.get(name):
         if dataclasses.is_dataclass(value):
-            fields = {f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(value)}
+            fields = {
+                f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(value) if f.init
+            }
         else:
             fields = {key: encode(x) for key, x in value._asdict().items()}
         return {"$": name, "fields": fields}
@@ -109,6 +116,9 @@ def _encode_machinery(value: Any, name: str) -> Any:
         return {"$": "Spline", "s": encode(value.s), "values": encode(value.values)}
     if isinstance(value, MethodType):
         return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
+    if type(value).__module__.startswith("control.") and hasattr(value, "num"):
+        num, den = (tuple(float(x) for x in part[0][0]) for part in (value.num, value.den))
+        return encode(Ratio(num, den))
     if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
         return {"$": "command type", "name": value.__name__}
     raise TypeMismatch(

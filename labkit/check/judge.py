@@ -164,6 +164,65 @@ class AtMost:
 
 
 @dataclass(frozen=True)
+class Ratio:
+    """A transfer function as data: two polynomials, highest power first.
+
+    Attributes:
+        num: Numerator.
+        den: Denominator.
+    """
+
+    num: tuple[float, ...]
+    den: tuple[float, ...]
+
+    def __call__(self, s: complex) -> complex:
+        """Its value at ``s``."""
+        return complex(np.polyval(self.num, s) / np.polyval(self.den, s))
+
+
+@dataclass(frozen=True)
+class Response:
+    """A transfer function judged by its frequency response, whatever its form.
+
+    Attributes:
+        omega: Where to compare, in [rad/s].
+        rtol: Largest difference, as a share of the expected value.
+    """
+
+    omega: tuple[float, ...]
+    rtol: float = 0.02
+
+    def __call__(self, answer: Any, expected: Any) -> str | None:
+        """None if they agree, else where they do not."""
+        try:
+            pairs = [(w, complex(answer(1j * w)), complex(expected(1j * w))) for w in self.omega]
+        except (TypeError, ValueError):
+            return f"it should be a transfer function, not {_shown(answer)}"
+        for w, a, b in pairs:
+            if not abs(a - b) <= self.rtol * abs(b):
+                return f"at {w:g} rad/s expected {_polar(b)}, got {_polar(a)}"
+        return None
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, respond alike."""
+        return self(answer, other) is None
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """How far the answer is off, in tolerances."""
+        try:
+            return max(
+                abs(complex(answer(1j * w)) / complex(expected(1j * w)) - 1.0) / self.rtol
+                for w in self.omega
+            )
+        except (TypeError, ValueError, ZeroDivisionError):
+            return float("inf")
+
+
+def _polar(z: complex) -> str:
+    return f"{abs(z):.4g} at {np.degrees(np.angle(z)):.4g} degrees"
+
+
+@dataclass(frozen=True)
 class Gains:
     """A pair (kp, kd) of which many are right; a run tells how good they are.
 
@@ -198,8 +257,8 @@ class Gains:
         return np.concatenate([as_gains(kp, JOINTS, "kp"), as_gains(kd, JOINTS, "kd")])
 
 
-Judge = Close | Within | AtMost | Gains
-JUDGES: dict[str, Any] = {kind.__name__: kind for kind in (Close, Within, AtMost, Gains)}
+Judge = Close | Within | AtMost | Response | Gains
+JUDGES: dict[str, Any] = {k.__name__: k for k in (Close, Within, AtMost, Response, Gains)}
 
 
 def _flat(value: Any) -> list[Any]:

@@ -5,14 +5,14 @@ The function may live here or in another process; marking does not care.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
 from ..errors import LabkitError
 from .judge import AtMost, Judge
-from .question import Call, Case, Mistake, Question, Raised, Test
+from .question import Call, Case, Choice, Mistake, Question, Raised, Test
 
 
 class Outcome(Enum):
@@ -24,7 +24,7 @@ class Outcome(Enum):
     RIGHT = "right"
 
 
-class Failed(Exception):
+class Failed(LabkitError):
     """A function in another process did not answer.
 
     Attributes:
@@ -81,32 +81,42 @@ class Verdict:
     answers: tuple[Any, ...] = ()
 
 
-def mark(question: Question, function: Callable[..., Any]) -> Verdict:
-    """Try every test of a question.
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """What came of the public cases alone.
+
+    Attributes:
+        results: One for each test, as far as its public cases tell.
+        answers: What came back, by the call's identity.
+    """
+
+    results: tuple[TestResult, ...]
+    answers: Mapping[int, Any]
+
+
+def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
+    """Try every test of a question, its public cases before any hidden one.
 
     Args:
         question: With its hidden cases, or without.
         function: The student's, or one that asks the student's in another process; that one raises
             `Failed`.
+        tried: What came of the public cases, if they were tried already.
 
     Returns:
         The verdict.  Gates come first; without them nothing is earned.
     """
-    answers: dict[int, Any] = {}
-    results = tuple(_try(test, question, function, answers) for test in question.tests)
-    outcomes = {result.outcome for result in results}
-    if outcomes == {Outcome.NOT_ATTEMPTED}:
-        outcome = Outcome.NOT_ATTEMPTED
-    elif outcomes == {Outcome.RIGHT}:
-        outcome = Outcome.RIGHT
-    else:
-        outcome = Outcome.WRONG if Outcome.WRONG in outcomes else Outcome.ERROR
-    mistake = None
-    if outcome in (Outcome.WRONG, Outcome.ERROR):
-        for call in question.calls:
-            if id(call) not in answers:
-                answers[id(call)] = _answer(call, function)
-        mistake = recognise(question, [answers[id(call)] for call in question.calls])
+    tried = tried or try_public(question, function)
+    results = tuple(
+        result
+        if result.outcome is not Outcome.RIGHT
+        else _try(test, [c for c in test.cases if c.hidden], question, function, {})
+        for test, result in zip(question.tests, tried.results, strict=True)
+    )
+    outcome, mistake = _outcome(results), None
+    answers = [tried.answers.get(id(call)) for call in question.calls]
+    if outcome in (Outcome.WRONG, Outcome.ERROR) and len(tried.answers) == len(answers):
+        mistake = recognise(question, answers)
     return Verdict(
         name=question.name,
         outcome=outcome,
@@ -114,15 +124,44 @@ def mark(question: Question, function: Callable[..., Any]) -> Verdict:
         points=question.points,
         tests=results,
         mistake=mistake,
-        answers=tuple(answers.get(id(call)) for call in question.calls),
+        answers=tuple(answers),
     )
+
+
+def try_public(question: Question, function: Callable[..., Any]) -> Tried:
+    """Try the public cases of every test.
+
+    Where one fails, all public calls are made, by which a known mistake can be told.
+    """
+    answers: dict[int, Any] = {}
+    results = tuple(
+        _try(test, [c for c in test.cases if not c.hidden], question, function, answers)
+        for test in question.tests
+    )
+    if _outcome(results) in (Outcome.WRONG, Outcome.ERROR):
+        for call in question.calls:
+            if id(call) not in answers:
+                answers[id(call)] = _answer(call, function)
+    return Tried(results, answers)
+
+
+def _outcome(results: tuple[TestResult, ...]) -> Outcome:
+    """What the tests come to together."""
+    outcomes = {result.outcome for result in results}
+    if len(outcomes) == 1:
+        return outcomes.pop()
+    return Outcome.WRONG if Outcome.WRONG in outcomes else Outcome.ERROR
 
 
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
     """The known mistake that gives just these answers on the public calls, if there is one."""
     for mistake in question.mistakes:
-        if len(answers) == len(mistake.answers) and all(
-            _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
+        if (
+            answers
+            and len(answers) == len(mistake.answers)
+            and all(
+                _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
+            )
         ):
             return mistake
     return None
@@ -157,23 +196,40 @@ def _failure(error: BaseException) -> _Failure:
     return _Failure(kind, sentence, not_attempted=kind == "NotImplementedError")
 
 
-def _try(test: Test, question: Question, function: Callable[..., Any], answers: Any) -> TestResult:
-    """Put the cases of one test, until one fails."""
-    for case in test.cases:
+def _try(
+    test: Test,
+    cases: Iterable[Case],
+    question: Question,
+    function: Callable[..., Any],
+    answers: dict[int, Any],
+) -> TestResult:
+    """Put some cases of one test, until one fails."""
+    for case in cases:
         answer = _answer(case, function)
-        if isinstance(case, Call) and not case.hidden:
+        if isinstance(case, Call | Choice) and not case.hidden:
             answers[id(case)] = answer
         where = f"a hidden case ({test.also})" if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
             outcome = Outcome.NOT_ATTEMPTED if answer.not_attempted else Outcome.ERROR
             says = f"{where} raised {answer.kind if case.hidden else answer.sentence}"
             return TestResult(test.name, test.weight, outcome, says, case.hidden)
-        judge = question.judge if isinstance(case, Call) else AtMost()
-        found = judge(answer, case.expected)
+        found = _difference(question, case, answer)
         if found is not None:
             says = where if case.hidden else f"{where}: {found}"
             return TestResult(test.name, test.weight, Outcome.WRONG, says, case.hidden)
     return TestResult(test.name, test.weight, Outcome.RIGHT)
+
+
+def _difference(question: Question, case: Case, answer: Any) -> str | None:
+    """How an answer differs from what is expected; None if it does not."""
+    if isinstance(case, Call):
+        return question.judge(answer, case.expected)
+    if isinstance(case, Choice):
+        try:
+            answer = case.measured(answer)
+        except LabkitError as error:
+            return str(error)
+    return AtMost()(answer, case.expected)
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:

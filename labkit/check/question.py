@@ -15,9 +15,11 @@ from typing import Any
 
 from ..arm import Arm
 from ..controllers import springs
+from ..errors import TypeMismatch
 from ..metrics import since, summary
 from ..plant import IDEAL, Plant
 from ..run import run
+from ..trials import Runner, Trials
 from ..world import Thing, World
 from .codec import decode, encode
 from .judge import JUDGES, Judge
@@ -102,6 +104,45 @@ class Loop:
 
 
 @dataclass(frozen=True, eq=False)
+class Choice:
+    """The student's function chooses gains with a runner that has a limited number of tries.
+
+    Attributes:
+        trials: What the runner knows.
+        expected: Largest allowed ``worst_mm``.
+        unseen: What the choice is tried on instead; None takes ``trials`` again.
+        budget: How many tries the runner has.
+        hidden: Whether the student never sees it.
+    """
+
+    trials: Trials
+    expected: Any
+    unseen: Trials | None = None
+    budget: int = 20
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The gains that the function chooses, with a fresh runner."""
+        return function(Runner(self.trials, self.budget))
+
+    def measured(self, answer: Any) -> dict[str, float]:
+        """The worst error that the chosen gains give, in [mm].
+
+        Raises:
+            LabkitError: The answer is no pair of gains that were recorded.
+        """
+        try:
+            Kp, Kd = answer
+        except (TypeError, ValueError):
+            raise TypeMismatch("the answer should be two gains, (Kp, Kd)") from None
+        return {"worst_mm": (self.unseen or self.trials).worst(Kp, Kd)}
+
+    def shown(self, name: str) -> str:
+        """The choice in words."""
+        return f"{name}(runner) with {self.budget} tries"
+
+
+@dataclass(frozen=True, eq=False)
 class Tuned:
     """One closed-loop run with gains that the student's function chose.
 
@@ -132,8 +173,8 @@ class Tuned:
         return f"a run of the {plant.name} {self.loop.side} arm{carries} with the gains of {name}"
 
 
-Case = Call | Loop | Tuned
-_CASES: dict[str, Any] = {"Call": Call, "Loop": Loop, "Tuned": Tuned}
+Case = Call | Loop | Choice | Tuned
+_CASES: dict[str, Any] = {kind.__name__: kind for kind in (Call, Loop, Choice, Tuned)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,10 +247,10 @@ class Question:
     mistakes: tuple[Mistake, ...] = ()
 
     @property
-    def calls(self) -> tuple[Call, ...]:
+    def calls(self) -> tuple[Call | Choice, ...]:
         """The public calls, on which fingerprints are taken."""
         cases = (case for test in self.tests for case in test.cases)
-        return tuple(case for case in cases if isinstance(case, Call) and not case.hidden)
+        return tuple(case for case in cases if isinstance(case, Call | Choice) and not case.hidden)
 
     def public(self) -> Question:
         """The same question without its hidden cases."""
@@ -271,8 +312,7 @@ def read_question(data: Mapping[str, Any]) -> Question:
     """The question that `Question.data` wrote."""
     judge = dict(data["judge"])
     kind = JUDGES[judge.pop("kind")]
-    if "parts" in judge:
-        judge["parts"] = tuple(judge["parts"])
+    judge = {key: tuple(x) if isinstance(x, list) else x for key, x in judge.items()}
     return Question(
         name=data["name"],
         points=data["points"],

@@ -32,8 +32,14 @@ class Mark:
     says: str = ""
 
 
-def nbgrader_api(course: Course, quiet: int = logging.ERROR) -> Any:
-    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says."""
+def nbgrader_api(course: Course, quiet: int = logging.ERROR, *, own_engine: bool = False) -> Any:
+    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says.
+
+    Args:
+        course: The course.
+        quiet: The least level of message that it logs.
+        own_engine: Whether its autograde runs students' code itself, as it does unasked.
+    """
     from nbgrader.apps import NbGraderAPI
     from nbgrader.coursedir import CourseDirectory
     from traitlets.config import Config
@@ -46,6 +52,8 @@ def nbgrader_api(course: Course, quiet: int = logging.ERROR) -> Any:
     settings = Config(config)
     settings.CourseDirectory.root = str(course.root)
     settings.Application.log_level = quiet
+    if own_engine:
+        settings.pop("Autograde", None)
     return NbGraderAPI(CourseDirectory(config=settings), config=settings)
 
 
@@ -59,7 +67,14 @@ def grade_with_nbgrader(course: Course, name: str, student: str) -> Mark:
 
     The student's code runs in one process with the hidden cases: it can read and change them.
     """
-    api = nbgrader_api(course, quiet=logging.CRITICAL)
+    from .gradebook import quiet_database
+
+    api = nbgrader_api(course, quiet=logging.CRITICAL, own_engine=True)
+    with quiet_database():
+        return _autograde(api, name, student)
+
+
+def _autograde(api: Any, name: str, student: str) -> Mark:
     result = api.autograde(name, student, force=True, create=True)
     with api.gradebook as book:
         try:

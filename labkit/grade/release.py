@@ -149,3 +149,8 @@ def _verify(folder: Path, questions: Mapping[str, Question]) -> None:
             if word in text:
                 shutil.rmtree(folder)
                 raise LabkitError(f"{path.name} would have shown {word[:40]!r}; nothing released")
+
+
+def stub_notebook(course: Course, name: str) -> Notebook:
+    """The students' copy as it was released, with the metadata that comes back."""
+    return nbformat.read(course.release / name / f"{name}.ipynb", as_version=4)

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..check import Call, Loop, Outcome, Question, Tuned, mark
+from ..check import Call, Choice, Loop, Outcome, Question, Tuned, mark
 from ..check.codec import encode
 from ..check.judge import AtMost
 from ..check.question import Case
@@ -101,7 +101,7 @@ class Card:
         }
 
 
-def report_card(
+def make(
     course: Course,
     names: Iterable[str],
     seed: int,
@@ -224,7 +224,7 @@ def _remembering(questions: Sequence[Question]) -> list[Question]:
     memory: Memory = {}
 
     def case(x: Case) -> Case:
-        if isinstance(x, Call):
+        if isinstance(x, Call | Choice):
             return x
         kind: Any = _Remembered if isinstance(x, Loop) else _RememberedGains
         remembered: Case = kind(**vars(x), memory=memory)
@@ -275,9 +275,12 @@ def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[f
 
 def _distance(question: Question, case: Case, function: Callable[..., Any]) -> float:
     """How far an answer is off, in tolerances; infinite where none came."""
-    judge = question.judge if isinstance(case, Call) else AtMost()
     try:
-        return judge.distance(case.ask(function), case.expected)
+        answer = case.ask(function)
+        if isinstance(case, Call):
+            return question.judge.distance(answer, case.expected)
+        measures = case.measured(answer) if isinstance(case, Choice) else answer
+        return AtMost().distance(measures, case.expected)
     except Exception:
         return float("inf")
 
@@ -290,6 +293,8 @@ def _disturbed(
         return _distance(question, _another_noise(case), function)
     if isinstance(case, Tuned):
         return _distance(question, replace(case, loop=_another_noise(case.loop)), function)
+    if isinstance(case, Choice):
+        return _distance(question, case, function)
     again = replace(case, args=tuple(map(_rounded, case.args)))
     again = replace(again, expected=again.ask(problem.expected or problem.answer))
     return _distance(question, again, function)
@@ -309,27 +314,25 @@ def _rounded(x: Any) -> Any:
     return x
 
 
-def functions_from(file: Path) -> tuple[Functions, Functions]:
-    """Answers from outside: the dicts ``MISTAKES`` and ``VARIANTS`` of a Python file.
+def functions_from(file: Path, table: str) -> Functions:
+    """Answers from outside: a dict of a Python file.
 
     Args:
-        file: Holds one dict or both, {question: [function, ...]}; a question is named as its stub.
-
-    Returns:
-        Mistakes, variants.
+        file: Holds a dict {question: [function, ...]}; a question is named as its stub.
+        table: The dict's name, "MISTAKES" or "VARIANTS".
 
     Raises:
-        LabkitError: There is no such file, or neither dict in it.
+        LabkitError: There is no such file, or no such dict in it.
     """
     spec = importlib.util.spec_from_file_location("answers_from_outside", file)
     if spec is None or spec.loader is None or not file.exists():
-        raise LabkitError(f"{file} is no Python file; give one with a dict MISTAKES or VARIANTS")
+        raise LabkitError(f"{file} is no Python file; give one with a dict {table}")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    found = tuple(getattr(module, key, None) for key in ("MISTAKES", "VARIANTS"))
-    if found == (None, None):
-        raise LabkitError(f"{file} has neither MISTAKES nor VARIANTS, {{question: [functions]}}")
-    return found[0] or {}, found[1] or {}
+    found: Functions | None = getattr(module, table, None)
+    if not isinstance(found, dict):
+        raise LabkitError(f"{file} has no dict {table}; write {table} = {{question: [functions]}}")
+    return found
 
 
 def write(card: Card, folder: Path) -> tuple[Path, Path]:

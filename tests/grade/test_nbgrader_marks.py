@@ -51,7 +51,7 @@ def test_autograde(course, student, score):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("student", "word"), [("ada", "Success"), ("cleo", "partial")])
+@pytest.mark.parametrize(("student", "word"), [("ada", "Success"), ("cleo", "Partial credit")])
 def test_validate(course, student, word):
     """Validate tells only whether all is well; the reasons are in the notebook itself."""
     done = subprocess.run(

@@ -6,7 +6,7 @@ import pytest
 
 from labkit.errors import LabkitError, UnknownName
 from labkit.grade.course import Course
-from labkit.grade.report_card import functions_from, markdown, report_card, write
+from labkit.grade.report_card import functions_from, make, markdown, write
 
 COURSE = Course.here(Path(__file__))
 FILE = """
@@ -21,7 +21,8 @@ def card(tmp_path_factory):
     """The card of the warm-up, with answers from outside."""
     file = tmp_path_factory.mktemp("outside") / "answers.py"
     file.write_text(FILE)
-    return report_card(COURSE, ["00_warmup"], 5, *functions_from(file))
+    given = [functions_from(file, table) for table in ("MISTAKES", "VARIANTS")]
+    return make(COURSE, ["00_warmup"], 5, *given)
 
 
 def test_it_counts(card):
@@ -59,9 +60,9 @@ def test_written(card, tmp_path):
 def test_what_cannot_be_read_is_a_sentence(tmp_path):
     """A missing file, a file without the dicts, a question that nobody asks."""
     with pytest.raises(LabkitError, match="no Python file"):
-        functions_from(tmp_path / "none.py")
+        functions_from(tmp_path / "none.py", "MISTAKES")
     (tmp_path / "empty.py").write_text("x = 1\n")
-    with pytest.raises(LabkitError, match="neither MISTAKES nor VARIANTS"):
-        functions_from(tmp_path / "empty.py")
+    with pytest.raises(LabkitError, match="no dict VARIANTS"):
+        functions_from(tmp_path / "empty.py", "VARIANTS")
     with pytest.raises(UnknownName):
-        report_card(COURSE, ["00_warmup"], 5, {"treble": [abs]})
+        make(COURSE, ["00_warmup"], 5, {"treble": [abs]})

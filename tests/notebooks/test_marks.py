@@ -13,14 +13,7 @@ COURSE = Course.here(Path(__file__))
 NAMES = COURSE.names()
 PROBLEMS = [problem for name in NAMES for problem in COURSE.problems(name)]
 SEEDS = range(20)
-POINTS = {
-    "00_warmup": 10,
-    "01_paths": 20,
-    "02_model": 20,
-    "03_velocity_control": 20,
-    "04_torque_control": 20,
-    "05_impedance": 20,
-}
+POINTS = dict.fromkeys(NAMES, 20) | {"00_warmup": 10}
 
 each = pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.name)
 

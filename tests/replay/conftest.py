@@ -1,4 +1,4 @@
-"""Tools of the replay tests: node on the viewer's sources, Chromium on a page from the disk."""
+"""Tools of the replay tests: node on the viewer's sources."""
 
 import json
 import shutil
@@ -6,15 +6,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).parents[2]
 SOURCES = ROOT / "labkit/replay/viewer"
-CHROMIUM = "/usr/bin/chromium"
-ARGUMENTS = [
-    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
-    "--disable-background-networking", "--disable-component-update", "--disable-sync",
-]  # fmt: skip
 
 
 @pytest.fixture(scope="session")
@@ -44,29 +38,3 @@ def node():
         return json.loads(done.stdout)
 
     return evaluate
-
-
-@pytest.fixture(scope="session")
-def playwright():
-    """Playwright's driver."""
-    with sync_playwright() as driver:
-        yield driver
-
-
-@pytest.fixture(scope="session")
-def chromium(playwright):
-    """Debian's Chromium, with WebGL in software."""
-    assert Path(CHROMIUM).exists(), "Chromium is missing: apt-get install chromium"
-    flags = [*ARGUMENTS, "--enable-unsafe-swiftshader"]
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
-    yield browser
-    browser.close()
-
-
-@pytest.fixture(scope="session")
-def blind_chromium(playwright):
-    """The same without WebGL."""
-    flags = [*ARGUMENTS, "--disable-3d-apis"]
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
-    yield browser
-    browser.close()

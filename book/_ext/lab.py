@@ -1,0 +1,155 @@
+"""The book's own Sphinx extension: settings of the build tool, and pages that everyone can use.
+
+What the theme and the extensions leave out (axe-core names each) is put right in the finished HTML.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+from bs4 import BeautifulSoup
+from sphinx.application import Sphinx
+
+
+def settings(app: Sphinx, config: Any) -> None:
+    """What `tools/build_book.py` decides for one build."""
+    if cache := os.environ.get("LAB_BOOK_CACHE"):
+        config.nb_execution_cache_path = cache
+    config.hide_solutions = os.environ.get("LAB_BOOK_ANSWERS") != "1"
+
+
+def without_thebe(
+    app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any
+) -> None:
+    """Jupyter Book loads Thebe's starter even where no kernel is offered; it fails without one."""
+    context["script_files"] = [
+        s
+        for s in context["script_files"]
+        if "thebe" not in f"{getattr(s, 'filename', '')}"
+        and "THEBE_JS_URL" not in str(getattr(s, "attributes", {}).get("body", ""))
+    ]
+    context["css_files"] = [
+        s for s in context["css_files"] if "thebe" not in f"{getattr(s, 'filename', '')}"
+    ]
+    if body := context.get("body"):
+        context["body"] = re.sub(
+            r'\s*<script type="text/x-thebe-config">.*?</script>',
+            "",
+            re.sub(r"\s*<script>kernelName = '[^']*'</script>", "", body),
+            flags=re.S,
+        )
+
+
+def repair(app: Sphinx, problem: Exception | None) -> None:
+    """Mend every finished page that was written in this build."""
+    if problem or app.builder.format != "html":
+        return
+    for path in sorted(Path(app.outdir).rglob("*.html")):
+        if "_static" in path.parts:
+            continue
+        text = path.read_text(encoding="utf-8")
+        if "<!-- mended -->" in text:
+            continue
+        path.write_text(mended(text), encoding="utf-8")
+
+
+def mended(text: str) -> str:
+    """One page with names, roles and landmarks that assistive technology needs."""
+    page = BeautifulSoup(text, "html.parser")
+    for rule in (
+        _names,
+        _citations,
+        _landmarks,
+        _tables,
+        _scrollers,
+        _hidden_inputs,
+        _repeated_ids,
+    ):
+        rule(page)
+    return f"{page}\n<!-- mended -->\n"
+
+
+def _names(page: BeautifulSoup) -> None:
+    """Buttons and fields that show only an icon get a name; one with words, the same words."""
+    for icon in page.select(".theme-switch-button i[title]"):
+        del icon["title"]
+    for button in page.select("button.search-button-field"):
+        button["aria-label"] = " ".join(button.get_text(" ").split()).replace(" + ", "+")
+    for fold in page.select("nav summary"):
+        above = fold.find_parent("li")
+        link = above.find("a") if above else None
+        fold["aria-label"] = f"Pages under {link.get_text(strip=True) if link else 'this one'}"
+    for query, name in {
+        ".search-button, .search-button__button": "Search",
+        ".theme-switch-button": "Colour theme: light, dark or as the system",
+        ".primary-toggle, label.primary-toggle": "Chapters",
+        ".secondary-toggle": "Contents of this page",
+        "#pst-back-to-top": "Back to top",
+        'input[type="search"]': "Search this book",
+    }.items():
+        for element in page.select(query):
+            if not element.get("aria-label"):
+                element["aria-label"] = name
+
+
+def _citations(page: BeautifulSoup) -> None:
+    """docutils uses roles that ARIA has withdrawn, and a list without items."""
+    for element in page.select('[role="doc-biblioentry"], [role="doc-noteref"]'):
+        del element["role"]
+    for element in page.select('div[role="list"]'):
+        del element["role"]
+
+
+def _landmarks(page: BeautifulSoup) -> None:
+    for query, name in {
+        "#pst-primary-sidebar, .bd-sidebar-primary": "Chapters",
+        "#pst-secondary-sidebar, .bd-sidebar-secondary": "Contents of this page",
+    }.items():
+        for element in page.select(query):
+            if element.name in ("div", "dialog") and not element.get("role"):
+                element["role"] = "complementary" if element.name == "div" else element.get("role")
+            element["aria-label"] = name
+            if element.get("role") is None:
+                del element["role"]
+
+
+def _tables(page: BeautifulSoup) -> None:
+    """A wide table scrolls in a box of its own, which the keyboard must reach."""
+    for box in page.select("div.pst-scrollable-table-container"):
+        box["tabindex"] = "0"
+        box["role"] = "group"
+        box["aria-label"] = "Table"
+    for head in page.select("th"):
+        if not head.get_text(strip=True):
+            head.name = "td"
+
+
+def _scrollers(page: BeautifulSoup) -> None:
+    """Code and formulas that are wider than a phone scroll too."""
+    for box in page.select("div.highlight pre, div.math"):
+        if not box.get("tabindex"):
+            box["tabindex"] = "0"
+
+
+def _hidden_inputs(page: BeautifulSoup) -> None:
+    """The theme's sidebar switches are check boxes that are never shown."""
+    for box in page.select("input.sidebar-toggle"):
+        box["aria-hidden"] = "true"
+        box["tabindex"] = "-1"
+
+
+def _repeated_ids(page: BeautifulSoup) -> None:
+    """Every exercise's box is given the same id, which nothing uses."""
+    for box in page.select("#exercise-content, #solution-content, #proof-content"):
+        del box["id"]
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register with Sphinx."""
+    app.connect("config-inited", settings, priority=100)
+    app.connect("html-page-context", without_thebe, priority=900)
+    app.connect("build-finished", repair, priority=900)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,170 @@
+"""Chapter "Impedance"."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+from scipy.integrate import solve_ivp
+
+import labkit as lk
+from labkit import metrics
+from labkit.plotting import STYLES
+from solutions import experiments
+from solutions.gains import TIP_SPRING
+from solutions.workspace_impedance import WorkspaceImpedance
+
+from .page import Question, figure, holds, number, numbers, quiz, replay
+
+SEED = 7
+PUSH = 10.0
+ROTORS = replace(lk.IDEAL, name="ideal with rotors", armature=lk.BAXTER.armature)
+TURN = 20.0
+"""Rotational stiffness of the hand, in N m/rad."""
+
+
+def one_mass() -> HTML:
+    """A mass on a spring, pushed for a second: three dampings."""
+    m, k, push = 2.0, 200.0, 10.0
+    t = np.linspace(0.0, 3.0, 1201)
+    _, ax = plt.subplots(figsize=(6.0, 3.0))
+    told = []
+    for j, zeta in enumerate((0.2, 1.0, 3.0)):
+        b = 2.0 * zeta * np.sqrt(k * m)
+
+        def slope(s: float, y: np.ndarray, b: float = b) -> list[float]:
+            return [y[1], (push * (s < 1.5) - b * y[1] - k * y[0]) / m]
+
+        x = solve_ivp(slope, (0.0, 3.0), [0.0, 0.0], t_eval=t, max_step=0.005).y[0]
+        ax.plot(t, 1e3 * x, f"C{j}{STYLES[j]}", label=f"ζ = {zeta:g}")
+        told.append(f"{zeta:g}: {1e3 * x.max():.0f} mm at most")
+    ax.axhline(1e3 * push / k, color="C5", linestyle=":")
+    ax.text(2.15, 1e3 * push / k + 2, "F / k", fontsize="small")
+    ax.set(xlabel="time [s]", ylabel="displacement [mm]")
+    ax.legend()
+    return figure(
+        "2 kg on a spring of 200 N/m, pushed with 10 N until 1.5 s.",
+        "Displacement over three seconds for three damping ratios. All tend to 50 mm while pushed "
+        f"and to zero when released. Peaks for damping ratio {'; '.join(told)}.",
+    )
+
+
+@cache
+def push_run(stiffness: float, plant: lk.Plant = ROTORS) -> lk.Log:
+    """A hand pushes the tip sideways from 0.5 s to 2 s."""
+    model = lk.Model("left", plant)
+    q0 = model.robot.ready
+    K = np.array((stiffness,) * 3 + (TURN,) * 3)
+    law = WorkspaceImpedance(model, K=K, gravity=not plant.gravity_compensation)
+    world = lk.World(things=[lk.Push(force=(0.0, PUSH, 0.0), start=0.5, duration=1.5)])
+    rate = 200.0 if plant.state_rate else 1000.0
+    with lk.Arm("left", plant, SEED, q0=q0, world=world) as arm:
+        return lk.run(arm, lk.Hold(model.pose(q0), 3.5), law, rate=rate)
+
+
+def _sideways(log: lk.Log) -> np.ndarray:
+    return -1e3 * metrics.tip_error(log)[:, 1]
+
+
+def push() -> HTML:
+    """The arm answers a push as the spring that it was told to be."""
+    _, ax = plt.subplots(figsize=(6.0, 3.2))
+    told = []
+    for k, stiffness in enumerate((150.0, 300.0, 600.0)):
+        log = push_run(stiffness)
+        y = _sideways(log)
+        felt = 1e3 * PUSH / float(np.interp(1.95, log.t, y))
+        holds(abs(felt / stiffness - 1.0) < 0.05, "the stiffness felt is the stiffness told")
+        ax.plot(log.t, y, f"C{k}{STYLES[k]}", label=f"{stiffness:g} N/m")
+        told.append(f"told {stiffness:g} N/m, felt {felt:.4g} N/m")
+        number(f"felt_{stiffness:.0f}", felt, ".4g")
+    real = push_run(300.0, lk.BAXTER)
+    y = _sideways(real)
+    ax.plot(real.t, y, "C4:", label="300 N/m, realistic arm")
+    felt = 1e3 * PUSH / float(np.interp(1.95, real.t, y))
+    left = abs(float(y[-1]))
+    holds(felt > 330.0, "dry friction makes the realistic arm feel stiffer")
+    numbers({"felt_real": felt, "left_real": left})
+    ax.set(xlabel="time [s]", ylabel="displacement [mm]")
+    ax.legend(fontsize="small")
+    return figure(
+        "10 N sideways on the tip from 0.5 s to 2 s, no force measured by anyone.",
+        f"Displacement over time: {'; '.join(told)}. The realistic arm, told 300 N/m, moves less, "
+        f"as if {felt:.3g} N/m, and stays {left:.2g} mm off when released.",
+    )
+
+
+def push_replay() -> HTML:
+    """The soft and the stiff arm, in 3-D."""
+    return replay(
+        push_run(150.0),
+        "A push of 10 N on a soft and a stiff arm",
+        "The arm told to be a spring of 150 N/m; see-through: 600 N/m.",
+        label="150 N/m",
+        ghosts={"600 N/m": push_run(600.0)},
+    )
+
+
+def wall() -> HTML:
+    """Into a wall: what each controller presses with."""
+    met = experiments.wall()
+    _, ax = plt.subplots(figsize=(6.0, 3.2))
+    ends = {}
+    for k, one in enumerate(met):
+        force = -one.wrench[:, 0]
+        ax.plot(one.t, force, f"C{k}{STYLES[k]}", label=one.name)
+        ends[one.name] = float(-one.force_at_rest[0])
+    ax.set(xlabel="time [s]", ylabel="force on the wall [N]")
+    ax.legend(fontsize="small")
+    soft, hard = ends["workspace impedance"], ends["position"]
+    expected = experiments.predicted_wall_force(experiments.the_wall(), TIP_SPRING[0], 0.03)
+    holds(abs(soft / expected - 1.0) < 0.05, "the spring presses as hard as springs in series do")
+    holds(hard > 4.0 * soft, "the position mode presses several times harder")
+    holds(ends["joint torque"] < soft, "computed torque is the softer spring here")
+    numbers(
+        {"wall_soft": soft, "wall_expected": expected, "wall_hard": hard,
+         "wall_torque": ends["joint torque"]},
+        ".2g",
+    )  # fmt: skip
+    told = ", ".join(f"{name} {force:.3g} N" for name, force in ends.items())
+    return figure(
+        "Four controllers are sent 3 cm into a stiff wall. Force as the arm's own torque sensors "
+        "tell it.",
+        f"Force on the wall over four seconds. At rest: {told}.",
+    )
+
+
+def check_yourself() -> HTML:
+    """The quiz of the chapter."""
+    return quiz(
+        Question(
+            "You push with 6 N against an arm of 300 N/m and 40 N s/m and wait. How far does it "
+            "go?",
+            [
+                ("20 mm", "Yes: at rest only the spring counts, F / K."),
+                ("15 mm", "The damper gives no force at rest."),
+                ("It depends on the inertia", "On the way there, yes; not at rest."),
+            ],
+            0,
+        ),
+        Question(
+            "Which impedance can be had without measuring any force?",
+            [
+                ("Any", "Another inertia than the arm's own needs the force."),
+                ("Any stiffness and damping, with the arm's own inertia", "Yes."),
+                ("None", "The push moves the arm, and the spring answers the motion."),
+            ],
+            1,
+        ),
+        Question(
+            "The stiffness matrix stands on the wrong side: F = −K e. What happens?",
+            [
+                ("The arm is softer", "It is no spring at all: it pushes away."),
+                ("The arm leaves", "Yes: the further, the harder it pushes."),
+            ],
+            1,
+        ),
+    )

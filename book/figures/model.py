@@ -1,0 +1,206 @@
+"""Chapter "The model"."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit.replay import demo_html
+from labkit.replay.motion import JOINTS
+
+from .page import Question, figure, holds, numbers, quiz, table
+
+SEED = 2
+STEP = 1e-6
+
+
+def jacobian_demo() -> HTML:
+    """The live demo of the Jacobian."""
+    caption = "Live: turn the joints and watch a column of the tip Jacobian become an arrow."
+    return HTML(demo_html("jacobian", caption=caption))
+
+
+def checks() -> HTML:
+    """What the formulas promise, tried on random states."""
+    model, random = lk.Model("left", lk.BAXTER), np.random.default_rng(SEED)
+    worst = dict.fromkeys(("J", "symmetry", "skew", "gravity", "power"), 0.0)
+    smallest = np.inf
+    for _ in range(100):
+        q = random.uniform(model.robot.lower, model.robot.upper)
+        dq = random.uniform(-1.0, 1.0, 7)
+        J, M, C = model.tip_jacobian(q), model.mass_matrix(q), model.coriolis(q, dq)
+        slope = np.column_stack(
+            [
+                (model.pose(q + h)[:3, 3] - model.pose(q - h)[:3, 3]) / (2.0 * STEP)
+                for h in STEP * np.eye(7)
+            ]
+        )
+        rate = (model.mass_matrix(q + STEP * dq) - model.mass_matrix(q - STEP * dq)) / (2.0 * STEP)
+        skew = rate - 2.0 * C
+        hill = [
+            (model.potential_energy(q + h) - model.potential_energy(q - h)) / (2.0 * STEP)
+            for h in STEP * np.eye(7)
+        ]
+        for name, off in (
+            ("J", slope - J[:3]),
+            ("symmetry", M - M.T),
+            ("skew", skew + skew.T),
+            ("gravity", np.array(hill) - model.gravity(q)),
+            ("power", np.array(dq @ skew @ dq)),
+        ):
+            worst[name] = max(worst[name], float(np.abs(off).max()))
+        smallest = min(smallest, float(np.linalg.eigvalsh(M)[0]))
+    holds(max(worst.values()) < 1e-6, "the laws of the model hold")
+    holds(smallest > 0.0, "the mass matrix is positive definite")
+    rows = [
+        ("Linear rows of J are the slope of the pose", f"{worst['J']:.1e} m/rad"),
+        ("M is symmetric", f"{worst['symmetry']:.1e} kg m²"),
+        ("M is positive definite: its smallest eigenvalue", f"{smallest:.2g} kg m²"),
+        ("Ṁ − 2C is skew", f"{worst['skew']:.1e} kg m²/s"),
+        ("g is the slope of the potential energy", f"{worst['gravity']:.1e} N m"),
+        ("q̇ᵀ(Ṁ − 2C)q̇ vanishes", f"{worst['power']:.1e} W"),
+    ]
+    return table(("Law", "Largest miss"), rows, "100 random states within the joint limits")
+
+
+def singular() -> HTML:
+    """How fast e1 must turn for a modest tip speed, as the elbow straightens."""
+    model = lk.Model("left")
+    angles = np.linspace(0.02, 1.2, 200)
+    v = np.array((0.0, 0.0, 0.2, 0.0, 0.0, 0.0))
+    sigma, speed = [], []
+    for e1 in angles:
+        q = np.array(model.robot.neutral)
+        q[3] = e1
+        J = model.tip_jacobian(q)
+        radial = model.pose(q)[:3, 3] - np.array(lk.links(model, q)[1].T_wl[:3, 3])
+        v[:3] = -0.2 * radial / np.linalg.norm(radial)
+        sigma.append(np.linalg.svd(J[:3], compute_uv=False)[-1])
+        speed.append(np.abs(np.linalg.pinv(J) @ v).max())
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.2, 2.8))
+    left.plot(angles, sigma, "C1-")
+    left.set(xlabel="elbow e1 [rad]", ylabel="smallest singular value [m/rad]", ylim=(0, None))
+    right.plot(angles, speed, "C0--")
+    right.axhline(1.5, color="C5", linestyle=":")
+    right.text(0.55, 1.6, "limit of the shoulder and elbow", fontsize="small")
+    right.set(xlabel="elbow e1 [rad]", ylabel="largest joint speed [rad/s]", ylim=(0, 6))
+    slow, fast = float(np.interp(1.0, angles, speed)), speed[0]
+    holds(fast > 3.0 * slow, "joint speeds grow without bound near the straight elbow")
+    numbers({"bent": slow, "straight": fast}, ".2g")
+    return figure(
+        "Pulling the tip towards the shoulder at 0.2 m/s, position and orientation held by the "
+        "pseudo-inverse: the straighter the elbow, the faster some joint must turn.",
+        f"Left: the smallest singular value of the linear Jacobian falls towards zero as the "
+        f"elbow straightens. Right: the largest joint speed needed rises from {slow:.2g} rad/s "
+        f"at e1 = 1 to {fast:.2g} rad/s at e1 = 0.02, above the limit of 1.5 rad/s.",
+    )
+
+
+def gravity() -> HTML:
+    """What each joint carries as the shoulder goes through its range."""
+    model = lk.Model("left")
+    angles = np.linspace(model.robot.lower[1], model.robot.upper[1], 200)
+    torque = []
+    for s1 in angles:
+        q = np.array(model.robot.neutral)
+        q[1] = s1
+        torque.append(model.gravity(q))
+    rows = np.array(torque)
+    _, ax = plt.subplots(figsize=(6.0, 3.0))
+    for k, style in ((1, "-"), (3, "--"), (5, "-.")):
+        ax.plot(angles, rows[:, k], f"C{k}{style}", label=JOINTS[k])
+    ax.set(xlabel="shoulder s1 [rad]", ylabel="g(q) [N m]")
+    ax.legend(ncols=3)
+    most = rows[np.abs(rows[:, 1]).argmax(), 1]
+    neutral = model.gravity(model.robot.neutral)[1]
+    numbers({"g_neutral": neutral, "g_most": most}, ".3g")
+    holds(abs(most) > 50.0, "the shoulder carries more than 50 N m, the limit of the URDF")
+    return figure(
+        "The torque that holds the arm, as the shoulder s1 turns and the rest stays neutral.",
+        f"Three curves over the range of s1. The shoulder's own torque is the largest, "
+        f"{most:.3g} N m at its extreme and {neutral:.3g} N m at the neutral pose; the elbow e1 "
+        f"carries up to {np.abs(rows[:, 3]).max():.3g} N m, the wrist w1 up to "
+        f"{np.abs(rows[:, 5]).max():.2g} N m.",
+    )
+
+
+def power() -> HTML:
+    """The energy that the motors give is the energy that the arm has."""
+    model = lk.Model("left")
+    q0 = model.robot.ready
+    swing = lk.Trajectory(
+        lk.Line(q0, q0 + np.array((0.3, -0.4, 0.2, 0.5, 0.0, -0.4, 0.0))), lk.Quintic(2.0)
+    )
+
+    def feedforward(state: lk.State, target: lk.Sample) -> lk.JointTorque:
+        q, dq = state.q, state.dq
+        wanted = target.acceleration + 100.0 * (target.position - q)
+        wanted = wanted + 20.0 * (target.velocity - dq)
+        return lk.JointTorque(model.mass_matrix(q) @ wanted + model.bias(q, dq))
+
+    with lk.Arm("left", lk.IDEAL, q0=q0) as arm:
+        log = lk.run(arm, swing, feedforward, rate=1000)
+    rows = zip(log.q, log.dq, strict=True)
+    energy = [model.kinetic_energy(q, dq) + model.potential_energy(q) for q, dq in rows]
+    gained = np.gradient(np.array(energy), log.t)
+    given = np.einsum("ij,ij->i", log.tau, log.dq)
+    _, ax = plt.subplots(figsize=(6.0, 2.9))
+    ax.plot(log.t, given, color="#999999", linewidth=5, label="τᵀq̇, given by the motors")
+    ax.plot(log.t, gained, "C0--", label="d(T + V)/dt, gained by the arm")
+    ax.set(xlabel="time [s]", ylabel="power [W]")
+    ax.legend()
+    off = float(np.abs(gained - given)[2:-2].max())
+    peak = float(np.abs(given).max())
+    holds(off < 0.01 * peak, "the two powers agree to one per cent of the peak")
+    numbers({"power_peak": peak, "power_off": off}, ".2g")
+    return figure(
+        "Power during a swing of the arm, 1 kHz control on the ideal arm.",
+        f"Two curves over two seconds lie on each other: the power of the motors and the rate of "
+        f"the arm's energy. The peak is {peak:.2g} W, the largest difference {off:.2g} W.",
+    )
+
+
+def check_yourself() -> HTML:
+    """The quiz of the chapter."""
+    return quiz(
+        Question(
+            "The gripper points down and turns about the vertical, its tip at rest. Which Jacobian "
+            "has non-zero linear rows in the twist it gives?",
+            [
+                ("The tip Jacobian", "Its linear rows are the velocity of the tip, which is zero."),
+                ("The body Jacobian", "Same velocity, other axes: still zero."),
+                (
+                    "The spatial Jacobian",
+                    "Yes: it gives the velocity of the point of the turning body that passes "
+                    "through the world's origin.",
+                ),
+            ],
+            2,
+        ),
+        Question(
+            r"Someone computes \(C\) as \(\dot M / 2\) and shows that \(\dot M - 2C\) is skew. "
+            "What has been proved?",
+            [
+                ("That C is right", "The zero matrix is skew, so this test passes for free."),
+                (
+                    "Nothing about C q̇",
+                    "Yes. Skewness must come together with the right torque C q̇.",
+                ),
+            ],
+            1,
+        ),
+        Question(
+            "Which of these has the unit of a torque?",
+            [
+                (
+                    r"\(M J^T a\), with a an acceleration",
+                    "kg m² times m times m/s²: kg m⁴/s². Not a torque.",
+                ),
+                (r"\(\sum_i m_i J_i^T a\), with \(J_i\) of each link's centre", "Yes: N m."),
+                (r"\(J^T a\)", "m²/s²: a force is missing its mass."),
+            ],
+            1,
+        ),
+    )

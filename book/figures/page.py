@@ -1,0 +1,219 @@
+"""What every chapter needs: figures with words, replays, numbers in the prose, quizzes, claims."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import matplotlib as mpl
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+from myst_nb import glue
+
+from labkit import Log, metrics, plotting
+from labkit.replay import Motion, motion_html
+
+INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
+"""Line colours in light mode; `book.css` has their sisters for dark mode, contrast above 4.5."""
+TEXT, FRAME, FAINT = "#1f2328", "#57606a", "#999999"
+_VARIABLES = {
+    **{ink: f"var(--line-{k})" for k, ink in enumerate(INKS)},
+    TEXT: "currentColor",
+    "#000000": "currentColor",
+    FRAME: "var(--frame)",
+    FAINT: "var(--faint)",
+    "#ffffff": "var(--paper)",
+}
+
+mpl.use("agg")
+mpl.rcParams.update(
+    {
+        "svg.fonttype": "none",  # letters stay letters: searched, read aloud, scaled
+        "font.size": 10.5,
+        "figure.figsize": (6.0, 3.4),
+        "figure.constrained_layout.use": True,
+        "axes.prop_cycle": mpl.cycler(color=INKS),
+        "axes.edgecolor": FRAME,
+        "axes.labelcolor": TEXT,
+        "axes.titlesize": "medium",
+        "axes.titlelocation": "left",
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": False,
+        "text.color": TEXT,
+        "xtick.color": FRAME,
+        "ytick.color": FRAME,
+        "xtick.labelcolor": TEXT,
+        "ytick.labelcolor": TEXT,
+        "legend.frameon": False,
+        "lines.linewidth": 1.8,
+        "savefig.transparent": True,
+    }
+)
+
+
+class ConclusionFails(AssertionError):
+    """The runs no longer show what the prose says; the build stops here."""
+
+
+def holds(fact: Any, conclusion: str) -> None:
+    """Stop the build unless a conclusion of the prose holds in the runs that it speaks of."""
+    if not bool(fact):
+        raise ConclusionFails(f"the text says: {conclusion}; the runs say otherwise")
+
+
+def number(name: str, value: float, form: str = ".3g") -> None:
+    """Give the prose a number: it writes {glue:text}`name`."""
+    glue(name, format(float(value), form), display=False)
+
+
+def numbers(values: Mapping[str, float], form: str = ".3g") -> None:
+    """Several at once."""
+    for name, value in values.items():
+        number(name, value, form)
+
+
+def figure(caption: str, alt: str, words: str = "", fig: Any = None) -> HTML:
+    """The current figure as a drawing that follows the reader's theme.
+
+    Args:
+        caption: Under the figure.
+        alt: One or two sentences for whoever does not see it, with the figure's own numbers.
+        words: A longer description, opened on demand.
+        fig: Which; None is the current one.
+    """
+    fig = fig or plt.gcf()
+    with mpl.rc_context({"svg.hashsalt": caption}):
+        text = io.StringIO()
+        fig.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+    plt.close(fig)
+    return HTML(_framed(_drawing(text.getvalue(), caption, alt), caption, alt, words))
+
+
+def _drawing(svg: str, caption: str, alt: str) -> str:
+    """The SVG element with theme colours, unique ids and a name."""
+    svg = svg[svg.index("<svg") :]
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg, flags=re.S)
+    mark = "f" + hashlib.sha256((caption + alt).encode()).hexdigest()[:8] + "-"
+    svg = re.sub(r'id="([^"]+)"', rf'id="{mark}\1"', svg)
+    svg = re.sub(r'(href="#|url\(#)', rf"\g<1>{mark}", svg)
+    svg = re.sub(r"font: [^;\"]*?([\d.]+px)[^;\"]*", r"font-size: \1", svg)  # the page's letters
+    for ink, variable in _VARIABLES.items():
+        svg = svg.replace(ink, variable)
+    box = re.search(r'viewBox="([^"]+)"', svg)[1]  # type: ignore[index]
+    opening = (
+        f'<svg class="lab-svg" role="img" aria-label="{escape(alt)}" viewBox="{box}" '
+        'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink">'
+    )
+    return re.sub(r"<svg[^>]*>", opening, svg, count=1)
+
+
+def _framed(inside: str, caption: str, alt: str, words: str) -> str:
+    more = words or alt
+    return (
+        f'<figure class="lab-figure">\n{inside}\n<figcaption>{escape(caption)}'
+        f"<details><summary>Description in words</summary><p>{escape(more)}</p></details>"
+        "</figcaption>\n</figure>"
+    )
+
+
+def motion_of(log: Log, title: str, label: str = "", ghosts: Mapping[str, Log] | None = None,
+              torque: bool = True) -> Motion:  # fmt: skip
+    """A run as the viewer shows it, beside others drawn as ghosts."""
+    error = np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1)
+    T_wd = metrics.target_poses(log)
+    return Motion(
+        log.side,
+        log.t,
+        log.q,
+        title=title,
+        label=label or log.controller,
+        target_position=T_wd[:, :3, 3],
+        target_rotation=T_wd[:, :3, :3],
+        path=T_wd[:: max(1, len(log) // 120), :3, 3],
+        error=error,
+        tau=log.tau if torque else None,
+        ghosts={name: other.q for name, other in (ghosts or {}).items()},
+    )
+
+
+def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
+    """A run as a 3-D replay in the page."""
+    return HTML(motion_html(motion_of(log, title, **options), caption=caption))
+
+
+def tracking(log: Log, caption: str) -> HTML:
+    """The tip against its target, with words from the run's own numbers."""
+    _, axes = plt.subplots(2, 1, figsize=(6.2, 4.4), sharex=True)
+    plotting.tracking(log, axes=axes)
+    e = 1e3 * np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1)
+    words = (
+        f"{plotting.describe(log)} The upper panel shows x, y and z of the tip over their targets, "
+        f"the lower one the length of the error, which is largest at "
+        f"t = {log.t[e.argmax()]:.2f} s and {e[-1]:.2g} mm at the end."
+    )
+    return figure(caption, plotting.describe(log), words)
+
+
+@dataclass(frozen=True)
+class Question:
+    """One question of a quiz.
+
+    Attributes:
+        text: The question; mathematics between \\( and \\).
+        answers: Answers in the order shown, each with what to say to whoever chooses it.
+        right: Which one is right, from 0.
+    """
+
+    text: str
+    answers: Sequence[tuple[str, str]]
+    right: int
+
+
+def quiz(*questions: Question) -> HTML:
+    """Questions that answer at once, in the page, for nobody but the reader."""
+    parts = []
+    for k, question in enumerate(questions):
+        name = "quiz-" + hashlib.sha256(question.text.encode()).hexdigest()[:8]
+        choices = "".join(
+            f'<label class="lab-choice"><input type="radio" name="{name}" value="{i}"'
+            f"{_spoken(answer)}> "
+            f"<span>{answer}</span></label>"
+            for i, (answer, _) in enumerate(question.answers)
+        )
+        key = json.dumps([said for _, said in question.answers], ensure_ascii=False)
+        parts.append(
+            f'<fieldset class="lab-question" data-right="{question.right}" '
+            f'data-said="{escape(key)}"><legend>{k + 1}. {question.text}</legend>{choices}'
+            '<p class="lab-said" role="status"></p></fieldset>'
+        )
+    return HTML(f'<div class="lab-quiz tex2jax_process">{"".join(parts)}</div>')
+
+
+def _spoken(answer: str) -> str:
+    """A name for an answer that is drawn as a formula."""
+    if "\\(" not in answer:
+        return ""
+    words = re.sub(r"\\[()]", "", answer).replace("\\dot", "derivative of").replace("\\", "")
+    return f' aria-label="{escape(words)}"'
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> HTML:
+    """A small table whose first column names its rows."""
+    top = "".join(f'<th scope="col">{h}</th>' for h in head)
+    body = "".join(
+        f'<tr><th scope="row">{row[0]}</th>' + "".join(f"<td>{x}</td>" for x in row[1:]) + "</tr>"
+        for row in rows
+    )
+    return HTML(
+        '<div class="lab-scroll" role="group" tabindex="0" '
+        f'aria-label="{escape(re.sub("<[^>]+>", "", caption))}"><table class="lab-table">'
+        f"<caption>{caption}</caption><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>"
+    )

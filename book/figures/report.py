@@ -1,0 +1,152 @@
+"""Page "A 2019 report re-examined": the evidence for each verdict, computed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+import labkit as lk
+from labkit import metrics
+from solutions.workspace_impedance import WorkspaceImpedance
+
+from .page import holds, number, numbers
+
+SEED = 6
+
+
+def paths() -> None:
+    """Equations 1 to 15."""
+    numbers({"a_10": 4.0 * 0.1 / (5.0 * 0.1) ** 2, "a_1": 4.0 * 0.01 / (5.0 * 0.01) ** 2})
+    duration = lk.BangBang.within(0.01, 0.4, 1.0).duration
+    holds(abs(4.0 * 0.01 / duration**2) < 1.0 + 1e-9, "with both limits the acceleration is kept")
+    number("t_1", duration, ".2g")
+
+    # Equation 4 at t = 0, for a start at x = 0.6 m, 0.2 m to go in 1 s
+    number("p_printed", 4.0 * 0.2 / 1.0**2 * 0.6, ".2f")
+
+    # Equation 8 at half time, theta_0 = 0.7 rad, radius 0.2 m
+    theta_0, r, tau = 0.7, 0.2, 4.0
+
+    def alpha(t: float) -> float:
+        return 8.0 * np.pi / tau**2 * (1.0 if t <= tau / 2 else -1.0)
+
+    def theta_printed(t: float) -> float:
+        if t <= tau / 2:
+            return 0.5 * alpha(t) * t**2 + theta_0
+        late = t - tau / 2
+        omega = alpha(0.0) * tau / 2
+        half = theta_printed(tau / 2)
+        return half + 0.5 * alpha(t) * late**2 + omega * late + theta_0
+
+    jump = theta_printed(tau / 2 + 1e-9) - theta_printed(tau / 2)
+    holds(abs(jump - theta_0) < 1e-6, "the printed angle jumps by theta_0")
+    numbers({"jump_rad": jump, "jump_m": 2.0 * r * np.sin(theta_0 / 2.0)})
+
+    # Equation 10 against the slope of equation 11
+    def velocity(t: float) -> np.ndarray:
+        theta, omega = 0.5 * alpha(t) * t**2, alpha(t) * t
+        return r * omega * np.array((-np.sin(theta), np.cos(theta)))
+
+    t, h = 1.0, 1e-6
+    slope = (velocity(t + h) - velocity(t - h)) / (2.0 * h)
+    theta, omega, a = 0.5 * alpha(t) * t**2, alpha(t) * t, alpha(t)
+    bracket = np.array(
+        (
+            -a * np.sin(theta) - omega**2 * np.cos(theta),
+            a * np.cos(theta) - omega**2 * np.sin(theta),
+        )
+    )
+    right, printed = r * bracket, -r * omega**2 * bracket
+    holds(np.abs(right - slope).max() < 1e-6, "the repaired equation 10 is the slope of v")
+    holds(np.abs(printed - slope).max() > 0.5, "the printed equation 10 is not")
+    numbers({"a10_right": np.linalg.norm(right), "a10_printed": np.linalg.norm(printed)})
+
+    # Equations 14 and 15: four segments of 1 s, half a second into the first
+    holds(0.5 - sum([1.0]) < 0.0, "the printed time on the segment is negative")
+
+
+def recursion() -> None:
+    """Equation 17 on the ideal arm: add the correction to the measured speed."""
+    q0 = lk.robot("left").ready
+    goal = q0 + 0.02 * np.eye(7)[0]  # small enough for the speed limit
+
+    def printed(state: lk.State, target: lk.Sample) -> lk.JointVelocity:
+        e, de = target.position - state.q, target.velocity - state.dq
+        return lk.JointVelocity(state.dq + 3.0 * e + 1e-4 * de)
+
+    with lk.Arm("left", lk.IDEAL, q0=q0) as arm:
+        log = lk.run(arm, lk.Hold(goal, 5.0), printed)
+    e = np.abs(metrics.joint_error(log)[:, 0])
+    left = e[log.t > 4.5].max() / 0.02
+    crossings = np.flatnonzero(np.diff(np.sign(metrics.joint_error(log)[:, 0])))
+    early = crossings[log.t[crossings] < 1.0]
+    omega = np.pi * (len(early) - 1) / (log.t[early[-1]] - log.t[early[0]])
+    holds(left > 0.8, "the printed recursion hardly decays in five seconds")
+    holds(abs(omega - np.sqrt(600.0)) < 1.5, "and rings near sqrt(600) rad/s")
+    numbers({"ring_left": 100.0 * left, "ring_omega": omega})
+
+
+def gravity() -> None:
+    """The formula G = M J^T (0, 0, 0.981, 0, 0, 0) beside the torque that holds the arm."""
+    model = lk.Model("left")
+    random = np.random.default_rng(SEED)
+    ready = np.array(model.robot.ready)
+    shares, cosines = [], []
+    for _ in range(50):
+        q = np.clip(ready + random.uniform(-0.3, 0.3, 7), model.robot.lower, model.robot.upper)
+        guess = model.mass_matrix(q) @ model.tip_jacobian(q).T[:, 2] * 0.981
+        g = model.gravity(q)
+        shares.append(float(np.linalg.norm(guess) / np.linalg.norm(g)))
+        cosines.append(abs(float(guess @ g / np.linalg.norm(guess) / np.linalg.norm(g))))
+    holds(max(shares) < 0.2, "the report's formula gives a small fraction of gravity")
+    numbers({"g_low": 100.0 * min(shares), "g_high": 100.0 * max(shares)}, ".2g")
+
+
+def impedance() -> None:
+    """Equations 19 and 21, and whether impedance needs a force sensor."""
+    # Equation 19 in one dimension, 2 kg, M_d = M, at rest on the target, pushed by 5 N
+    mass, push = 2.0, 5.0
+    desired = push / mass
+    printed = (push + mass * push + push) / mass  # the law's force, and the push itself
+    holds(abs(printed - desired) > 1.0, "with M_d = M the printed law keeps F_ext")
+    numbers({"a19_right": desired, "a19_printed": printed})
+
+    plant = replace(lk.IDEAL, name="ideal with rotors", armature=lk.BAXTER.armature)
+    model = lk.Model("left", plant)
+    q0 = model.robot.ready
+    T_wd = model.pose(q0)
+    T_off = lk.se3.pose(T_wd[:3, :3], T_wd[:3, 3] + np.array((0.002, 0.0, 0.0)))
+    start = model.inverse_kinematics(T_off, q0)
+    K = np.array((300.0, 300.0, 300.0, 20.0, 20.0, 20.0))
+    D = np.array((60.0, 60.0, 60.0, 4.0, 4.0, 4.0))
+    gone = {}
+    for sign in (1.0, -1.0):
+
+        def law(state: lk.State, target: lk.PoseSample, sign: float = sign) -> lk.JointTorque:
+            J = model.tip_jacobian(state.q)
+            e = model.pose_error(target.pose, state.q)
+            F = sign * K * e - D * (J @ state.dq)
+            return lk.JointTorque(J.T @ F + model.bias(state.q, state.dq))
+
+        with lk.Arm("left", plant, q0=start) as arm:
+            try:
+                log = lk.run(arm, lk.Hold(T_wd, 2.0), law, rate=1000)
+            except lk.errors.Diverged as error:
+                log = error.log
+        off = np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1)
+        gone[sign] = (1e3 * off[-1], log.t[np.argmax(off > 0.1)] if off.max() > 0.1 else np.inf)
+    holds(gone[1.0][0] < 1.0, "with the right sign of stiffness the tip comes back")
+    holds(gone[-1.0][1] < 2.0, "with the printed sign the tip is driven away")
+    numbers({"k_back": gone[1.0][0], "k_away": gone[-1.0][1]}, ".2g")
+
+    # A push, measured by no one: M_d = Lambda
+    force = np.array((0.0, 10.0, 0.0))
+    world = lk.World(things=[lk.Push(force=force)])
+    with lk.Arm("left", plant, q0=q0, world=world) as arm:
+        law_2 = WorkspaceImpedance(model, K=K)
+        log = lk.run(arm, lk.Hold(T_wd, 3.0), law_2, rate=1000)
+    moved = -metrics.tip_error(log)[-1, :3]
+    stiffness = float(force[1] / moved[1])
+    holds(abs(stiffness / 300.0 - 1.0) < 0.02, "the arm is as stiff as it was told, sensor or not")
+    numbers({"felt": stiffness, "moved_mm": 1e3 * moved[1]})

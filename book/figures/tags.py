@@ -1,0 +1,188 @@
+"""Chapter "Tags and cameras": what follows from geometry and time alone."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+
+from .page import Question, figure, holds, number, numbers, quiz
+
+SEED = 8
+FOCAL = 600.0
+SIZE = 0.08
+
+
+def _corners(tilt: float, distance: float) -> np.ndarray:
+    """Pixels of a tag's corners, turned by ``tilt`` about the camera's y axis."""
+    square = 0.5 * SIZE * np.array(((-1, 1, 0), (1, 1, 0), (1, -1, 0), (-1, -1, 0)))
+    p = square @ lk.se3.rotation((0.0, tilt, 0.0)).T + (0.0, 0.0, distance)
+    return FOCAL * p[:, :2] / p[:, 2:]
+
+
+def _gap(tilt: float, distance: float) -> float:
+    """RMS pixels between a tilt and the best that the opposite tilt can do."""
+    seen = _corners(tilt, distance)
+    best = np.inf
+    for other in np.linspace(-1.4, -0.02, 60):
+        for z in distance * np.linspace(0.96, 1.04, 41):
+            off = _corners(other, z) - seen
+            off = off - off.mean(axis=0)
+            best = min(best, float(np.sqrt((off**2).sum(axis=1).mean())))
+    return best
+
+
+def ambiguity() -> HTML:
+    """How well a picture tells the two tilts apart."""
+    distances = np.linspace(0.25, 2.5, 16)
+    _, ax = plt.subplots(figsize=(6.0, 3.2))
+    curves = {}
+    for k, (degrees, style) in enumerate(((10.0, "-"), (30.0, "--"), (50.0, "-."))):
+        curves[degrees] = [_gap(np.radians(degrees), z) for z in distances]
+        ax.plot(distances, curves[degrees], f"C{k}{style}", label=f"tilted by {degrees:.0f}°")
+    ax.axhline(0.3, color="C5", linestyle=":")
+    ax.text(1.6, 0.34, "a good corner finder", fontsize="small")
+    ax.set(xlabel="distance [m]", ylabel="best fit of the wrong tilt [pixels]", yscale="log")
+    ax.legend()
+    near, far = curves[30.0][0], curves[30.0][-1]
+    holds(near > 1.0 and far < 0.3, "from afar the two poses cannot be told apart")
+    numbers({"near": distances[0], "far": distances[-1], "gap_near": near, "gap_far": far}, ".2g")
+    return figure(
+        "A tag of 8 cm before a camera with a focal length of 600 pixels: how badly the pose with "
+        "the opposite tilt fits the four corners.",
+        f"Three falling curves. For a tilt of 30 degrees the misfit is {near:.2g} pixels at "
+        f"{distances[0]:.2g} m and {far:.2g} pixels at {distances[-1]:.2g} m; for 10 degrees it is "
+        f"{curves[10.0][0]:.2g} and {curves[10.0][-1]:.2g}. The noise of a good corner finder, 0.3 "
+        "pixels, is marked.",
+    )
+
+
+def _blended(p: float, v: float, a: float, goal: float, T: float) -> np.ndarray:
+    """Coefficients of the quintic from (p, v, a) to the goal at rest."""
+    A = np.array(
+        ((T**3, T**4, T**5), (3 * T**2, 4 * T**3, 5 * T**4), (6 * T, 12 * T**2, 20 * T**3))
+    )
+    b = np.array((goal - p - v * T - 0.5 * a * T**2, -v - a * T, -a))
+    return np.array((p, v, 0.5 * a, *np.linalg.solve(A, b)))
+
+
+def blend() -> HTML:
+    """A goal that moves mid-way: restart at rest, or go on."""
+    first, change, T = lk.Trajectory(lk.Line([0.0], [0.2]), lk.Quintic(2.0)), 1.0, 2.0
+    t = np.linspace(0.0, 3.2, 1281)
+    p, v, a = (float(x[0]) for x in first(change))
+    again = lk.Trajectory(lk.Line([p], [0.3]), lk.Quintic(T))
+    curve = np.polynomial.Polynomial(_blended(p, v, a, 0.3, T))
+    restarted, blended = [], []
+    for x in t:
+        if x < change:
+            pv = tuple(float(y[0]) for y in first(x)[:2])
+            restarted.append(pv)
+            blended.append(pv)
+        else:
+            restarted.append(tuple(float(y[0]) for y in again(x - change)[:2]))
+            s = min(x - change, T)
+            blended.append((curve(s), curve.deriv()(s)))
+    _, (above, below) = plt.subplots(2, 1, figsize=(6.0, 4.0), sharex=True)
+    for rows, style, name in ((restarted, "C0--", "restarted"), (blended, "C1-", "blended")):
+        x, dx = np.array(rows).T
+        above.plot(t, x, style, label=name)
+        below.plot(t, dx, style, label=name)
+    above.set_ylabel("reference [m]")
+    below.set(xlabel="time [s]", ylabel="its speed [m/s]")
+    above.legend()
+    speed = np.array(blended)[:, 1]
+    holds(np.abs(np.diff(speed)).max() < 0.01 < v, "the blended speed has no jump")
+    number("jump", v, ".2g")
+    return figure(
+        "The goal moves from 0.2 m to 0.3 m when the reference is half-way.",
+        f"Reference and its speed over three seconds. The restarted one drops from {v:.2g} m/s to "
+        "zero at t = 1 s and begins anew; the blended one passes without a corner and ends at the "
+        "same place at the same time.",
+    )
+
+
+def predict() -> HTML:
+    """A target that sways: last picture against prediction."""
+    random = np.random.default_rng(SEED)
+    period, age, noise = 0.1, 0.1, 0.001
+    t = np.arange(0.0, 8.0, 0.005)
+
+    def truth(x: np.ndarray | float) -> np.ndarray | float:
+        return 0.1 * np.sin(1.2 * x)
+
+    shots = np.arange(0.0, 8.0, period)
+    seen = truth(shots) + noise * random.standard_normal(shots.size)
+    R, q = noise**2, 0.05**2
+    x, P = np.array((seen[0], 0.0)), np.diag((R, 0.04))
+    states = [x]
+    for z in seen[1:]:
+        A = np.array(((1.0, period), (0.0, 1.0)))
+        Q = q * np.array(((period**3 / 3, period**2 / 2), (period**2 / 2, period)))
+        x, P = A @ x, A @ P @ A.T + Q
+        gain = P[:, 0] / (P[0, 0] + R)
+        x, P = x + gain * (z - x[0]), P - np.outer(gain, P[0])
+        states.append(x)
+    k = np.clip(((t - age) / period).astype(int), 0, len(shots) - 1)
+    last = seen[k]
+    ahead = np.array(
+        [states[i][0] + (now - shots[i]) * states[i][1] for i, now in zip(k, t, strict=True)]
+    )
+    late = t > 1.5
+    rms = {
+        name: 1e3 * float(np.sqrt(np.mean((guess - truth(t))[late] ** 2)))
+        for name, guess in (("stale", last), ("predicted", ahead))
+    }
+    holds(rms["predicted"] < 0.4 * rms["stale"], "prediction removes most of the error of age")
+    numbers(rms, ".2g")
+    _, ax = plt.subplots(figsize=(6.0, 3.0))
+    show = (t > 2.0) & (t < 5.0)
+    ax.plot(t[show], truth(t)[show], color="#999999", linewidth=5, label="where it is")
+    ax.plot(t[show], last[show], "C0--", label="last picture")
+    ax.plot(t[show], ahead[show], "C1-", label="predicted")
+    ax.set(xlabel="time [s]", ylabel="target [m]")
+    ax.legend(fontsize="small")
+    return figure(
+        "A target that sways by 10 cm; pictures at 10 Hz, each 100 ms old when it arrives.",
+        f"Position over three seconds: the last picture is a staircase that trails behind with "
+        f"{rms['stale']:.2g} mm RMS error; the prediction follows with {rms['predicted']:.2g} mm.",
+    )
+
+
+def check_yourself() -> HTML:
+    """The quiz of the chapter."""
+    return quiz(
+        Question(
+            "A program reports tags 1.25 times too far, always. What is the first thing to check?",
+            [
+                ("The focal length", "Possible too, but look at the size first."),
+                (
+                    "Whether the size includes the white border",
+                    "Yes: a square taken for larger appears farther, by the same factor.",
+                ),
+                ("The principal point", "That shifts the pose sideways."),
+            ],
+            1,
+        ),
+        Question(
+            "The hand camera sees the tag. Which pose of the camera belongs into "
+            r"\(T_{wt} = T_{wc} T_{ct}\)?",
+            [
+                ("The one when the result arrives", "The hand has moved since the exposure."),
+                ("The one at the exposure", "Yes: so keep a short history of joint angles."),
+            ],
+            1,
+        ),
+        Question(
+            "A target moves at 0.2 m/s and the picture is 50 ms old. How far is it from where it "
+            "was seen?",
+            [
+                ("1 mm", "0.2 m/s times 0.05 s is 0.01 m."),
+                ("10 mm", "Yes."),
+                ("It depends on the gain", "The gain does not know."),
+            ],
+            1,
+        ),
+    )

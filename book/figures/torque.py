@@ -1,0 +1,202 @@
+"""Chapter "Torque control"."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit import metrics
+from labkit.plotting import STYLES
+from labkit.replay.motion import JOINTS
+from solutions.joint_torque import AugmentedPD, ComputedTorque
+
+from .page import Question, figure, holds, number, numbers, quiz, replay, table, tracking
+from .velocity import circle_task
+
+SEED = 5
+KP, KD = 100.0, 20.0
+SPRING = (200.0, 200.0, 100.0, 100.0, 15.0, 15.0, 10.0)
+DAMPER = (30.0, 30.0, 15.0, 15.0, 2.0, 2.0, 1.5)
+REPORT_KP, REPORT_KD = 8.0, 1.5
+"""What the re-examined report used at its last joint, in N m/rad and N m s/rad."""
+
+
+def responses() -> HTML:
+    """Every joint starts 0.1 rad off: what the two laws make of it."""
+    q0 = lk.robot("left").ready
+    model = lk.Model("left")
+    laws = {
+        "computed torque": ComputedTorque(model, KP, KD),
+        "augmented PD": AugmentedPD(model, np.array(SPRING), np.array(DAMPER)),
+    }
+    _, axes = plt.subplots(1, 2, figsize=(6.2, 3.0), sharey=True)
+    spread = {}
+    for ax, (name, law) in zip(axes, laws.items(), strict=True):
+        with lk.Arm("left", lk.IDEAL, q0=q0 - 0.1) as arm:
+            log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)
+        e = metrics.joint_error(log) / 0.1
+        for k, joint in enumerate(JOINTS):
+            ax.plot(log.t, e[:, k], f"C{k}{STYLES[k % 4]}", label=joint, linewidth=1.4)
+        ax.set(xlabel="time [s]", title=name)
+        spread[name] = float(np.ptp(e, axis=1).max())
+    exact = (1.0 + 10.0 * log.t) * np.exp(-10.0 * log.t)
+    axes[0].plot(log.t, exact, color="#999999", linewidth=5, alpha=0.6, zorder=0)
+    axes[0].set_ylabel("error / initial error")
+    axes[1].legend(ncols=2, fontsize="small")
+    same, different = spread.values()
+    holds(same < 1e-6, "under computed torque all joints answer alike")
+    holds(different > 0.3, "under augmented PD they do not")
+    number("spread_apd", 100.0 * different, ".2g")
+    return figure(
+        "Seven joints, each 0.1 rad away, ideal arm at 1 kHz. Behind the left curves, in grey, the "
+        "solution of the linear error equation.",
+        "Left, computed torque: the seven curves lie on each other and on the critically damped "
+        f"solution. Right, augmented PD: they differ by {100 * different:.2g} % of the start.",
+    )
+
+
+def radius(inertia: float, kp: float, kd: float, period: float) -> float:
+    """Spectral radius of one joint whose torque is held between ticks."""
+    A = np.array([[1.0, period], [0.0, 1.0]])
+    B = np.array([[0.5 * period**2], [period]]) / inertia
+    return float(np.abs(np.linalg.eigvals(A - B @ np.array([[kp, kd]]))).max())
+
+
+def sampled() -> HTML:
+    """Which inertia a held torque can control."""
+    inertia = np.geomspace(3e-4, 1.0, 400)
+    bare = float(lk.Model("left", lk.IDEAL).mass_matrix(lk.robot("left").neutral)[6, 6])
+    real = float(lk.Model("left", lk.BAXTER).mass_matrix(lk.robot("left").neutral)[6, 6])
+    _, ax = plt.subplots(figsize=(6.0, 3.2))
+    for k, (rate, style) in enumerate(((200.0, "-"), (1000.0, "--"))):
+        curve = [radius(i, REPORT_KP, REPORT_KD, 1.0 / rate) for i in inertia]
+        ax.plot(inertia, curve, f"C{k}{style}", label=f"{rate:.0f} Hz")
+    ax.axhline(1.0, color="C5", linewidth=1.0)
+    for x, name in ((bare, "w2 without rotor"), (real, "w2 with rotor")):
+        ax.axvline(x, color="C5", linestyle=":")
+        ax.text(x * 1.08, 2.55, name, fontsize="small", rotation=90, va="top")
+    ax.set(xscale="log", xlabel="inertia of the joint [kg m²]", ylabel="spectral radius",
+           ylim=(0.6, 2.6))  # fmt: skip
+    ax.legend(loc="upper right")
+    values = {
+        "bare_200": radius(bare, REPORT_KP, REPORT_KD, 1 / 200),
+        "bare_1000": radius(bare, REPORT_KP, REPORT_KD, 1 / 1000),
+        "real_200": radius(real, REPORT_KP, REPORT_KD, 1 / 200),
+    }
+    holds(values["bare_200"] > 1.0 > values["real_200"], "the rotor makes the wrist controllable")
+    holds(values["bare_1000"] < 1.0, "at 1 kHz the bare wrist is stable")
+    numbers(values, ".3g")
+    number("bare", bare, ".1e")
+    number("real", real, ".2g")
+    return figure(
+        "A joint under kp = 8 N m/rad, kd = 1.5 N m s/rad, with the torque held between ticks. "
+        "Above one the error grows.",
+        f"Spectral radius against inertia, for 200 Hz and 1 kHz. At the bare wrist, {bare:.1e} "
+        f"kg m², it is {values['bare_200']:.3g} at 200 Hz; with its rotor, {real:.2g} kg m², it is "
+        f"{values['real_200']:.3g}.",
+    )
+
+
+@cache
+def weight_runs() -> dict[str, lk.Log]:
+    """Hold still on the arm that carries its own weight, with and without adding g again."""
+    q0 = lk.robot("left").ready
+    model = lk.Model("left", lk.BAXTER)
+    runs = {}
+    for name, added in (("g left to the arm", False), ("g added once more", True)):
+        law = AugmentedPD(model, np.array(SPRING), np.array(DAMPER), gravity=added)
+        with lk.Arm("left", lk.BAXTER, SEED, q0=q0) as arm:
+            runs[name] = lk.run(arm, lk.Hold(q0, 2.0), law)
+    return runs
+
+
+def weight() -> HTML:
+    """Gravity compensated twice lifts the arm."""
+    _, ax = plt.subplots(figsize=(6.0, 2.8))
+    ends = {}
+    for k, (name, log) in enumerate(weight_runs().items()):
+        e = 1e3 * metrics.tip_error(log)[:, 2]
+        ax.plot(log.t, -e, f"C{k}{STYLES[k]}", label=name)
+        ends[name] = -float(e[-1])
+    ax.set(xlabel="time [s]", ylabel="height gained [mm]")
+    ax.legend()
+    once, twice = ends.values()
+    holds(abs(once) < 5.0 < 50.0 < twice, "compensating gravity twice lifts the hand")
+    numbers({"once": once, "twice": twice}, ".2g")
+    return figure(
+        "Holding still on an arm that carries its own weight, as Baxter does.",
+        f"Height of the hand above its target over two seconds. Left to the arm, it stays within "
+        f"{abs(once):.2g} mm; with gravity added again it rises by {twice:.3g} mm.",
+    )
+
+
+@cache
+def circle_run() -> lk.Log:
+    """The circle by computed torque on the realistic arm."""
+    _, joints = circle_task()
+    law = ComputedTorque(lk.Model("left", lk.BAXTER), 225.0, 30.0, gravity=False)
+    with lk.Arm("left", lk.BAXTER, SEED, q0=lk.robot("left").ready) as arm:
+        return lk.run(arm, joints, law)
+
+
+def circle_replay() -> HTML:
+    """The same in 3-D."""
+    caption = "Computed torque on the circle, realistic arm, 200 Hz."
+    return replay(circle_run(), "A circle by computed torque", caption, label="computed torque")
+
+
+def circle_tracking() -> HTML:
+    """The same as curves, with its number."""
+    number("circle_rms", metrics.summary(circle_run()).rms_mm, ".2g")
+    return tracking(circle_run(), "Computed torque on the circle.")
+
+
+def speeds() -> HTML:
+    """Larger gains settle faster, but only up to a point."""
+    rows = []
+    for kp in (1.0, 4.0, 16.0, 64.0, 256.0):
+        slowest = float(-np.roots((1.0, 4.0, kp)).real.max())
+        rows.append((f"{kp:g}", f"{slowest:.3g}"))
+    holds(rows[1][1] == rows[-1][1] == "2", "beyond critical damping the rate stays at Kd / 2")
+    return table(("Kp [1/s²]", "decay rate [1/s]"), rows,
+                 "The slowest part of ë + 4 ė + Kp e = 0")  # fmt: skip
+
+
+def check_yourself() -> HTML:
+    """The quiz of the chapter."""
+    return quiz(
+        Question(
+            "In which law do the gains have the unit N m/rad?",
+            [
+                ("Computed torque", "There they stand inside M and are 1/s²."),
+                ("Augmented PD", "Yes: a spring at each joint."),
+                ("Both", "Inside M the gain is an acceleration for an angle."),
+            ],
+            1,
+        ),
+        Question(
+            "Baxter's arm adds its gravity compensation by itself. Your controller adds g(q) too, "
+            "and the arm drifts up. Someone multiplies g by 0.05 and is content. What was that?",
+            [
+                ("A calibration of the model", "The model's g is right; it was added twice."),
+                ("A step towards the right factor, 0", "Yes: on this arm the factor is zero."),
+                ("A better estimate of the gravity constant", "9.81 is not in doubt."),
+            ],
+            1,
+        ),
+        Question(
+            r"Which product does the augmented law need, and why?",
+            [
+                (r"\(C\,\dot q\)", "That belongs to computed torque, which cancels what is there."),
+                (
+                    r"\(C\,\dot q_d\)",
+                    r"Yes: then \(C\dot e\) remains and \(\dot M - 2C\) cancels it in the energy.",
+                ),
+            ],
+            1,
+        ),
+    )

@@ -1,0 +1,246 @@
+"""Chapter "Velocity control"."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import control
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit import metrics
+from labkit.plotting import STYLES
+from labkit.replay import demo_html
+from solutions.joint_velocity import JointVelocityPD
+from solutions.workspace_velocity import WorkspaceVelocityPD
+
+from .gains import explorer as recorded
+from .page import Question, figure, holds, number, numbers, quiz, replay, tracking
+
+SEED = 3
+OFFSET = 0.1
+DELAY = 0.004 + 0.5 / 100.0 + 0.5 / 200.0
+"""What the loop waits on average: the state's age, half its period, half a control period."""
+
+
+@cache
+def step_run(
+    kp: float, kd: float = 0.0, plant: lk.Plant = lk.IDEAL, seconds: float = 2.0
+) -> lk.Log:
+    """Joint s0 starts a tenth of a radian away from where it should stay."""
+    q0 = lk.robot("left").ready
+    goal = q0 + OFFSET * np.eye(7)[0]
+    with lk.Arm("left", plant, SEED, q0=q0) as arm:
+        return lk.run(arm, lk.Hold(goal, seconds), JointVelocityPD(kp, kd))
+
+
+def _error(log: lk.Log) -> np.ndarray:
+    return metrics.joint_error(log)[:, 0]
+
+
+def damping() -> HTML:
+    """The D term slows a velocity-commanded joint, and beyond one it breaks the loop."""
+    _, ax = plt.subplots(figsize=(6.0, 3.4))
+    told = []
+    for k, kd in enumerate((0.0, 0.5, 0.9)):
+        log = step_run(2.0, kd)
+        e = _error(log)
+        rate = -np.log(e[200] / e[0]) / log.t[200]
+        holds(abs(rate - 2.0 / (1.0 + kd)) < 0.02, "the error decays at Kp / (1 + Kd)")
+        ax.plot(log.t, e, f"C{k}{STYLES[k]}", label=f"Kd = {kd:g}")
+        told.append(f"Kd = {kd:g}: {rate:.2f} per second")
+        number(f"rate_{k}", rate, ".2f")
+    wild = step_run(2.0, 1.1)
+    e = _error(wild)
+    ax.plot(wild.t, e, "C4:", linewidth=1.2, label="Kd = 1.1")
+    swing = np.abs(np.diff(wild.command[:, 0]))[100:].mean()
+    calm = np.abs(np.diff(step_run(2.0, 0.9).command[:, 0]))[100:].mean()
+    holds(swing > 50.0 * calm, "with Kd above one the command hammers from tick to tick")
+    ax.set(xlabel="time [s]", ylabel="error of s0 [rad]")
+    ax.legend()
+    return figure(
+        "A joint that starts 0.1 rad away, Kp = 2 1/s, ideal arm, 200 Hz. More Kd means slower, "
+        "and above 1 the command jumps from limit to limit.",
+        f"Error of joint s0 over two seconds. Measured decay: {'; '.join(told)}. With Kd = 1.1 the "
+        f"error leaves the exponential and the command changes by {swing:.2g} rad/s every tick.",
+    )
+
+
+def gains() -> HTML:
+    """How much gain lag and delay allow: measured overshoot beside the loop's phase margin."""
+    kps = np.array((1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 14.0, 18.0, 24.0, 30.0))
+    over = np.array([max(0.0, -_error(step_run(kp, 0.0, lk.BAXTER)).min() / OFFSET) for kp in kps])
+    margin = np.array([phase_margin(kp) for kp in kps])
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.2, 2.9))
+    left.plot(kps, 100.0 * over, "C0o-", markersize=4)
+    left.set(xlabel="Kp [1/s]", ylabel="overshoot [%]")
+    right.plot(kps, margin, "C1s--", markersize=4)
+    right.axhline(60.0, color="C5", linestyle=":")
+    right.set(xlabel="Kp [1/s]", ylabel="phase margin [degrees]", ylim=(0, 95))
+    first = float(kps[np.argmax(over > 0.05)])
+    holds(over[kps <= 8.0].max() < 0.05, "up to Kp = 8 1/s there is next to no overshoot")
+    holds(over[-1] > 0.15, "at Kp = 30 1/s the overshoot is large")
+    numbers({"kp_first": first, "over_last": 100.0 * over[-1], "margin_5": phase_margin(5.0)})
+    return figure(
+        "The realistic arm: overshoot of a 0.1 rad step, measured, and phase margin of the loop, "
+        "computed from its lag and delay.",
+        f"Left: overshoot stays near zero up to Kp = 8 and reaches {100 * over[-1]:.0f} % at "
+        f"Kp = 30. Right: the phase margin falls from {margin[0]:.0f} to {margin[-1]:.0f} degrees; "
+        "the dotted line marks 60 degrees.",
+    )
+
+
+def phase_margin(kp: float) -> float:
+    """Of the loop Kp / s with the realistic arm's lag and delay, in [degrees]."""
+    s = control.tf("s")
+    loop = kp / (s * (lk.BAXTER.velocity_lag * s + 1.0))
+    _, margin, _, crossing = control.margin(loop)
+    return float(margin - np.degrees(crossing * DELAY))
+
+
+def rotation_demo() -> HTML:
+    """The live demo of orientation errors."""
+    caption = "Live: two orientations, and two ideas of the error between them."
+    return HTML(demo_html("rotation", caption=caption))
+
+
+def euler() -> HTML:
+    """Feedback of subtracted Euler angles, at the pose where the gripper points down."""
+    model = lk.Model("left")
+    q0 = model.robot.ready
+    T_wd = model.pose(q0)
+    turn = lk.se3.rotation(np.radians(5.0) * np.array((1.0, 0.0, 0.0)))
+    start = model.inverse_kinematics(lk.se3.pose(turn @ T_wd[:3, :3], T_wd[:3, 3]), q0)
+    good = WorkspaceVelocityPD(model, Kp=1.0)
+
+    def subtracted(state: lk.State, target: lk.PoseSample) -> lk.JointVelocity:
+        J, T = model.tip_jacobian(state.q), model.pose(state.q)
+        e = np.concatenate(
+            [target.pose[:3, 3] - T[:3, 3], _rpy(target.pose[:3, :3]) - _rpy(T[:3, :3])]
+        )
+        return lk.JointVelocity(np.linalg.pinv(J) @ (1.0 * e))
+
+    angles = {}
+    for name, law in (("logarithm", good), ("Euler angles subtracted", subtracted)):
+        with lk.Arm("left", lk.IDEAL, q0=start) as arm:
+            log = lk.run(arm, lk.Hold(T_wd, 3.0), law)
+        angles[name] = np.degrees(np.linalg.norm(metrics.tip_error(log)[:, 3:], axis=1))
+    _, ax = plt.subplots(figsize=(6.0, 3.0))
+    for k, (name, angle) in enumerate(angles.items()):
+        ax.plot(log.t, angle, f"C{k}{STYLES[k]}", label=name)
+    ax.set(xlabel="time [s]", ylabel="orientation error [degrees]", ylim=(0, None))
+    ax.legend()
+    right, wrong = (a[-1] for a in angles.values())
+    holds(right < 0.5 < 8.0 < wrong, "the logarithm converges, subtraction drives the hand away")
+    numbers({"log_end": right, "euler_end": wrong}, ".2g")
+    return figure(
+        "The hand points down and starts 5 degrees off about the world's x axis. Gain 1 1/s, ideal "
+        "arm.",
+        f"Orientation error over three seconds: with the logarithm it falls from 5 to {right:.2g} "
+        f"degrees; with subtracted Euler angles it ends at {wrong:.2g} degrees.",
+    )
+
+
+def _rpy(R: np.ndarray) -> np.ndarray:
+    """Roll, pitch and yaw about fixed axes."""
+    return np.array(
+        [
+            np.arctan2(R[2, 1], R[2, 2]),
+            np.arctan2(-R[2, 0], np.hypot(R[2, 1], R[2, 2])),
+            np.arctan2(R[1, 0], R[0, 0]),
+        ]
+    )
+
+
+@cache
+def circle_task() -> tuple[lk.Trajectory, lk.Trajectory]:
+    """A circle of 20 cm in 5 s, as poses and as joint angles."""
+    model = lk.Model("left")
+    T_wt = model.pose(model.robot.ready)
+    start = T_wt[:3, 3]
+    circle = lk.PosePath(lk.Circle(start, start + np.array((0.0, -0.1, 0.0))), T_wt[:3, :3])
+    target = lk.Trajectory(circle, lk.Quintic(5.0))
+    return target, model.joint_trajectory(target, model.robot.ready)
+
+
+@cache
+def circle_runs() -> dict[str, lk.Log]:
+    """The circle by both velocity controllers, from the same seed."""
+    poses, joints = circle_task()
+    runs = {}
+    model = lk.Model("left", lk.BAXTER)
+    for name, target, law in (
+        ("workspace", poses, WorkspaceVelocityPD(model, Kp=5.0)),
+        ("joint", joints, JointVelocityPD(5.0)),
+    ):
+        with lk.Arm("left", lk.BAXTER, SEED, q0=lk.robot("left").ready) as arm:
+            runs[name] = lk.run(arm, target, law)
+    return runs
+
+
+def circle_replay() -> HTML:
+    """Both on the circle, in 3-D."""
+    runs = circle_runs()
+    found = {name: metrics.summary(log).rms_mm for name, log in runs.items()}
+    holds(max(found.values()) < 6.0, "both velocity controllers keep the circle within 6 mm RMS")
+    numbers({f"circle_{name}": value for name, value in found.items()}, ".2g")
+    return replay(
+        runs["workspace"],
+        "A circle by the workspace velocity PD",
+        "The workspace velocity PD on a circle of 20 cm; see-through: the joint velocity PD.",
+        label="workspace PD",
+        ghosts={"joint PD": runs["joint"]},
+    )
+
+
+def circle_tracking() -> HTML:
+    """The workspace controller's circle, as curves."""
+    return tracking(circle_runs()["workspace"], "The workspace velocity PD on the circle.")
+
+
+def check_yourself() -> HTML:
+    """The quiz of the chapter."""
+    return quiz(
+        Question(
+            "With feed-forward and no disturbance a controller tracks perfectly. Someone has the "
+            "sign of e wrong. When does it show?",
+            [
+                ("At once", "The error is zero, so its sign is nowhere to be seen."),
+                (
+                    "As soon as anything pushes the arm off, and then the error grows",
+                    "Yes. Test a controller from an offset and with the feed-forward taken away.",
+                ),
+                ("Never", "It does: the smallest error now feeds on itself."),
+            ],
+            1,
+        ),
+        Question(
+            "Kp = 3 1/s and Kd = 2 on a joint that obeys its commanded speed at once, in "
+            "continuous time. How fast does the error decay?",
+            [
+                ("3 per second", "That is Kd = 0."),
+                ("1 per second", "Yes: Kp / (1 + Kd)."),
+                ("9 per second", "Kp (1 + Kd) would be: Kd acts the other way."),
+            ],
+            1,
+        ),
+        Question(
+            r"Why is \(I - J^T J\) no projector on the null space?",
+            [
+                ("It has the wrong size", "It is 7 by 7, as it should be."),
+                (
+                    r"\(J(I - J^T J) = (I - JJ^T)J\) is not zero",
+                    r"Yes. With \(J^+\), \(J J^+ = I\) makes it zero.",
+                ),
+                ("It is one", r"Multiply by \(J\): zero only if the rows are orthonormal."),
+            ],
+            1,
+        ),
+    )
+
+
+def explorer() -> HTML:
+    """The gain explorer."""
+    return recorded("../_static/runs/")

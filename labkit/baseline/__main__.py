@@ -1,0 +1,45 @@
+"""Record the built-in way for those who have no planner: ``python -m labkit.baseline``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .. import recorded, tasks
+from ..arm import Arm
+from ..metrics import summary
+from ..motion import Chain, Hold
+from ..plant import BAXTER
+from ..run import Log, run
+from ..scene import Table
+from ..tasks import Task
+from . import RATE, PlanningScene, PositionServer, VelocityServer, along, plan, quickest
+
+FOLDER = Path(__file__).parents[1] / "data" / "recorded"
+
+
+def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) -> tuple[Log, Log]:
+    """The built-in way from neutral through a task: the log of the approach, and of the task."""
+    with Arm(task.side, BAXTER, seed) as arm:
+        scene = PlanningScene(task.side, (Table(),))
+        approach = quickest(plan(scene, arm.robot.neutral, task.q0, seed=seed))
+        there = Chain([approach, Hold(task.q0, 1.0)])
+        first = run(arm, there, server, rate=RATE)
+        return first, run(arm, along(scene, arm.model, task.target, task.q0), server, rate=RATE)
+
+
+def main() -> None:
+    """Write the files and say what they hold."""
+    FOLDER.mkdir(exist_ok=True)
+    position, velocity = PositionServer(), VelocityServer()
+    logs = {}
+    for task in (tasks.line(), tasks.circle(), tasks.square()):
+        logs["baseline_approach"], logs[f"baseline_{task.name}"] = drive(task, position)
+    logs["baseline_line_velocity"] = drive(tasks.line(), velocity)[1]
+    for name, log in logs.items():
+        path = FOLDER / f"{name}.npz"
+        recorded.save(log, path)
+        print(f"{path.name}: {path.stat().st_size / 1024:.0f} kB, {log}, {summary(log)}")
+
+
+if __name__ == "__main__":
+    main()

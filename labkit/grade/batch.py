@@ -1,0 +1,159 @@
+"""A batch: grade a class, resume where it stopped, say what the class has in common."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..errors import LabkitError
+from .checker import hashes
+from .course import Course
+from .limits import Limits, slowness
+from .pool import Done, Job, locally, through_dask
+from .results import Bundle, Result, Results, digest
+from .submission import Submission
+
+LOUD = 0.3
+"""Above this share of a class that fails one test, the run says so: is the test to blame?"""
+
+
+@dataclass(frozen=True)
+class How:
+    """How to grade.
+
+    Attributes:
+        jobs: Workers at once.
+        isolated: False only where somebody asked for it in so many words.
+        dask: Address of a scheduler, or None for this machine.
+        shard: (i, n): the i-th of n parts of the class, from 1.
+        again: Whether results that are there already are made anew.
+        limits: What a submission may use, on a quick machine.
+    """
+
+    jobs: int = 1
+    isolated: bool = True
+    dask: str | None = None
+    shard: tuple[int, int] = (1, 1)
+    again: bool = False
+    limits: Limits = field(default_factory=Limits)
+
+
+def workers() -> int:
+    """How many workers fit this machine."""
+    return max(1, len(os.sched_getaffinity(0)))
+
+
+def in_shard(student: str, shard: tuple[int, int]) -> bool:
+    """Whether a student is in this part of the class; the same wherever it is asked."""
+    return int(digest(student.encode())[:8], 16) % shard[1] == shard[0] - 1
+
+
+def grade_class(
+    course: Course, assignment: str, students: Sequence[str], how: How | None = None
+) -> Iterator[tuple[str, Result | LabkitError, bool]]:
+    """Grade submissions, each into a result file of its own.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        students: Whose.
+        how: In which way.
+
+    Yields:
+        Student, result or what failed, and whether it was there already.
+
+    Raises:
+        LabkitError: The assignment was not released, or another run is under way.
+    """
+    how = how or How()
+    bundle, results = Bundle.of(course, assignment), Results(course, assignment)
+    jobs: list[Job] = []
+    with _alone(results.folder, how.shard):
+        for student in students:
+            if not in_shard(student, how.shard):
+                continue
+            submission = Submission.of(course, assignment, student)
+            before = None if how.again else _still_good(results, submission, bundle, how)
+            if before is not None:
+                yield student, before, True
+                continue
+            jobs.append(job(course, bundle, submission, how.limits))
+        done: Iterator[Done] = (
+            through_dask(jobs, how.dask, isolated=how.isolated)
+            if how.dask
+            else locally(jobs, how.jobs, isolated=how.isolated)
+        )
+        for asked, text in done:
+            if isinstance(text, LabkitError):
+                yield asked["student"], text, False
+                continue
+            result = Result.read(text)
+            results.keep(result)
+            yield result.student, result, False
+
+
+def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) -> Job:
+    """What a worker is told of a submission; slow machines give it more time."""
+    return {
+        "student": submission.student,
+        "assignment": submission.assignment,
+        "folder": str(submission.folder),
+        "bundle": str(course.bundle / f"{submission.assignment}.json"),
+        "hash": bundle.data["hash"],
+        "limits": limits.scaled(slowness()).data(),
+    }
+
+
+def common_failures(results: Sequence[Result]) -> Iterator[str]:
+    """Tests that so many fail that the test, or the lecture, may be to blame; a sentence each."""
+    graded = [r for r in results if not r.rejected]
+    failed: Counter[tuple[str, str]] = Counter()
+    tried: Counter[str] = Counter()
+    for result in graded:
+        for question in result.questions:
+            if question["outcome"] == "not attempted":
+                continue
+            tried[question["name"]] += 1
+            for one in question["tests"]:
+                failed[question["name"], one["name"]] += one["outcome"] != "right"
+    for (name, test), count in failed.most_common():
+        if count > LOUD * tried[name] and tried[name] >= 5:
+            yield (
+                f"{count} of {tried[name]} who tried {name} fail the test {test!r}: "
+                "is it the test, the text or the lecture?"
+            )
+
+
+def _still_good(
+    results: Results, submission: Submission, bundle: Bundle, how: How
+) -> Result | None:
+    """A result that came from these very contents."""
+    before = results.get(submission.student)
+    if before is None or (how.isolated and before.isolation.startswith("none")):
+        return None
+    data, _, _ = submission.read(how.limits.notebook)
+    return before if before.hashes == hashes(data, bundle) else None
+
+
+@contextmanager
+def _alone(folder: Path, shard: tuple[int, int]) -> Iterator[None]:
+    """Keep a second run on the same part of the class away."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with open(folder / f".running-{shard[0]}-of-{shard[1]}", "w") as file:
+        for attempt in range(20):
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except OSError:
+                if attempt == 19:
+                    raise LabkitError(
+                        f"another run is grading {folder.name}; wait for it to end"
+                    ) from None
+                time.sleep(0.1)
+        yield

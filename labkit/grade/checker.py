@@ -1,0 +1,221 @@
+"""The checker: owns what is expected, asks a sandboxed student for answers, reaches the verdicts.
+
+It shares no process with the student's code; what comes back is plain data, read with limits.
+"""
+
+from __future__ import annotations
+
+import builtins
+import re
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from .. import errors
+from ..check.codec import decode_answer, encode
+from ..check.mark import Failed, Outcome, TestResult, Tried, Verdict, mark, try_public
+from ..check.question import Question, read_question
+from .inside.wire import Gone, TooLate, TooMuch
+from .limits import Limits
+from .plan import Plan, plan
+from .results import Bundle, Result, digest, engine, versions
+from .sandbox import Sandbox
+from .seat import Seat
+
+_LABKIT = {name for name, thing in vars(errors).items() if isinstance(thing, type)} | {"Withheld"}
+_KNOWN = (
+    _LABKIT
+    | {"LinAlgError"}
+    | {
+        name
+        for name, thing in vars(builtins).items()
+        if isinstance(thing, type) and issubclass(thing, BaseException)
+    }
+)
+MOST_LOST = 3
+"""After so many calls of one question that died or hung, it is not asked any more."""
+
+
+def grade(
+    data: bytes, student: str, bundle: Bundle, sandbox: Sandbox, limits: Limits, note: str = ""
+) -> Result:
+    """Grade one notebook.
+
+    Args:
+        data: The file.
+        student: Whose.
+        bundle: What it is held against.
+        sandbox: Where its code runs.
+        limits: What it may use.
+        note: What was unusual about the file.
+
+    Returns:
+        The result, whatever the notebook does.
+    """
+    began = time.perf_counter()
+    cells = parse(data, sandbox, limits)
+    if isinstance(cells, str):
+        return rejection(cells, student, bundle, sandbox.level, data)
+    todo = plan(cells, bundle.data["cells"])
+    questions = [read_question(q) for q in bundle.data["questions"]]
+    with Seat(sandbox, todo, limits) as seat:
+        tried = [_public(question, seat) for question in questions]
+        verdicts = [
+            _guarded(question, seat, before)
+            for question, before in zip(questions, tried, strict=True)
+        ]
+        failed = tuple(seat.failed())
+        spent = seat.spent
+    return Result(
+        bundle.data["assignment"],
+        student,
+        score=round(sum(v.earned for v in verdicts), 2),
+        points=bundle.points,
+        questions=tuple(_verdict(v, todo) for v in verdicts),
+        notes=(*((note,) if note else ()), *todo.notes.get("", ())),
+        cells=failed,
+        own=todo.own,
+        isolation=sandbox.level,
+        versions=versions(),
+        hashes=hashes(data, bundle),
+        seed=bundle.data["seed"],
+        seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
+    )
+
+
+def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = b"") -> Result:
+    """The result of a submission that cannot be graded."""
+    return Result(
+        bundle.data["assignment"],
+        student,
+        0.0,
+        bundle.points,
+        rejected=clean(why),
+        isolation=level,
+        versions=versions(),
+        hashes=hashes(data, bundle),
+        seed=bundle.data["seed"],
+    )
+
+
+def hashes(data: bytes, bundle: Bundle) -> dict[str, str]:
+    """What a result is known by."""
+    return {"submission": digest(data), "bundle": bundle.data["hash"], "engine": engine()}
+
+
+def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]] | str:
+    """The cells of a notebook, read in a process of its own; or why there are none."""
+    try:
+        with sandbox.enter("parse", limits, size=len(data)) as inside:
+            inside.line.end.settimeout(30.0)
+            inside.line.end.sendall(data)
+            found = inside.line.read(30.0, 2**25)
+    except (OSError, Gone, TooLate, TooMuch):
+        return "the file cannot be read within the limits of time and memory"
+    if "cells" not in found:
+        return str(found.get("rejected", "the file cannot be read"))
+    return list(found["cells"])
+
+
+def clean(text: str, most: int = 500) -> str:
+    """Somebody else's text as one short line without control characters."""
+    return re.sub(
+        r"\s+", " ", re.sub(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\ud800-\udfff]", " ", text)
+    )[:most].strip()
+
+
+class Ask:
+    """The student's function as one that lives here: it asks for each answer.
+
+    Raises `Failed` when called, where the answer never came.
+    """
+
+    def __init__(self, question: Question, seat: Seat) -> None:
+        self.question, self.seat = question, seat
+        self.until = time.monotonic() + seat.limits.question
+        self.lost = 0
+        self._constant: Mapping[str, Any] | None = None
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """The answer to one call."""
+        if self.lost >= MOST_LOST or self.seat.over or time.monotonic() > self.until:
+            raise Failed("TimeoutError", "TimeoutError: too much time was spent already")
+        again = self._constant is not None and kwargs.keys() == self._constant.keys()
+        again = again and all(kwargs[key] is self._constant[key] for key in kwargs)  # type: ignore[index]
+        try:
+            if self.seat.open(self.question):
+                again = False
+            message = {
+                "args": [encode(x) for x in args],
+                "kwargs": None if again else {key: encode(x) for key, x in kwargs.items()},
+            }
+            self._constant = dict(kwargs)
+            reply = self.seat.ask(message)
+        except TooLate:
+            self.lost += 1
+            limit = self.seat.limits.call
+            raise Failed(
+                "TimeoutError", f"TimeoutError: it did not come back within {limit:g} s"
+            ) from None
+        except TooMuch as much:
+            self.lost += 1
+            raise Failed("TypeMismatch", str(much)) from None
+        except Gone:
+            self.lost += 1
+            raise Failed("SystemExit", "SystemExit: it ended its own process") from None
+        if "is" in reply:
+            return decode_answer(reply["is"])
+        kind, says = str(reply.get("raised")), clean(str(reply.get("says", "")))
+        if kind == "TimeUp":
+            self.lost += 1
+            kind = "TimeoutError"
+        kind = kind if kind in _KNOWN else "Exception"  # a name of its own could carry a secret out
+        raise Failed(kind, says if kind in _LABKIT else f"{kind}: {says}")
+
+
+def _public(question: Question, seat: Seat) -> Tried:
+    """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
+    try:
+        return try_public(question, Ask(question, seat))
+    except Exception:
+        return Tried(tuple(_lost(question)), {})
+    finally:
+        seat.close()
+
+
+def _guarded(question: Question, seat: Seat, tried: Tried) -> Verdict:
+    """The verdict, even where an answer is so odd that comparing it fails."""
+    try:
+        return mark(question, Ask(question, seat), tried)
+    except Exception:
+        tests = tuple(_lost(question))
+        return Verdict(question.name, Outcome.ERROR, 0.0, question.points, tests)
+    finally:
+        seat.close()
+
+
+def _lost(question: Question) -> list[TestResult]:
+    says = "the answer cannot be compared with anything"
+    return [TestResult(t.name, t.weight, Outcome.ERROR, says) for t in question.tests]
+
+
+def _verdict(verdict: Verdict, todo: Plan) -> dict[str, Any]:
+    return {
+        "name": verdict.name,
+        "outcome": verdict.outcome.value,
+        "earned": verdict.earned,
+        "points": verdict.points,
+        "tests": [
+            {
+                "name": t.name,
+                "weight": t.weight,
+                "outcome": t.outcome.value,
+                "says": clean(t.says),
+                "hidden": t.hidden,
+            }
+            for t in verdict.tests
+        ],
+        "mistake": verdict.mistake and {"name": verdict.mistake.name, "says": verdict.mistake.says},
+        "notes": [clean(note) for note in todo.notes.get(verdict.name, ())],
+        "source": todo.source(verdict.name),
+    }

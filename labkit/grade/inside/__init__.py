@@ -1,0 +1,1 @@
+"""What runs inside the sandbox: nothing in here knows an answer or a hidden case."""

@@ -1,0 +1,230 @@
+"""A submission's own process: runs the cells, then a fork of it answers for each question.
+
+Everything in here belongs to the student: whatever he does to it costs nobody else anything.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import builtins
+import inspect
+import io
+import linecache
+import math
+import os
+import resource
+import signal
+import sys
+import time
+import traceback
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+from .cells import plain
+from .wire import Gone, Line
+
+SAYS = 400  # characters of an exception's message that travel
+PATIENCE = 3.0  # waiting is cheap, and a busy machine lets everybody wait
+
+
+class TimeUp(BaseException):
+    """A cell or a call took too long."""
+
+
+class Notebook:
+    """The student's names, and the functions that answer for the questions."""
+
+    def __init__(self, codec: Any, most_output: int) -> None:
+        module = type(sys)("__main__")
+        sys.modules["__main__"] = module
+        self.names: dict[str, Any] = vars(module)
+        self.names.update(__builtins__=__builtins__, In=[""], Out={})
+        self.functions: dict[str, Any] = {}
+        self.codec, self.most_output, self.output = codec, most_output, 0
+        shell = getattr(builtins, "get_ipython", None)
+        if shell is not None:
+            shell().user_ns = self.names
+
+    def run(self, number: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
+        """Run one cell, and keep the functions that it is to define."""
+        out = _Capped(min(20_000, max(0, self.most_output - self.output)))
+        began, error, kind = time.perf_counter(), "", ""
+        with _Streams(out):
+            try:
+                with _Alarm(seconds):
+                    self._execute(f"<cell {number}>", source)
+            except TimeUp:
+                kind, error = "TimeUp", f"it was stopped after {seconds:g} s"
+            except BaseException as raised:
+                kind, error = type(raised).__name__, _sentence(raised)
+        for name in answers:
+            if name in self.names:
+                self.functions[name] = self.names[name]
+        self.output += out.size
+        spent = time.perf_counter() - began
+        return {"kind": kind, "error": error, "output": out.getvalue(), "seconds": spent}
+
+    def _execute(self, name: str, source: str) -> None:
+        text = plain(source)
+        linecache.cache[name] = (len(text), None, text.splitlines(True), name)
+        code = compile(text, name, "exec", flags=0x2000)  # await may stand at the top level
+        found = eval(code, self.names)
+        if inspect.iscoroutine(found):
+            asyncio.run(found)
+
+    def answer(self, line: Line, name: str, seconds: float) -> None:
+        """Answer one call after another, until told to stop."""
+        kwargs: dict[str, Any] = {}
+        decode, encode = self.codec.decode, self.codec.encode
+        line.send({"ready": name})
+        while True:
+            asked = line.read()
+            if "args" not in asked:
+                return
+            with _Streams(_Capped(0)):
+                try:
+                    args = [decode(x) for x in asked["args"]]
+                    if asked["kwargs"] is not None:
+                        kwargs = {key: decode(x) for key, x in asked["kwargs"].items()}
+                    reply = self._reply(encode, name, args, kwargs, seconds)
+                except BaseException as raised:
+                    reply = {"raised": type(raised).__name__, "says": _sentence(raised)}
+            line.send(reply)
+
+    def _reply(
+        self,
+        encode: Callable[[Any], Any],
+        name: str,
+        args: list[Any],
+        kwargs: dict[str, Any],
+        seconds: float,
+    ) -> dict[str, Any]:
+        if name not in self.functions:
+            raise NameError(f"the notebook defines no {name}")
+        try:
+            with _Alarm(seconds):
+                answer = self.functions[name](*args, **kwargs)
+                try:
+                    return {"is": encode(answer)}
+                except TypeError:
+                    return {"is": encode(_as_data(answer))}
+        except TimeUp:
+            return {"raised": "TimeUp", "says": f"it did not come back within {seconds:g} s"}
+
+
+def serve(line: Line, codec: Any, withhold: Callable[..., None], limits: dict[str, Any]) -> None:
+    """Do what the checker asks, until it closes its end."""
+    notebook = Notebook(codec, limits["output"])
+    signal.signal(signal.SIGALRM, _time_up)
+    signal.signal(signal.SIGPROF, _time_up)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    while True:
+        try:
+            asked = line.read()
+        except Gone:
+            return
+        if "cell" in asked:
+            result = notebook.run(asked["cell"], asked["source"], asked["answers"], limits["cell"])
+            line.send({"ran": asked["cell"]} | result)
+        if "question" not in asked:
+            continue
+        child = os.fork()
+        if child == 0:
+            with suppress(BaseException):
+                limit = int(_cpu() + limits["question"]) + 1
+                with suppress(ValueError, OSError):
+                    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+                withhold(asked["withheld"], asked["question"], notebook.names)
+                notebook.answer(line, asked["question"], limits["call"])
+            os._exit(0)
+        _, status = os.waitpid(child, 0)
+        line.send({"over": os.waitstatus_to_exitcode(status)})
+
+
+def _as_data(answer: Any) -> Any:
+    """Anything that behaves as an array or as a sequence, as one."""
+    import numpy as np
+
+    if hasattr(answer, "__array__"):
+        return np.asarray(answer)
+    if hasattr(answer, "__float__"):
+        return float(answer)
+    return list(answer)
+
+
+def _sentence(error: BaseException) -> str:
+    try:
+        text = str(error)[:SAYS]
+    except BaseException:
+        text = "(its message cannot be shown)"
+    if isinstance(error, SyntaxError):
+        text = traceback.format_exception_only(error)[-1].partition(": ")[2].strip()[:SAYS]
+    return text
+
+
+def _time_up(number: int, frame: Any) -> None:
+    raise TimeUp
+
+
+def _stop_after(seconds: float | None) -> None:
+    """Let the kernel end this process after that much more computing."""
+    _, hard = resource.getrlimit(resource.RLIMIT_CPU)
+    soft = hard if seconds is None else min(hard, math.ceil(_cpu() + seconds))
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_CPU, (soft, hard))
+
+
+def _cpu() -> float:
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+class _Alarm:
+    """Raises `TimeUp` after some seconds of computing, and again and again, should it be caught.
+
+    Who only waits is stopped after `PATIENCE` times as long; who computes where no exception can
+    reach it, by the kernel, soon after.
+    """
+
+    def __init__(self, seconds: float) -> None:
+        self.seconds = seconds
+
+    def __enter__(self) -> None:
+        signal.setitimer(signal.ITIMER_PROF, self.seconds, 0.5)
+        signal.setitimer(signal.ITIMER_REAL, self.seconds * PATIENCE, 0.5)
+        _stop_after(self.seconds + 1.0)
+
+    def __exit__(self, *_: object) -> None:
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        _stop_after(None)
+
+
+class _Capped(io.StringIO):
+    """Text that stops growing."""
+
+    def __init__(self, most: int) -> None:
+        super().__init__()
+        self.most, self.size = most, 0
+
+    def write(self, text: str) -> int:
+        room = self.most - self.size
+        if room > 0:
+            self.size += super().write(text[:room])
+        return len(text)
+
+
+class _Streams:
+    """Python's own streams and warnings go into a buffer while the block runs."""
+
+    def __init__(self, out: _Capped) -> None:
+        self.out = out
+
+    def __enter__(self) -> None:
+        sys.stdout = sys.stderr = self.out
+        warnings.simplefilter("ignore")
+
+    def __exit__(self, *_: object) -> None:
+        sys.stdout = sys.stderr = sys.__stdout__

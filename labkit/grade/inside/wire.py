@@ -1,0 +1,92 @@
+"""Lines of JSON over a socket, with a limit on their length and on the time they take."""
+
+from __future__ import annotations
+
+import json
+import select
+import socket
+import time
+from typing import Any
+
+MOST = 8 * 2**20
+"""The longest line, in bytes."""
+
+
+class Gone(Exception):
+    """The other side closed its end."""
+
+
+class TooLate(Exception):
+    """Nothing came in time."""
+
+
+class TooMuch(Exception):
+    """The other side sent more than fits, or no JSON."""
+
+
+class Line:
+    """One end of a conversation in lines of JSON.
+
+    It trusts nothing that comes in: what is too long, too late, or no JSON object ends in one of
+    the exceptions above.
+    """
+
+    def __init__(self, end: socket.socket) -> None:
+        self.end = end
+        self._waiting = bytearray()
+
+    def send(self, message: dict[str, Any], seconds: float = 30.0) -> None:
+        """Write one message.
+
+        Raises:
+            Gone: Nobody reads, or nobody has read for that long.
+        """
+        self.end.settimeout(seconds)
+        try:
+            self.end.sendall(json.dumps(message, separators=(",", ":")).encode() + b"\n")
+        except OSError as error:
+            raise Gone(str(error)) from None
+
+    def read(self, seconds: float | None = None, most: int = MOST) -> dict[str, Any]:
+        """Read one message.
+
+        Raises:
+            Gone: There is no other side any more.
+            TooLate: It took longer than ``seconds``.
+            TooMuch: It is longer than ``most`` bytes, or no JSON object.
+        """
+        data = self.read_line(seconds, most)
+        try:
+            message = json.loads(data)
+        except (ValueError, RecursionError):
+            raise TooMuch("what came back is not JSON") from None
+        if not isinstance(message, dict):
+            raise TooMuch("what came back is no message")
+        return message
+
+    def read_line(self, seconds: float | None, most: int) -> bytes:
+        """One line without its end; raises as `read` does."""
+        until = None if seconds is None else time.monotonic() + seconds
+        start = 0
+        while (found := self._waiting.find(b"\n", start)) < 0:
+            start = len(self._waiting)
+            if start > most:
+                raise TooMuch(f"more than {most // 2**20} MB came back")
+            left = None if until is None else until - time.monotonic()
+            if left is not None and (left <= 0 or not select.select([self.end], [], [], left)[0]):
+                raise TooLate("nothing came in time")
+            self.end.settimeout(None)
+            try:
+                piece = self.end.recv(65536)
+            except OSError as error:
+                raise Gone(str(error)) from None
+            if not piece:
+                raise Gone("the other side is gone")
+            self._waiting += piece
+        line = bytes(self._waiting[:found])
+        del self._waiting[: found + 1]
+        return line
+
+    def close(self) -> None:
+        """Close this end."""
+        self.end.close()

@@ -1,0 +1,156 @@
+"""The first process in a sandbox: loads what notebooks import, then forks for each submission.
+
+It runs no student's code.  Each child becomes the first process of its own process namespace and
+gives up everything (see `confine`) before it reads a word that a student wrote.
+"""
+
+from __future__ import annotations
+
+import gc
+import json
+import os
+import shutil
+import signal
+import socket
+import sys
+import tempfile
+import traceback
+from contextlib import suppress
+from importlib import import_module
+from typing import Any
+
+from . import cells, confine
+from .wire import Gone, Line
+
+LOADED = (
+    "numpy",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "matplotlib.pyplot",
+    "IPython.core.inputtransformer2",
+    "labkit.plotting",
+)
+"""What notebooks import: loaded once, before the forks."""
+
+
+def main() -> None:
+    """Serve the worker at the other end of stdin until it goes away.
+
+    With ``--bare`` nothing is confined; see `labkit grade --unsafe-no-isolation`.
+    """
+    bare = "--bare" in sys.argv
+    control = socket.socket(fileno=os.dup(0))
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    os.dup2(nowhere, 0)
+    os.dup2(nowhere, 1)
+    codec, withhold, serve = _load()
+    space = confine.address_space()
+    gc.collect()
+    gc.freeze()
+    home = None if bare else os.open("/proc/self/ns/pid", os.O_RDONLY)
+    line = Line(control)
+    line.send({"ready": True})
+    os.dup2(nowhere, 2)
+    while True:
+        try:
+            asked, ends = _read(control)
+        except Gone:
+            return
+        if "kill" in asked:
+            _end(asked["kill"], whole=asked["whole"])
+            line.send({"killed": asked["kill"]})
+            continue
+        if home is not None:
+            confine.check(confine.libc.unshare(confine.NEW_PIDS), "unshare")
+        child = os.fork()
+        if child:
+            if home is not None:
+                confine.check(confine.libc.setns(home, confine.NEW_PIDS), "setns")
+            os.close(ends[0])
+            line.send({"pid": child})
+            continue
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        end = Line(socket.socket(fileno=ends[0]))
+        try:
+            control.close()
+            limits = asked["limits"] | {"address_space": space}
+            if home is None:
+                os.chdir(tempfile.mkdtemp(prefix="labkit-"))
+                confine.set_limits(limits | {"processes": 4096})
+            else:
+                os.close(home)
+                confine.confine(limits, asked["uid"])
+            end.send({"confined": True})
+            if asked["role"] == "parse":
+                end.send(cells.read(_bytes(end, asked["size"])))
+            else:
+                serve(end, codec, withhold, asked["limits"])
+        except BaseException:
+            with suppress(BaseException):
+                end.send({"failed": traceback.format_exc(limit=3)[-2000:]})
+        os._exit(0)
+
+
+def _load() -> tuple[Any, Any, Any]:
+    """Import what notebooks use, and put the stand-ins in place."""
+    with suppress(FileNotFoundError, KeyError):
+        shutil.copytree("/lab/mpl", os.environ["MPLCONFIGDIR"])  # making the list of fonts is slow
+    for name in LOADED:
+        import_module(name)
+    import labkit
+    from labkit.check import codec
+
+    from . import standins
+    from .inmate import serve
+    from .withheld import withhold
+
+    with labkit.Arm("left") as arm:  # the physics engine and the model load what they need
+        arm.model.mass_matrix(arm.state().q)
+    standins.install()
+    return codec, withhold, serve
+
+
+def _read(control: socket.socket) -> tuple[dict[str, Any], list[int]]:
+    data, ends, _, _ = socket.recv_fds(control, 65536, 1)
+    if not data:
+        raise Gone("the worker is gone")
+    message: dict[str, Any] = json.loads(data)
+    return message, ends
+
+
+def _bytes(end: Line, size: int) -> bytes:
+    data = bytearray()
+    end.end.settimeout(30.0)
+    while len(data) < size:
+        piece = end.end.recv(min(1 << 20, size - len(data)))
+        if not piece:
+            raise Gone("the file never came")
+        data += piece
+    return bytes(data)
+
+
+def _end(child: int, *, whole: bool) -> None:
+    """Kill a submission's process namespace, or only what its first process has started."""
+    for pid in _family(child) - (set() if whole else {child}):
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+    if whole:
+        with suppress(ChildProcessError):
+            os.waitpid(child, 0)
+
+
+def _family(child: int) -> set[int]:
+    """A process and all that descends from it."""
+    parents = {}
+    for name in filter(str.isdigit, os.listdir("/proc")):
+        with suppress(OSError, ValueError), open(f"/proc/{name}/stat") as file:
+            parents[int(name)] = int(file.read().rpartition(")")[2].split()[1])
+    family, size = {child}, 0
+    while len(family) > size:
+        size = len(family)
+        family |= {pid for pid, parent in parents.items() if parent in family}
+    return family
+
+
+if __name__ == "__main__":
+    main()

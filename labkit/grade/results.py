@@ -1,0 +1,181 @@
+"""Results: one file for each submission, known by the contents that it came from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import platform
+import shutil
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import labkit
+
+from ..errors import LabkitError
+from .course import Course
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of one submission.
+
+    Attributes:
+        assignment: Which.
+        student: Whose.
+        score: Points; 0 where it was rejected.
+        points: What full marks would be.
+        rejected: Why it could not be graded, in a sentence; empty where it was.
+        questions: One verdict each, as data: name, outcome, earned, points, tests, mistake, notes.
+        notes: What was unusual about the whole.
+        cells: Cells that failed or were stopped, with their sentence.
+        own: The student's own cells, where they stood.
+        isolation: What kept it apart while it ran.
+        versions: Of what graded it.
+        hashes: Of the submission, the release and the engine.
+        seed: Of the hidden cases.
+        seconds: How long it took: in all, and in the student's own code.
+    """
+
+    assignment: str
+    student: str
+    score: float
+    points: float
+    rejected: str = ""
+    questions: tuple[Mapping[str, Any], ...] = ()
+    notes: tuple[str, ...] = ()
+    cells: tuple[Mapping[str, Any], ...] = ()
+    own: tuple[Mapping[str, str], ...] = ()
+    isolation: str = ""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    hashes: Mapping[str, str] = field(default_factory=dict)
+    seed: int = 0
+    seconds: Mapping[str, float] = field(default_factory=dict)
+
+    def text(self) -> str:
+        """As JSON."""
+        return json.dumps(asdict(self), ensure_ascii=True, indent=1) + "\n"
+
+    @classmethod
+    def read(cls, text: str) -> Result:
+        """What `text` wrote."""
+        data = json.loads(text)
+        for name in ("questions", "notes", "cells", "own"):
+            data[name] = tuple(data[name])
+        return cls(**data)
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """Everything that must come out the same wherever it is graded."""
+        data = asdict(self)
+        del data["seconds"], data["isolation"]
+        for cell in data["cells"]:
+            del cell["seconds"]
+        return data
+
+
+class Results:
+    """The result files of one assignment."""
+
+    def __init__(self, course: Course, assignment: str) -> None:
+        self.folder = course.results / assignment
+
+    def path(self, student: str) -> Path:
+        """Where a student's result is."""
+        return self.folder / f"{student}.json"
+
+    def get(self, student: str) -> Result | None:
+        """A student's result, or None if there is no whole one."""
+        try:
+            return Result.read(self.path(student).read_text(encoding="utf-8"))
+        except (OSError, ValueError, TypeError, KeyError):
+            return None
+
+    def keep(self, result: Result) -> None:
+        """Write a result; an older one that came from other contents goes to ``old/``."""
+        before = self.get(result.student)
+        if before is not None and before.hashes != result.hashes:
+            key = "-".join(before.hashes.get(x, "")[:8] for x in ("submission", "bundle", "engine"))
+            old = self.folder / "old" / f"{result.student}-{key}.json"
+            old.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(self.path(result.student), old)
+        write(self.path(result.student), result.text())
+
+    def __iter__(self) -> Iterator[Result]:
+        for path in sorted(self.folder.glob("*.json")):
+            result = self.get(path.stem)
+            if result is not None:
+                yield result
+
+
+def write(path: Path, text: str) -> None:
+    """Write a file whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    new = path.with_name(f".{path.name}.{os.getpid()}.new")
+    with new.open("w", encoding="utf-8") as file:
+        file.write(text)
+        file.flush()
+        os.fsync(file.fileno())
+    new.replace(path)
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """What a release leaves for graders.
+
+    Attributes:
+        data: Assignment, seed, manifest, questions with their hidden cases, hash.
+    """
+
+    data: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, course: Course, assignment: str) -> Bundle:
+        """The bundle of an assignment.
+
+        Raises:
+            LabkitError: It was not released.
+        """
+        path = course.bundle / f"{assignment}.json"
+        if not path.exists():
+            raise LabkitError(
+                f"{assignment} was not released here; type: labkit release {assignment}"
+            )
+        return cls(json.loads(path.read_text(encoding="utf-8")))
+
+    @property
+    def points(self) -> float:
+        """Full marks."""
+        return float(sum(q["points"] for q in self.data["questions"]))
+
+
+def digest(data: bytes) -> str:
+    """A name for contents."""
+    return hashlib.sha256(data).hexdigest()
+
+
+@cache
+def engine() -> str:
+    """A name for the code that grades: another version, another mark."""
+    root = Path(labkit.__file__).parent
+    whole = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        if "replay" not in path.parts:
+            whole.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    return whole.hexdigest()
+
+
+@cache
+def versions() -> Mapping[str, str]:
+    """Of Python and of what marks depend on."""
+    found = {"labkit": labkit.__version__, "python": platform.python_version()}
+    for name in ("numpy", "scipy", "pybullet", "pin"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "missing"
+    return found

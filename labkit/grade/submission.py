@@ -1,0 +1,66 @@
+"""Submissions: the files that came back, found and read with care."""
+
+from __future__ import annotations
+
+import os
+import stat
+from dataclasses import dataclass
+from pathlib import Path
+
+from .course import Course
+
+
+@dataclass(frozen=True)
+class Submission:
+    """One student's files for one assignment.
+
+    Attributes:
+        student: Whose.
+        assignment: Which.
+        folder: Where.
+    """
+
+    student: str
+    assignment: str
+    folder: Path
+
+    @classmethod
+    def of(cls, course: Course, assignment: str, student: str) -> Submission:
+        """Where nbgrader keeps it."""
+        return cls(student, assignment, course.submitted / student / assignment)
+
+    def read(self, most: int) -> tuple[bytes, str, str]:
+        """The notebook's bytes, a note, and why there are none; at least one is empty.
+
+        Links are not followed: they could lead to somebody else's file.
+
+        Args:
+            most: The largest size, in [MiB].
+        """
+        if self.folder.is_symlink() or self.folder.parent.is_symlink():
+            return b"", "", "the folder is a link; hand in the file itself"
+        found = sorted(x for x in self.folder.glob("*.ipynb") if not x.name.startswith("."))
+        named = [x for x in found if x.stem == self.assignment] or found
+        if not named:
+            return b"", "", f"there is no {self.assignment}.ipynb among the files"
+        if len(named) > 1:
+            names = ", ".join(x.name[:60] for x in named[:5])
+            return b"", "", f"which notebook counts? there is {names}"
+        path = named[0]
+        note = "" if path.stem == self.assignment else f"the file is called {path.name[:80]}"
+        try:
+            end = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        except OSError:
+            return (
+                b"",
+                "",
+                f"{path.name[:80]} is a link or cannot be opened; hand in the file itself",
+            )
+        with open(end, "rb") as file:
+            about = os.fstat(file.fileno())
+            if not stat.S_ISREG(about.st_mode):
+                return b"", "", f"{path.name[:80]} is not a file"
+            if about.st_size > most * 2**20:
+                size = about.st_size / 2**20
+                return b"", "", f"the file has {size:.0f} MB, the limit is {most} MB"
+            return file.read(), note, ""

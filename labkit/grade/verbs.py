@@ -1,0 +1,200 @@
+"""The instructor's verbs on the command line."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError
+from .course import Course
+from .term_verbs import course_option
+
+Verbs = Any
+
+
+def add(verbs: Verbs) -> None:
+    """All of them."""
+    add_grade(verbs)
+    add_make_class(verbs)
+    add_report_card(verbs)
+
+
+def add_grade(verbs: Verbs) -> None:
+    """``labkit grade``."""
+    verb = verbs.add_parser(
+        "grade",
+        help="grade what was handed in",
+        description="Grade submissions, each in a sandbox of its own; what is graded already, and "
+        "has not changed, is not graded again.",
+    )
+    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    verb.add_argument("--student", metavar="S", help="only this one")
+    verb.add_argument("--jobs", type=int, metavar="N", help="workers (default: one per core)")
+    verb.add_argument("--json", action="store_true", help="one JSON object per line, for programs")
+    verb.add_argument(
+        "--engine",
+        choices=("isolated", "nbgrader"),
+        default="isolated",
+        help="nbgrader's own runs students' code beside the hidden cases; for comparison only",
+    )
+    verb.add_argument("--again", action="store_true", help="grade anew what is graded already")
+    verb.add_argument(
+        "--dask", metavar="ADDRESS", help="of a Dask scheduler that shares the folder"
+    )
+    verb.add_argument(
+        "--shard", metavar="i/n", default="1/1", help="only the i-th of n parts of the class"
+    )
+    verb.add_argument(
+        "--unsafe-no-isolation",
+        action="store_true",
+        help="run students' code with your own rights, able to read and delete your files",
+    )
+    course_option(verb)
+    verb.set_defaults(do=grade)
+
+
+def add_make_class(verbs: Verbs) -> None:
+    """``labkit make-class``."""
+    verb = verbs.add_parser("make-class", help="write a class that never was, to try things on")
+    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    verb.add_argument("--seed", type=int, default=2019, help="of the class (default: 2019)")
+    verb.add_argument("--count", type=int, default=40, help="how many students (default: 40)")
+    course_option(verb)
+    verb.set_defaults(do=make_class)
+
+
+def add_report_card(verbs: Verbs) -> None:
+    """``labkit report-card``."""
+    verb = verbs.add_parser("report-card", help="how well the checks tell right from wrong")
+    verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
+    verb.add_argument("--seed", type=int, default=2019, help="of the first draw (default: 2019)")
+    of = "a Python file with a dict {} = {{question: [functions]}}"
+    verb.add_argument("--mistakes", type=Path, metavar="FILE", help=of.format("MISTAKES"))
+    verb.add_argument("--variants", type=Path, metavar="FILE", help=of.format("VARIANTS"))
+    course_option(verb)
+    verb.set_defaults(do=report_card)
+
+
+def report_card(args: argparse.Namespace) -> int:
+    """Try the checks on everything that is known, and write down what came of it."""
+    from .report_card import functions_from, make, write
+
+    here = Course.here(args.course)
+    card = make(
+        here,
+        args.names or here.names(),
+        args.seed,
+        functions_from(args.mistakes, "MISTAKES") if args.mistakes else None,
+        functions_from(args.variants, "VARIANTS") if args.variants else None,
+        progress=lambda row: print(
+            f"{row.assignment} {row.question}: {row.rejected} of {row.mistakes} mistakes rejected, "
+            f"{row.accepted} of {row.variants} right answers accepted",
+            flush=True,
+        ),
+    )
+    table, page = write(card, here.root / "build")
+    print(page.read_text(encoding="utf-8"))
+    print(f"written: {table} and {page}")
+    return int(any(row.failures for row in card.rows))
+
+
+def make_class(args: argparse.Namespace) -> int:
+    """Write a synthetic class, and what it deserves."""
+    from .synthetic import expected_file
+    from .synthetic import make_class as make
+
+    here = Course.here(args.course)
+    here.notebook_source(args.name)
+    made = make(here, args.name, args.seed, args.count)
+    print(f"{len(made)} submissions in {here.submitted}")
+    print(f"what they deserve: {expected_file(here, args.name)}")
+    return 0
+
+
+def grade(args: argparse.Namespace) -> int:
+    """Grade a class, and say what came of it."""
+    from .batch import How, common_failures, grade_class, workers
+    from .gradebook import record
+    from .results import Result, Results
+    from .says import line
+
+    here = Course.here(args.course)
+    here.notebook_source(args.name)
+    who = _who(here, args.name, args.student)
+    if args.engine == "nbgrader":
+        return _with_nbgrader(here, args, who)
+    how = How(
+        jobs=args.jobs or workers(),
+        isolated=not args.unsafe_no_isolation,
+        dask=args.dask,
+        shard=_shard(args.shard),
+        again=args.again,
+    )
+    graded: list[Result] = []
+    failed: list[LabkitError] = []
+    for number, (student, result, before) in enumerate(
+        grade_class(here, args.name, who, how), start=1
+    ):
+        if isinstance(result, LabkitError):
+            failed.append(result)
+            print(f"{student}: not graded; {result}", file=sys.stderr, flush=True)
+            continue
+        graded.append(result)
+        if args.json:
+            print(json.dumps(json.loads(result.text())), flush=True)
+        else:
+            done = " (as before)" if before else ""
+            print(f"[{number}/{len(who)}] {line(result)}{done}", flush=True)
+    if failed and not graded:
+        raise failed[0]
+    say = sys.stderr if args.json else sys.stdout
+    if how.shard == (1, 1):
+        _tell(record(here, args.name, graded), say)
+        loud = list(common_failures(graded if args.student else list(Results(here, args.name))))
+        _tell([f"ATTENTION: {sentence}" for sentence in loud], say)
+    if graded and not args.json:
+        print(f"isolation: {graded[-1].isolation}\nresults: {here.results / args.name}")
+    return 1 if failed else 0
+
+
+def _who(here: Course, name: str, student: str | None) -> list[str]:
+    from .engines import students
+
+    found = students(here, name)
+    who = [student] if student else found
+    if not who or set(who) - set(found):
+        raise LabkitError(
+            f"nothing of {student or 'anybody'} lies in submitted/*/{name}; "
+            "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
+        )
+    return who
+
+
+def _shard(text: str) -> tuple[int, int]:
+    first, _, last = text.partition("/")
+    if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
+        raise LabkitError(f"--shard {text} is no part of anything; write 1/4, 2/4, 3/4 or 4/4")
+    return int(first), int(last)
+
+
+def _with_nbgrader(here: Course, args: argparse.Namespace, who: list[str]) -> int:
+    from .engines import grade_with_nbgrader
+
+    for number, student in enumerate(who, start=1):
+        mark = grade_with_nbgrader(here, args.name, student)
+        if args.json:
+            print(json.dumps(vars(mark)), flush=True)
+            continue
+        got = "not graded" if mark.score is None else f"{mark.score:g} of {mark.points:g}"
+        says = f"; {mark.says}" if mark.says else ""
+        print(f"[{number}/{len(who)}] {student}: {got}{says}", flush=True)
+    return 0
+
+
+def _tell(sentences: Iterable[str], where: Any) -> None:
+    for sentence in sentences:
+        print(sentence, file=where, flush=True)

@@ -1,0 +1,64 @@
+"""Notation: one table of symbols that the book prints and the docstrings keep to.
+
+A test reads every public docstring and holds its shapes and units against this table.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Symbol(NamedTuple):
+    """One name of the lab.
+
+    Attributes:
+        code: How it is written in code.
+        latex: How it is written in formulas.
+        meaning: What it is.
+        shape: Of the array, as docstrings write it; empty for what is no single array.
+        unit: As docstrings write it; empty where there is none.
+    """
+
+    code: str
+    latex: str
+    meaning: str
+    shape: str = ""
+    unit: str = ""
+
+
+SYMBOLS = (
+    Symbol("t", "t", "time", "", "s"),
+    Symbol("s", "s", "place along a path, from 0 to 1"),
+    Symbol("q", "q", "joint angles, s0 s1 e0 e1 w0 w1 w2", "(7,)", "rad"),
+    Symbol("dq", r"\dot q", "joint speeds", "(7,)", "rad/s"),
+    Symbol("ddq", r"\ddot q", "joint accelerations", "(7,)", "rad/s^2"),
+    Symbol("tau", r"\tau", "motor torques", "(7,)", "N m"),
+    Symbol("e", r"e = x_d - x", "error, target minus actual, always"),
+    Symbol("T_wt", "T_{wt}", "pose of the tip in the world; p_w = T_wt p_t", "(4, 4)", ""),
+    Symbol("T_wd", "T_{wd}", "desired pose of the tip in the world", "(4, 4)", ""),
+    Symbol("T_ab", "T_{ab}", "pose of frame b in frame a; p_a = T_ab p_b", "(4, 4)", ""),
+    Symbol("R_wt", "R_{wt}", "orientation of the tip in the world", "(3, 3)", ""),
+    Symbol("R_wd", "R_{wd}", "desired orientation of the tip in the world", "(3, 3)", ""),
+    Symbol("V", "V = (v, \\omega)", "twist: linear part first, then angular", "(6,)", ""),
+    Symbol("J", "J(q)", "tip Jacobian in world axes, (v, w) rows", "(6, 7)", ""),
+    Symbol("M", "M(q)", "mass matrix", "(7, 7)", "kg m^2"),
+    Symbol("C", r"C(q, \dot q)", "Coriolis matrix", "(7, 7)", "kg m^2/s"),
+    Symbol("g", "g(q)", "torque that holds the arm against gravity", "(7,)", "N m"),
+    Symbol("Lambda", r"\Lambda(q)", "inertia felt at the tip", "(6, 6)", ""),
+    Symbol("Kp", "K_p", "gain on the error"),
+    Symbol("Kd", "K_d", "gain on the error's rate"),
+)
+"""In the order of the conventions page."""
+
+ERRORS = (
+    Symbol("e_q", "e_q = q_d - q", "joint error", "(7,)", "rad"),
+    Symbol("e_p", "e_p = p_d - p", "position error of the tip, world axes", "(3,)", "m"),
+    Symbol(
+        "e_o",
+        r"e_o = \log(R_{wd} R_{wt}^T)^\vee",
+        "orientation error of the tip, world axes",
+        "(3,)",
+        "rad",
+    ),
+)
+"""Target minus actual, in each of its three forms."""

@@ -1,0 +1,142 @@
+"""What people write in notebook 07 instead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from math import atan, pi, radians, sqrt
+from typing import Any
+
+import control
+import numpy as np
+from scipy.optimize import brentq
+from scipy.stats import t as student
+
+import labkit as lk
+
+from ..comparison import paired_difference
+
+
+def mean_of_components(log: lk.Log, model: lk.Model) -> float:
+    """The mean goes over the three components too: too small by the root of three."""
+    e = [
+        T[:3, 3] - model.pose(q)[:3, 3]
+        for q, T in zip(log.q, log.target.pose, strict=True)  # type: ignore[union-attr]
+    ]
+    return float(np.sqrt(np.mean(np.square(e))))
+
+
+def last_row_for_all(log: lk.Log, model: lk.Model) -> float:
+    """The tip from the last joint angles, whatever the row: what the report's plots show."""
+    p = model.pose(log.q[-1])[:3, 3]
+    e = [T[:3, 3] - p for T in log.target.pose]  # type: ignore[union-attr]
+    return float(np.sqrt(np.mean(np.sum(np.square(e), axis=1))))
+
+
+def mean_of_lengths(log: lk.Log, model: lk.Model) -> float:
+    """The mean error, not the root of the mean square."""
+    e = [
+        np.linalg.norm(T[:3, 3] - model.pose(q)[:3, 3])
+        for q, T in zip(log.q, log.target.pose, strict=True)  # type: ignore[union-attr]
+    ]
+    return float(np.mean(e))
+
+
+def no_integrator(kp: float, lag: float, delay: float) -> Any:
+    """From command to speed: the integrator to the angle is missing."""
+    loop = control.tf([kp], [lag, 1.0])
+    return loop * control.tf(*control.pade(delay, 4)) if delay else loop
+
+
+def closed_loop(kp: float, lag: float, delay: float) -> Any:
+    """The closed loop, which margins cannot be read from."""
+    loop = control.tf([kp], [lag, 1.0, 0.0] if lag else [1.0, 0.0])
+    return control.feedback(loop * control.tf(*control.pade(delay, 4)) if delay else loop)
+
+
+def delay_as_a_lag(kp: float, lag: float, delay: float) -> Any:
+    """The delay as one more lag: 45 degrees at 1/delay and never more than 90."""
+    return control.tf([kp], [1.0, 0.0]) * control.tf([1.0], [lag, 1.0]) * control.tf(1, [delay, 1])
+
+
+def _kp(lag: float, delay: float, margin: float) -> float:
+    def left(w: float) -> float:
+        return pi / 2 - atan(lag * w) - delay * w - margin
+
+    high = 1.0
+    while left(high) > 0.0 and high < 1e9:
+        high *= 2.0
+    w = brentq(left, -1e3, high)
+    return float(w * sqrt(1.0 + (lag * w) ** 2))
+
+
+def margin_in_radians(lag: float, delay: float, margin_deg: float) -> float:
+    """Takes the margin for radians."""
+    return _kp(lag, delay, margin_deg)
+
+
+def without_the_delay(lag: float, delay: float, margin_deg: float) -> float:
+    """Forgets the delay: the gain comes out too large."""
+    return _kp(lag, 0.0, radians(margin_deg))
+
+
+def lag_free_gain(lag: float, delay: float, margin_deg: float) -> float:
+    """Finds the right frequency, then takes it for the gain."""
+
+    def left(w: float) -> float:
+        return pi / 2 - atan(lag * w) - delay * w - radians(margin_deg)
+
+    return float(brentq(left, 1e-9, 1e4))
+
+
+def best_on_the_training_path(runner: Callable[..., float]) -> tuple[float, float]:
+    """Searches a grid with one seed and takes the winner, at the edge of the cliff."""
+    tried = {
+        (Kp, Kd): runner(Kp, Kd, 0)
+        for Kp in (14.0, 22.0, 34.0, 50.0, 70.0, 100.0)
+        for Kd in (0.0, 0.4, 1.0)
+    }
+    return min(tried, key=lambda gains: tried[gains])
+
+
+def as_soft_as_possible(runner: Callable[..., float]) -> tuple[float, float]:
+    """Plays so safe that nothing is followed."""
+    return 2.0, 0.0
+
+
+def unpaired(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+    """Treats the two rows as strangers: the seeds' spread swallows the difference."""
+    a, b = np.asarray(errors_a, dtype=float), np.asarray(errors_b, dtype=float)
+    n = len(a)
+    spread = np.sqrt(a.var(ddof=1) / n + b.var(ddof=1) / n)
+    return float(a.mean() - b.mean()), float(student.ppf(0.975, n - 1) * spread)
+
+
+def deviation_of_one(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+    """The spread of one difference, not of their mean."""
+    d = np.asarray(errors_a, dtype=float) - np.asarray(errors_b, dtype=float)
+    return float(d.mean()), float(student.ppf(0.975, len(d) - 1) * d.std(ddof=1))
+
+
+def normal_quantile(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+    """1.96, as if five seeds were many."""
+    d = np.asarray(errors_a, dtype=float) - np.asarray(errors_b, dtype=float)
+    return float(d.mean()), float(1.96 * d.std(ddof=1) / np.sqrt(len(d)))
+
+
+def always_decided(table: Mapping[str, Any]) -> dict[str, str]:
+    """Looks at the sign alone."""
+    return {
+        claim: "holds" if np.mean(a) > np.mean(b) else "does not hold"
+        for claim, (a, b) in table.items()
+    }
+
+
+def the_other_way_round(table: Mapping[str, Any]) -> dict[str, str]:
+    """Takes the larger error for the better one."""
+    found = {}
+    for claim, (a, b) in table.items():
+        mean, half = paired_difference(b, a)
+        found[claim] = (
+            "undecided" if abs(mean) <= half else "holds" if mean > 0 else "does not hold"
+        )
+    return found

@@ -1,0 +1,323 @@
+# %% [markdown]
+# # 07 · Which controller is better?
+#
+# The report of 2019 put seven ways to move the arm side by side, looked at the plots and wrote that its
+# own controllers "obtained superior performance". On another page it wrote that the built-in way
+# "performs slightly better in most cases". No number stands beside either sentence. This notebook is
+# about earning the right to write such a sentence, or the one that is more often true: *we cannot tell*.
+#
+# | | |
+# |---|---|
+# | **You need** | numpy; what a standard deviation is; complex numbers |
+# | **Given** | recorded runs of every controller, a loop's parts, an interval's recipe |
+# | **You write** | the error of a run, a loop on paper, gains with a margin, differences over seeds, verdicts |
+# | **Time** | about 5 hours · 20 points |
+#
+# Every cell below runs from the start, solved or not: where your part is missing, something given stands
+# in and says so. Only the functions are marked.
+
+# %% setup=true
+import labkit as lk
+from labkit.check import check, hint, use
+
+lk.ready()
+
+# %% setup=true
+import control
+import matplotlib.pyplot as plt
+import numpy as np
+
+from labkit import analysis, maps, metrics, recorded, trials
+
+# %% [markdown]
+# ## One number for a run
+#
+# Here is Baxter's built-in way on the line, as it was recorded: a planner made a path, a time
+# parameterisation put it on a schedule, and the arm's own trajectory server followed.
+
+# %%
+log = recorded.recorded("baseline_line")
+model = lk.Model("left")
+lk.plotting.tracking(log, model)
+plt.show()
+print(lk.plotting.describe(log, model))
+
+# %% [markdown]
+# At each instant the error of the tip is a vector, target minus actual. The usual number for a whole run
+# is the root of the mean of its squared length. Two slips are common. A mean that runs over the three
+# components as well comes out too small by $\sqrt 3$, and nobody notices, because all controllers profit
+# alike. And a program that asks for *the* pose without saying of which instant compares every row with
+# the last one; that is what the plots of the report show.
+
+# %% question="rms_error"
+def rms_error(log, model):
+    """RMS position error of the tip in a run after poses.
+
+    Args:
+        log: The run: log.q, shape (N, 7) in [rad], and log.target.pose, shape (N, 4, 4).
+        model: Gives the tip's pose (4, 4) at joint angles: model.pose(q).
+
+    Returns:
+        The error in [m].
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison import rms_error as answer
+
+    return answer(log, model)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## The loop on paper
+#
+# Why is there a best gain at all? Take one joint in velocity mode. Its speed follows the command with a
+# first-order lag; the angle is the integral of the speed; the controller sees an angle that is some
+# milliseconds old. In a row:
+#
+# $$ L(s) = K_p \cdot \frac{1}{\tau s + 1} \cdot \frac1s \cdot e^{-s d} . $$
+#
+# python-control multiplies such things for you. A delay is not a ratio of polynomials, but
+# `control.pade(delay, 4)` gives one that is close enough below the frequencies that matter here.
+
+# %% question="open_loop"
+def open_loop(kp, lag, delay):
+    """The open loop of one velocity-commanded joint under a proportional controller.
+
+    Args:
+        kp: Gain, in [1/s].
+        lag: Time constant of the speed, in [s]; may be 0.
+        delay: Age of what the controller sees, in [s]; may be 0.
+
+    Returns:
+        A control.TransferFunction.
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison import open_loop as answer
+
+    return answer(kp, lag, delay)
+    ### END SOLUTION
+
+
+# %%
+def given_open_loop(kp, lag, delay):
+    return analysis.Loop(analysis.velocity_joint(lag, delay), kp).open()
+
+
+my_open_loop = use("open_loop", open_loop, given_open_loop)
+
+joint = analysis.velocity_joint_of(lk.BAXTER)
+lag, delay = lk.BAXTER.velocity_lag, joint.delay
+print(f"Baxter's joint: lag {1e3 * lag:.0f} ms, delay {1e3 * delay:.1f} ms")
+
+omega = np.logspace(0, 2.3, 300)
+figure, (above, below) = plt.subplots(2, 1, figsize=(8, 5), sharex=True, layout="constrained")
+for kp, style in ((8.0, "-"), (25.0, "--"), (70.0, ":")):
+    L = np.array([my_open_loop(kp, lag, delay)(1j * w) for w in omega])
+    above.loglog(omega, np.abs(L), style, label=f"Kp = {kp:g} 1/s")
+    below.semilogx(omega, np.degrees(np.unwrap(np.angle(L))), style)
+above.axhline(1.0, color="0.6", linewidth=0.8)
+below.axhline(-180.0, color="0.6", linewidth=0.8)
+above.set_ylabel("gain")
+above.legend(frameon=False)
+below.set_ylabel("phase [deg]")
+below.set_xlabel("frequency [rad/s]")
+plt.show()
+
+# %% [markdown]
+# The gain moves the upper curve up and down and leaves the lower one alone. Where the gain is 1, what is
+# left of the phase above -180° is the *phase margin*: with none left the loop swings for ever, and with
+# less than none it runs away. So a margin fixes the gain: find the frequency at which the phase is right,
+# then make the gain 1 there.
+
+# %% question="kp_for_margin"
+def kp_for_margin(lag, delay, margin_deg):
+    """The gain that leaves a wanted phase margin, the delay taken exactly.
+
+    Args:
+        lag: Time constant of the speed, in [s].
+        delay: In [s].
+        margin_deg: Phase margin, in [degrees].
+
+    Returns:
+        Kp in [1/s].
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison import kp_for_margin as answer
+
+    return answer(lag, delay, margin_deg)
+    ### END SOLUTION
+
+
+# %%
+def given_kp_for_margin(lag, delay, margin_deg):
+    gains = np.geomspace(0.5, 200.0, 400)
+    joint = analysis.velocity_joint(lag, delay)
+    phases = [analysis.Loop(joint, kp).margins().phase for kp in gains]
+    return float(gains[int(np.argmin(np.abs(np.array(phases) - margin_deg)))])
+
+
+my_kp_for_margin = use("kp_for_margin", kp_for_margin, given_kp_for_margin)
+for margin in (30, 45, 60, 75):
+    print(f"{margin} degrees of margin: Kp = {my_kp_for_margin(lag, delay, margin):.1f} 1/s")
+
+# %% [markdown]
+# ## The whole map
+#
+# Paper is not the arm. This map was measured: the joint velocity PD along the line on the simulated
+# Baxter, one run for each pair of gains and seed. The error falls with the gain, slower and slower, and
+# then there is a cliff.
+
+# %%
+measured = maps.error_map("joint_velocity_pd_baxter")
+errors = measured.array()
+figure, ax = plt.subplots(figsize=(8, 3.6), layout="constrained")
+for j, style in ((0, "-"), (4, "--"), (6, ":")):
+    ax.loglog(measured.Kp, errors[:, j], style, marker="o", ms=3, label=f"Kd = {measured.Kd[j]:g}")
+for margin in (30, 60):
+    kp = my_kp_for_margin(lag, delay, margin)
+    ax.axvline(kp, color="0.6", linewidth=0.8)
+    ax.annotate(f"{margin}° on paper", (kp, 20.0), rotation=90, ha="right", fontsize="small")
+ax.set_xlabel("Kp [1/s]")
+ax.set_ylabel("RMS error [mm]")
+ax.legend(frameon=False)
+plt.show()
+print(measured.describe())
+
+# %% [markdown]
+# ## Gains that survive
+#
+# Choose gains yourself, with at most twenty runs along the line. Each call `runner(Kp, Kd, seed)` stands
+# for one run on the arm, with a start and a noise that the seed draws, and gives its RMS error in
+# millimetres. `Kp` may go from 2 to 100, `Kd` from 0 to 1, and there are the seeds 0 to 4. (The runs were
+# recorded; between the recorded gains the error is interpolated.)
+#
+# Your gains are then used where you could not try them: on another path, at twice the speed, with a
+# kilogram in the hand, with a state that is a few milliseconds older.
+
+# %% question="choose_gains"
+def choose_gains(runner):
+    """Gains of the joint velocity PD that also hold where they were not tuned.
+
+    Args:
+        runner: runner(Kp, Kd, seed) gives the RMS error along the line in [mm]; 20 calls.
+
+    Returns:
+        (Kp, Kd).
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison import choose_gains as answer
+
+    return answer(runner)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Try your own strategy here; the runner remembers what it was asked.
+
+# %%
+line_trials = trials.read_trials(trials.LINE)
+runner = trials.Runner(line_trials)
+for kp in (8.0, 30.0, 90.0):
+    row = [runner(kp, 0.0, seed) for seed in range(3)]
+    print(f"Kp = {kp:4g}: " + ", ".join(f"{x:.2f} mm" for x in row) + f"; {runner.left} tries left")
+
+# %% [markdown]
+# ## Paired differences
+#
+# Two controllers, five seeds. A seed that draws a bad start is bad for both. If the rows are compared as
+# if they were strangers, that spread hides everything; subtract first, and it drops out. What is left has
+# a mean, and the mean of a few numbers is itself uncertain: by Student's $t$ it lies, with 95 %
+# confidence, within
+#
+# $$ \bar d \pm t_{0.975,\,n-1}\,\frac{\sigma_d}{\sqrt n}, \qquad
+#    \sigma_d^2 = \frac{1}{n-1}\sum_i (d_i - \bar d)^2 . $$
+
+# %% question="paired_difference"
+def paired_difference(errors_a, errors_b):
+    """Mean difference over pairs, and how sure it is.
+
+    Args:
+        errors_a: One number for each seed.
+        errors_b: The same seeds, the other way.
+
+    Returns:
+        (mean, half_width): of a - b, and half of its 95 % interval.
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison import paired_difference as answer
+
+    return answer(errors_a, errors_b)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## Verdicts
+#
+# The campaign of this course let every controller follow every task on the simulated Baxter, five seeds
+# each. Here are its rows; the errors count from the second half of the first second on, when the start's
+# offset should be gone.
+
+# %%
+rows = [row for row in recorded.campaign() if row["plant"] == "baxter"]
+ways = list(dict.fromkeys(row["way"] for row in rows))
+table = {way: [r["late_rms_mm"] for r in rows if r["way"] == way and r["task"] == "circle"] for way in ways}
+figure, ax = plt.subplots(figsize=(8, 3), layout="constrained")
+for k, way in enumerate(ways):
+    ax.plot(table[way], [k] * len(table[way]), "o", mfc="none")
+ax.set_yticks(range(len(ways)), ways)
+ax.set_xscale("log")
+ax.set_xlabel("RMS error on the circle, one ring for each seed [mm]")
+plt.show()
+
+# %% [markdown]
+# From rows like these write a verdict on each claim. The claim is always that the *first* error is the
+# larger one. "Undecided" is an answer, and where the interval holds 0 the only honest one.
+
+# %% question="verdicts"
+def verdicts(table):
+    """A verdict on each claim.
+
+    Args:
+        table: For each claim two rows of errors over the same seeds: {claim: (errors_a, errors_b)}.
+
+    Returns:
+        {claim: "holds", "does not hold" or "undecided"}, whether a is larger than b.
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison import verdicts as answer
+
+    return answer(table)
+    ### END SOLUTION
+
+
+# %%
+def given_verdicts(table):
+    return {claim: "(your verdict)" for claim in table}
+
+
+my_verdicts = use("verdicts", verdicts, given_verdicts)
+
+
+def late(way):
+    """The errors of one way on the tasks and seeds, in one order."""
+    mine = [row for row in rows if row["way"] == way]
+    return [row["late_rms_mm"] for row in sorted(mine, key=lambda row: (row["task"], row["seed"]))]
+
+
+claims = {
+    "workspace velocity is worse than joint velocity": ("workspace velocity", "joint velocity"),
+    "workspace impedance is worse than joint impedance": ("workspace impedance", "joint impedance"),
+    "joint impedance is worse than joint torque": ("joint impedance", "joint torque"),
+    "the built-in way is worse than joint velocity": ("baseline", "joint velocity"),
+    "the built-in way is worse than joint torque": ("baseline", "joint torque"),
+}
+found = my_verdicts({claim: (late(a), late(b)) for claim, (a, b) in claims.items()})
+for claim, verdict in found.items():
+    print(f"{claim}: {verdict}")
+
+# %% [markdown]
+# ## Hand in
+#
+# Run everything once more from the top (*Kernel, Restart and run all*), save, and hand in this file with
+# its name as it is. The teacher runs your functions on further cases; of what kind they are is said above
+# each stub. `nbgrader validate` tells only whether all is well: for the reasons read the checks here.

@@ -1,0 +1,344 @@
+"""What notebook 07 asks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from labkit.check import Choice, Close, Response
+from labkit.grade.problem import Problem, Trial, Wrong, call
+
+from .. import comparison as answers
+from ..held_out import comparison as held_out
+from ..mistakes import comparison as mistakes
+from ..variants import comparison as variants
+
+_RANDOM = np.random.default_rng(7)
+_345 = np.array([0.003, 0.004, 0.012])
+
+RMS_ERROR = Problem(
+    name="rms_error",
+    points=3,
+    asks="From a log whose target is poses, give the RMS position error of the tip in metres: the "
+    "root of the mean, over the rows, of the squared *length* of the error.",
+    answer=answers.rms_error,
+    judge=Close(rtol=1e-6, atol=1e-9),
+    trials=(
+        Trial(
+            "an arm at rest, 3, 4 and 12 mm off: 13 mm",
+            (call(held_out.drawn_log(_RANDOM, 4, _345, moving=False), held_out.MODEL),),
+            held_out.still_logs,
+            "other offsets",
+            weight=0.0,
+        ),
+        Trial(
+            "the same error on an arm that moves",
+            (call(held_out.drawn_log(_RANDOM, 5, _345, moving=True), held_out.MODEL),),
+            held_out.moving_logs,
+            "other motions",
+        ),
+        Trial(
+            "errors that change from row to row",
+            (
+                call(
+                    held_out.drawn_log(_RANDOM, 5, np.outer([1, 2, 0, 3, 1], _345), moving=True),
+                    held_out.MODEL,
+                ),
+            ),
+            held_out.uneven_logs,
+            "uneven errors",
+            weight=2.0,
+        ),
+    ),
+    withheld=("labkit.metrics",),
+    hints=(
+        "Where is the tip in row k? Ask the model, with that row's joint angles. Where should it be? "
+        "In the target of that row.",
+        "log.q has one row for each instant, log.target.pose one pose. model.pose(q)[:3, 3] is the "
+        "tip. Square the length of the difference, row by row.",
+        "np.sqrt(np.mean(np.sum(e**2, axis=1))) with e of shape (rows, 3).",
+    ),
+    wrong=(
+        Wrong(
+            "the mean goes over the components too",
+            "A mean over rows and components divides by three times too many numbers: the result is "
+            "too small by √3. Sum over the components, then take the mean over the rows.",
+            mistakes.mean_of_components,
+            "An RMS of a vector: sum over components, mean over time.",
+        ),
+        Wrong(
+            "the tip of the last row for all rows",
+            "Every row is compared with where the arm ended. The report's plots did this, and their "
+            "curves of the workspace are constants.",
+            mistakes.last_row_for_all,
+            "A plot that cannot be wrong is not a measurement.",
+        ),
+        Wrong(
+            "the mean length instead of the root of the mean square",
+            "That is the mean error. The root mean square weighs large errors more.",
+            mistakes.mean_of_lengths,
+            "Mean, RMS and maximum are three numbers; say which.",
+        ),
+    ),
+    variants=(variants.rms_vectorised,),
+)
+
+OPEN_LOOP = Problem(
+    name="open_loop",
+    points=4,
+    asks="Give the open loop of one velocity-commanded joint as a transfer function of "
+    "python-control: the gain `kp`, the first-order `lag` of its speed, the integration to an angle, "
+    "and the `delay`.",
+    answer=answers.open_loop,
+    judge=Response(omega=(0.3, 1.0, 3.0, 10.0, 25.0)),
+    trials=(
+        Trial(
+            "no lag and no delay: kp / s",
+            (call(4.0, 0.0, 0.0),),
+            held_out.pure_integrators,
+            weight=0.0,
+        ),
+        Trial("with a lag", (call(4.0, 0.05, 0.0),)),
+        Trial(
+            "with lag and delay",
+            (call(4.0, 0.03, 0.015), call(12.0, 0.05, 0.02)),
+            held_out.loops,
+            "other gains, lags and delays",
+            weight=2.0,
+        ),
+    ),
+    hints=(
+        "Three things stand one after another: a speed that follows its command with a lag, an "
+        "integrator from speed to angle, a delay. Transfer functions in a row multiply.",
+        "control.tf([kp], [lag, 1, 0]) holds gain, lag and integrator. The delay is no ratio of "
+        "polynomials; control.pade(delay, 4) gives one that is close.",
+        "control.tf([kp], [lag, 1, 0]) * control.tf(*control.pade(delay, 4)); leave the second factor "
+        "out where the delay is 0.",
+    ),
+    wrong=(
+        Wrong(
+            "no integrator",
+            "That is the loop of a speed. The controller looks at an angle, the integral of the "
+            "speed: one more factor 1/s.",
+            mistakes.no_integrator,
+            "Count the integrators between command and measurement.",
+        ),
+        Wrong(
+            "the closed loop",
+            "Margins are read from the open loop; what feedback makes of it comes after.",
+            mistakes.closed_loop,
+            "Open loop: cut the wire once and multiply what is left.",
+        ),
+        Wrong(
+            "the delay as one more lag",
+            "A lag costs at most 90 degrees and lowers the gain; a delay costs phase without end and "
+            "leaves the gain alone.",
+            mistakes.delay_as_a_lag,
+            "A delay is not a slow lag.",
+        ),
+    ),
+    variants=(variants.loop_from_s,),
+)
+
+KP_FOR_MARGIN = Problem(
+    name="kp_for_margin",
+    points=3,
+    asks="Give the gain at which that loop has a phase margin of `margin_deg` degrees, with the delay "
+    "taken exactly.",
+    answer=answers.kp_for_margin,
+    judge=Close(rtol=1e-4, atol=1e-6),
+    trials=(
+        Trial(
+            "a lag alone",
+            (call(0.05, 0.0, 45.0),),
+            held_out.no_delay,
+            "other margins",
+            weight=0.0,
+        ),
+        Trial(
+            "lag and delay",
+            (call(0.03, 0.015, 60.0), call(0.05, 0.05, 45.0)),
+            held_out.margins,
+            "other lags, delays and margins",
+        ),
+    ),
+    hints=(
+        "The phase does not depend on kp. Find the frequency at which the phase is what the margin "
+        "wants; then choose kp so that the gain is 1 there.",
+        "The phase at ω is -90° - atan(lag·ω) - delay·ω, the last one in radians. The margin is what "
+        "is left to -180°.",
+        "Solve π/2 - atan(lag·ω) - delay·ω = margin for ω (scipy.optimize.brentq does); then "
+        "kp = ω·√(1 + (lag·ω)²).",
+    ),
+    wrong=(
+        Wrong(
+            "the margin taken for radians",
+            "60 radians are nearly ten turns. Turn the margin into radians before you add it to one.",
+            mistakes.margin_in_radians,
+            "Degrees outside, radians inside.",
+        ),
+        Wrong(
+            "the delay left out",
+            "Without the delay the crossover may lie much higher, and the gain comes out too large "
+            "for the loop that there is.",
+            mistakes.without_the_delay,
+            "The age of the state is part of the loop.",
+        ),
+        Wrong(
+            "the frequency taken for the gain",
+            "At the crossover the gain of the lag is below 1 already; kp has to make up for it.",
+            mistakes.lag_free_gain,
+            "Phase first, then the gain to be 1 there.",
+        ),
+    ),
+    variants=(variants.margin_by_search,),
+)
+
+CHOOSE_GAINS = Problem(
+    name="choose_gains",
+    points=4,
+    asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 tries: `runner(Kp, Kd, seed)` "
+    "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
+    "where you could not try them.",
+    answer=answers.choose_gains,
+    trials=(
+        Trial(
+            "on the line, on its worst seed: at most 6 mm",
+            (Choice(held_out.ON_THE_LINE, {"worst_mm": 6.0}),),
+            weight=0.0,
+        ),
+        Trial(
+            f"where it was not tuned, on the worst seed: at most {held_out.UNSEEN_LIMIT:g} mm",
+            (),
+            held_out.unseen_cases,
+            "another path, twice the speed, a payload, an older state",
+        ),
+    ),
+    hints=(
+        "The error falls as Kp grows, until the arm is lost; where that happens depends on the seed. "
+        "The best place on the map is close to the edge.",
+        "Raise Kp in steps and look at more than one seed. As soon as the error jumps on one of them, "
+        "you have found the edge.",
+        "Take half of the largest Kp that was safe on the seeds you tried. It costs a few tenths of a "
+        "millimetre and buys a robot that may be loaded, hurried and late.",
+    ),
+    wrong=(
+        Wrong(
+            "the best on the line, at the edge of the cliff",
+            "It has the smallest error where you tried it, and loses the arm when the state comes a "
+            "little later. Step back from the edge.",
+            mistakes.best_on_the_training_path,
+            "The best gain on one path is the most fragile one.",
+        ),
+        Wrong(
+            "as soft as possible",
+            "It never shakes, and it never catches up either.",
+            mistakes.as_soft_as_possible,
+            "A margin is bought with error; buy what you need.",
+        ),
+    ),
+    variants=(variants.cautious,),
+)
+
+PAIRED = Problem(
+    name="paired_difference",
+    points=3,
+    asks="Two controllers were run on the same seeds. Give `(mean, half_width)`: the mean of a - b and "
+    "half the width of its 95 % interval by Student's t.",
+    answer=answers.paired_difference,
+    judge=Close(rtol=1e-6, atol=1e-9, parts=("mean", "half_width")),
+    trials=(
+        Trial(
+            "the same numbers, shifted by one millimetre",
+            (call([4.0, 2.0, 6.0], [5.0, 3.0, 7.0]),),
+            weight=0.0,
+        ),
+        Trial(
+            "five seeds that differ much, a difference that does not",
+            (call([4.0, 2.0, 6.0, 3.0, 5.0], [3.0, 1.1, 4.9, 2.05, 3.9]),),
+            held_out.pairs,
+            "other seeds, other numbers of them",
+        ),
+    ),
+    hints=(
+        "The seeds are the same in both rows, so subtract first: what a hard seed does to both drops "
+        "out.",
+        "d = a - b. Its mean, and the standard error of the mean: the standard deviation over √n, "
+        "with n - 1 in it.",
+        "half_width = scipy.stats.t.ppf(0.975, n - 1) * d.std(ddof=1) / √n.",
+    ),
+    wrong=(
+        Wrong(
+            "unpaired",
+            "Taken as strangers, the rows spread as much as the seeds do, and the difference drowns. "
+            "Subtract pair by pair first.",
+            mistakes.unpaired,
+            "Same seeds: pair them.",
+        ),
+        Wrong(
+            "the spread of one difference",
+            "That says where a single difference may fall. The mean of n of them is surer by √n.",
+            mistakes.deviation_of_one,
+            "Standard deviation and standard error are two things.",
+        ),
+        Wrong(
+            "1.96 for a handful of seeds",
+            "1.96 belongs to very many pairs. For a few, Student's t is wider.",
+            mistakes.normal_quantile,
+            "Five seeds are not many.",
+        ),
+    ),
+    variants=(variants.paired_by_scipy, variants.paired_by_hand),
+)
+
+VERDICTS = Problem(
+    name="verdicts",
+    points=3,
+    asks="A table gives for each claim two rows of errors over the same seeds. The claim is that the "
+    'first is larger. Give for each claim "holds", "does not hold" or "undecided".',
+    answer=answers.verdicts,
+    trials=(
+        Trial(
+            "one claim that clearly holds, one that clearly does not",
+            (
+                call(
+                    {
+                        "A is worse than B": [[4.0, 5.0, 6.0], [2.0, 3.1, 3.9]],
+                        "C is worse than D": [[2.0, 3.1, 3.9], [4.0, 5.0, 6.0]],
+                    }
+                ),
+            ),
+            weight=0.0,
+        ),
+        Trial(
+            "one that flips with the seed",
+            (call({"A is worse than B": [[4.0, 5.0, 6.0, 2.0], [3.0, 6.2, 5.1, 2.6]]}),),
+            held_out.tables,
+            "claims of every kind",
+        ),
+    ),
+    hints=(
+        "When does a difference say something? When it is larger than what the seeds alone could make.",
+        "Use your paired_difference: the claim holds if mean - half_width > 0, and does not hold if "
+        "mean + half_width < 0.",
+        'Else it is "undecided", which is an honest and often the right answer.',
+    ),
+    wrong=(
+        Wrong(
+            "always decided",
+            "The sign of a mean is always one or the other. If the interval holds 0, another seed "
+            "might turn it: undecided.",
+            mistakes.always_decided,
+            "Undecided is a result.",
+        ),
+        Wrong(
+            "the other way round",
+            "The numbers are errors: the claim is that the first is larger, so a positive difference "
+            "speaks for it.",
+            mistakes.the_other_way_round,
+            "Say what a positive difference means before you compute it.",
+        ),
+    ),
+    variants=(variants.verdicts_by_comprehension,),
+)
+
+PROBLEMS = (RMS_ERROR, OPEN_LOOP, KP_FOR_MARGIN, CHOOSE_GAINS, PAIRED, VERDICTS)

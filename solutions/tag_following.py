@@ -1,0 +1,182 @@
+r"""Following a tag: a reference that never jumps, made from readings that come late.
+
+A Kalman filter with constant velocity turns old readings into where the tag is now; each reading
+bends the reference towards that, by the polynomial of fifth order that takes over the reference's
+own position, velocity and acceleration.  Between the two ends of a blend, :math:`x = t/T`:
+
+.. math:: p(t) = \sum_{k=0}^{5} c_k x^k
+
+Lynch & Park, section 9.4 (splines through points with velocities); Bar-Shalom, Li & Kirubarajan,
+section 6.2.2 (continuous white-noise acceleration).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from labkit import PoseSample, Sample, se3
+from labkit.arrays import Array, as_array, as_number, as_vector
+from labkit.estimation import Estimate, first_estimate, update
+from labkit.looking import Reading
+
+_ENDS = np.linalg.inv(
+    np.array(
+        [
+            [1, 0, 0, 0, 0, 0],
+            [0, 1, 0, 0, 0, 0],
+            [0, 0, 2, 0, 0, 0],
+            [1, 1, 1, 1, 1, 1],
+            [0, 1, 2, 3, 4, 5],
+            [0, 0, 2, 6, 12, 20],
+        ],
+        dtype=float,
+    )
+)  # from value, slope and bend at x = 0 and x = 1 to the coefficients
+
+
+def predict(mean: Any, covariance: Any, age: float, accel_noise: float) -> tuple[Array, Array]:
+    r"""Where a thing is ``age`` seconds later, if only unknown pushes change its velocity.
+
+    .. math:: F = \begin{bmatrix} I & \tau I \\ 0 & I \end{bmatrix}, \quad
+       Q = q \begin{bmatrix} \tau^3/3\,I & \tau^2/2\,I \\ \tau^2/2\,I & \tau I \end{bmatrix}, \quad
+       m' = F m, \quad P' = F P F^T + Q
+
+    Args:
+        mean: Position [m] and velocity [m/s], shape (6,).
+        covariance: P, shape (6, 6).
+        age: tau, in [s].
+        accel_noise: q, the power of the pushes, in [m^2/s^3].
+
+    Returns:
+        Mean and covariance then.
+    """
+    mean, covariance = as_array(mean, (6,), "mean"), as_array(covariance, (6, 6), "covariance")
+    tau, q = as_number(age, "age"), as_number(accel_noise, "accel_noise", least=0.0)
+    F = np.kron([[1.0, tau], [0.0, 1.0]], np.eye(3))
+    Q = q * np.kron([[tau**3 / 3.0, tau**2 / 2.0], [tau**2 / 2.0, tau]], np.eye(3))
+    return F @ mean, F @ covariance @ F.T + Q
+
+
+def blend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """From a reference in motion to a goal in motion, without a jump.
+
+    Args:
+        t: Time since the blend began, in [s]; after its end the goal's velocity goes on.
+        reference: What the reference said when it began.
+        goal: Where to be when it ends, how fast, and with what acceleration.
+        duration: How long it lasts, in [s].
+
+    Returns:
+        The reference at that time.
+    """
+    T = as_number(duration, "duration", above=0.0)
+    if t >= T:
+        after = t - T
+        return Sample(goal.position + after * goal.velocity, goal.velocity, 0.0 * goal.velocity)
+    scale = np.array([1.0, T, T * T])[:, None]
+    coefficients = _ENDS @ np.vstack([np.array(reference) * scale, np.array(goal) * scale])
+    x = t / T
+    p = np.polynomial.polynomial.polyval(x, coefficients)
+    first = coefficients[1:] * np.arange(1, 6)[:, None]
+    second = first[1:] * np.arange(1, 5)[:, None]
+    return Sample(
+        p,
+        np.polynomial.polynomial.polyval(x, first) / T,
+        np.polynomial.polynomial.polyval(x, second) / T**2,
+    )
+
+
+@dataclass(eq=False)
+class TagFollower:
+    """Keeps the tip at a fixed offset from a tag; a follower for `labkit.looking.Following`.
+
+    A tag that is no longer seen is believed to go on for `coast` seconds after the last picture;
+    then the reference comes to rest and holds until the tag is seen again.
+
+    Attributes:
+        T_wt: Pose of the tip at the start, shape (4, 4); its orientation is kept.
+        offset: From the tag to where the tip should be, world axes, shape (3,) in [m].
+        horizon: How far ahead a blend meets the tag, in [s]; longer where `acceleration` asks it.
+        coast: How long to believe in the last velocity, in [s].
+        acceleration: Largest acceleration of the reference, in [m/s^2].
+        accel_noise: How unsteady the tag is, for `predict`, in [m^2/s^3].
+        speed: How fast one expects it to be at first, in [m/s].
+    """
+
+    T_wt: Any
+    offset: Any
+    horizon: float = 0.45
+    coast: float = 0.5
+    acceleration: float = 0.27
+    accel_noise: float = 0.005
+    speed: float = 0.1
+    estimate: Estimate | None = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        self.T_wt = se3.as_pose(self.T_wt, "T_wt")
+        self.offset = as_vector(self.offset, 3, "offset")
+        here = np.array(self.T_wt[:3, 3])
+        self._from = self._to = Sample(here, np.zeros(3), np.zeros(3))
+        self._began, self._lasts, self._at_rest = 0.0, self.horizon, True
+
+    def __call__(self, t: float, readings: tuple[Reading, ...]) -> PoseSample:
+        """The reference at time ``t`` [s], with the readings that have arrived since the last."""
+        for reading in readings:
+            self.learn(reading)
+        if readings:
+            self._bend(t)
+        elif self.estimate is not None and t - self.estimate.t > self.coast and not self._at_rest:
+            self._come_to_rest(t)
+        p, v, a = self._reference(t)
+        T = np.array(self.T_wt)
+        T[:3, 3] = p
+        return PoseSample(T, np.concatenate([v, np.zeros(3)]), np.concatenate([a, np.zeros(3)]))
+
+    def learn(self, reading: Reading) -> None:
+        """Take a reading into the estimate; one older than the estimate is of no use."""
+        z, R = reading.T_wm[:3, 3], reading.covariance[:3, :3]
+        if self.estimate is None:
+            self.estimate = first_estimate(reading.stamp, z, R, self.speed)
+            return
+        age = reading.stamp - self.estimate.t
+        if age >= 0.0:
+            then = predict(self.estimate.mean, self.estimate.covariance, age, self.accel_noise)
+            self.estimate = update(Estimate(reading.stamp, *then), z, R)
+
+    def _reference(self, t: float) -> Sample:
+        return blend(t - self._began, self._from, self._to, self._lasts)
+
+    def _bend(self, t: float) -> None:
+        """A new blend, from the reference as it is to the tag as it will be."""
+        here, estimate, duration = self._reference(t), self.estimate, self.horizon
+        assert estimate is not None
+        while True:
+            age = min(t + duration - estimate.t, self.coast + self.horizon)
+            mean, _ = predict(estimate.mean, estimate.covariance, age, self.accel_noise)
+            goal = Sample(mean[:3] + self.offset, mean[3:], np.zeros(3))
+            if duration > 20.0 or _peak(here, goal, duration) <= self.acceleration:
+                break
+            duration *= 1.2
+        self._from, self._to, self._began, self._lasts = here, goal, t, duration
+        self._at_rest = False
+
+    def _come_to_rest(self, t: float) -> None:
+        """A blend to a stop, as soon as the acceleration allows."""
+        here, duration = self._reference(t), self.horizon
+        while True:
+            stop = here.position + 0.5 * duration * here.velocity
+            goal = Sample(stop, np.zeros(3), np.zeros(3))
+            if duration > 20.0 or _peak(here, goal, duration) <= self.acceleration:
+                break
+            duration *= 1.2
+        self._from, self._to, self._began, self._lasts = here, goal, t, duration
+        self._at_rest = True
+
+
+def _peak(reference: Sample, goal: Sample, duration: float) -> float:
+    """Largest acceleration of a blend after its start, which it cannot choose, in [m/s^2]."""
+    times = np.linspace(0.0, duration, 9)[1:-1]
+    return max(float(np.linalg.norm(blend(t, reference, goal, duration)[2])) for t in times)

@@ -1,0 +1,51 @@
+"""The built book, made once for the whole session, and pages of it as a reader opens them."""
+
+import fcntl
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+HTML = ROOT / "book/_build/html"
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "book")]
+BUILD = [sys.executable, str(ROOT / "tools/build_book.py")]
+
+
+@pytest.fixture(scope="session")
+def book():
+    """The folder of the book; a second worker waits and finds it built."""
+    lock = ROOT / "build/book.lock"
+    lock.parent.mkdir(exist_ok=True)
+    with lock.open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        done = subprocess.run(BUILD, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-6000:]
+    return HTML
+
+
+@pytest.fixture
+def visit(book, chromium):
+    """Open a page of the book; in the end nothing was asked of a network and nothing complained."""
+    seen, contexts = [], []
+
+    def go(name, *, phone=False, browser=chromium, **options):
+        size = {"width": 390, "height": 844} if phone else {"width": 1280, "height": 900}
+        context = browser.new_context(viewport=size, **options)
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(20_000)
+        page.on("console", lambda m: m.type == "error" and seen.append(m.text))
+        page.on("pageerror", lambda e: seen.append(str(e)))
+        page.on("requestfailed", lambda r: seen.append(f"missing: {r.url}"))
+        page.on("request", lambda r: None if r.url.startswith(("file:", "data:", "blob:"))
+                else seen.append(r.url))  # fmt: skip
+        name, _, place = name.partition("#")
+        page.goto((book / name).as_uri() + (f"#{place}" if place else ""))
+        return page
+
+    yield go
+    for context in contexts:
+        context.close()
+    assert seen == []

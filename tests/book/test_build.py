@@ -1,0 +1,70 @@
+"""The build tool: what it keeps, what it makes again, and what it refuses."""
+
+import json
+import subprocess
+import sys
+import zipfile
+
+import book_pages
+import pytest
+import yaml
+from book_pages import ROOT
+from figures.page import ConclusionFails, Question, holds, quiz
+
+
+def test_a_conclusion_that_fails_stops_with_its_sentence():
+    holds(1 < 2, "one is less than two")
+    with pytest.raises(ConclusionFails, match="two is less than one"):
+        holds(2 < 1, "two is less than one")
+
+
+def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
+    names = {p.relative_to(ROOT).as_posix() for p in book_pages.imports("figures.gains")}
+    assert {"book/figures/gains.py", "labkit/run.py", "solutions/joint_velocity.py"} <= names
+    assert not any(
+        n.startswith(("labkit/grade", "labkit/check", "solutions/notebooks")) for n in names
+    )
+
+
+def test_pages_of_the_contents_exist():
+    for name in book_pages.in_order():
+        assert any((ROOT / f"book/{name}{end}").exists() for end in (".md", ".ipynb"))
+
+
+def test_a_quiz_marks_one_answer_right():
+    html = quiz(Question("Two and two?", [("4", "Yes."), ("5", "No.")], 0)).data
+    assert 'data-right="0"' in html
+    assert html.count('type="radio"') == 2
+
+
+@pytest.mark.slow
+def test_an_exception_in_a_cell_fails_the_build(tmp_path):
+    config = yaml.safe_load((ROOT / "book/_config.yml").read_text())
+    (tmp_path / "_config.yml").write_text(yaml.safe_dump({"execute": config["execute"]}))
+    (tmp_path / "_toc.yml").write_text("format: jb-book\nroot: index\n")
+    head = "---\nfile_format: mystnb\nkernelspec: {name: python3, display_name: Python 3}\n---\n"
+    (tmp_path / "index.md").write_text(f"{head}# Page\n\n```{{code-cell}}\nassert False\n```\n")
+    run = "from jupyter_book.cli.main import main; main()"
+    done = subprocess.run([sys.executable, "-c", run, "build", str(tmp_path), "-W", "--keep-going"],
+                          capture_output=True, text=True, check=False)  # fmt: skip
+    assert done.returncode != 0
+    assert "AssertionError" in done.stdout + done.stderr
+
+
+@pytest.mark.slow
+def test_the_zip_is_small_and_holds_the_book(book):
+    from book_outputs import pack
+
+    made = pack()
+    assert made.stat().st_size <= 40e6
+    names = zipfile.ZipFile(made).namelist()
+    assert {"book/index.html", "book/_static/viewer/viewer.js"} <= set(names)
+
+
+@pytest.mark.slow
+def test_downloads_are_the_released_notebooks(book):
+    for path in (ROOT / "assignments").glob("*/*.ipynb"):
+        handed_out = book / "_static/notebooks" / path.name
+        assert json.loads(handed_out.read_text()) == json.loads(path.read_text())
+        page = (book / f"generated/notebooks/{path.stem}.html").read_text()
+        assert "NotImplementedError" in page or "def " in page

@@ -1,0 +1,116 @@
+"""Every page of the built book, opened from the disk: quiet, offline, accessible, small or dark."""
+
+import re
+from pathlib import Path
+from urllib.parse import unquote, urldefrag
+
+import pytest
+from book_pages import in_order
+from bs4 import BeautifulSoup
+
+ROOT = Path(__file__).parents[2]
+AXE = (ROOT / "tests/vendor/axe.min.js").read_text()
+TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+PAGES = [*in_order(), "search", "genindex"]
+
+pytestmark = pytest.mark.slow
+
+
+def violations(page):
+    """What axe-core finds, with no rule disabled and nothing excluded."""
+    page.evaluate(AXE)
+    found = page.evaluate("tags => axe.run({runOnly: tags})", TAGS)
+    return [f"{v['id']}: {n['html'][:150]}" for v in found["violations"] for n in v["nodes"]]
+
+
+def wake(page):
+    """Bring every viewer into sight and wait until it stands."""
+    page.evaluate("""async () => {
+        for (const e of document.querySelectorAll('.lk-embed')) {
+            e.scrollIntoView();
+            e.querySelector('.lk-load')?.click();
+            while (!e.querySelector('[data-ready]')) await new Promise((r) => setTimeout(r, 30));
+        }
+    }""")
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_is_quiet_and_asks_no_network(visit, name):
+    page = visit(f"{name}.html")
+    wake(page)
+    page.wait_for_timeout(200)
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_is_accessible_in_light_and_dark(visit, open_chromium, name):
+    page = visit(f"{name}.html", browser=open_chromium)
+    wake(page)
+    assert violations(page) == [], "light"
+    page.evaluate("document.documentElement.dataset.theme = 'dark'")
+    page.wait_for_timeout(400)  # colours fade
+    assert violations(page) == [], "dark"
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_fits_a_phone_and_is_accessible_there(visit, open_chromium, name):
+    page = visit(f"{name}.html", browser=open_chromium, phone=True)
+    page.wait_for_timeout(300)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert violations(page) == []
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_can_be_read_at_twice_the_size(visit, name):
+    page = visit(f"{name}.html")
+    page.set_viewport_size({"width": 640, "height": 450})  # what 200 % leaves of 1280 x 900
+    page.wait_for_timeout(300)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 640
+
+
+def html_files(book):
+    return [p for p in book.rglob("*.html") if "_static" not in p.parts]
+
+
+def test_internal_links_and_downloads_lead_somewhere(book):
+    pages = {p: BeautifulSoup(p.read_text(), "html.parser") for p in html_files(book)}
+    broken = []
+    for path, page in pages.items():
+        for link in page.select("[href], [src]"):
+            address, place = urldefrag(link.get("href") or link.get("src"))
+            if re.match(r"(https?|mailto|data|javascript):", address):
+                continue
+            target = (path.parent / unquote(address.split("?")[0])).resolve() if address else path
+            if target.is_dir() or not target.exists():
+                broken.append(f"{path.name}: {address}")
+            elif (
+                place
+                and target in pages
+                and not pages[target].find(id=unquote(place))
+                and not (pages[target].find(attrs={"name": unquote(place)}))
+            ):
+                broken.append(f"{path.name}: {address}#{place}")
+    assert broken == []
+
+
+def test_nothing_points_at_a_network(book):
+    loaded = re.compile(r'<(?:script|link|img|iframe|source)[^>]*(?:src|href)="https?:[^"]*"')
+    found = {p.name: loaded.findall(p.read_text()) for p in html_files(book)}
+    assert {k: v for k, v in found.items() if v} == {}
+
+
+def test_every_picture_has_words(book):
+    for path in html_files(book):
+        page = BeautifulSoup(path.read_text(), "html.parser")
+        for figure in page.select(".lab-figure, .lk-embed"):
+            assert figure.select_one("figcaption").get_text(strip=True), path.name
+            assert figure.select_one("details p").get_text(strip=True), path.name
+        for drawing in page.select(".lab-figure svg"):
+            assert len(drawing["aria-label"]) > 40, path.name
+        for image in page.select("img"):
+            assert image.get("alt") is not None, f"{path.name}: {image}"
+
+
+def test_ids_are_unique(book):
+    for path in html_files(book):
+        ids = [e["id"] for e in BeautifulSoup(path.read_text(), "html.parser").select("[id]")]
+        assert len(ids) == len(set(ids)), (path.name, [i for i in ids if ids.count(i) > 1][:5])

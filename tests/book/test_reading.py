@@ -1,0 +1,98 @@
+"""A reader's hands on the book: keyboard, search, quiz, theme, reduced motion, no WebGL."""
+
+import json
+import re
+
+import pytest
+
+pytestmark = pytest.mark.slow
+
+
+def test_the_first_page_is_usable_in_a_second_and_a_half(visit):
+    times = []
+    for _ in range(3):  # the machine may be shared: the quickest of three counts
+        page = visit("index.html")
+        times.append(page.evaluate(
+            "performance.getEntriesByType('navigation')[0].domContentLoadedEventEnd"))  # fmt: skip
+    assert min(times) < 1500, times
+
+
+def test_the_first_stop_of_the_keyboard_skips_to_the_text(visit):
+    page = visit("chapters/paths.html")
+    page.keyboard.press("Tab")
+    assert "Skip to main content" in page.evaluate("document.activeElement.textContent")
+
+
+def test_every_viewer_is_moved_by_keyboard(visit):
+    page = visit("chapters/paths.html")
+    for k in range(page.locator(".lk-embed").count()):
+        host = page.locator(".lk-embed").nth(k)
+        host.scroll_into_view_if_needed()
+        host.locator("[data-ready]").first.wait_for()
+        slider = host.locator("input[type=range]:not([disabled])").first
+        slider.focus()
+        before = slider.input_value()
+        page.keyboard.press("ArrowRight")
+        page.keyboard.press("ArrowRight")
+        assert slider.input_value() != before
+
+
+def test_formulas_are_drawn(visit):
+    page = visit("chapters/paths.html")
+    page.wait_for_selector("mjx-container")
+    page.wait_for_timeout(500)
+    text = page.inner_text("main")
+    assert not re.search(r"\\dot|\\lambda|\\\(", text)
+    assert page.locator("mjx-merror, [data-mjx-error]").count() == 0
+
+
+def test_the_quiz_answers(visit):
+    page = visit("chapters/paths.html")
+    question = page.locator(".lab-question").first
+    right = int(question.get_attribute("data-right"))
+    said = json.loads(question.get_attribute("data-said"))
+    for k, choice in enumerate(question.locator("input").all()):
+        choice.focus()
+        page.keyboard.press("Space")
+        told = question.locator(".lab-said").inner_text()
+        assert told.startswith("✓ Right." if k == right else "✗ Not yet.")
+        if "\\(" not in said[k]:
+            assert said[k] in told
+
+
+def test_search_finds_from_the_disk(visit):
+    page = visit("search.html")
+    page.goto(page.url.split("?")[0] + "?q=trapezoid")
+    page.wait_for_selector("#search-results li")
+    assert "Paths and time scaling" in page.inner_text("#search-results")
+
+
+def test_answers_are_hidden_unless_asked_for(book):
+    text = (book / "chapters/paths.html").read_text()
+    assert "Derive the coefficients" in text
+    assert "does not change under" not in text
+    assert 'class="solution' not in text
+
+
+def test_reduced_motion_stops_the_themes_transitions(visit):
+    page = visit("index.html", reduced_motion="reduce")
+    moving = page.evaluate("""() => [...document.querySelectorAll('*')].filter((e) => {
+        const s = getComputedStyle(e);
+        return parseFloat(s.transitionDuration) > 0 || parseFloat(s.animationDuration) > 0;
+    }).length""")
+    assert moving == 0
+
+
+def test_without_webgl_words_and_plots_remain(visit, blind_chromium):
+    page = visit("index.html", browser=blind_chromium)
+    page.wait_for_selector("[data-ready]")
+    assert page.is_visible(".lk-embed .lk-alt")
+    assert page.locator(".lk-line").count() > 7
+
+
+def test_a_phone_loads_the_arm_on_tap(visit):
+    page = visit("index.html", phone=True)
+    page.wait_for_timeout(300)
+    assert page.locator("canvas").count() == 0
+    page.get_by_role("button", name="Tap to load").click()
+    page.wait_for_selector("[data-ready]")

@@ -1,0 +1,183 @@
+"""The arm: holds, obeys, keeps its limits, and says what it will not do."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import labkit as lk
+from labkit.errors import (
+    ControllerError,
+    JointLimitExceeded,
+    LabkitError,
+    NotFinite,
+    ShapeError,
+    UnknownName,
+)
+
+
+@pytest.fixture
+def arm(side):
+    """Each ideal arm at rest in its neutral pose."""
+    with lk.Arm(side) as arm:
+        yield arm
+
+
+def test_it_starts_at_rest_in_rethinks_neutral_pose(arm):
+    t, q, dq, _ = arm.state()
+    assert t == 0.0
+    assert_array_equal(q, arm.robot.neutral)
+    assert_array_equal(dq, np.zeros(7))
+
+
+@pytest.mark.parametrize("mode", ["position", "velocity", "torque"])
+def test_it_holds_the_neutral_pose_in_each_mode_with_torque_to_spare(arm, mode):
+    q = arm.robot.neutral
+    command = {
+        "position": lk.JointPosition(q),
+        "velocity": lk.JointVelocity(np.zeros(7)),
+        "torque": lk.JointTorque(arm.model.gravity(q)),
+    }[mode]
+    for _ in range(10):
+        arm.apply(command)
+        arm.world.step(100)
+        assert (np.abs(arm.torque) < 0.6 * arm.robot.effort).all()
+    assert_allclose(arm.state().q, q, atol=1e-4)
+    assert_allclose(arm.torque, arm.model.gravity(q), atol=0.02)
+    assert not arm.saturated
+
+
+def test_it_stays_where_it_was_put_without_any_command(arm):
+    arm.world.step(1000)
+    assert_allclose(arm.state().q, arm.robot.neutral, atol=2e-5)
+
+
+def test_it_goes_to_a_position(arm):
+    goal = arm.robot.neutral + [0.01, -0.02, 0.01, 0.01, -0.01, 0.02, -0.02]
+    for _ in range(10):
+        arm.apply(lk.JointPosition(goal))
+        arm.world.step(100)
+    assert_allclose(arm.state().q, goal, atol=5e-4)
+
+
+def test_it_turns_at_a_speed(arm):
+    speed = np.array([0.2, -0.1, 0.3, 0.1, -0.4, 0.2, 0.5])
+    arm.apply(lk.JointVelocity(speed))
+    arm.world.step(100)
+    assert_allclose(arm.state().dq, speed, atol=1e-4)
+    before = arm.state().q
+    arm.world.step(100)
+    assert_allclose(arm.state().q, before + 0.1 * speed, atol=1e-5)
+
+
+def test_a_torque_accelerates_it_as_the_equations_of_motion_say(arm):
+    tau = arm.model.gravity(arm.robot.neutral) + [1.0, -1.0, 0.5, 0.5, 0.2, -0.2, 0.1]
+    arm.apply(lk.JointTorque(tau))
+    arm.world.step()
+    M, g = arm.model.mass_matrix(arm.robot.neutral), arm.model.gravity(arm.robot.neutral)
+    assert_allclose(arm.state().dq / arm.world.dt, np.linalg.solve(M, tau - g), atol=1e-6)
+    assert_array_equal(arm.torque, tau)
+
+
+def test_speeds_and_torques_beyond_the_limits_are_cut_and_it_says_so(arm):
+    arm.apply(lk.JointTorque(np.full(7, 1e3)))
+    assert arm.saturated
+    arm.world.step()
+    assert_array_equal(arm.torque, arm.robot.effort)
+    arm.apply(lk.JointVelocity(np.full(7, -9.0)))
+    assert arm.saturated
+    arm.apply(lk.JointTorque(arm.robot.effort))
+    assert not arm.saturated
+    arm.apply(lk.JointVelocity(-arm.robot.speed))
+    assert not arm.saturated
+
+
+def test_the_motors_never_give_more_than_their_limits(arm):
+    for sign in (1.0, -1.0):
+        arm.apply(lk.JointVelocity(sign * arm.robot.speed))
+        for _ in range(20):
+            arm.world.step()
+            assert (np.abs(arm.torque) <= arm.robot.effort * (1 + 1e-9)).all()
+
+
+def test_after_the_command_timeout_it_holds_its_place(arm):
+    """As Rethink's arm does after 0.2 s: a program that hangs does not keep the arm moving."""
+    arm.apply(lk.JointVelocity(np.full(7, 0.2)))
+    arm.world.step(200)
+    assert_allclose(arm.state().dq, np.full(7, 0.2), atol=1e-4)
+    arm.world.step(50)
+    place = arm.state().q
+    arm.world.step(1000)
+    assert_allclose(arm.state().q, place, atol=2e-3)
+    assert_allclose(arm.state().dq, np.zeros(7), atol=1e-4)
+
+
+def test_stop_brings_it_to_rest(arm):
+    arm.apply(lk.JointVelocity(np.full(7, 0.5)))
+    arm.world.step(100)
+    arm.stop()
+    arm.world.step(150)
+    assert_allclose(arm.state().dq, np.zeros(7), atol=1e-4)
+
+
+def test_reset_puts_it_anywhere_at_rest(arm):
+    arm.apply(lk.JointVelocity(np.full(7, 0.5)))
+    arm.world.step(100)
+    arm.reset(arm.robot.ready)
+    assert_array_equal(arm.state().q, arm.robot.ready)
+    assert not arm.state().dq.any()
+    arm.world.step(100)
+    assert_allclose(arm.state().q, arm.robot.ready, atol=1e-5)
+    arm.reset()
+    assert_array_equal(arm.state().q, arm.robot.neutral)
+
+
+def test_the_state_cannot_be_written_to(arm):
+    for part in arm.state()[1:]:
+        with pytest.raises(ValueError, match="read-only"):
+            part[0] = 1.0
+
+
+def test_the_same_commands_give_the_same_motion_bit_for_bit(side):
+    ends = []
+    for _ in range(2):
+        with lk.Arm(side, lk.BAXTER, seed=3) as arm:
+            for k in range(20):
+                arm.apply(lk.JointVelocity(np.full(7, 0.01 * k)))
+                arm.world.step(10)
+            ends.append(np.concatenate(arm.state()[1:]))
+    assert_array_equal(*ends)
+
+
+BAD = [
+    (np.zeros((7, 1)), ShapeError, "ravel"),
+    (np.zeros(6), ShapeError, "give 7 numbers"),
+    (np.full(7, np.nan), NotFinite, "nan at index 0"),
+    ("neutral", LabkitError, "neutral"),
+    (np.full(7, 3.0), JointLimitExceeded, r"_s0 at 3 rad is outside \[-1\.702, 1\.702\] rad"),
+    (np.full(7, -57.0), JointLimitExceeded, "in degrees"),
+]
+
+
+@pytest.mark.parametrize(("q", "error", "words"), BAD)
+def test_angles_that_cannot_be_are_refused_and_the_arm_stays_usable(arm, q, error, words):
+    for use in (arm.reset, lambda q: arm.apply(lk.JointPosition(q)), lambda q: lk.Arm(q0=q)):
+        with pytest.raises(error, match=words) as caught:
+            use(q)
+        assert isinstance(caught.value, LabkitError)
+    arm.world.step(50)
+    assert_allclose(arm.state().q, arm.robot.neutral, atol=1e-5)
+
+
+@pytest.mark.parametrize("command", [None, np.zeros(7), [0.0] * 7, "stop", lk.JointTorque])
+def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
+    with pytest.raises(ControllerError, match=r"no command.*JointPosition, JointV") as caught:
+        arm.apply(command)
+    assert len(str(caught.value)) < 300
+    arm.world.step(50)
+    assert_allclose(arm.state().q, arm.robot.neutral, atol=1e-5)
+
+
+@pytest.mark.parametrize("side", ["middle", None, 3, "LEFT"])
+def test_there_are_two_arms(side):
+    with pytest.raises(UnknownName, match="there is 'left', 'right'"):
+        lk.Arm(side)

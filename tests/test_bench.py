@@ -1,0 +1,49 @@
+"""The bench compares like with like, and writes one flat object."""
+
+import ast
+import inspect
+import json
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+import labkit as lk
+from bench import __main__ as bench
+from bench import closed_loop, hand_loop
+
+
+def test_the_plain_loop_does_the_same_work_bit_for_bit():
+    target, controller = closed_loop.task()
+    client, body = hand_loop.open_arm(lk.robot("left").urdf())
+    q = hand_loop.hand_loop(client, body, target, controller, 0.5)
+    with lk.Arm() as arm:
+        log = lk.run(arm, target, controller, rate=1000, duration=0.5)
+    assert_array_equal(q, log.q[-1])
+    assert np.abs(q - log.q[0]).max() > 1e-3
+
+
+def test_the_plain_loop_is_plain():
+    """At most 30 lines, no class, no log."""
+    source = inspect.getsource(hand_loop.hand_loop)
+    assert len(source.splitlines()) <= 30
+    assert not any(isinstance(node, ast.ClassDef) for node in ast.walk(ast.parse(source)))
+    assert closed_loop.PAIRS >= 15
+
+
+def test_the_figures_are_one_flat_object(monkeypatch, tmp_path, capsys):
+    class Fake:
+        def measure():
+            """Two figures, one of them not to be had."""
+            return {"a": 1.23456, "b": None}
+
+    monkeypatch.setattr(bench, "MEASUREMENTS", (Fake,))
+    monkeypatch.setattr(bench, "OUT", tmp_path / "build" / "bench.json")
+    bench.main()
+    assert json.loads(bench.OUT.read_text()) == {"a": 1.235, "b": None}
+    assert "not installed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("module", bench.MEASUREMENTS, ids=lambda m: m.__name__)
+def test_each_measurement_says_what_it_measures(module):
+    assert module.measure.__doc__.splitlines()[0].endswith(".")

@@ -1,0 +1,134 @@
+"""Imports point one way, keep foreign libraries to their modules, and stay quick."""
+
+import ast
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LABKIT = ROOT / "labkit"
+FILES = sorted(LABKIT.rglob("*.py"))
+
+ORDER = [
+    {"errors", "quiet"},
+    {"arrays"},
+    {"se3"},
+    {"motion", "scalings", "paths"},
+    {"plant"},
+    {"robot"},
+    {"limits"},
+    {"model"},
+    {"commands"},
+    {"world", "scene"},
+    {"sensors"},
+    {"arm"},
+    {"run"},
+    {"metrics"},
+]  # what comes after these may import all of them
+LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
+# What simulates, and what plans and sees for it.
+SIMULATE = {"arm", "world", "scene", "camera", "board", "looks"}
+MODEL = {"model", "baseline"}
+ENGINES = "numpy, pybullet, pinocchio"
+DRAW = {"plotting", "replay", "sensor_plots"}
+SEE = {"camera", "tags", "detection", "calibration", "edges"}
+
+
+def module(path):
+    """Its first name below labkit: labkit/replay/page.py belongs to replay."""
+    parts = path.relative_to(LABKIT).with_suffix("").parts
+    return parts[0] if parts != ("__init__",) else ""
+
+
+def imported(path):
+    """Every module that a file imports, at its head or later, in full, with its line."""
+    package = ("labkit", *path.relative_to(LABKIT).parent.parts)
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, node.lineno) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package[: len(package) - node.level + 1] if node.level else ()
+            stem = ".".join([*base, *([node.module] if node.module else [])])
+            yield stem, node.lineno
+            if stem == "labkit" or node.level:
+                yield from ((f"{stem}.{alias.name}", node.lineno) for alias in node.names)
+
+
+def where(path, line):
+    return f"{path.relative_to(ROOT)}:{line}"
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
+def test_labkit_never_imports_the_answers_nor_the_tests(path):
+    for name, line in imported(path):
+        assert name.split(".")[0] not in ("solutions", "tests", "bench", "tools"), where(path, line)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
+def test_foreign_libraries_stay_in_their_modules(path):
+    owners = {
+        "pybullet": SIMULATE, "pybullet_data": SIMULATE, "pinocchio": MODEL,
+        "matplotlib": DRAW, "anywidget": DRAW, "ompl": {"baseline"}, "toppra": {"baseline"},
+        "cv2": SEE, "nbgrader": {"grade"},
+    }  # fmt: skip
+    for name, line in imported(path):
+        allowed = owners.get(name.split(".")[0])
+        if allowed is not None and module(path) not in allowed:
+            pytest.fail(f"{where(path, line)}: only {', '.join(sorted(allowed))} may import {name}")
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(LABKIT)))
+def test_imports_point_one_way(path):
+    """Errors <- arrays <- se3 <- motion <- ... <- run <- metrics <- everything else."""
+    here = module(path)
+    if here not in LEVEL:
+        return
+    for name, line in imported(path):
+        root, _, rest = name.partition(".")
+        other = rest.split(".")[0]
+        if root == "labkit" and (LABKIT / f"{other}.py").exists():
+            level = LEVEL.get(other, len(ORDER))
+            assert level <= LEVEL[here], f"{where(path, line)}: {here} may not import {other}"
+
+
+def test_the_order_names_modules_that_exist():
+    known = {module(path) for path in FILES}
+    assert set(LEVEL) - {"scene"} <= known
+
+
+def test_every_name_in_all_exists():
+    import labkit as lk
+
+    for name in lk.__all__:
+        assert getattr(lk, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'Robot9'"):
+        _ = lk.Robot9
+
+
+def python(program):
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, env=environment
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_importing_labkit_loads_no_drawing_nor_notebook_package():
+    loaded = python("import sys, labkit; print(*sys.modules)").split()
+    heavy = {"matplotlib", "IPython", "anywidget", "ipywidgets", "cv2", "scipy", "control",
+             "nbgrader", "pandas", "ompl", "toppra"}  # fmt: skip
+    assert not heavy & {name.split(".")[0] for name in loaded}
+
+
+def test_importing_labkit_costs_little_more_than_its_engines():
+    """How long it takes in seconds, and how soon an arm is ready, `make bench` says."""
+    clock = "import time; t = time.perf_counter(); import {}; print(time.perf_counter() - t)"
+    pairs = [
+        (float(python(clock.format("labkit"))), float(python(clock.format(ENGINES))))
+        for _ in range(5)
+    ]
+    assert min(ours / theirs for ours, theirs in pairs) <= 1.5

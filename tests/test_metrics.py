@@ -1,0 +1,101 @@
+"""Metrics: numbers from a log, with the sign of target minus actual."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose
+
+import labkit as lk
+from labkit import metrics, se3
+from labkit.errors import TypeMismatch
+
+errors = arrays(np.float64, (8, 3), elements=st.floats(-1.0, 1.0))
+
+
+@pytest.fixture
+def joint_log(ideal):
+    """A run that follows joint angles and lags behind."""
+    q = ideal.robot.neutral
+    turn = lk.Trajectory(lk.Line(q, q + 0.2), lk.Quintic(1.0))
+    return lk.run(ideal, turn, lambda s, x: lk.JointVelocity(0.5 * x.velocity), rate=1000)
+
+
+@pytest.fixture
+def pose_log(ideal):
+    """A run whose target is a pose 10 mm above and a tenth of a radian from where the arm stays."""
+    T = ideal.model.pose(ideal.robot.neutral)
+    T = se3.pose(se3.rotation([0, 0, 0.1]) @ T[:3, :3], T[:3, 3] + [0, 0, 0.01])
+    return lk.run(ideal, lk.Hold(T, 0.2), lambda s, x: lk.JointVelocity(np.zeros(7)), rate=100)
+
+
+def test_joint_error_is_target_minus_actual(joint_log):
+    e = metrics.joint_error(joint_log)
+    assert_allclose(e, joint_log.target.position - joint_log.q)
+    assert (e[-1] > 0.05).all()
+
+
+def test_tip_error_is_target_minus_actual_in_world_axes(pose_log):
+    e = metrics.tip_error(pose_log)
+    assert_allclose(e, np.tile([0, 0, 0.01, 0, 0, 0.1], (len(pose_log), 1)), atol=1e-5)
+
+
+def test_the_tip_error_of_a_joint_run_is_that_of_its_poses(joint_log):
+    model = metrics.model_of(joint_log)
+    e = metrics.tip_error(joint_log, model)
+    for k in (0, 500, 1000):
+        T_wd = model.pose(joint_log.target.position[k])
+        assert_allclose(e[k], model.pose_error(T_wd, joint_log.q[k]), atol=1e-12)
+
+
+def test_velocity_error_is_the_slope_of_the_position_error(joint_log):
+    e = metrics.tip_error(joint_log)[:, :3]
+    slope = np.gradient(e, joint_log.t, axis=0)
+    assert_allclose(metrics.velocity_error(joint_log)[5:-5], slope[5:-5], atol=1e-3)
+
+
+def test_the_velocity_error_of_a_still_pose_is_the_tips_own_speed(pose_log):
+    assert_allclose(metrics.velocity_error(pose_log), np.zeros((len(pose_log), 3)), atol=1e-4)
+
+
+def test_a_run_after_poses_has_no_joint_error(pose_log):
+    with pytest.raises(TypeMismatch, match=r"followed poses.*tip_error"):
+        metrics.joint_error(pose_log)
+
+
+def test_a_log_knows_its_model(joint_log):
+    model = metrics.model_of(joint_log)
+    assert (model.robot.side, model.plant) == ("left", lk.IDEAL)
+
+
+@given(errors, st.floats(0.01, 100.0))
+def test_rms_scales_with_the_error_and_is_below_the_largest(e, k):
+    assert metrics.rms(k * e) == pytest.approx(k * metrics.rms(e))
+    assert metrics.rms(e) <= np.linalg.norm(e, axis=1).max() * (1 + 1e-12)
+    assert metrics.rms(e) == pytest.approx(np.sqrt(np.mean(np.sum(e**2, axis=1))))
+
+
+def test_rms_of_a_constant_is_its_length():
+    assert metrics.rms(np.tile([3.0, 4.0], (10, 1))) == pytest.approx(5.0)
+    assert metrics.rms([2.0, -2.0]) == pytest.approx(2.0)
+
+
+def test_settling_is_the_last_time_outside():
+    t = np.arange(5.0)
+    assert metrics.settling_time(t, [3, 2, 1, 0.1, 0.1], 0.5) == 3.0
+    assert metrics.settling_time(t, [0, 0, 3, 0, 0], 0.5) == 3.0
+    assert metrics.settling_time(t, [0, 0, 0, 0, 0], 0.5) == 0.0
+    assert metrics.settling_time(t, [0, 0, 0, 0, 3], 0.5) == float("inf")
+    assert metrics.settling_time(t + 7.0, [3, 0, 0, 0, 0], 0.5) == 1.0
+
+
+def test_a_summary_is_what_its_parts_say(pose_log):
+    numbers = metrics.summary(pose_log)
+    assert numbers.rms_mm == pytest.approx(10.0, abs=0.01)
+    assert numbers.max_mm == pytest.approx(10.0, abs=0.01)
+    assert numbers.max_deg == pytest.approx(np.degrees(0.1), abs=0.01)
+    assert numbers.saturated == 0.0
+    assert numbers.duration == pytest.approx(0.2)
+    assert numbers.effort == pytest.approx(metrics.rms(pose_log.tau))
+    assert str(numbers).startswith("RMS 10 mm, max 10 mm and 5.73 degrees")

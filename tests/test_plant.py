@@ -1,0 +1,62 @@
+"""Plants are values; what each effect does to the arm is proven in test_plant_effects."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit.errors import LabkitError
+
+PER_JOINT = ("armature", "viscous", "stiction", "velocity_noise")
+
+
+def test_every_effect_is_off_by_default_and_on_the_ideal_arm():
+    for field in dataclasses.fields(lk.Plant):
+        if field.name in ("name", "command_timeout"):
+            continue
+        value = getattr(lk.IDEAL, field.name)
+        assert not np.any(value), field.name
+        assert getattr(lk.Plant(), field.name) == value
+
+
+def test_a_plant_is_a_value():
+    assert lk.Plant(stiction=1.0) == lk.Plant(stiction=[1.0] * 7)
+    assert hash(lk.Plant(stiction=1.0)) == hash(lk.Plant(stiction=np.ones(7)))
+    assert lk.BAXTER != lk.IDEAL
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        lk.BAXTER.payload = 1.0
+
+
+def test_one_effect_is_changed_at_a_time():
+    quiet = dataclasses.replace(lk.BAXTER, velocity_noise=0.0)
+    assert quiet.velocity_noise == (0.0,) * 7
+    assert quiet.stiction == lk.BAXTER.stiction
+
+
+@pytest.mark.parametrize("field", PER_JOINT)
+@pytest.mark.parametrize("value", [[1.0] * 6, np.ones((7, 1)), np.nan, "high", None, -1.0])
+def test_a_bad_effect_per_joint_is_named(field, value):
+    with pytest.raises(LabkitError, match=field):
+        lk.Plant(**{field: value})
+
+
+@pytest.mark.parametrize(
+    "field",
+    ["payload", "velocity_lag", "position_gain", "state_rate", "state_delay", "lost_ticks",
+     "command_timeout"],
+)  # fmt: skip
+@pytest.mark.parametrize("value", [-1.0, np.nan, "high", None, [1.0, 2.0]])
+def test_a_bad_number_is_named(field, value):
+    with pytest.raises(LabkitError, match=field):
+        lk.Plant(**{field: value})
+
+
+def test_more_than_all_ticks_cannot_be_lost():
+    with pytest.raises(LabkitError, match="lost_ticks"):
+        lk.Plant(lost_ticks=1.5)
+
+
+def test_a_state_rate_must_fit_the_physics_step():
+    with pytest.raises(LabkitError, match=r"plant\.state_rate is 300 Hz.*try 333"):
+        lk.Arm(plant=lk.Plant(state_rate=300.0))

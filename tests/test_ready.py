@@ -1,0 +1,30 @@
+"""The first line of every notebook."""
+
+import sys
+
+import pytest
+
+import labkit as lk
+from labkit.errors import LabkitError
+
+
+def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(capsys):
+    lk.ready()
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert out.count("\n") == 1
+    for word in (lk.__version__, "the arm moved", "mm", "pybullet 3", "pin ", "numpy", "MB used"):
+        assert word in out
+    assert float(out.split("the arm moved ")[1].split(" mm")[0]) > 50.0
+
+
+def test_an_arm_that_does_not_move_is_said_so(monkeypatch):
+    ready = lk.ready
+    module = sys.modules["labkit.ready"]
+
+    def stuck(arm, target, controller):
+        return lk.run(arm, lk.Hold(arm.state().q, 0.5), controller)
+
+    monkeypatch.setattr(module, "run", stuck)
+    with pytest.raises(LabkitError, match=r"ended 0\.100 rad from where it was sent; reinstall"):
+        ready()

@@ -1,0 +1,359 @@
+"""Run: the loop does what the textbook says, and names whoever breaks it."""
+
+import dataclasses
+
+import mujoco
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import labkit as lk
+from labkit.errors import ControllerError, Diverged, LabkitError, OutOfRange
+
+WAY = np.array([0.4, 0.2, -0.3, 0.3, 0.2, -0.3, 0.4])
+
+
+def computed_torque(model, kp=100.0, kd=20.0):
+    """Tau = M (ddq_d + Kp e + Kd de) + C dq + g (MLS eq. 4.47)."""
+
+    def controller(state, target):
+        e, de = target.position - state.q, target.velocity - state.dq
+        ddq = target.acceleration + kp * e + kd * de
+        return lk.JointTorque(model.mass_matrix(state.q) @ ddq + model.bias(state.q, state.dq))
+
+    return controller
+
+
+def swing(arm, seconds=5.0):
+    q0 = arm.robot.neutral
+    way = WAY if arm.robot.side == "left" else -WAY * [1, -1, 1, -1, 1, -1, 1]
+    return lk.Trajectory(lk.Line(q0, q0 + way), lk.Quintic(seconds))
+
+
+def follow(state, target):
+    return lk.JointPosition(target.position)
+
+
+def still(arm, seconds=0.2):
+    return lk.Hold(arm.robot.neutral, seconds)
+
+
+# What it does
+
+
+def test_computed_torque_follows_a_smooth_trajectory_to_5e_5_rad(side):
+    """Ideal plant, 1 kHz, 5 s: nothing is left but the integrator's own step."""
+    with lk.Arm(side) as arm:
+        log = lk.run(arm, swing(arm), computed_torque(arm.model), rate=1000)
+    assert np.abs(lk.metrics.joint_error(log)).max() <= 5e-5
+    assert not log.saturated.any()
+
+
+@pytest.mark.parametrize("armature", [0.0, lk.BAXTER.armature], ids=["bare", "rotors"])
+def test_a_closed_loop_is_the_same_in_mujoco(side, armature):
+    """The same URDF text and controller; MuJoCo's default integrator, semi-implicit Euler, too."""
+    plant = lk.Plant(armature=armature)
+    with lk.Arm(side, plant) as arm:
+        target, controller = swing(arm), computed_torque(arm.model)
+        log = lk.run(arm, target, controller, rate=1000)
+    m = mujoco.MjModel.from_xml_string(lk.robot(side).urdf(plant))
+    d = mujoco.MjData(m)
+    m.opt.timestep, m.opt.integrator = 1e-3, mujoco.mjtIntegrator.mjINT_EULER
+    d.qpos[:] = log.q[0]
+    for t, q, dq in zip(log.t, log.q, log.dq, strict=True):
+        assert_allclose(d.qpos, q, atol=1e-6)
+        assert_allclose(d.qvel, dq, atol=1e-6)
+        state = lk.State(t, d.qpos.copy(), d.qvel.copy())
+        d.qfrc_applied[:] = controller(state, target(t)).value
+        mujoco.mj_step(m, d)
+
+
+def test_the_same_torques_give_the_same_motion_in_mujoco():
+    """No feedback to hide a difference: 5 s of recorded torques, played again."""
+    with lk.Arm() as arm:
+        log = lk.run(arm, swing(arm), computed_torque(arm.model), rate=1000)
+    m = mujoco.MjModel.from_xml_string(lk.robot("left").urdf())
+    d = mujoco.MjData(m)
+    m.opt.timestep, d.qpos[:] = 1e-3, log.q[0]
+    for q, tau in zip(log.q, log.tau, strict=True):
+        assert_allclose(d.qpos, q, atol=1e-6)
+        d.qfrc_applied[:] = tau
+        mujoco.mj_step(m, d)
+
+
+def test_a_log_has_a_row_for_each_tick_and_both_ends(ideal):
+    log = lk.run(ideal, still(ideal, 0.5), follow, rate=100)
+    assert len(log) == 51
+    assert_allclose(log.t, np.arange(51) * 0.01, atol=1e-12)
+    for rows in (log.q, log.dq, log.tau, log.command, log.measured.q, log.target.position):
+        assert rows.shape == (51, 7)
+    assert log.saturated.shape == (51,)
+    assert log.command_type is lk.JointPosition
+    assert (log.controller, log.plant, log.side) == ("follow", lk.IDEAL, "left")
+
+
+def test_a_log_cannot_be_written_to(ideal):
+    log = lk.run(ideal, still(ideal), follow)
+    arrays = [log.t, log.q, log.dq, log.tau, log.command, log.saturated, *log.target, *log.measured]
+    for rows in arrays:
+        with pytest.raises(ValueError, match="read-only"):
+            rows[0] = 0
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        log.t = log.t
+
+
+def test_the_torque_in_a_row_is_what_drove_the_arm_until_the_next_one(ideal):
+    log = lk.run(ideal, swing(ideal, 1.0), computed_torque(ideal.model), rate=1000)
+    assert_array_equal(log.tau[:-1], log.command[:-1])
+    assert_array_equal(log.tau[-1], log.tau[-2])
+
+
+def test_at_a_slower_rate_the_command_is_held_between_ticks(ideal):
+    calls = []
+
+    def controller(state, target):
+        calls.append(state.t)
+        return lk.JointVelocity(np.full(7, 0.1))
+
+    lk.run(ideal, still(ideal, 0.1), controller, rate=50)
+    assert_allclose(calls, np.arange(6) * 0.02, atol=1e-12)
+    assert ideal.world.t == pytest.approx(0.1)
+
+
+def test_a_second_run_starts_its_own_clock_where_the_arm_is(ideal):
+    lk.run(ideal, swing(ideal, 0.5), follow)
+    q = ideal.state().q
+    log = lk.run(ideal, lk.Hold(q, 0.1), follow)
+    assert log.t[0] == 0.0
+    assert_array_equal(log.q[0], q)
+    assert log.measured.t[0] == pytest.approx(0.5)
+
+
+def test_poses_are_logged_as_poses(ideal):
+    T = ideal.model.pose(ideal.robot.neutral)
+    log = lk.run(ideal, lk.Hold(T, 0.1), lambda s, x: lk.JointVelocity(np.zeros(7)), rate=100)
+    assert isinstance(log.target, lk.PoseSample)
+    assert log.target.pose.shape == (11, 4, 4)
+    assert log.target.twist.shape == (11, 6)
+    assert_array_equal(log.target.pose[5], T)
+
+
+def test_a_target_of_plain_lists_is_read(ideal):
+    zeros = [0.0] * 7
+    log = lk.run(ideal, lambda t: lk.Sample([t] * 7, zeros, zeros), follow, duration=0.1)
+    assert_allclose(log.target.position[:, 0], log.t)
+
+
+def test_a_target_that_writes_on_its_own_array_does_not_rewrite_history(ideal):
+    buffer = np.zeros((3, 7))
+
+    def target(t):
+        buffer[0] = t
+        return lk.Sample(*buffer)
+
+    log = lk.run(ideal, target, follow, duration=0.1)
+    assert_allclose(log.target.position[:, 0], log.t)
+
+
+def test_a_run_may_last_no_time_at_all(ideal):
+    log = lk.run(ideal, still(ideal, 0.0), follow)
+    assert len(log) == 1
+    assert_array_equal(log.q[0], ideal.robot.neutral)
+
+
+def test_what_a_controller_sees_is_read_only(ideal):
+    def controller(state, target):
+        for part in (*state[1:], *target):
+            assert not part.flags.writeable
+        return lk.JointPosition(target.position)
+
+    lk.run(ideal, swing(ideal, 0.1), controller)
+    lk.run(ideal, lambda t: lk.Sample(*np.zeros((3, 7))), controller, duration=0.1)
+
+
+def test_an_interrupt_ends_the_run_and_keeps_what_there_is(ideal):
+    def controller(state, target):
+        if state.t > 0.0995:
+            raise KeyboardInterrupt
+        return follow(state, target)
+
+    log = lk.run(ideal, still(ideal, 1.0), controller, rate=100)
+    assert len(log) == 10
+    assert_stopped(ideal)
+
+
+def test_the_same_seed_gives_the_same_log():
+    logs = []
+    for seed in (1, 1, 2):
+        with lk.Arm(plant=lk.BAXTER, seed=seed) as arm:
+            logs.append(lk.run(arm, swing(arm, 0.5), follow))
+    assert_array_equal(logs[0].measured.dq, logs[1].measured.dq)
+    assert_array_equal(logs[0].q, logs[1].q)
+    assert (logs[0].measured.dq != logs[2].measured.dq).any()
+
+
+def test_a_log_is_described_in_a_line(ideal):
+    assert repr(lk.run(ideal, still(ideal), follow)) == (
+        "Log(follow on the ideal left arm, 41 ticks, 0.2 s)"
+    )
+
+
+# What it refuses
+
+
+def assert_stopped(arm):
+    """At rest soon, and ready for the next run."""
+    arm.world.step(100)
+    assert_allclose(arm.state().dq, np.zeros(7), atol=1e-3)
+    q = np.clip(arm.state().q, arm.robot.lower, arm.robot.upper)
+    assert len(lk.run(arm, lk.Hold(q, 0.05), follow)) == 11
+
+
+def late(answer, otherwise=follow):
+    """A controller that does well until 0.1 s, and then gives ``answer``."""
+
+    def controller(state, target):
+        if state.t < 0.0995:
+            return otherwise(state, target)
+        return answer(state, target)
+
+    return controller
+
+
+def fails(state, target):
+    raise ZeroDivisionError("division by zero")
+
+
+def speed(state, target):
+    return lk.JointVelocity(np.zeros(7))
+
+
+CONTROLLERS = {
+    "none": (lambda s, x: None, "controller returned None at .*; return one of .*missing"),
+    "array": (lambda s, x: np.zeros(7), "controller returned .* at .*; return one of lk.JointPos"),
+    "list": (lambda s, x: [0.0] * 7, "controller returned .*; return one of"),
+    "class": (lambda s, x: lk.JointTorque, "controller returned .*; return one of"),
+    "other": (speed, "controller changed from JointPosition to JointVelocity at t = 0.100 s"),
+    "raises": (fails, "controller failed at t = 0.100 s, tick 10: ZeroDivisionError: division by"),
+    "column": (
+        lambda s, x: lk.JointPosition(np.zeros((7, 1))),
+        r"controller failed at t = 0\.100 s.*JointPosition has shape \(7, 1\), expected \(7,\).*ra",
+    ),
+    "matrix": (lambda s, x: lk.JointPosition(s.q * np.eye(7)), "meant to be a @"),
+    "six": (lambda s, x: lk.JointPosition(np.zeros(6)), "give 7 numbers, not 6"),
+    "nan": (lambda s, x: lk.JointPosition(s.q / 0.0 * 0.0), "JointPosition holds nan at index 0"),
+    "limit": (
+        lambda s, x: lk.JointPosition(np.full(7, 2.5)),
+        r"left_s0 at 2\.5 rad is outside \[-1\.702, 1\.702\] rad",
+    ),
+    "writes": (lambda s, x: s.q.__setitem__(0, 1.0), "controller failed .*read-only"),
+    "too few arguments": (lambda: None, "takes 0 positional arguments"),
+}
+
+
+@pytest.mark.filterwarnings("ignore:divide by zero", "ignore:invalid value")
+@pytest.mark.parametrize("name", CONTROLLERS)
+def test_a_controller_that_fails_is_named_with_the_time_and_the_way_out(ideal, name):
+    answer, words = CONTROLLERS[name]
+    controller = answer if name == "too few arguments" else late(lambda s, x: answer(s, x))
+    controller.__name__ = "controller"
+    with pytest.raises(ControllerError, match=words) as caught:
+        lk.run(ideal, still(ideal, 0.5), controller, rate=100)
+    assert isinstance(caught.value, LabkitError)
+    assert len(str(caught.value)) < 400
+    assert_stopped(ideal)
+
+
+ZERO = np.zeros(7)
+TARGETS = {
+    "none": (lambda t: None, "the target target gave None"),
+    "array": (lambda t: ZERO, "the target target gave .*ndarray.* a target gives lk.Sample"),
+    "tuple": (lambda t: (ZERO, ZERO, ZERO), "the target target gave .*tuple"),
+    "raises": (lambda t: 1 / 0, "the target target failed at t = .*ZeroDivisionError"),
+    "nan": (lambda t: lk.Sample(ZERO * np.nan, ZERO, ZERO), "target .*position holds nan"),
+    "unused nan": (lambda t: lk.Sample(ZERO, ZERO * np.nan, ZERO), "target .*velocity holds nan"),
+    "short": (lambda t: lk.Sample(ZERO, ZERO[1:], ZERO), "target .*velocity has shape"),
+    "swapped": (lambda t: lk.Sample(np.zeros(8), np.zeros(6), ZERO), "target .* has shape"),
+    "column": (lambda t: lk.Sample(*np.zeros((3, 7, 1))), "target .*position has shape.*ravel"),
+    "words": (lambda t: lk.Sample("here", ZERO, ZERO), "target .*position is 'here'"),
+    "pose": (
+        lambda t: lk.PoseSample(np.eye(3), np.zeros(6), np.zeros(6)),
+        "the target target|pose has shape",
+    ),
+}
+
+
+@pytest.mark.parametrize("when", [0.0, 0.1])
+@pytest.mark.parametrize("name", TARGETS)
+def test_a_target_that_fails_is_named_and_not_the_controller(ideal, name, when):
+    answer, words = TARGETS[name]
+
+    def target(t):
+        return answer(t) if t >= when - 1e-9 else lk.Sample(ideal.robot.neutral, ZERO, ZERO)
+
+    with pytest.raises(ControllerError, match=words) as caught:
+        lk.run(ideal, target, follow, rate=100, duration=0.5)
+    assert "follow" not in str(caught.value)
+    assert f"t = {when:.0f}" in str(caught.value) or f"t = {when:.3f}" in str(caught.value)
+    assert_stopped(ideal)
+
+
+def test_a_target_may_not_turn_from_points_into_poses(ideal):
+    T = ideal.model.pose(ideal.robot.neutral)
+    joints, pose = lk.Hold(ideal.robot.neutral, 1.0), lk.Hold(T, 1.0)
+    with pytest.raises(ControllerError, match=r"PoseSample.*the same kind at all times"):
+        lk.run(ideal, lambda t: (joints if t < 0.1 else pose)(t), follow, duration=0.5)
+
+
+def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
+    def pushes(state, target):
+        g = ideal.model.gravity(state.q)
+        return lk.JointTorque(g - 300.0 * (target.position - state.q) + 0.1)
+
+    words = r"pushes lost the arm at t = .* joint left_.. turns at .*the sign of the error.*\.log"
+    with pytest.raises(Diverged, match=words) as caught:
+        lk.run(ideal, still(ideal, 5.0), pushes, rate=1000)
+    log = caught.value.log
+    assert isinstance(log, lk.Log)
+    assert len(log) > 10
+    assert np.linalg.norm(log.dq[-1]) > 50.0
+    ideal.reset()
+    assert_stopped(ideal)
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"rate": 300.0}, "rate is 300 Hz.*whole number; try 333.333 Hz"),
+        ({"rate": 5000.0}, "rate is 5000 Hz.*try 1000 Hz"),
+        ({"rate": 0.0}, "rate is 0, it must be greater than 0"),
+        ({"rate": -200.0}, "rate is -200, it must be greater than 0"),
+        ({"rate": np.nan}, "rate is nan"),
+        ({"rate": "fast"}, "rate is 'fast'"),
+        ({"duration": -1.0}, "duration is -1"),
+        ({"duration": np.inf}, "duration is inf"),
+        ({"duration": "long"}, "duration is 'long'"),
+    ],
+)
+def test_impossible_rates_and_durations_are_refused(ideal, given, words):
+    with pytest.raises(LabkitError, match=words):
+        lk.run(ideal, still(ideal), follow, **given)
+
+
+def test_a_target_without_duration_needs_one(ideal):
+    with pytest.raises(OutOfRange, match=r"how long.*give duration="):
+        lk.run(ideal, lambda t: None, follow)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (lambda arm: (None, still(arm), follow), "arm is None"),
+        (lambda arm: (arm, still(arm), None), "controller is None"),
+        (lambda arm: (arm, None, follow), "target is None"),
+        (lambda arm: (arm, follow, still(arm)), "how long|target|swapped"),
+    ],
+)
+def test_what_is_no_arm_target_or_controller_is_refused(ideal, arguments, words):
+    with pytest.raises(LabkitError, match=words):
+        lk.run(*arguments(ideal))
