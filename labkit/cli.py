@@ -20,6 +20,7 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit release 01_paths --seed 7      one of them, with hidden cases of your own
   labkit student-bundle                 a zip for students, with a start page
   labkit grade 01_paths                 grade everything under submitted/
+  labkit report-card                    how well the checks tell right from wrong
 """
 
 

@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
@@ -23,6 +24,7 @@ def add(verbs: Verbs) -> None:
     add_make_class(verbs)
     add_grade(verbs)
     class_verbs.add(verbs)
+    add_report_card(verbs)
 
 
 def add_grade(verbs: Verbs) -> None:
@@ -67,6 +69,41 @@ def add_make_class(verbs: Verbs) -> None:
     verb.add_argument("--count", type=int, default=40, help="how many students (default: 40)")
     course_option(verb)
     verb.set_defaults(do=make_class)
+
+
+def add_report_card(verbs: Verbs) -> None:
+    """``labkit report-card``."""
+    verb = verbs.add_parser("report-card", help="how well the checks tell right from wrong")
+    verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
+    verb.add_argument("--seed", type=int, default=2019, help="of the first draw (default: 2019)")
+    of = "a Python file with a dict {} = {{question: [functions]}}"
+    verb.add_argument("--mistakes", type=Path, metavar="FILE", help=of.format("MISTAKES"))
+    verb.add_argument("--variants", type=Path, metavar="FILE", help=of.format("VARIANTS"))
+    course_option(verb)
+    verb.set_defaults(do=report_card)
+
+
+def report_card(args: argparse.Namespace) -> int:
+    """Try the checks on everything that is known, and write down what came of it."""
+    from .report_card import functions_from, make, write
+
+    here = Course.here(args.course)
+    card = make(
+        here,
+        args.names or here.names(),
+        args.seed,
+        functions_from(args.mistakes, "MISTAKES") if args.mistakes else None,
+        functions_from(args.variants, "VARIANTS") if args.variants else None,
+        progress=lambda row: print(
+            f"{row.assignment} {row.question}: {row.rejected} of {row.mistakes} mistakes rejected, "
+            f"{row.accepted} of {row.variants} right answers accepted",
+            flush=True,
+        ),
+    )
+    table, page = write(card, here.root / "build")
+    print(page.read_text(encoding="utf-8"))
+    print(f"written: {table} and {page}")
+    return int(any(row.failures for row in card.rows))
 
 
 def make_class(args: argparse.Namespace) -> int:
