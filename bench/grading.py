@@ -75,7 +75,7 @@ def grading(
 
 
 def measure() -> dict[str, float]:
-    """Grading: seconds of a worker for one submission [s], and throughput against nbgrader's own."""
+    """Grading: seconds of a worker for one submission, and throughput against nbgrader."""
     return grading()
 
 
