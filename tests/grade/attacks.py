@@ -171,7 +171,7 @@ FILES = reads(
     hard_link="import os\nos.link('/usr/bin/env', 'env')\nraise Exception('GOT link')",
     fill_disk="open('full', 'wb').write(b'x' * 200 * 2**20)\nraise Exception('GOT 200 MB')",
     many_files="import os\nfor k in range(10_000): open(f'f{k}', 'w')\nraise Exception('GOT files')",
-    setuid="import os\nopen('s', 'w')\nos.chmod('s', 0o4777)\nos.chown('s', 0, 0)\nraise Exception('GOT')",
+    setuid="import os\nopen('s', 'w')\nos.chmod('s', 0o4777)\nos.chown('s', 1, 1)\nraise Exception('GOT')",
     device="import os, stat\nos.mknod('d', stat.S_IFBLK | 0o666, os.makedev(8, 0))\nraise Exception('GOT')",
 )  # fmt: skip
 NETWORK = cells(
