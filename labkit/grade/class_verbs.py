@@ -9,8 +9,8 @@ from typing import Any
 
 from ..errors import LabkitError
 from .course import Course
-from .term_verbs import course_option
 from .verbs import in_part, nobody
+from .verbs_course import course_option
 
 Verbs = Any
 

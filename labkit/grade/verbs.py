@@ -11,7 +11,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .course import Course
-from .term_verbs import course_option
+from .verbs_course import course_option
 
 Verbs = Any
 
@@ -25,6 +25,7 @@ def add(verbs: Verbs) -> None:
     add_grade(verbs)
     class_verbs.add(verbs)
     add_report_card(verbs)
+    add_doctor(verbs)
 
 
 def add_grade(verbs: Verbs) -> None:
