@@ -49,11 +49,10 @@ def parser() -> argparse.ArgumentParser:
 
     if instructors:
         from .grade import verbs as verbs_grading
-        from .grade import verbs_course, verbs_term
+        from .grade import verbs_course
 
         verbs_course.add(verbs)
         verbs_grading.add(verbs)
-        verbs_term.add_all(verbs)
     return top
 
 

@@ -25,7 +25,6 @@ def add(verbs: Verbs) -> None:
     add_grade(verbs)
     class_verbs.add(verbs)
     add_report_card(verbs)
-    add_doctor(verbs)
 
 
 def add_grade(verbs: Verbs) -> None:
