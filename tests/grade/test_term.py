@@ -11,7 +11,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from conftest import QUICK
+from handmade import QUICK
 
 from labkit.cli import main
 from labkit.errors import LabkitError
