@@ -17,13 +17,9 @@ Verbs = Any
 
 
 def add(verbs: Verbs) -> None:
-    """All of them, in the order in which they are needed."""
-    from . import class_verbs
-
-    add_doctor(verbs)
-    add_make_class(verbs)
+    """All of them."""
     add_grade(verbs)
-    class_verbs.add(verbs)
+    add_make_class(verbs)
     add_report_card(verbs)
 
 

@@ -15,7 +15,7 @@ from .verbs_course import course_option
 Verbs = Any
 
 
-def add(verbs: Verbs) -> None:
+def add_all(verbs: Verbs) -> None:
     """All of them."""
     verb = _verb(verbs, "feedback", feedback, "write a page for each student")
     verb.add_argument("--student", metavar="S", help="only this one")
@@ -61,7 +61,7 @@ def feedback(args: argparse.Namespace) -> int:
 
 def export(args: argparse.Namespace) -> int:
     """Write the table."""
-    from .tables import LAYOUTS, as_csv, rows
+    from .export import LAYOUTS, as_csv, rows
 
     here = Course.here(args.course)
     marks = list(rows(here, args.name))
