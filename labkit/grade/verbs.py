@@ -21,6 +21,7 @@ def add(verbs: Verbs) -> None:
     add_grade(verbs)
     add_make_class(verbs)
     add_report_card(verbs)
+    add_doctor(verbs)
 
 
 def add_grade(verbs: Verbs) -> None:

@@ -15,7 +15,7 @@ from .verbs_course import course_option
 Verbs = Any
 
 
-def add_all(verbs: Verbs) -> None:
+def add(verbs: Verbs) -> None:
     """All of them."""
     verb = _verb(verbs, "feedback", feedback, "write a page for each student")
     verb.add_argument("--student", metavar="S", help="only this one")
