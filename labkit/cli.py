@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
@@ -20,6 +21,7 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit release 01_paths --seed 7      one of them, with hidden cases of your own
   labkit student-bundle                 a zip for students, with a start page
   labkit grade 01_paths                 grade everything under submitted/
+  labkit report-card                    how well the checks tell right from wrong
 """
 
 
@@ -47,11 +49,11 @@ def parser() -> argparse.ArgumentParser:
     verb.set_defaults(do=_merge)
 
     if instructors:
-        from .grade import term_verbs
-        from .grade import verbs as grading_verbs
+        from .grade import verbs as verbs_grading
+        from .grade import verbs_course
 
-        term_verbs.add(verbs)
-        grading_verbs.add(verbs)
+        verbs_course.add(verbs)
+        verbs_grading.add(verbs)
     return top
 
 
@@ -63,6 +65,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except LabkitError as error:
         print(f"labkit {args.verb}: {error}", file=sys.stderr)
         return 2
+    except BrokenPipeError:  # whoever was reading has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return 1
 
 
 def _submit_check(args: argparse.Namespace) -> int:

@@ -22,9 +22,11 @@ def main() -> int:
     began = time.monotonic()
     shutil.rmtree(DEMO, ignore_errors=True)
     DEMO.mkdir(parents=True)
-    shutil.copytree(ROOT / "solutions", DEMO / "solutions")
+    shutil.copytree(
+        ROOT / "solutions", DEMO / "solutions", ignore=shutil.ignore_patterns("__pycache__")
+    )
     shutil.copy(ROOT / "nbgrader_config.py", DEMO)
-    isolated = subprocess.run([LABKIT, "doctor", "--quiet"]).returncode == 0
+    isolated = subprocess.run([LABKIT, "doctor"], capture_output=True).returncode == 0
     steps = [("Release the assignments", [LABKIT, "release", "--course", str(DEMO)])]
     if isolated:
         course = ["--course", str(DEMO)]

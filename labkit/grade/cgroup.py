@@ -67,9 +67,18 @@ class Group:
                 folder.rmdir()
 
 
+def _sweep(above: Path) -> None:
+    """Remove groups that workers left when they were killed."""
+    for folder in above.glob("labkit-*-*"):
+        if not Path("/proc", folder.name.split("-")[1]).exists():
+            with suppress(OSError):  # something still runs in it
+                folder.rmdir()
+
+
 def _set(folder: Path, file: str, value: int) -> bool:
     if not folder.parent.joinpath("cgroup.procs").exists():
         return False
+    _sweep(folder.parent)
     try:
         folder.mkdir(exist_ok=True)
         (folder / file).write_text(str(value))

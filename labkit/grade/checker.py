@@ -14,7 +14,7 @@ from typing import Any
 from .. import errors
 from ..check.codec import decode_answer, encode
 from ..check.mark import Failed, Outcome, TestResult, Tried, Verdict, mark, try_public
-from ..check.question import Question, read_question
+from ..check.question import Question
 from .inside.wire import Gone, TooLate, TooMuch
 from .limits import Limits
 from .plan import Plan, plan
@@ -57,7 +57,7 @@ def grade(
     if isinstance(cells, str):
         return rejection(cells, student, bundle, sandbox.level, data)
     todo = plan(cells, bundle.data["cells"])
-    questions = [read_question(q) for q in bundle.data["questions"]]
+    questions = bundle.questions
     with Seat(sandbox, todo, limits) as seat:
         tried = [_public(question, seat) for question in questions]
         verdicts = [

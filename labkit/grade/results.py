@@ -9,13 +9,14 @@ import platform
 import shutil
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import labkit
 
+from ..check.question import Question, read_question
 from ..errors import LabkitError
 from .course import Course
 
@@ -146,6 +147,11 @@ class Bundle:
                 f"{assignment} was not released here; type: labkit release {assignment}"
             )
         return cls(json.loads(path.read_text(encoding="utf-8")))
+
+    @cached_property
+    def questions(self) -> tuple[Question, ...]:
+        """Its questions, hidden cases included; read once for all submissions."""
+        return tuple(map(read_question, self.data["questions"]))
 
     @property
     def points(self) -> float:

@@ -13,7 +13,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -36,8 +36,11 @@ class NoIsolation(LabkitError):
     """This machine cannot keep a student's code apart; the sentence says how it could."""
 
 
-class Broken(Exception):
-    """A sandbox that worked does not any more; a fresh one may."""
+class Broken(BaseException):
+    """A sandbox that worked does not any more; a fresh one may.
+
+    No `Exception`, so that marking never takes it for one of the student's.
+    """
 
 
 class Inside:
@@ -121,10 +124,12 @@ class Sandbox:
 
     def close(self) -> None:
         """End everything inside."""
-        self.line.close()
-        with suppress(ProcessLookupError):
+        self.line.close()  # the first process inside sees it, and goes
+        try:
+            self.process.wait(2.0)
+        except subprocess.TimeoutExpired:
             self.process.kill()
-        self.process.wait()
+            self.process.wait()
         os.close(self._log)
         if self.group is not None:
             self.group.remove()
@@ -147,7 +152,7 @@ class Sandbox:
             socket.send_fds(self.line.end, [data], [end.fileno()] if end else [])
             return self.line.read(20.0)
         except (OSError, Gone, TooLate, TooMuch) as error:
-            raise Broken(str(error)) from None
+            raise Broken(f"{error}; it said: {self._words()}") from None
 
     def _words(self) -> str:
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()

@@ -6,11 +6,12 @@ import argparse
 import json
 import sys
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
 from .course import Course
-from .term_verbs import course_option
+from .verbs_course import course_option
 
 Verbs = Any
 
@@ -19,6 +20,7 @@ def add(verbs: Verbs) -> None:
     """All of them."""
     add_grade(verbs)
     add_make_class(verbs)
+    add_report_card(verbs)
 
 
 def add_grade(verbs: Verbs) -> None:
@@ -65,6 +67,41 @@ def add_make_class(verbs: Verbs) -> None:
     verb.set_defaults(do=make_class)
 
 
+def add_report_card(verbs: Verbs) -> None:
+    """``labkit report-card``."""
+    verb = verbs.add_parser("report-card", help="how well the checks tell right from wrong")
+    verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
+    verb.add_argument("--seed", type=int, default=2019, help="of the first draw (default: 2019)")
+    of = "a Python file with a dict {} = {{question: [functions]}}"
+    verb.add_argument("--mistakes", type=Path, metavar="FILE", help=of.format("MISTAKES"))
+    verb.add_argument("--variants", type=Path, metavar="FILE", help=of.format("VARIANTS"))
+    course_option(verb)
+    verb.set_defaults(do=report_card)
+
+
+def report_card(args: argparse.Namespace) -> int:
+    """Try the checks on everything that is known, and write down what came of it."""
+    from .report_card import functions_from, make, write
+
+    here = Course.here(args.course)
+    card = make(
+        here,
+        args.names or here.names(),
+        args.seed,
+        functions_from(args.mistakes, "MISTAKES") if args.mistakes else None,
+        functions_from(args.variants, "VARIANTS") if args.variants else None,
+        progress=lambda row: print(
+            f"{row.assignment} {row.question}: {row.rejected} of {row.mistakes} mistakes rejected, "
+            f"{row.accepted} of {row.variants} right answers accepted",
+            flush=True,
+        ),
+    )
+    table, page = write(card, here.root / "build")
+    print(page.read_text(encoding="utf-8"))
+    print(f"written: {table} and {page}")
+    return int(any(row.failures for row in card.rows))
+
+
 def make_class(args: argparse.Namespace) -> int:
     """Write a synthetic class, and what it deserves."""
     from .synthetic import expected_file
@@ -87,7 +124,7 @@ def grade(args: argparse.Namespace) -> int:
 
     here = Course.here(args.course)
     here.notebook_source(args.name)
-    who = _who(here, args.name, args.student)
+    who = in_part(here, args.name, args.student)
     if args.engine == "nbgrader":
         return _with_nbgrader(here, args, who)
     how = How(
@@ -99,19 +136,17 @@ def grade(args: argparse.Namespace) -> int:
     )
     graded: list[Result] = []
     failed: list[LabkitError] = []
-    for number, (student, result, before) in enumerate(
-        grade_class(here, args.name, who, how), start=1
-    ):
-        if isinstance(result, LabkitError):
-            failed.append(result)
-            print(f"{student}: not graded; {result}", file=sys.stderr, flush=True)
+    for number, one in enumerate(grade_class(here, args.name, who, how), start=1):
+        if isinstance(one, LabkitError):
+            failed.append(one)
+            print(f"not graded: {one}", file=sys.stderr, flush=True)
             continue
-        graded.append(result)
+        graded.append(one.result)
         if args.json:
-            print(json.dumps(json.loads(result.text())), flush=True)
+            print(json.dumps(json.loads(one.result.text())), flush=True)
         else:
-            done = " (as before)" if before else ""
-            print(f"[{number}/{len(who)}] {line(result)}{done}", flush=True)
+            says = f" ({one.says})" if one.says else ""
+            print(f"[{number}/{len(who)}] {line(one.result)}{says}", flush=True)
     if failed and not graded:
         raise failed[0]
     say = sys.stderr if args.json else sys.stdout
@@ -124,7 +159,8 @@ def grade(args: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _who(here: Course, name: str, student: str | None) -> list[str]:
+def in_part(here: Course, name: str, student: str | None) -> list[str]:
+    """Who handed in, or the one asked for."""
     from .engines import students
 
     found = students(here, name)
@@ -135,6 +171,11 @@ def _who(here: Course, name: str, student: str | None) -> list[str]:
             "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     return who
+
+
+def nobody(name: str, student: str | None) -> LabkitError:
+    """What to say where nothing is graded yet."""
+    return LabkitError(f"{student or 'nobody'} is graded in {name}; type: labkit grade {name}")
 
 
 def _shard(text: str) -> tuple[int, int]:
@@ -161,3 +202,20 @@ def _with_nbgrader(here: Course, args: argparse.Namespace, who: list[str]) -> in
 def _tell(sentences: Iterable[str], where: Any) -> None:
     for sentence in sentences:
         print(sentence, file=where, flush=True)
+
+
+def add_doctor(verbs: Verbs) -> None:
+    """``labkit doctor``."""
+    verb = verbs.add_parser("doctor", help="what is missing on this machine, and how to get it")
+    verb.set_defaults(do=doctor)
+
+
+def doctor(args: argparse.Namespace) -> int:
+    """Say what was found; 1 if grading would refuse."""
+    from .doctor import examine
+
+    bad = False
+    for finding in examine():
+        print(finding, flush=True)
+        bad |= finding.needed and not finding.fine
+    return 1 if bad else 0

@@ -155,7 +155,7 @@ INVERSE_TRANSFORM = Problem(
     points=2,
     asks="Give `T_ba`, the pose of a in b, from `T_ab`, the pose of b in a; of shape (4, 4).",
     answer=answers.inverse_transform,
-    judge=Close(rtol=1e-9, atol=1e-9),
+    judge=Close(rtol=1e-5, atol=1e-5),
     trials=(
         Trial(
             "a pose that only shifts",
@@ -218,7 +218,7 @@ ORIENTATION_ERROR = Problem(
     asks="Give the turn, as a rotation vector in world axes, that takes the tip from its actual "
     "orientation `R_wt` to the desired one `R_wd`: shape (3,), in rad.",
     answer=answers.orientation_error,
-    judge=Close(rtol=1e-6, atol=1e-6),
+    judge=Close(rtol=1e-5, atol=1e-5),
     trials=(
         Trial(
             "a level tool turned about the vertical by 20 degrees",

@@ -1,0 +1,106 @@
+"""Judges: the same, or how it differs."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import labkit as lk
+from labkit.check import AtMost, Close, Within
+
+CLOSE = Close(rtol=1e-6, atol=1e-9)
+V = np.array([1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize("answer", [V, [1, 2, 3], (1.0, 2.0, 3.0), V + 1e-7, np.float32(V)])
+def test_lists_and_rounding_are_the_same(answer):
+    """Whatever numpy reads as the same numbers passes."""
+    assert CLOSE(answer, V) is None
+    assert CLOSE.distance(answer, V) <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (V + 1e-3, "expected"),
+        (V[:, None], "shape"),
+        (V[:2], "shape"),
+        (None, "expected 3 real numbers"),
+        ("abc", "real numbers"),
+        ([1, 2, np.nan], "nan"),
+        ([1, 2, np.inf], "inf"),
+        (np.float64("nan"), "shape"),
+        (lk.JointVelocity(np.zeros(7)), "real numbers"),
+        ([[1], [2, 3]], "different lengths"),
+    ],
+)
+def test_differences_are_sentences(answer, words):
+    """A wrong shape, a NaN, a missing return: each says what came."""
+    assert words in CLOSE(answer, V)
+    assert CLOSE.distance(answer, V) > 1.0
+
+
+def test_numbers_are_numbers():
+    """Python's, numpy's and zero-dimensional arrays are one number; None is not."""
+    for answer in (2, 2.0, np.float64(2.0), np.int64(2), np.array(2.0)):
+        assert CLOSE(answer, 2.0) is None
+    assert "got 3" in CLOSE(3.0, 2.0)
+    assert CLOSE(None, 2.0) is not None
+    assert CLOSE(float("nan"), 2.0) is not None
+
+
+def test_commands_keep_their_type():
+    """A torque is not a speed, an array is no command, and the numbers count too."""
+    wanted = lk.JointVelocity(np.zeros(7))
+    assert CLOSE(lk.JointVelocity(np.zeros(7)), wanted) is None
+    assert "JointVelocity" in CLOSE(lk.JointTorque(np.zeros(7)), wanted)
+    assert "JointVelocity" in CLOSE(np.zeros(7), wanted)
+    assert "expected" in CLOSE(lk.JointVelocity(np.ones(7)), wanted)
+
+
+def test_parts_are_named():
+    """In a tuple the part that differs is called by its name; too few parts are counted."""
+    judge = Close(parts=("s", "ds", "dds"))
+    assert judge((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)) is None
+    assert judge([1.0, 2.0, 4.0], (1.0, 2.0, 3.0)).startswith("dds")
+    assert "3 things (s, ds, dds), not 2" in judge((1.0, 2.0), (1.0, 2.0, 3.0))
+    assert "3 things" in judge(1.0, (1.0, 2.0, 3.0))
+
+
+def test_samples_tables_and_texts():
+    """A tuple passes for a sample; a dict misses a key; a text is compared as it is."""
+    sample = lk.Sample(V, V, V)
+    assert CLOSE((V, V, V), sample) is None
+    assert CLOSE((V, V, 2 * V), sample).startswith("acceleration")
+    assert "'b' is missing" in CLOSE({"a": 1.0}, {"a": 1.0, "b": 2.0})
+    assert CLOSE("yes", "yes") is None
+    assert CLOSE("no", "yes") is not None
+    assert CLOSE(1, True) is not None
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=5), st.floats(-1e-3, 1e-3))
+def test_distance_and_verdict_agree(numbers, off):
+    """An answer passes if and only if its distance is at most one tolerance."""
+    expected = np.array(numbers)
+    answer = expected + off
+    passed = CLOSE(answer, expected) is None
+    distance = CLOSE.distance(answer, expected)
+    assert passed == (distance <= 1.0) or abs(distance - 1.0) < 1e-6
+
+
+def test_within_intervals():
+    """Several numbers may be right; the distance grows from the middle."""
+    judge, intervals = Within(), [[0.9, 1.1], [2.0, 3.0]]
+    assert judge(1.0, intervals) is None and judge(2.5, intervals) is None
+    assert "got 1.5" in judge(1.5, intervals)
+    assert judge(None, intervals) is not None
+    assert judge(float("nan"), intervals) is not None
+    assert judge.distance(1.0, intervals) < 1.0 < judge.distance(1.5, intervals)
+
+
+def test_at_most():
+    """The first measure beyond its limit is told with its unit; NaN is beyond any."""
+    judge = AtMost()
+    assert judge({"max_mm": 1.0, "effort": 2.0}, {"max_mm": 1.5}) is None
+    assert judge({"max_mm": 2.0}, {"max_mm": 1.5}) == "max 2 mm, allowed 1.5 mm"
+    assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None

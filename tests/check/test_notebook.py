@@ -1,0 +1,147 @@
+"""What a notebook says: check, hint and use."""
+
+import json
+import os
+import subprocess
+import sys
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from questions import CALLS, DOUBLE, HIDDEN, double, square
+
+from labkit.check import Test, also, check, hint, notebook, use
+from labkit.errors import LabkitError, OutOfRange, UnknownName
+
+
+def stub(x):
+    raise NotImplementedError
+
+
+@pytest.fixture(autouse=True)
+def desk(tmp_path, monkeypatch):
+    """A folder with questions in it."""
+    data = {"assignment": "sample", "questions": [DOUBLE.data()]}
+    (tmp_path / notebook.FILE).write_text(json.dumps(data))
+    monkeypatch.chdir(tmp_path)
+    notebook._desks.clear()
+    return tmp_path
+
+
+def test_check_prints_and_ends_in_a_plain_float(capfd):
+    """The last line's value, which nbgrader reads, is a Python float, whatever the answer was."""
+    for function, points in ((double, 4.0), (square, 0.0), (stub, 0.0), (lambda x: 1 / 0, 0.0)):
+        earned = check("double", function)
+        assert type(earned) is float and earned == points
+        out, err = capfd.readouterr()
+        assert out.startswith("double: ") and err == ""
+
+
+def test_streams_and_warnings_are_caught(capfd):
+    """Prints, stderr, C's streams and warnings do not get through; they are told instead."""
+
+    def loud(x):
+        print("to stdout")
+        print("to stderr", file=sys.stderr)
+        warnings.warn("careful", stacklevel=1)
+        os.write(2, b"from below\n")
+        return 2 * x
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert check("double", loud) == 4.0
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert "your code printed" in out and "to stderr" in out
+
+
+def test_streams_work_again_afterwards(capfd):
+    """After a check both streams are where they were, also if the function raised."""
+    check("double", lambda x: 1 / 0)
+    capfd.readouterr()
+    print("here")
+    os.write(2, b"there\n")
+    assert capfd.readouterr() == ("here\n", "there\n")
+
+
+def test_hints_lead_on(capsys):
+    """Three hints, each naming the next; there is no fourth and no zeroth."""
+    for level in (1, 2, 3):
+        hint("double", level)
+        said = capsys.readouterr().out
+        assert DOUBLE.hints[level - 1] in said
+        assert (f'hint("double", {level + 1})' in said) == (level < 3)
+    for level in (0, 4, -1):
+        with pytest.raises(OutOfRange, match="hints 1 to 3"):
+            hint("double", level)
+
+
+def test_use_takes_yours_only_if_right(capsys):
+    """A right function is used, or what wraps it; any other is replaced, with one badge."""
+    given, wrapped = object(), object()
+    assert use("double", double, given) is double
+    assert use("double", double, given, yours=wrapped) is wrapped
+    assert capsys.readouterr().out == ""
+    for function in (stub, square, lambda x: 1 / 0):
+        assert use("double", function, given, yours=wrapped) is given
+    assert capsys.readouterr().out.count("[stand-in] double") == 1
+
+
+def test_use_remembers_the_check():
+    """What `check` found is not tried again; a function that was changed is."""
+    calls = []
+
+    def counted(x):
+        calls.append(x)
+        return 2.0 * x
+
+    check("double", counted)
+    tried = len(calls)
+    assert use("double", counted, None) is counted and len(calls) == tried
+    assert use("double", double, None) is double
+
+
+def test_also_adds_hidden_cases(capsys):
+    """The teacher's copy has more cases, and adding them twice changes nothing."""
+    question = replace(DOUBLE, tests=(Test("negative", (CALLS[2], HIDDEN), 1.0, "any number"),))
+    for _ in range(2):
+        also("double", question.pack_hidden())
+        assert check("double", {2.0: 4.0, 3.0: 6.0, -1.0: -2.0}.get) == 3.0
+    assert "a hidden case (any number)" in capsys.readouterr().out
+
+
+def test_unknown_questions_are_a_sentence():
+    """A question that is not there is named, beside those that are."""
+    for call in (lambda: check("treble", double), lambda: hint("treble"), lambda: use("t", 1, 2)):
+        with pytest.raises(UnknownName, match="'double'"):
+            call()
+
+
+def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
+    """Without the questions beside it, a notebook says where they come from."""
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    with pytest.raises(LabkitError, match=r"no checks\.json in 'elsewhere'.*whole folder"):
+        check("double", double)
+
+
+def test_a_figure_shows_the_evidence(desk):
+    """In a kernel a known mistake comes with a picture of the numbers, and no stderr."""
+    program = (
+        "from IPython.testing.globalipapp import start_ipython\n"
+        "ip = start_ipython()\n"
+        "from labkit.check import check\n"
+        "shown = []\n"
+        "import labkit.check.notebook, IPython.display\n"
+        "IPython.display.display = lambda *a, **k: shown.extend(a)\n"
+        "check('double', lambda x: x * x)\n"
+        "print(type(shown[0]).__name__)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    assert "well-known one: squared" in done.stdout
+    assert done.stdout.rstrip().endswith("Figure")

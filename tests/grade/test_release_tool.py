@@ -1,0 +1,106 @@
+"""Making notebooks from sources: what is fed in, what comes out, what is refused."""
+
+import json
+import shutil
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from labkit.cli import main
+from labkit.errors import LabkitError
+from labkit.grade.course import Course
+from labkit.grade.notebook import brief, inlined, solution_notebook, source_notebook
+from labkit.grade.release import FORBIDDEN, release
+
+COURSE = Course.here(Path(__file__))
+NAME = "00_warmup"
+PROBLEMS = {problem.name: problem for problem in COURSE.problems(NAME)}
+QUESTIONS = {name: problem.question(1) for name, problem in PROBLEMS.items()}
+
+
+def source():
+    return source_notebook(COURSE.notebook_source(NAME), QUESTIONS)
+
+
+def cells(notebook, kind):
+    return [cell for cell in notebook.cells if cell.metadata["lab"] == kind]
+
+
+def test_each_question_gets_brief_stub_and_check():
+    """Three cells for each question, in order; the check is locked and carries the points."""
+    notebook = source()
+    assert not nbformat.validate(notebook)
+    kinds = [cell.metadata["lab"] for cell in notebook.cells]
+    assert kinds.count("brief") == kinds.count("answer") == kinds.count("check") == len(QUESTIONS)
+    for stub, test in zip(cells(notebook, "answer"), cells(notebook, "check"), strict=True):
+        name = stub.metadata["nbgrader"]["grade_id"]
+        assert test.metadata["nbgrader"]["grade_id"] == f"{name}-check"
+        assert test.metadata["nbgrader"]["points"] == QUESTIONS[name].points
+        assert test.metadata["nbgrader"]["locked"] and not stub.metadata["nbgrader"]["locked"]
+        assert test.source.endswith(f'check("{name}", {name})')
+
+
+def test_the_brief_says_what_is_hidden_and_withheld():
+    """Points, gate, classes of hidden case, withheld names and the hint stand above each stub."""
+    words = brief(QUESTIONS["orientation_error"])
+    assert "4 points" in words and "rolls at other yaws" in words
+    assert "`lk.se3.orientation_error`" in words and "hint(" in words
+
+
+def test_stubs_and_questions_must_match(tmp_path):
+    """A stub without a question, and a question without a stub, are refused by name."""
+    text = tmp_path / "x.py"
+    text.write_text('# %% question="double"\ndef double(x):\n    pass\n')
+    with pytest.raises(LabkitError, match="'double', which has no Problem"):
+        source_notebook(text, {})
+    one = QUESTIONS["joint_error"]
+    with pytest.raises(LabkitError, match="joint_error"):
+        text.write_text("# %%\nx = 1\n")
+        source_notebook(text, {"joint_error": one})
+
+
+@pytest.mark.parametrize("name", COURSE.names())
+def test_solutions_are_whole(name):
+    """The solved notebook holds the answers' source, runs on its own, and no hidden cases."""
+    problems = {p.name: p for p in COURSE.problems(name)}
+    questions = {key: p.question(1) for key, p in problems.items()}
+    solved = solution_notebook(source_notebook(COURSE.notebook_source(name), questions), problems)
+    text = "\n".join(cell.source for cell in solved.cells)
+    assert not [word for word in FORBIDDEN if word in text]
+    for problem in problems.values():
+        names: dict[str, object] = {}
+        exec(inlined(problem), names)
+        assert callable(names[problem.name])
+
+
+@pytest.mark.slow
+def test_an_answer_that_leaks_stops_the_release(tmp_path):
+    """If an answer stands outside its solution region, nothing is released."""
+    shutil.copytree(COURSE.root / "solutions", tmp_path / "solutions")
+    shutil.copy(COURSE.root / "nbgrader_config.py", tmp_path)
+    path = tmp_path / "solutions" / "notebooks" / f"{NAME}.py"
+    path.write_text(path.read_text() + "\n# %%\nfrom solutions.warmup import joint_error\n")
+    course = Course(tmp_path)
+    with pytest.raises(LabkitError, match="nothing released"):
+        release(course, NAME, 1)
+    assert not (course.release / NAME).exists()
+
+
+def test_mistakes_of_the_caller_are_one_sentence(capsys):
+    """An unknown assignment, a folder without a course: exit code 2 and a way out."""
+    assert main(["release", "09_nothing", "--course", str(COURSE.root)]) == 2
+    assert "'00_warmup'" in capsys.readouterr().err
+    assert main(["release", "--course", "/"]) == 2
+    assert "nbgrader_config.py" in capsys.readouterr().err
+
+
+def test_the_public_file_is_small_and_valid():
+    """What lies beside the notebook is one line of JSON without a hidden case."""
+    for name in COURSE.names():
+        path = COURSE.release / name / "checks.json"
+        assert path.stat().st_size < 300_000
+        data = json.loads(path.read_text(encoding="utf-8"))
+        assert data["assignment"] == name
+        cases = [c for q in data["questions"] for t in q["tests"] for c in t["cases"]]
+        assert cases and not any(case["hidden"] for case in cases)
