@@ -1,4 +1,4 @@
-"""What a picture and a detection cost: `python -m bench.camera`, or within `python -m bench`."""
+"""What a picture and a detection cost: `python -m bench.camera`."""
 
 import time
 
@@ -26,8 +26,8 @@ def quickest(action, rounds=15):
     return 1e3 * min(times)
 
 
-def camera_figures():
-    """Times of a full frame, of a quick one of the tag alone, and of a detection with its pose."""
+def measure():
+    """Milliseconds of a full frame, of a quick one of the tag alone, and of a detection."""
     world = lk.World(things=[lk.Table()])
     with lk.Arm("left", world=world, q0=lk.robot("left").ready):
         T_wm = se3.pose(se3.rotation(np.array([0.0, 0.0, 0.3])), np.array([0.8, 0.25, -0.2]))
@@ -52,4 +52,4 @@ def camera_figures():
 
 
 if __name__ == "__main__":
-    camera_figures()
+    measure()

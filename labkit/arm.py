@@ -12,7 +12,16 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array, as_array, locked, shown
-from .commands import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State, still
+from .commands import (
+    COMMANDS,
+    JOINTS,
+    Command,
+    JointPosition,
+    JointTorque,
+    JointVelocity,
+    State,
+    still,
+)
 from .errors import Closed, ControllerError
 from .model import Model
 from .plant import IDEAL, Plant
@@ -27,6 +36,9 @@ with quiet():
 
 _JOINTS = tuple(range(7))
 _ZERO = [0.0] * 7
+
+BRAKING = 0.5
+"""Share of the torque left by gravity that the position mode plans to brake with."""
 
 
 class Arm:
@@ -107,7 +119,7 @@ class Arm:
         self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
         self._reports = Reports(plant, self.world.dt, self._random)
         self._sensors = TorqueSensors(self._own, plant, self.world.dt)
-        self._effort, self._effort_list = self.robot.effort, self.robot.effort.tolist()
+        self._effort, self._speed = self.robot.effort.tolist(), self.robot.speed.tolist()
         self._stiction = list(plant.stiction)
         self.reset(q0)
         self.world.add(self)
@@ -131,23 +143,24 @@ class Arm:
             ControllerError: It is no command.
             JointLimitExceeded: A position outside the joints' range.
         """
-        kind = type(command)
-        self._check_open()
+        kind, world = type(command), self.world
+        if world.client < 0:
+            raise _closed()
         if kind is JointTorque:
-            wanted, limit = command.value, self._effort
+            wanted = command.value
+            allowed = _cut(wanted, self._effort)
         elif kind is JointVelocity:
-            wanted, limit = command.value, self.robot.speed
+            wanted = command.value
+            allowed = _cut(wanted, self._speed)
         elif kind is JointPosition:
-            wanted = self.model.within_limits(command.value, "JointPosition")
-            limit = None
+            wanted = allowed = self.model.within_limits(command.value, "JointPosition")
         else:
             raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
-        self._wanted = wanted if limit is None else _cut(wanted, limit)
-        self._saturated = self._wanted is not wanted
+        self._wanted, self._saturated = allowed, allowed is not wanted
         if kind is not self._kind:
             self._enter(kind)
         self._fresh = True
-        self._deadline = self.world._steps + self._patience
+        self._deadline = world._steps + self._patience
 
     def stop(self) -> None:
         """Come to rest and stay."""
@@ -231,10 +244,11 @@ class Arm:
 
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
-        plant, steps = self.plant, self.world._steps
+        plant, world = self.plant, self.world
+        steps = world._steps
         if steps > self._deadline:
             self._hold()
-        touchable, rows = self._touchable, None
+        touchable, rows = world.things or plant.payload, None  # else no torque from outside
         if (
             touchable
             or self._kind is JointPosition
@@ -248,30 +262,26 @@ class Arm:
         elif self._kind is JointVelocity:
             if plant.velocity_lag:
                 self._lagged += (self._wanted - self._lagged) * min(
-                    1.0, self.world.dt / plant.velocity_lag
+                    1.0, world.dt / plant.velocity_lag
                 )
                 self._spin(self._lagged)
             elif self._fresh:  # PyBullet's motors keep their target
                 self._spin(self._wanted)
         else:
-            gain = min(plant.position_gain or np.inf, 1.0 / self.world.dt)
-            speed = self.robot.speed
-            wanted = gain * (self._wanted - angles(rows))
-            allowed = _cut(wanted, speed)
-            self._saturated |= allowed is not wanted
-            self._spin(allowed)
+            self._approach(angles(rows))
         self._fresh = False
         if touchable:
             driven = self._total if self._kind is JointTorque else NOTHING
             self._sensors.begin(rows, driven, steps)
 
     def _exact(self, rows: Any) -> State:
-        world = self.world
-        a, b, _, _ = zip(*rows, strict=False)  # PyBullet gives the same four for every joint
-        q, dq = np.array(a), np.array(b)
-        q.setflags(False)  # type: ignore[call-arg]  # as in `locked`
-        dq.setflags(False)  # type: ignore[call-arg]
-        return State(world._steps * world.dt, q, dq, self._sensors.felt(rows, world._steps))
+        steps = self.world._steps
+        columns = zip(*rows)  # noqa: B905  # angles, speeds, reactions, torques
+        both = np.array(next(columns) + next(columns))  # one array is quicker made than two
+        both.setflags(False)  # type: ignore[call-arg]  # as in `locked`
+        return State(
+            steps * self.world.dt, both[:JOINTS], both[JOINTS:], self._sensors.felt(rows, steps)
+        )
 
     def _reported(self, rows: Any) -> State:
         if not self._reports.every:
@@ -283,11 +293,6 @@ class Arm:
         if self._reports.due(self.world._steps):
             truth = self.truth() if rows is None else self._exact(rows)
             self._reports.send(truth, self.world._steps)
-
-    @property
-    def _touchable(self) -> bool:
-        """Whether anything can make the external torque differ from zero."""
-        return bool(self.world.things or self.plant.payload)
 
     def _drive_torque(self, rows: Any) -> None:
         if self._fresh or self.plant.gravity_compensation:
@@ -306,6 +311,22 @@ class Arm:
             physicsClientId=self._client,
         )
 
+    def _approach(self, q: Array) -> None:
+        """Turn towards the wanted angles, never faster than the motors can brake before them.
+
+        Braking evenly from v takes v^2 / 2a (Lynch & Park, section 9.2.2).
+        """
+        if self._fresh:
+            M, g = self._own.mass_matrix(q), self._own.gravity(q)
+            self._braking = BRAKING * (self.robot.effort - np.abs(g)) / M.diagonal()
+        gain = min(self.plant.position_gain or np.inf, 1.0 / self.world.dt)
+        gap = self._wanted - q
+        stops = np.sqrt(2.0 * self._braking * np.abs(gap))
+        wanted = np.clip(gain * gap, -stops, stops)
+        allowed = _cut(wanted, self._speed)
+        self._saturated |= allowed is not wanted
+        self._spin(allowed)
+
     def _spin(self, speeds: Array) -> None:
         """Let the motors hold these speeds with whatever torque it takes, up to the limits."""
         bullet.setJointMotorControlArray(
@@ -313,7 +334,7 @@ class Arm:
             _JOINTS,
             bullet.VELOCITY_CONTROL,
             targetVelocities=speeds.tolist(),
-            forces=self._effort_list,
+            forces=self._effort,
             physicsClientId=self._client,
         )
 
@@ -342,10 +363,11 @@ class Arm:
 
     def _check_open(self) -> None:
         if self.world.client < 0:
-            raise Closed("this arm's world was closed; make a new Arm")
+            raise _closed()
 
     def _read(self) -> Any:
-        self._check_open()
+        if self.world.client < 0:
+            raise _closed()
         return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:
@@ -362,11 +384,15 @@ class Arm:
         return f"Arm({self.robot.side!r}, {self.plant.name})"
 
 
-def _cut(x: Array, limit: Array) -> Array:
+def _cut(x: Array, limit: list[float]) -> Array:
     """``x`` itself if it is within ±limit, else a copy that is."""
-    if all(map(le, map(abs, x.tolist()), limit.tolist())):  # NumPy is slow with seven numbers
+    if all(map(le, map(abs, x.tolist()), limit)):  # NumPy is slow with seven numbers
         return x
-    return np.minimum(np.maximum(x, -limit), limit)
+    return np.clip(x, np.negative(limit), limit)
+
+
+def _closed() -> Closed:
+    return Closed("this arm's world was closed; make a new Arm")
 
 
 def _names() -> str:

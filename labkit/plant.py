@@ -26,8 +26,8 @@ class Plant:
         stiction: Dry friction that a joint must overcome, shape (7,) in [N m].
         payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].
         velocity_lag: Time constant with which the velocity mode follows its command, in [s].
-        position_gain: How fast the position mode closes a gap, in [1/s]; 0 takes the whole gap in
-            one physics step, as far as speed and torque allow.
+        position_gain: How fast the position mode closes a gap, in [1/s]; 0 closes it as fast as
+            speed and torque allow, the torque to brake before it included.
         state_rate: How often the arm publishes its state, in [Hz]; 0 is every physics step.
         state_delay: Age of a state when it arrives, in [s].
         velocity_noise: Standard deviation of the measured joint speeds, shape (7,) in [rad/s].

@@ -123,12 +123,13 @@ class World:
         Raises:
             Closed: The world is closed.
         """
-        if self.client < 0:
+        client = self.client
+        if client < 0:
             raise Closed("this world was closed; make a new World, or a new Arm")
         for _ in range(count):
             for actor in self._actors:
                 actor.act()
-            bullet.stepSimulation(physicsClientId=self.client)
+            bullet.stepSimulation(client)
             self._steps += 1
 
     def close(self) -> None:

@@ -44,6 +44,25 @@ def test_the_figures_are_one_flat_object(monkeypatch, tmp_path, capsys):
     assert "not installed" in capsys.readouterr().out
 
 
+def test_one_that_fails_says_so_and_does_not_stop_the_others(monkeypatch, tmp_path, capsys):
+    class Broken:
+        def measure():
+            """A figure that cannot be had."""
+            raise RuntimeError("no browser")
+
+    class Fine:
+        def measure():
+            """A figure."""
+            return {"a": 1.0}
+
+    monkeypatch.setattr(bench, "MEASUREMENTS", (Broken, Fine))
+    monkeypatch.setattr(bench, "OUT", tmp_path / "bench.json")
+    with pytest.raises(SystemExit, match="Broken"):
+        bench.main()
+    assert json.loads(bench.OUT.read_text()) == {"a": 1.0}
+    assert "RuntimeError: no browser" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("module", bench.MEASUREMENTS, ids=lambda m: m.__name__)
 def test_each_measurement_says_what_it_measures(module):
     assert module.measure.__doc__.splitlines()[0].endswith(".")
