@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .dials import dials
     from .intrinsics import Intrinsics
     from .looking import Following, Lookups, Reading
-    from .ready import ready
+    from .readiness import ready
     from .tags import Tag
 
 __version__ = "0.1.0"
@@ -51,7 +51,7 @@ _LATER = {
     "find_tag": "detection",
     "looking_at": "camera",
     "plotting": "",
-    "ready": "ready",
+    "ready": "readiness",
     "replay": "",
 }
 """Where to find what is loaded when first asked for: OpenCV and Matplotlib are slow to import."""

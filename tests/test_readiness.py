@@ -20,7 +20,7 @@ def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(caps
 
 def test_an_arm_that_does_not_move_is_said_so(monkeypatch):
     ready = lk.ready
-    module = sys.modules["labkit.ready"]
+    module = sys.modules["labkit.readiness"]
 
     def stuck(arm, target, controller):
         return lk.run(arm, lk.Hold(arm.state().q, 0.5), controller)
