@@ -41,8 +41,15 @@ from labkit import analysis, maps, metrics, recorded, trials
 log = recorded.recorded("baseline_line")
 model = lk.Model("left")
 lk.plotting.tracking(log, model)
-plt.show()
-print(lk.plotting.describe(log, model))
+lk.plotting.show(lk.plotting.describe(log, model))
+
+# %% [markdown]
+# The same run as an arm, with the arm that follows perfectly as its ghost, and with the server's other
+# mode, which commands velocities:
+
+# %%
+other_mode = {"velocity mode": recorded.recorded("baseline_line_velocity")}
+lk.replay.show(lk.replay.motion_of(log, "The built-in way on the line", label="position mode", ghosts=other_mode))
 
 # %% [markdown]
 # At each instant the error of the tip is a vector, target minus actual. The usual number for a whole run
@@ -146,7 +153,10 @@ above.set_ylabel("gain")
 above.legend(frameon=False)
 below.set_ylabel("phase [deg]")
 below.set_xlabel("frequency [rad/s]")
-plt.show()
+lk.plotting.show(
+    "Gain and phase of the loop on paper, with the lines where the gain is 1 and where the phase is "
+    "-180 degrees, for Kp = 8, 25 and 70 1/s."
+)
 
 # %% [markdown]
 # The gain moves the upper curve up and down and leaves the lower one alone. Where the gain is 1, what is
@@ -202,12 +212,14 @@ for j, style in ((0, "-"), (4, "--"), (6, ":")):
 for margin in (30, 60):
     kp = my_kp_for_margin(lag, delay, margin)
     ax.axvline(kp, color="0.6", linewidth=0.8)
-    ax.annotate(f"{margin}° on paper", (kp, 20.0), rotation=90, ha="right", fontsize="small")
+    ax.annotate(f"{margin}° on paper", (kp, 38.0), rotation=90, ha="right", va="top", fontsize="small")
+ax.set_xticks([1, 10, 100], ["1", "10", "100"])
+ax.set_yticks([2, 5, 10, 20, 40], ["2", "5", "10", "20", "40"])
+ax.minorticks_off()
 ax.set_xlabel("Kp [1/s]")
 ax.set_ylabel("RMS error [mm]")
 ax.legend(frameon=False)
-plt.show()
-print(measured.describe())
+lk.plotting.show(measured.describe())
 
 # %% [markdown]
 # ## Gains that survive
@@ -309,8 +321,11 @@ for k, way in enumerate(ways):
     ax.plot(table[way], [k] * len(table[way]), "o", mfc="none")
 ax.set_yticks(range(len(ways)), ways)
 ax.set_xscale("log")
+ax.set_xticks([3, 5, 10, 20], ["3", "5", "10", "20"])
+ax.minorticks_off()
 ax.set_xlabel("RMS error on the circle, one ring for each seed [mm]")
-plt.show()
+means = ", ".join(f"{way} {np.mean(errors):.1f} mm" for way, errors in table.items())
+lk.plotting.show(f"The errors of each way on the circle; on average {means}.")
 
 # %% [markdown]
 # From rows like these write a verdict on each claim. The claim is always that the *first* error is the
