@@ -19,7 +19,11 @@ CACHE = ROOT / "build/book"
 CAMPAIGN = CACHE / "campaign.json"
 
 OURS = ("labkit", "solutions", "figures")
-DATA = ("labkit/data/baxter.json", "labkit/data/baxter_collision.json")
+DATA = (
+    "labkit/data/baxter.json",
+    "labkit/data/baxter_collision.json",
+    "labkit/data/campaign.json",
+)
 ENGINES = ("numpy", "scipy", "pybullet", "pin", "matplotlib", "opencv-python-headless")
 FIGURES = re.compile(r"^from (figures(?:\.\w+)?) import (\w+)", re.M)
 

@@ -25,7 +25,7 @@ from solutions.claims import IMPEDANCE, THREE
 from .page import figure, holds, numbers, replay, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
-SHOWN = ("late_rms_mm", "late_max_mm", "late_rms_deg", "effort", "duration")
+SHOWN = ("late_rms_mm", "late_max_mm", "effort")
 
 
 @cache
@@ -71,7 +71,16 @@ def numbers_told() -> None:
     )
     glue("first", first, display=False)
     glue("runs", f"{len(rows)}", display=False)
-    glue("seeds", f"{found()['seeds']}", display=False)
+    glue("seeds", _seeds(), display=False)
+    glue("source", found().get("source", "what make campaign left"), display=False)
+
+
+def _seeds() -> str:
+    """How many, and where they were fewer."""
+    counts = {x: len({r["seed"] for r in pick(found()["rows"], task=x)}) for x in campaign.TASKS}
+    most = max(counts.values())
+    fewer = [f"{n} on the {task}" for task, n in counts.items() if n < most]
+    return f"{most} seeds" + (f" ({', '.join(fewer)})" if fewer else "")
 
 
 def one_table(name: str, plant: str) -> HTML:
