@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import math
 import shutil
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict
 from typing import Any
 
 from book_pages import CACHE, CAMPAIGN, ROOT, key_of
 
-sys.path[:0] = [str(ROOT)]  # this checkout, wherever another one is installed
 from labkit import recorded
 from labkit.campaign import pick, work_through
 
@@ -22,9 +20,9 @@ JOBS = 2  # the rows are the same with any number
 def compare(progress: Callable[[str], None]) -> None:
     """Put the campaign where the pages read it.
 
-    Taken is what `make campaign` left in build/, if this code reproduces it; else, task by task, the
-    rows that come with labkit where a sample of them comes out the same now, and two seeds run here
-    where it does not.
+    Taken is what `make campaign` left in build/, if this code reproduces it; else, task by task,
+    the rows that come with labkit where a sample of them comes out the same now, and two seeds run
+    here where it does not.
 
     Args:
         progress: Told in a few words what is done.

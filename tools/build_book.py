@@ -24,7 +24,6 @@ from book_campaign import compare
 from book_outputs import pack, print_pdf
 from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, key_of, page_keys
 
-sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, wherever another one is installed
 PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
 MADE = BOOK / "generated"
 
@@ -65,6 +64,9 @@ def prepare() -> None:
         _copy(path, BOOK / "static/viewer" / name)
     _write(MADE / "parts/symbols.md", _symbols())
     _notebooks(MADE / "notebooks")
+    for made in (ROOT / "build/campaign").glob("*.mp4"):
+        for path in (made, made.with_suffix(".png")):
+            _copy(path, BOOK / "static/films" / path.name)
 
 
 def _symbols() -> str:

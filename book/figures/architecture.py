@@ -11,7 +11,7 @@ from IPython.display import HTML
 
 import labkit
 
-from .page import _framed, holds
+from .page import framed, holds
 
 HOME = Path(labkit.__file__).parent
 LAYERS = (
@@ -69,8 +69,8 @@ def picture() -> HTML:
     )
     width = LEFT + 6 * (WIDE + 10)
     svg = (
-        f'<svg class="lab-svg" role="img" aria-label="{escape(alt)}" viewBox="0 0 {width} {height}" '
-        f'fill="currentColor" xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'
+        f'<svg class="lab-svg" role="img" aria-label="{escape(alt)}" '
+        f'viewBox="0 0 {width} {height}" fill="currentColor" xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'
     )
     caption = f"labkit from the ground up. All {len(arrows)} imports point sideways or down."
-    return HTML(_framed(svg, caption, alt, alt))
+    return HTML(framed(svg, caption, alt))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from functools import cache
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from solutions.claims import IMPEDANCE, THREE
 from .page import figure, holds, numbers, replay, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
+FILMS = Path(__file__).parents[2] / "build/campaign.json"
 SHOWN = ("late_rms_mm", "late_max_mm", "effort")
 
 
@@ -164,6 +166,22 @@ def _cut(log: lk.Log, task: str) -> lk.Log:
     base = run_of("joint velocity", task)
     q = np.column_stack([np.interp(base.t, log.t, column) for column in log.q.T])
     return replace(log, t=base.t, q=q)
+
+
+def film(task: str) -> HTML:
+    """The film of a task, where `make campaign` has left one; else where to get it."""
+    told = json.loads(FILMS.read_text())["films"] if FILMS.exists() else []
+    row = next((row for row in told if row["task"] == task), None)
+    if row is None:
+        return HTML("<p><code>make campaign</code> before the book adds a film of this task.</p>")
+    name = f"../_static/films/{row['file']}"
+    return HTML(
+        f'<figure class="lab-figure"><video class="lab-svg" controls preload="none" '
+        f'poster="../_static/films/{row["poster"]}" src="{name}" aria-label="{escape(row["alt"])}">'
+        f"</video><figcaption>Joint velocity control, seed 0; without sound."
+        f"<details><summary>Description in words</summary><p>{escape(row['alt'])}</p></details>"
+        "</figcaption></figure>"
+    )
 
 
 def everything(way: str, task: str) -> HTML:
