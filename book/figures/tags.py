@@ -29,21 +29,23 @@ def seen() -> HTML:
     holds(off < 3.0 and turned < 2.0, "the pose from the picture is good to millimetres")
     numbers({"tag_off": off, "tag_turned": turned, "tag_distance": distance}, ".2g")
     points = " ".join(f"{u:.1f},{v:.1f}" for u, v in found.corners)
+    middle = found.corners.mean(axis=0)
     dots = "".join(
-        f'<text x="{u + 7:.0f}" y="{v - 5:.0f}" font-size="17" fill="#0b3d91">{k}</text>'
-        for k, (u, v) in enumerate(found.corners)
+        f'<text x="{u:.0f}" y="{v + 4:.0f}" font-size="11" text-anchor="middle" fill="#0b3d91">'
+        f"{k}</text>"
+        for k, (u, v) in enumerate(middle + 1.35 * (found.corners - middle))
     )
     alt = (
-        f"Baxter's left arm above a board with a tag, {distance:.2g} m from the camera. The "
-        f"outline that was found lies on the black square; its pose is {off:.2g} mm and "
+        f"The hand of Baxter's left arm above a board with a tag, {distance:.2g} m from the camera. "
+        f"The outline that was found lies on the black square; its pose is {off:.2g} mm and "
         f"{turned:.2g} degrees from the truth, and fits the corners to {found.error:.2g} pixels."
     )
     drawing = (
         f'<svg class="lab-svg" role="img" aria-label="{alt}" '
-        f'viewBox="0 0 {lens.width} {lens.height}" xmlns="http://www.w3.org/2000/svg">'
+        f'viewBox="280 40 280 240" xmlns="http://www.w3.org/2000/svg">'
         f'<image href="{address(image)}" width="{lens.width}" '
         f'height="{lens.height}"/><polygon points="{points}" fill="none" stroke="#0b3d91" '
-        f'stroke-width="3"/>{dots}</svg>'
+        f'stroke-width="1.2"/>{dots}</svg>'
     )
     caption = "What the simulated camera sees, and the corners found in it, numbered from 0."
     return HTML(framed(drawing, caption, alt))
