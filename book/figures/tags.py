@@ -36,7 +36,7 @@ def seen() -> HTML:
         for k, (u, v) in enumerate(middle + 1.35 * (found.corners - middle))
     )
     alt = (
-        f"The hand of Baxter's left arm above a board with a tag, {distance:.2g} m from the camera. "
+        f"The hand of Baxter's left arm above a tag, {distance:.2g} m from the camera. "
         f"The outline that was found lies on the black square; its pose is {off:.2g} mm and "
         f"{turned:.2g} degrees from the truth, and fits the corners to {found.error:.2g} pixels."
     )
