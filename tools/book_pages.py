@@ -7,6 +7,7 @@ import hashlib
 import importlib.metadata
 import json
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -14,12 +15,17 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[1]
 BOOK = ROOT / "book"
+sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, wherever another one is installed
 HTML = BOOK / "_build/html"
 CACHE = ROOT / "build/book"
 CAMPAIGN = CACHE / "campaign.json"
 
 OURS = ("labkit", "solutions", "figures")
-DATA = ("labkit/data/baxter.json", "labkit/data/baxter_collision.json")
+DATA = (
+    "labkit/data/baxter.json",
+    "labkit/data/baxter_collision.json",
+    "labkit/data/campaign.json",
+)
 ENGINES = ("numpy", "scipy", "pybullet", "pin", "matplotlib", "opencv-python-headless")
 FIGURES = re.compile(r"^from (figures(?:\.\w+)?) import (\w+)", re.M)
 
@@ -52,6 +58,7 @@ def page_keys() -> dict[str, str]:
         parts = [key_of(module) for module in modules]
         if "figures.comparison" in modules:
             parts.append(hashlib.sha256(CAMPAIGN.read_bytes()).hexdigest()[:16])
+            parts += sorted(p.name for p in (ROOT / "build/campaign").glob("*.mp4"))
         keys[name] = " ".join(parts)
     return keys
 

@@ -20,10 +20,10 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 
+from book_campaign import compare
 from book_outputs import pack, print_pdf
-from book_pages import BOOK, CACHE, CAMPAIGN, HTML, ROOT, forget_stale, key_of, page_keys
+from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, key_of, page_keys
 
-sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, wherever another one is installed
 PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
 MADE = BOOK / "generated"
 
@@ -42,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
             shutil.rmtree(folder, ignore_errors=True)
     prepare()
     record()
-    compare()
+    compare(_progress)
     if code := build(answers=chosen.answers):
         return code
     size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
@@ -64,6 +64,9 @@ def prepare() -> None:
         _copy(path, BOOK / "static/viewer" / name)
     _write(MADE / "parts/symbols.md", _symbols())
     _notebooks(MADE / "notebooks")
+    for made in (ROOT / "build/campaign").glob("*.mp4"):
+        for path in (made, made.with_suffix(".png")):
+            _copy(path, BOOK / "static/films" / path.name)
 
 
 def _symbols() -> str:
@@ -139,37 +142,6 @@ def record() -> None:
             _progress(f"recording runs... [{100 * k // len(points):3d}%]", every=k % 36 == 0)
     _write(folder / "facts.json", json.dumps(facts))
     stamp.write_text(key)
-
-
-def compare() -> None:
-    """The campaign that the comparison speaks of.
-
-    `make campaign` may have left one that this code reproduces; else two seeds are run here.
-    """
-    key, stamp = key_of("solutions.campaign"), CACHE / "campaign.key"
-    theirs = ROOT / "build/campaign.json"
-    if CAMPAIGN.exists() and stamp.exists() and stamp.read_text() == key:
-        return
-    CACHE.mkdir(parents=True, exist_ok=True)
-    if theirs.exists() and _reproduces(json.loads(theirs.read_text())["rows"][-1]):
-        shutil.copyfile(theirs, CAMPAIGN)
-    else:
-        _progress("running the campaign, two seeds")
-        command = [sys.executable, "-m", "solutions.campaign", "--seeds", "2", "--no-pictures"]
-        command += ["--out", str(CACHE)]
-        done = subprocess.run(command, env=os.environ | {"PYTHONPATH": PATHS}, cwd=ROOT,
-                              capture_output=True, text=True, check=False)  # fmt: skip
-        if done.returncode:
-            raise SystemExit(f"the campaign failed:\n{done.stderr[-3000:]}")
-    stamp.write_text(key)
-
-
-def _reproduces(row: dict) -> bool:
-    """Whether this code gives the same run as the one that the row tells of, bit for bit."""
-    from solutions.campaign import numbers
-
-    cell = {name: row[name] for name in ("way", "task", "plant", "seed")}
-    return numbers(**cell)["digest"] == row["digest"]
 
 
 def build(*, answers: bool) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from functools import cache
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,8 @@ from solutions.claims import IMPEDANCE, THREE
 from .page import figure, holds, numbers, replay, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
-SHOWN = ("late_rms_mm", "late_max_mm", "late_rms_deg", "effort", "duration")
+FILMS = Path(__file__).parents[2] / "build/campaign.json"
+SHOWN = ("late_rms_mm", "late_max_mm", "effort")
 
 
 @cache
@@ -71,7 +73,16 @@ def numbers_told() -> None:
     )
     glue("first", first, display=False)
     glue("runs", f"{len(rows)}", display=False)
-    glue("seeds", f"{found()['seeds']}", display=False)
+    glue("seeds", _seeds(), display=False)
+    glue("source", found().get("source", "what make campaign left"), display=False)
+
+
+def _seeds() -> str:
+    """How many, and where they were fewer."""
+    counts = {x: len({r["seed"] for r in pick(found()["rows"], task=x)}) for x in campaign.TASKS}
+    most = max(counts.values())
+    fewer = [f"{n} on the {task}" for task, n in counts.items() if n < most]
+    return f"{most} seeds" + (f" ({', '.join(fewer)})" if fewer else "")
 
 
 def one_table(name: str, plant: str) -> HTML:
@@ -155,6 +166,22 @@ def _cut(log: lk.Log, task: str) -> lk.Log:
     base = run_of("joint velocity", task)
     q = np.column_stack([np.interp(base.t, log.t, column) for column in log.q.T])
     return replace(log, t=base.t, q=q)
+
+
+def film(task: str) -> HTML:
+    """The film of a task, where `make campaign` has left one; else where to get it."""
+    told = json.loads(FILMS.read_text())["films"] if FILMS.exists() else []
+    row = next((row for row in told if row["task"] == task), None)
+    if row is None:
+        return HTML("<p><code>make campaign</code> before the book adds a film of this task.</p>")
+    name = f"../_static/films/{row['file']}"
+    return HTML(
+        f'<figure class="lab-figure"><video class="lab-svg" controls preload="none" '
+        f'poster="../_static/films/{row["poster"]}" src="{name}" aria-label="{escape(row["alt"])}">'
+        f"</video><figcaption>Joint velocity control, seed 0; without sound."
+        f"<details><summary>Description in words</summary><p>{escape(row['alt'])}</p></details>"
+        "</figcaption></figure>"
+    )
 
 
 def everything(way: str, task: str) -> HTML:

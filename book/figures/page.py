@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import hashlib
 import io
 import json
@@ -16,8 +17,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
 from myst_nb import glue
+from PIL import Image
 
-from labkit import Log, metrics, plotting
+from labkit import Arm, Log, Table, World, metrics, plotting
+from labkit.camera import Camera, looking_at
+from labkit.film import AT, EYE
+from labkit.intrinsics import Intrinsics
 from labkit.replay import Motion, motion_html
 
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
@@ -94,7 +99,7 @@ def figure(caption: str, alt: str, words: str = "", fig: Any = None) -> HTML:
         text = io.StringIO()
         fig.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     plt.close(fig)
-    return HTML(_framed(_drawing(text.getvalue(), caption, alt), caption, alt, words))
+    return HTML(framed(_drawing(text.getvalue(), caption, alt), caption, alt, words))
 
 
 def _drawing(svg: str, caption: str, alt: str) -> str:
@@ -115,7 +120,8 @@ def _drawing(svg: str, caption: str, alt: str) -> str:
     return re.sub(r"<svg[^>]*>", opening, svg, count=1)
 
 
-def _framed(inside: str, caption: str, alt: str, words: str) -> str:
+def framed(inside: str, caption: str, alt: str, words: str = "") -> str:
+    """A drawing with its caption and its description in words."""
     more = words or alt
     return (
         f'<figure class="lab-figure">\n{inside}\n<figcaption>{escape(caption)}'
@@ -145,8 +151,25 @@ def motion_of(log: Log, title: str, label: str = "", ghosts: Mapping[str, Log] |
 
 
 def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
-    """A run as a 3-D replay in the page."""
-    return HTML(motion_html(motion_of(log, title, **options), caption=caption))
+    """A run as a 3-D replay in the page; a picture of its middle where there is no WebGL."""
+    motion = motion_of(log, title, **options)
+    return HTML(motion_html(motion, caption=caption, poster=poster(log)))
+
+
+def poster(log: Log) -> str:
+    """What a camera beside the table sees in the middle of a run, as a data address."""
+    lens = Intrinsics(width=480, height=360, fx=405.0, fy=405.0)
+    with World(things=(Table(),)) as world:
+        arm = Arm(log.side, log.plant, world=world)
+        arm.reset(log.q[len(log) // 2])
+        return address(Camera(world, looking_at(EYE, AT), lens, samples=1).image())
+
+
+def address(picture: Any) -> str:
+    """A picture as a data address, so that it travels in the page."""
+    data = io.BytesIO()
+    Image.fromarray(np.asarray(picture)).save(data, "JPEG", quality=72, optimize=True)
+    return f"data:image/jpeg;base64,{base64.b64encode(data.getvalue()).decode()}"
 
 
 def tracking(log: Log, caption: str) -> HTML:

@@ -7,12 +7,48 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
+from labkit.detection import detect_tags, find_tag
+from solutions.tag_scenes import circling_board
 
-from .page import Question, figure, holds, number, numbers, quiz
+from .page import Question, address, figure, framed, holds, number, numbers, quiz
 
 SEED = 8
 FOCAL = 600.0
 SIZE = 0.08
+
+
+def seen() -> HTML:
+    """A picture of the simulated camera, with the tag as it was found."""
+    scene = circling_board(noise=2.0, seed=SEED)
+    image, lens = scene.camera.image(), scene.camera.intrinsics
+    found = find_tag(detect_tags(image, scene.camera, scene.board.tag.size), scene.board.tag.id)
+    truth = lk.se3.inverse(scene.camera.T_wc) @ scene.board.T_wm
+    off = 1e3 * np.linalg.norm(found.T_cm[:3, 3] - truth[:3, 3])
+    turned = np.degrees(lk.se3.angle_between(truth[:3, :3], found.T_cm[:3, :3]))
+    distance = float(truth[2, 3])
+    holds(off < 3.0 and turned < 2.0, "the pose from the picture is good to millimetres")
+    numbers({"tag_off": off, "tag_turned": turned, "tag_distance": distance}, ".2g")
+    points = " ".join(f"{u:.1f},{v:.1f}" for u, v in found.corners)
+    middle = found.corners.mean(axis=0)
+    dots = "".join(
+        f'<text x="{u:.0f}" y="{v + 4:.0f}" font-size="11" text-anchor="middle" fill="#0b3d91">'
+        f"{k}</text>"
+        for k, (u, v) in enumerate(middle + 1.35 * (found.corners - middle))
+    )
+    alt = (
+        f"The hand of Baxter's left arm above a tag, {distance:.2g} m from the camera. "
+        f"The outline that was found lies on the black square; its pose is {off:.2g} mm and "
+        f"{turned:.2g} degrees from the truth, and fits the corners to {found.error:.2g} pixels."
+    )
+    drawing = (
+        f'<svg class="lab-svg" role="img" aria-label="{alt}" '
+        f'viewBox="280 40 280 240" xmlns="http://www.w3.org/2000/svg">'
+        f'<image href="{address(image)}" width="{lens.width}" '
+        f'height="{lens.height}"/><polygon points="{points}" fill="none" stroke="#0b3d91" '
+        f'stroke-width="1.2"/>{dots}</svg>'
+    )
+    caption = "What the simulated camera sees, and the corners found in it, numbered from 0."
+    return HTML(framed(drawing, caption, alt))
 
 
 def _corners(tilt: float, distance: float) -> np.ndarray:

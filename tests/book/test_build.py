@@ -1,6 +1,8 @@
 """The build tool: what it keeps, what it makes again, and what it refuses."""
 
+import ast
 import json
+import re
 import subprocess
 import sys
 import zipfile
@@ -9,6 +11,7 @@ import book_pages
 import pytest
 import yaml
 from book_pages import ROOT
+from figures import architecture
 from figures.page import ConclusionFails, Question, holds, quiz
 
 
@@ -29,6 +32,29 @@ def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
 def test_pages_of_the_contents_exist():
     for name in book_pages.in_order():
         assert any((ROOT / f"book/{name}{end}").exists() for end in (".md", ".ipynb"))
+
+
+def test_the_reference_has_every_module():
+    """What can be imported is described; commands and the inside of the sandbox are no library."""
+    told = "".join(p.read_text() for p in (ROOT / "book/reference").glob("*.md"))
+    described = set(re.findall(r"automodule:: labkit\.(\w+)$", told, re.M))
+    there = {
+        p.stem
+        for p in (ROOT / "labkit").iterdir()
+        if p.suffix == ".py" or (p / "__init__.py").exists()
+    }
+    assert there - described - {"__init__", "cli", "grade"} == set()
+
+
+def test_the_picture_of_the_modules_has_the_order_that_imports_keep():
+    """Its rows, from the ground up, never contradict the order of tests/test_imports.py."""
+    text = (ROOT / "tests/test_imports.py").read_text()
+    order = ast.literal_eval(re.search(r"^ORDER = (\[.*?^\])", text, re.M | re.S)[1])
+    level = {name: k for k, names in enumerate(order) for name in names}
+    rows = [[level.get(name, len(order)) for name in names] for _, names in architecture.LAYERS]
+    drawn = {name for _, names in architecture.LAYERS for name in names}
+    assert set(level) <= drawn
+    assert [max(row) for row in rows] == sorted(max(row) for row in rows)
 
 
 def test_a_quiz_marks_one_answer_right():

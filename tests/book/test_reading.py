@@ -2,19 +2,24 @@
 
 import json
 import re
+from pathlib import Path
+from urllib.parse import unquote, urlparse
 
 import pytest
 
 pytestmark = pytest.mark.slow
 
 
-def test_the_first_page_is_usable_in_a_second_and_a_half(visit):
-    times = []
-    for _ in range(3):  # the machine may be shared: the quickest of three counts
-        page = visit("index.html")
-        times.append(page.evaluate(
-            "performance.getEntriesByType('navigation')[0].domContentLoadedEventEnd"))  # fmt: skip
-    assert min(times) < 1500, times
+def test_the_first_page_waits_for_little(visit):
+    """Its text stands after less than 1 MB of scripts and styles that block it."""
+    page = visit("index.html")
+    blocking = page.evaluate("""() => [...document.querySelectorAll(
+        'head script[src]:not([defer]):not([async]):not([type=module]), link[rel=stylesheet]')]
+        .map((e) => e.src || e.href)""")
+    sizes = {
+        address: (Path(unquote(urlparse(address).path)).stat().st_size) for address in blocking
+    }
+    assert sum(sizes.values()) < 1e6, sizes
 
 
 def test_the_first_stop_of_the_keyboard_skips_to_the_text(visit):
@@ -86,7 +91,8 @@ def test_reduced_motion_stops_the_themes_transitions(visit):
 def test_without_webgl_words_and_plots_remain(visit, blind_chromium):
     page = visit("index.html", browser=blind_chromium)
     page.wait_for_selector("[data-ready]")
-    assert page.is_visible(".lk-embed .lk-alt")
+    assert page.is_visible(".lk-embed img.lk-poster")
+    assert "left arm" in page.get_attribute(".lk-embed img.lk-poster", "alt")
     assert page.locator(".lk-line").count() > 7
 
 

@@ -1,0 +1,84 @@
+"""The guides: each command that they show is one that works, in the order in which they show it."""
+
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import zipfile
+
+import pytest
+from book_pages import ROOT
+
+SHELL = re.compile(r"```shell\n(.*?)```", re.DOTALL)
+
+
+def shown(page):
+    """The commands of a page, line by line, without their comments."""
+    blocks = SHELL.findall((ROOT / f"book/{page}.md").read_text())
+    lines = [line for block in blocks for line in block.splitlines()]
+    return [words for line in lines if (words := shlex.split(line, comments=True))]
+
+
+def works(words, folder):
+    """Type it; labkit's own word for success is exit code 0."""
+    command = [sys.executable, "-m", "labkit.cli", *words[1:]]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True,
+                          check=False)  # fmt: skip
+    assert done.returncode == 0, (words, done.stdout[-1500:], done.stderr[-1500:])
+    return done.stdout
+
+
+@pytest.mark.slow
+def test_every_command_of_the_instructors_guide_works(tmp_path):
+    """From a clone to a graded class, as the page says."""
+    course = tmp_path / "course"
+    subprocess.run(["git", "clone", "--quiet", ROOT, course], check=True, capture_output=True)
+    (course / "downloads").mkdir()
+    notebook = ROOT / "assignments/01_paths/01_paths.ipynb"
+    with zipfile.ZipFile(course / "downloads/moodle.zip", "w") as archive:
+        archive.write(notebook, "Ada Lovelace_101_assignsubmission_file/01_paths.ipynb")
+    commands = shown("instructor_guide")
+    assert {words[0] for words in commands} == {"labkit"}
+    verbs = {words[1] for words in commands}
+    assert verbs >= {"doctor", "new-term", "release", "student-bundle", "make-class", "collect",
+                     "grade", "feedback", "export", "class-report", "regrade", "export-course",
+                     "forget"}  # fmt: skip
+    for words in commands:
+        works(words, course)
+    assert len(list((course / "results/01_paths").glob("*.json"))) == 9
+    assert len(list((course / "feedback").glob("*/01_paths/01_paths.html"))) == 9
+    assert len((course / "marks.csv").read_text().splitlines()) == 10
+    assert (course / "report.md").read_text().strip()
+    assert "01_paths" in json.loads((course / "course_private/term.json").read_text())["bundles"]
+    assert not (course / "dist/course/student/solutions").exists()
+
+
+def test_every_command_of_the_students_guide_works(tmp_path):
+    """Looking a notebook through, and taking a correction over."""
+    released = ROOT / "assignments/01_paths"
+    shutil.copytree(released, tmp_path, dirs_exist_ok=True)
+    shutil.copytree(released, tmp_path / "new")
+    commands = shown("student_guide")
+    for words in commands:
+        if words[0] == "labkit":
+            works(words, tmp_path)
+    assert {words[1] for words in commands if words[0] == "labkit"} == {"submit-check", "merge"}
+    assert (tmp_path / "merged.ipynb").exists()
+
+
+def test_the_pages_name_only_verbs_that_exist():
+    """`make` and `labkit` have every verb that the book speaks of."""
+    made = subprocess.run(["make", "help"], cwd=ROOT, capture_output=True, text=True, check=True)
+    known = set(re.findall(r"^  make (\S+)", made.stdout, re.MULTILINE))
+    command = [sys.executable, "-m", "labkit.cli", "--help"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    ours = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    verbs = set(re.findall(r"^    ([a-z-]+)", ours.stdout, re.MULTILINE))
+    for page in sorted((ROOT / "book").glob("*.md")):
+        text = page.read_text()
+        assert set(re.findall(r"`make ([a-z-]+)", text)) <= known, page.name
+        assert set(re.findall(r"`labkit ([a-z-]+)", text)) <= verbs, page.name
