@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import shutil
 
 import pytest
@@ -43,7 +44,8 @@ def bundle(released):
 
 @pytest.fixture(scope="session")
 def sandbox():
-    with Sandbox(900) as sandbox:
+    worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0")  # each has a user of its own
+    with Sandbox(900 + int(worker[2:])) as sandbox:
         yield sandbox
 
 
