@@ -5,6 +5,7 @@ Curves differ by line style as well as by colour, and `describe` gives each figu
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import Any
 
 import matplotlib.pyplot as plt
@@ -214,7 +215,7 @@ def show(caption: str) -> None:
     figure = plt.gcf()
     if get_ipython() is not None:
         display(figure, metadata={"image/png": {"alt": caption}})
-    print(caption)
+    print(fill(caption, 79))  # the browser would break words
     plt.close(figure)
 
 

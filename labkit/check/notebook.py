@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Callable
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -112,7 +113,7 @@ def hint(name: str, level: int = 1) -> None:
     if not 1 <= level <= len(hints):
         raise OutOfRange(f"{name} has hints 1 to {len(hints)}, there is no hint {level}")
     more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
-    print(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}{more}")
+    print(words.wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}") + more)
 
 
 def use(
@@ -139,7 +140,7 @@ def use(
         return yours or function
     if name not in desk().badges:
         desk().badges.add(name)
-        print(f"[stand-in] {name}: yours is not ready, so from here on a stand-in takes its place.")
+        print(f"[stand-in] {name}: yours is not ready, so a stand-in takes its place.")
     return given
 
 
@@ -149,9 +150,17 @@ def _show_evidence(question: Question, verdict: Verdict) -> None:
     if found is None or "IPython" not in sys.modules:
         return
     from IPython.core.getipython import get_ipython
-    from IPython.display import display
+    from IPython.display import Image, display
 
     if get_ipython() is not None:
         from .. import plotting
 
-        display(plotting.answers(*found))
+        picture = BytesIO()  # a notebook draws figures only once pyplot has made one
+        plotting.answers(*found).savefig(picture, format="png")
+        call, expected, given = found
+        alt = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
+        display(Image(picture.getvalue(), format="png", alt=alt))
+
+
+def _list(numbers: Any) -> str:
+    return ", ".join(f"{x:.3g}" for x in numbers)

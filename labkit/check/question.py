@@ -10,7 +10,7 @@ import base64
 import json
 import zlib
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from typing import Any
 
 from ..arm import Arm
@@ -359,4 +359,7 @@ def _answer(data: Mapping[str, Any]) -> Any:
 
 def _short(x: Any) -> str:
     text = " ".join(repr(x.tolist() if hasattr(x, "tolist") else x).split())
-    return text if len(text) <= 48 else f"{text[:45]}..."
+    if len(text) <= 48:
+        return text
+    named = is_dataclass(x) or hasattr(x, "_fields")
+    return f"{type(x).__name__}(...)" if named else f"{text[:45]}..."

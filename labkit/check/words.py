@@ -55,13 +55,13 @@ def tell(
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         lines.append(f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees it.')
-    return "\n".join(_wrapped(line) for line in lines)
+    return "\n".join(wrapped(line) for line in lines)
 
 
-def _wrapped(line: str) -> str:
+def wrapped(line: str) -> str:
     """A line folded where a notebook would otherwise break it within a word."""
     margin = " " * (len(line) - len(line.lstrip()))
-    return textwrap.fill(line, 92, subsequent_indent=f"{margin}  ", break_long_words=False)
+    return textwrap.fill(line, 79, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
 def _line(result: TestResult) -> str:

@@ -246,10 +246,13 @@ def _margin(
     found: list[tuple[float, str]] = []
     for k, test in enumerate(questions[0].tests):
         for label, function in right.items():
-            cases = _cases(questions, k)
-            distances = [_distance(q, case, function) for q, case in cases]
-            distances += [_disturbed(q, case, function, problem) for q, case in cases]
-            found += _sigmas(distances, -1.0, f"{label}: {test.name}")
+            apart: dict[type, list[float]] = {}  # runs and calls have tolerances of different kinds
+            for q, case in _cases(questions, k):
+                spread = apart.setdefault(_kind(case), [])
+                spread.append(_distance(q, case, function))
+                spread.append(_disturbed(q, case, function, problem))
+            for spread in apart.values():
+                found += _sigmas(spread, -1.0, f"{label}: {test.name}")
         for label, function in wrong.items():
             distances = [
                 max(_distance(q, case, function) for case in q.tests[k].cases) for q in questions
@@ -263,6 +266,11 @@ def _cases(questions: Sequence[Question], k: int) -> list[tuple[Question, Case]]
     """All cases of the k-th test over all draws, public ones once."""
     hidden = [(q, case) for q in questions for case in q.tests[k].cases if case.hidden]
     return [(questions[0], c) for c in questions[0].tests[k].cases if not c.hidden] + hidden
+
+
+def _kind(case: Case) -> type:
+    """What sort of case it is, remembered or not."""
+    return next(kind for kind in (Call, Loop, Choice, Tuned) if isinstance(case, kind))
 
 
 def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[float, str]]:

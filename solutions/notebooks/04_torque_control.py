@@ -155,7 +155,7 @@ for plant in (textbook, carries_itself):
         law = with_gains(my_augmented_pd, plant, KP, KD, flag)
         logs[f"{plant.name}, arm_compensates={flag}"] = stay(plant, law)
 
-plt.figure(figsize=(8, 3), layout="constrained")
+plt.figure(figsize=(8, 3.4), layout="constrained")
 heights = {}
 for (name, log), style in zip(logs.items(), ("-", "--", "-.", ":")):
     z = 1e3 * lk.metrics.tip_poses(log)[:, 2, 3]
@@ -163,7 +163,7 @@ for (name, log), style in zip(logs.items(), ("-", "--", "-.", ":")):
     plt.plot(log.t, z - z[0], style, label=name)
 plt.xlabel("time [s]")
 plt.ylabel("height of the tip [mm]")
-plt.legend(frameon=False)
+plt.gcf().legend(loc="outside lower center", ncols=2, frameon=False)
 lk.plotting.show(
     "The tip's height after 1.5 s: "
     + "; ".join(f"{name}: {z:+.0f} mm" for name, z in heights.items())
@@ -591,6 +591,8 @@ for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
     yours.append(f"{name} {errors[2]:.1f} mm")
 plt.axvline(1.0, color="0.5", linewidth=1)
 plt.yscale("log")
+plt.gca().yaxis.set_major_formatter("{x:g}")
+plt.gca().yaxis.set_minor_formatter("{x:g}")
 plt.xlabel("frequency, as a share of yours")
 plt.ylabel("RMS error [mm]")
 plt.legend(frameon=False)

@@ -401,10 +401,11 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# And as an arm; the thin line is the way of the reference:
+# And as an arm. Its error is the distance from the reference, not from the tag: what is left for the arm
+# to do once the reference is smooth.
 
 # %%
-lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="tip"))
+lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="the hand"))
 
 # %% [markdown]
 # ## Hand in

@@ -49,7 +49,9 @@ lk.plotting.show(lk.plotting.describe(log, model))
 
 # %%
 other_mode = {"velocity mode": recorded.recorded("baseline_line_velocity")}
-lk.replay.show(lk.replay.motion_of(log, "The built-in way on the line", label="position mode", ghosts=other_mode))
+lk.replay.show(
+    lk.replay.motion_of(log, "The built-in way on the line", label="position mode", ghosts=other_mode)
+)
 
 # %% [markdown]
 # At each instant the error of the tip is a vector, target minus actual. The usual number for a whole run

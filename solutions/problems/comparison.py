@@ -19,7 +19,7 @@ RMS_ERROR = Problem(
     name="rms_error",
     points=3,
     asks="From a log whose target is poses, give the RMS position error of the tip in metres: the "
-    "root of the mean, over the rows, of the squared *length* of the error.",
+    "root of the mean, over the rows, of the squared length of the error.",
     answer=answers.rms_error,
     judge=Close(rtol=1e-6, atol=1e-9),
     trials=(

@@ -514,7 +514,7 @@ CHOOSE_GAINS = Problem(
     name="choose_gains",
     points=3,
     asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each a number or seven, for springs and dampers at "
-    "the joints of the *baxter* arm (`lk.controllers.springs`, 200 Hz). They must serve on a slow line, "
+    "the joints of the `lk.BAXTER` arm (`lk.controllers.springs`, 200 Hz). They must serve on a slow line, "
     "on quicker tours, and with up to a kilogram in the gripper that the model does not know of.",
     answer=answers.choose_gains,
     expected=lambda model: None,

@@ -129,7 +129,7 @@ def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
 
 
 def test_a_figure_shows_the_evidence(desk):
-    """In a kernel a known mistake comes with a picture of the numbers, and no stderr."""
+    """In a kernel a known mistake comes with a picture of the numbers, before any other picture."""
     program = (
         "from IPython.testing.globalipapp import start_ipython\n"
         "ip = start_ipython()\n"
@@ -138,10 +138,11 @@ def test_a_figure_shows_the_evidence(desk):
         "import labkit.check.notebook, IPython.display\n"
         "IPython.display.display = lambda *a, **k: shown.extend(a)\n"
         "check('double', lambda x: x * x)\n"
-        "print(type(shown[0]).__name__)\n"
+        "print(shown[0].format, shown[0].data[1:4], shown[0].alt)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
     )
     assert "well-known one: squared" in done.stdout
-    assert done.stdout.rstrip().endswith("Figure")
+    last = done.stdout.splitlines()[-1]
+    assert last == "png b'PNG' double(3.0), number by number: expected 6; yours 9."

@@ -67,7 +67,7 @@ def test_withheld_names_are_a_note():
     """Leaning on a withheld name is said, in one sentence, and takes no points here."""
     words = said(double, used=("numpy.multiply",))
     assert words.splitlines()[0].endswith("4 of 4 points.")
-    assert "your code uses numpy.multiply" in words
+    assert "your code uses numpy.multiply" in " ".join(words.split())
 
 
 def test_prints_are_shown_in_part():

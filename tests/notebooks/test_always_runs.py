@@ -16,7 +16,7 @@ POINTS = {name: {p.name: p.points for p in COURSE.problems(name)} for name in NA
 
 
 def subsets(name):
-    """None solved, all, and some at random with the others: each part is right and wrong in turn."""
+    """None solved, all, and random halves with their complements: each part is right and wrong."""
     every = questions(name)
     random = np.random.default_rng(list(name.encode()))
     yield "none", ()
