@@ -56,6 +56,7 @@ def numbers_told() -> None:
     soft, stiff = IMPEDANCE, THREE
     holds(max(real[w] for w in stiff) < 0.6 * real[FEED_FORWARD], "looking helps")
     holds(max(real[w] for w in stiff) < min(real[w] for w in soft), "the soft ones are last")
+    holds(min(real[w] for w in soft) > real[FEED_FORWARD], "softness costs more than not looking")
     holds(max(ideal[w] for w in FIVE) < 1.0, "on the ideal arm all five are below a millimetre")
     holds(all(ideal[w] < 0.1 * real[w] for w in FIVE), "the plant makes the difference")
     first = min(FIVE, key=lambda w: real[w])

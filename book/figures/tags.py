@@ -79,7 +79,7 @@ def ambiguity() -> HTML:
         curves[degrees] = [_gap(np.radians(degrees), z) for z in distances]
         ax.plot(distances, curves[degrees], f"C{k}{style}", label=f"tilted by {degrees:.0f}°")
     ax.axhline(0.3, color="C5", linestyle=":")
-    ax.text(1.6, 0.34, "a good corner finder", fontsize="small")
+    ax.text(0.2, 0.2, "a good corner finder", fontsize="small")
     ax.set(xlabel="distance [m]", ylabel="best fit of the wrong tilt [pixels]", yscale="log")
     ax.legend()
     near, far = curves[30.0][0], curves[30.0][-1]
@@ -204,7 +204,7 @@ def check_yourself() -> HTML:
         ),
         Question(
             "The hand camera sees the tag. Which pose of the camera belongs into "
-            r"\(T_{wt} = T_{wc} T_{ct}\)?",
+            r"\(T_{wm} = T_{wc} T_{cm}\)?",
             [
                 ("The one when the result arrives", "The hand has moved since the exposure."),
                 ("The one at the exposure", "Yes: so keep a short history of joint angles."),
