@@ -29,7 +29,7 @@ def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
     )
 
 
-def test_pages_of_the_contents_exist():
+def test_pages_of_the_contents_exist(book):
     for name in book_pages.in_order():
         assert any((ROOT / f"book/{name}{end}").exists() for end in (".md", ".ipynb"))
 
