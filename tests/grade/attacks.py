@@ -7,6 +7,7 @@ An attack is a cell in an otherwise empty notebook, or what a question's functio
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -148,7 +149,7 @@ FAKES = cells(
 )
 FILES = reads(
     "../../../solutions/paths.py",
-    "/work/main/solutions/paths.py",
+    str(Path(__file__).parents[2] / "solutions" / "paths.py"),
     "{root}/solutions/paths.py",
     "{root}/build/course/bundle/01_paths.json",
     "{root}/gradebook.db",
