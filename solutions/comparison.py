@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from scipy.stats import t as student
 
 import labkit as lk
-from labkit.arrays import as_array, as_number
+from labkit.arrays import Array, as_array, as_number
 from labkit.errors import OutOfRange
 
 
@@ -89,7 +89,11 @@ def paired_difference(a: Any, b: Any) -> tuple[float, float]:
         OutOfRange: There are fewer than two pairs, so nothing is known of the spread.
     """
     a = as_array(a, (len(a),), "a")
-    d = a - as_array(b, (len(a),), "b")
+    return _interval(a - as_array(b, (len(a),), "b"))
+
+
+def _interval(d: Array) -> tuple[float, float]:
+    """Mean of the differences, and half of its 95 % interval."""
     n = len(d)
     if n < 2:
         raise OutOfRange(f"{n} pair cannot show a spread; take at least two seeds or tasks")
@@ -100,7 +104,7 @@ def verdicts(table: Mapping[str, Any]) -> dict[str, str]:
     """For each claim: does the first error exceed the second, beyond the seeds' spread?"""
     found = {}
     for claim, (errors_a, errors_b) in table.items():
-        mean, half = paired_difference(errors_a, errors_b)
+        mean, half = _interval(np.subtract(errors_a, errors_b))
         if abs(mean) <= half:
             found[claim] = "undecided"
         else:
