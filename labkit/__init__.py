@@ -47,14 +47,14 @@ _LATER = {
     "Tag": "tags",
     "check": "",
     "detect_tags": "detection",
+    "dials": "dials",
     "find_tag": "detection",
     "looking_at": "camera",
     "plotting": "",
     "ready": "ready",
+    "replay": "",
 }
 """Where to find what is loaded when first asked for: OpenCV and Matplotlib are slow to import."""
-_LATER = {"check": "", "dials": "dials", "plotting": "", "ready": "ready", "replay": ""}
-"""Loaded when first asked for: drawing packages are slow to import."""
 
 
 def __getattr__(name: str) -> Any:
