@@ -48,11 +48,12 @@ def parser() -> argparse.ArgumentParser:
     verb.set_defaults(do=_merge)
 
     if instructors:
-        from .grade import term_verbs
-        from .grade import verbs as grading_verbs
+        from .grade import verbs as verbs_grading
+        from .grade import verbs_course, verbs_term
 
-        term_verbs.add(verbs)
-        grading_verbs.add(verbs)
+        verbs_course.add(verbs)
+        verbs_grading.add(verbs)
+        verbs_term.add_all(verbs)
     return top
 
 

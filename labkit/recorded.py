@@ -6,6 +6,7 @@ The numbers are single precision: good to a micrometre, half the size.
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from importlib.resources import as_file, files
 from pathlib import Path
@@ -44,14 +45,27 @@ def recorded(name: str) -> Log:
         return load(path)
 
 
+_CAMPAIGN = files("labkit") / "data" / "campaign.json"
+_KEPT = ("way", "task", "plant", "seed", "late_rms_mm", "late_max_mm", "settling", "effort")
+
+
 def campaign() -> list[dict[str, Any]]:
-    """Every controller on every task, five seeds: made by ``make campaign``, kept for notebooks.
+    """Every controller on every task over five seeds, from ``solutions.campaign --keep``.
 
     Returns:
         One row for each run: its "way", "task", "plant" and "seed", and its errors.
     """
-    text = (files("labkit") / "data" / "campaign.json").read_text()
-    return [dict(row) for row in json.loads(text)]
+    return [dict(row) for row in json.loads(_CAMPAIGN.read_text())]
+
+
+def keep_campaign(rows: Iterable[Mapping[str, Any]]) -> None:
+    """Write the rows that `campaign` reads, those of runs that were stopped left out."""
+    kept = [{key: _short(row[key]) for key in _KEPT} for row in rows if not row["failed"]]
+    Path(str(_CAMPAIGN)).write_text("[" + ",\n".join(json.dumps(row) for row in kept) + "]\n")
+
+
+def _short(x: Any) -> Any:
+    return float(f"{x:.4g}") if isinstance(x, float) else x
 
 
 def save(log: Log, path: Path) -> None:

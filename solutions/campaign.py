@@ -38,6 +38,7 @@ from labkit import (
     tasks,
 )
 from labkit.campaign import Job, Meter, Row, cells, pick, table, work_through
+from labkit.recorded import keep_campaign
 from labkit.tasks import Task
 
 from .claims import Verdict, verdicts
@@ -243,7 +244,8 @@ def tables(rows: list[Row], judged: list[Verdict]) -> str:
     if chased := pick(rows, task="tag"):
         title = "Distance from where the tag really put the tip, RMS after two seconds [mm]"
         parts.append(f"## {title}\n\n{table(chased, 'way', 'plant', 'tag_rms_mm')}")
-    parts.append("## What the report claimed\n\n" + "\n".join(f"- {v}" for v in judged))
+    claims = "\n".join(f"- {v}" for v in judged) or "One seed judges no claim; take two or more."
+    parts.append(f"## What the report claimed\n\n{claims}")
     return "\n\n".join(parts) + "\n"
 
 
@@ -261,6 +263,7 @@ def main() -> None:
     parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
+    parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
     options = parser.parse_args()
     where = {"jobs": options.jobs, "dask": options.dask}
     began = time.monotonic()
@@ -272,7 +275,7 @@ def main() -> None:
     seconds = time.monotonic() - began
     gains = done(converge, gain_grid(options.seeds), "gains")
     noise = done(derivative, noise_grid(options.seeds), "noise")
-    judged = verdicts(rows, gains, noise)
+    judged = verdicts(rows, gains, noise) if options.seeds > 1 else []
     folder = options.out / "campaign"
     folder.mkdir(parents=True, exist_ok=True)
     text = tables(rows, judged)
@@ -294,6 +297,8 @@ def main() -> None:
     }
     path = options.out / "campaign.json"
     path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    if options.keep:
+        keep_campaign(rows)
     print(text)
     made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
     print(f"{len(rows)} runs in {seconds:.0f} s; {made}")

@@ -5,7 +5,7 @@ import pytest
 from scipy import stats
 
 import labkit as lk
-from labkit import campaign, plotting
+from labkit import campaign, plotting, recorded
 from labkit.campaign import cells, pick, row_of, spread, table, work_through
 from solutions import campaign as report
 from solutions import pictures
@@ -180,3 +180,13 @@ def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsy
     assert "| joint velocity |" in (tmp_path / "campaign/tables.md").read_text()
     assert "2 runs in" in capsys.readouterr().out
     assert campaign.Meter("x")(1, 2) is None
+
+
+def test_the_rows_kept_for_notebooks_are_those_of_the_campaign(rows):
+    kept = recorded.campaign()
+    assert len(kept) == len(report.grid(5))
+    for fresh in rows:
+        cell = {k: fresh[k] for k in ("way", "task", "plant", "seed")}
+        (old,) = pick(kept, **cell)
+        for number in ("late_rms_mm", "late_max_mm", "settling", "effort"):
+            assert old[number] == pytest.approx(fresh[number], rel=1e-3, abs=1e-4)

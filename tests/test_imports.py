@@ -33,7 +33,7 @@ LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 SIMULATE = {"arm", "world", "scene", "camera", "board", "looks"}
 MODEL = {"model", "baseline"}
 ENGINES = "numpy, pybullet, pinocchio"
-DRAW = {"plotting", "replay", "sensor_plots"}
+DRAW = {"plotting", "replay", "sensor_plots", "dials"}
 SEE = {"camera", "tags", "detection", "calibration", "edges"}
 
 

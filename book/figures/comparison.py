@@ -165,7 +165,8 @@ def everything(way: str, task: str) -> HTML:
     e = metrics.tip_error(log, model)
     p, d = metrics.tip_poses(log, model)[:, :3, 3], metrics.target_poses(log, model)[:, :3, 3]
     v, w = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
-    wanted = np.array([campaign.joints(way, task)(x).position for x in log.t])
+    wanted_at = campaign.joints(way, task, 0)
+    wanted = np.array([wanted_at(x).position for x in log.t])
     _, axes = plt.subplots(6, 1, figsize=(6.2, 10.0), sharex=True)
     for k, axis in enumerate(AXES):
         style = f"C{k}{STYLES[k]}"

@@ -183,8 +183,8 @@ def quiz(*questions: Question) -> HTML:
     for k, question in enumerate(questions):
         name = "quiz-" + hashlib.sha256(question.text.encode()).hexdigest()[:8]
         choices = "".join(
-            f'<label class="lab-choice"><input type="radio" name="{name}" value="{i}"'
-            f"{_spoken(answer)}> "
+            f'<label class="lab-choice">'
+            f'<input type="radio" name="{name}" value="{i}"{_spoken(answer)}> '
             f"<span>{answer}</span></label>"
             for i, (answer, _) in enumerate(question.answers)
         )

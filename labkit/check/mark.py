@@ -113,7 +113,7 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
         else _try(test, [c for c in test.cases if c.hidden], question, function, {})
         for test, result in zip(question.tests, tried.results, strict=True)
     )
-    outcome, mistake = _outcome(results), None
+    outcome, mistake = _outcome(question, results), None
     answers = [tried.answers.get(id(call)) for call in question.calls]
     if outcome in (Outcome.WRONG, Outcome.ERROR) and len(tried.answers) == len(answers):
         mistake = recognise(question, answers)
@@ -138,16 +138,17 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
         _try(test, [c for c in test.cases if not c.hidden], question, function, answers)
         for test in question.tests
     )
-    if _outcome(results) in (Outcome.WRONG, Outcome.ERROR):
+    if _outcome(question, results) in (Outcome.WRONG, Outcome.ERROR):
         for call in question.calls:
             if id(call) not in answers:
                 answers[id(call)] = _answer(call, function)
     return Tried(results, answers)
 
 
-def _outcome(results: tuple[TestResult, ...]) -> Outcome:
-    """What the tests come to together."""
-    outcomes = {result.outcome for result in results}
+def _outcome(question: Question, results: tuple[TestResult, ...]) -> Outcome:
+    """What the tests come to together; one without cases has nothing to say."""
+    tried = zip(question.tests, results, strict=True)
+    outcomes = {result.outcome for test, result in tried if test.cases}
     if len(outcomes) == 1:
         return outcomes.pop()
     return Outcome.WRONG if Outcome.WRONG in outcomes else Outcome.ERROR

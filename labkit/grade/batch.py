@@ -33,6 +33,7 @@ class How:
         dask: Address of a scheduler, or None for this machine.
         shard: (i, n): the i-th of n parts of the class, from 1.
         again: Whether results that are there already are made anew.
+        lower: Whether a mark may fall though the submission is the same; `labkit regrade` decides.
         limits: What a submission may use, on a quick machine.
     """
 
@@ -41,7 +42,21 @@ class How:
     dask: str | None = None
     shard: tuple[int, int] = (1, 1)
     again: bool = False
+    lower: bool = False
     limits: Limits = field(default_factory=Limits)
+
+
+@dataclass(frozen=True)
+class Graded:
+    """One submission, graded.
+
+    Attributes:
+        result: The one that counts.
+        says: How it stands to the one before; empty if there was none.
+    """
+
+    result: Result
+    says: str = ""
 
 
 def workers() -> int:
@@ -56,7 +71,7 @@ def in_shard(student: str, shard: tuple[int, int]) -> bool:
 
 def grade_class(
     course: Course, assignment: str, students: Sequence[str], how: How | None = None
-) -> Iterator[tuple[str, Result | LabkitError, bool]]:
+) -> Iterator[Graded | LabkitError]:
     """Grade submissions, each into a result file of its own.
 
     Args:
@@ -66,7 +81,7 @@ def grade_class(
         how: In which way.
 
     Yields:
-        Student, result or what failed, and whether it was there already.
+        Each result, or what failed.
 
     Raises:
         LabkitError: The assignment was not released, or another run is under way.
@@ -81,7 +96,7 @@ def grade_class(
             submission = Submission.of(course, assignment, student)
             before = None if how.again else _still_good(results, submission, bundle, how)
             if before is not None:
-                yield student, before, True
+                yield Graded(before, "as before")
                 continue
             jobs.append(job(course, bundle, submission, how.limits))
         done: Iterator[Done] = (
@@ -89,13 +104,21 @@ def grade_class(
             if how.dask
             else locally(jobs, how.jobs, isolated=how.isolated)
         )
-        for asked, text in done:
+        for _, text in done:
             if isinstance(text, LabkitError):
-                yield asked["student"], text, False
+                yield text
                 continue
-            result = Result.read(text)
-            results.keep(result)
-            yield result.student, result, False
+            yield _keep(results, Result.read(text), lower=how.lower)
+
+
+def _keep(results: Results, result: Result, *, lower: bool) -> Graded:
+    """Let a result count, unless a mark would fall that nobody has earned worse."""
+    before = results.get(result.student)
+    same = before is not None and before.hashes["submission"] == result.hashes["submission"]
+    if before is not None and same and result.score < before.score and not lower:
+        return Graded(before, f"kept; it would be {result.score:g} now, see `labkit regrade`")
+    results.keep(result)
+    return Graded(result, "" if before is None else f"was {before.score:g}")
 
 
 def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) -> Job:

@@ -49,6 +49,16 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
     return notes
 
 
+def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
+    """What was written by hand: by student, then by question."""
+    found: dict[str, dict[str, str]] = {}
+    with open_gradebook(course) as (book, _):
+        for submission in book.assignment_submissions(assignment):
+            said = {c.name: c.manual_comment for n in submission.notebooks for c in n.comments}
+            found[str(submission.student.id)] = {k: v for k, v in said.items() if v}
+    return found
+
+
 @contextmanager
 def open_gradebook(course: Course) -> Iterator[tuple[Any, Any]]:
     """The gradebook as nbgrader sees it, and nbgrader's interface.

@@ -180,7 +180,7 @@ def through_dask(jobs: Sequence[Job], address: str, *, isolated: bool = True) ->
         texts = [json.dumps(job | {"isolated": isolated}) for job in jobs]
         futures = client.map(on_dask, texts, pure=False, retries=2)
         by_key = {future.key: job for future, job in zip(futures, jobs, strict=True)}
-        for future in as_completed(futures):
+        for future in as_completed(futures, loop=client.loop):
             job = by_key[future.key]
             try:
                 answer = json.loads(future.result())

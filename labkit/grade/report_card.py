@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..check import Call, Choice, Loop, Outcome, Question, mark
+from ..check import Call, Choice, Loop, Outcome, Question, Tuned, mark
 from ..check.codec import encode
 from ..check.judge import AtMost
 from ..check.question import Case
@@ -185,26 +185,50 @@ def _row(
     )
 
 
+Memory = dict[Any, dict[str, float]]
+
+
 @dataclass(frozen=True, eq=False)
 class _Remembered(Loop):
     """A run that is made once for each function and each start, however often it is asked for."""
 
-    memory: dict[Any, dict[str, float]] = field(default_factory=dict)
+    memory: Memory = field(default_factory=dict)
 
     def ask(self, function: Callable[..., Any]) -> dict[str, float]:
         """The measures of the run; runs that raise are made again."""
-        fields = {key: encode(x) for key, x in vars(self).items() if key != "memory"}
-        key = (function, json.dumps(fields))
+        key = (function, _run_key(self))
         if key not in self.memory:
             self.memory[key] = super().ask(function)
         return self.memory[key]
 
 
+@dataclass(frozen=True, eq=False)
+class _RememberedGains(Tuned):
+    """The same for a run with chosen gains."""
+
+    memory: Memory = field(default_factory=dict)
+
+    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
+        """The measures of the run; runs that raise are made again."""
+        key = (function, json.dumps(encode(self.args)), _run_key(self.loop))
+        if key not in self.memory:
+            self.memory[key] = super().ask(function)
+        return self.memory[key]
+
+
+def _run_key(loop: Loop) -> str:
+    return json.dumps({key: encode(x) for key, x in vars(loop).items() if key != "memory"})
+
+
 def _remembering(questions: Sequence[Question]) -> list[Question]:
-    memory: dict[Any, dict[str, float]] = {}
+    memory: Memory = {}
 
     def case(x: Case) -> Case:
-        return _Remembered(**vars(x), memory=memory) if isinstance(x, Loop) else x
+        if isinstance(x, Call | Choice):
+            return x
+        kind: Any = _Remembered if isinstance(x, Loop) else _RememberedGains
+        remembered: Case = kind(**vars(x), memory=memory)
+        return remembered
 
     return [
         replace(q, tests=tuple(replace(t, cases=tuple(map(case, t.cases))) for t in q.tests))
@@ -266,13 +290,19 @@ def _disturbed(
 ) -> float:
     """The same with the input disturbed: rounded numbers, or another seed of the arm's noise."""
     if isinstance(case, Loop):
-        noisy = any(case.plant.velocity_noise) or case.plant.lost_ticks > 0.0
-        return _distance(question, replace(case, seed=case.seed + 1) if noisy else case, function)
-    if not isinstance(case, Call):
+        return _distance(question, _another_noise(case), function)
+    if isinstance(case, Tuned):
+        return _distance(question, replace(case, loop=_another_noise(case.loop)), function)
+    if isinstance(case, Choice):
         return _distance(question, case, function)
     again = replace(case, args=tuple(map(_rounded, case.args)))
     again = replace(again, expected=again.ask(problem.expected or problem.answer))
     return _distance(question, again, function)
+
+
+def _another_noise(loop: Loop) -> Loop:
+    noisy = any(loop.plant.velocity_noise) or loop.plant.lost_ticks > 0.0
+    return replace(loop, seed=loop.seed + 1) if noisy else loop
 
 
 def _rounded(x: Any) -> Any:

@@ -36,8 +36,11 @@ class NoIsolation(LabkitError):
     """This machine cannot keep a student's code apart; the sentence says how it could."""
 
 
-class Broken(Exception):
-    """A sandbox that worked does not any more; a fresh one may."""
+class Broken(BaseException):
+    """A sandbox that worked does not any more; a fresh one may.
+
+    No `Exception`, so that marking never takes it for one of the student's.
+    """
 
 
 class Inside:
@@ -147,7 +150,7 @@ class Sandbox:
             socket.send_fds(self.line.end, [data], [end.fileno()] if end else [])
             return self.line.read(20.0)
         except (OSError, Gone, TooLate, TooMuch) as error:
-            raise Broken(str(error)) from None
+            raise Broken(f"{error}; it said: {self._words()}") from None
 
     def _words(self) -> str:
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .course import Course
-from .term_verbs import course_option
+from .verbs_course import course_option
 
 Verbs = Any
 
@@ -21,6 +21,7 @@ def add(verbs: Verbs) -> None:
     add_grade(verbs)
     add_make_class(verbs)
     add_report_card(verbs)
+    add_doctor(verbs)
 
 
 def add_grade(verbs: Verbs) -> None:
@@ -124,7 +125,7 @@ def grade(args: argparse.Namespace) -> int:
 
     here = Course.here(args.course)
     here.notebook_source(args.name)
-    who = _who(here, args.name, args.student)
+    who = in_part(here, args.name, args.student)
     if args.engine == "nbgrader":
         return _with_nbgrader(here, args, who)
     how = How(
@@ -136,19 +137,17 @@ def grade(args: argparse.Namespace) -> int:
     )
     graded: list[Result] = []
     failed: list[LabkitError] = []
-    for number, (student, result, before) in enumerate(
-        grade_class(here, args.name, who, how), start=1
-    ):
-        if isinstance(result, LabkitError):
-            failed.append(result)
-            print(f"{student}: not graded; {result}", file=sys.stderr, flush=True)
+    for number, one in enumerate(grade_class(here, args.name, who, how), start=1):
+        if isinstance(one, LabkitError):
+            failed.append(one)
+            print(f"not graded: {one}", file=sys.stderr, flush=True)
             continue
-        graded.append(result)
+        graded.append(one.result)
         if args.json:
-            print(json.dumps(json.loads(result.text())), flush=True)
+            print(json.dumps(json.loads(one.result.text())), flush=True)
         else:
-            done = " (as before)" if before else ""
-            print(f"[{number}/{len(who)}] {line(result)}{done}", flush=True)
+            says = f" ({one.says})" if one.says else ""
+            print(f"[{number}/{len(who)}] {line(one.result)}{says}", flush=True)
     if failed and not graded:
         raise failed[0]
     say = sys.stderr if args.json else sys.stdout
@@ -161,7 +160,8 @@ def grade(args: argparse.Namespace) -> int:
     return 1 if failed else 0
 
 
-def _who(here: Course, name: str, student: str | None) -> list[str]:
+def in_part(here: Course, name: str, student: str | None) -> list[str]:
+    """Who handed in, or the one asked for."""
     from .engines import students
 
     found = students(here, name)
@@ -172,6 +172,11 @@ def _who(here: Course, name: str, student: str | None) -> list[str]:
             "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     return who
+
+
+def nobody(name: str, student: str | None) -> LabkitError:
+    """What to say where nothing is graded yet."""
+    return LabkitError(f"{student or 'nobody'} is graded in {name}; type: labkit grade {name}")
 
 
 def _shard(text: str) -> tuple[int, int]:
@@ -198,3 +203,20 @@ def _with_nbgrader(here: Course, args: argparse.Namespace, who: list[str]) -> in
 def _tell(sentences: Iterable[str], where: Any) -> None:
     for sentence in sentences:
         print(sentence, file=where, flush=True)
+
+
+def add_doctor(verbs: Verbs) -> None:
+    """``labkit doctor``."""
+    verb = verbs.add_parser("doctor", help="what is missing on this machine, and how to get it")
+    verb.set_defaults(do=doctor)
+
+
+def doctor(args: argparse.Namespace) -> int:
+    """Say what was found; 1 if grading would refuse."""
+    from .doctor import examine
+
+    bad = False
+    for finding in examine():
+        print(finding, flush=True)
+        bad |= finding.needed and not finding.fine
+    return 1 if bad else 0

@@ -84,7 +84,7 @@ def _tour(random: Random, side: Any) -> tuple[lk.Model, Any]:
     centre = p + [random.uniform(-0.03, 0.03), inwards * random.uniform(0.08, 0.11), -0.2]
     schedule = lk.Quintic(random.uniform(3.6, 4.4))
     return model, model.joint_trajectory(
-        lk.Trajectory(lk.Circle(p, centre), schedule), q0, samples=31
+        lk.Trajectory(lk.Circle(p, centre), schedule), q0, samples=33
     )
 
 
@@ -99,7 +99,7 @@ def augmented_runs(random: Random) -> Iterator[Case]:
     _, tour = _tour(random, side)
     given = {"model": model, "kp": 60.0, "kd": 15.0, "arm_compensates": False}
     q0 = _off(random, model.robot.ready, 0.06)
-    yield Loop(tour, given, side, model.plant, q0=q0, settle=2.0, expected={"rms_mm": 8.0})
+    yield Loop(tour, given, side, model.plant, q0=q0, settle=2.0, expected={"rms_mm": 5.0})
 
 
 def computed_runs(random: Random) -> Iterator[Case]:
@@ -109,7 +109,7 @@ def computed_runs(random: Random) -> Iterator[Case]:
     _, tour = _tour(random, side)
     given = {"model": model, "kp": 100.0, "kd": 20.0, "arm_compensates": False}
     q0 = _off(random, model.robot.ready, 0.06)
-    yield Loop(tour, given, side, model.plant, q0=q0, settle=1.0, expected={"rms_mm": 3.0})
+    yield Loop(tour, given, side, model.plant, q0=q0, settle=1.0, expected={"rms_mm": 1.0})
 
 
 def gains(random: Random) -> Iterator[Call]:
@@ -176,9 +176,8 @@ def tuned(random: Random, side: Any, payload: float) -> Tuned:
 
 
 def quick_tours(random: Random) -> Iterator[Case]:
-    """Quicker tours, of the other arm too."""
-    for side in ("left", "right"):
-        yield tuned(random, side, 0.0)
+    """A quicker tour of one arm or the other."""
+    yield tuned(random, random.choice(["left", "right"]), 0.0)
 
 
 def loaded_tours(random: Random) -> Iterator[Case]:

@@ -504,10 +504,10 @@ GRAVITY_FACTOR = Problem(
 
 _tip = MODEL.pose(READY)[:3, 3]
 _line = MODEL.joint_trajectory(
-    lk.Trajectory(lk.Line(_tip, _tip + [0.1, -0.15, 0.1]), lk.Quintic(5.0)), READY, samples=31
+    lk.Trajectory(lk.Line(_tip, _tip + [0.1, -0.15, 0.1]), lk.Quintic(5.0)), READY, samples=33
 )
 _circle = MODEL.joint_trajectory(
-    lk.Trajectory(lk.Circle(_tip, _tip + [0.0, -0.1, -0.2]), lk.Quintic(4.0)), READY, samples=31
+    lk.Trajectory(lk.Circle(_tip, _tip + [0.0, -0.1, -0.2]), lk.Quintic(4.0)), READY, samples=33
 )
 
 CHOOSE_GAINS = Problem(

@@ -1,66 +1,217 @@
-"""A term begins, ends and is forgotten; a course is exported."""
+"""The rest of the term: pages, tables, regrading, the class report, collecting."""
 
+from __future__ import annotations
+
+import csv
+import io
 import json
-import shutil
+import zipfile
+from dataclasses import replace
+from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from conftest import QUICK
 
-from labkit import LabkitError
-from labkit.grade import term
-from labkit.grade.course import Course
-from labkit.grade.export import export_course
-from labkit.grade.release import FORBIDDEN
+from labkit.cli import main
+from labkit.errors import LabkitError
+from labkit.grade.batch import Graded, How, grade_class
+from labkit.grade.class_report import pseudonym, report
+from labkit.grade.collect import collect
+from labkit.grade.doctor import examine
+from labkit.grade.engines import students
+from labkit.grade.export import LAYOUTS, Row, as_csv, rows
+from labkit.grade.feedback import page
+from labkit.grade.gradebook import record
+from labkit.grade.regrade import accept, moves
+from labkit.grade.results import Results
+from labkit.grade.synthetic import make_class
 
-ROOT = Path(__file__).resolve().parents[2]
-
-
-@pytest.fixture
-def course(tmp_path):
-    """A course of its own, with nothing released yet."""
-    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", tmp_path)
-    return Course(tmp_path)
-
-
-def test_a_term_has_a_seed_of_its_own_and_a_record(course):
-    """A new term draws a seed that is not the public one, and keeps each bundle's hash."""
-    record = term.new_term(course, None, ("01_paths",))
-    bundle = json.loads((course.bundle / "01_paths.json").read_text())
-    assert record["seed"] == bundle["seed"] == term.seed_of(course) != term.PUBLIC_SEED
-    assert record["bundles"] == {"01_paths": bundle["hash"]}
+NAME = "01_paths"
 
 
-def test_the_next_term_archives_the_names_and_forgets_them(course):
-    """What holds names moves into one folder, and one command deletes it."""
-    (course.submitted / "ada" / "01_paths").mkdir(parents=True)
-    folder = term.archive(course)
-    assert not course.submitted.exists()
-    assert (folder / "submitted" / "ada").is_dir()
-    assert term.forget(course) == [folder]
-    assert not folder.exists()
+@pytest.fixture(scope="module")
+def term(released, tmp_path_factory):
+    """A course with a small class, graded and recorded."""
+    import shutil
+
+    from labkit.grade.course import Course
+
+    root = tmp_path_factory.mktemp("term") / "course"
+    shutil.copytree(released.root, root, symlinks=True)
+    course = Course(root)
+    make_class(course, NAME, seed=4, count=9)
+    done = grade_class(course, NAME, students(course, NAME), How(jobs=2, limits=QUICK))
+    record(course, NAME, [one.result for one in done if isinstance(one, Graded)])
+    return course
 
 
-@pytest.mark.parametrize("seed", [term.PUBLIC_SEED])
-def test_a_known_seed_is_refused(course, seed):
-    """The public seed makes no secret, and the sentence says so."""
-    with pytest.raises(LabkitError, match="may be known; take another"):
-        term.new_term(course, seed)
+class Page(HTMLParser):
+    """The elements and texts of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.words = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.words.append(data)
 
 
-def test_the_students_repository_holds_no_answer(tmp_path):
-    """The export for students has the notebooks and labkit, and nothing of the solutions."""
-    student, private = export_course(Course(ROOT), tmp_path / "out")
-    assert (student / "assignments/01_paths/01_paths.ipynb").exists()
-    assert (student / "labkit/run.py").exists()
-    assert not (student / "solutions").exists()
-    assert not (student / "labkit/grade").exists()
-    assert (private / "solutions/paths.py").exists()
-    for path in student.rglob("*.ipynb"):
-        assert not any(word in path.read_text() for word in FORBIDDEN)
+def test_feedback_page_shows_text_as_text(term):
+    """Whatever a student's code said, the page holds no element but its own, and a policy."""
+    result = max(Results(term, NAME), key=lambda r: len(r.cells) + sum(
+        q["outcome"] == "wrong" for q in r.questions))  # fmt: skip
+    evil = "<script>alert(1)</script><img src=x onerror=alert(1)>"
+    worst = replace(
+        result,
+        notes=(evil,),
+        cells=({"cell": 3, "kind": evil, "error": evil, "output": evil, "seconds": 0.0},),
+        questions=tuple(
+            dict(q, source=evil, notes=[evil], tests=[dict(t, says=evil) for t in q["tests"]])
+            for q in result.questions
+        ),
+    )
+    found = Page(page(worst, {"circle": evil}))
+    tags = {tag for tag, _ in found.tags}
+    assert not tags & {"script", "img", "iframe", "a", "object", "link"}
+    policy = [a for t, a in found.tags if t == "meta" and "http-equiv" in a]
+    assert "default-src 'none'" in policy[0]["content"]
+    assert any(evil in words for words in found.words)
 
 
-def test_an_export_never_overwrites(tmp_path):
-    """A folder that is there already is left alone."""
-    with pytest.raises(LabkitError, match="there already"):
-        export_course(Course(ROOT), tmp_path)
+def numbers(data):
+    """All long numbers in encoded data, as they are printed."""
+    if isinstance(data, float):
+        return {repr(data)} if len(repr(data)) > 8 else set()
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    return {x for part in inner for x in numbers(part)}
+
+
+def test_feedback_has_no_hidden_case(term, bundle):
+    """No hidden input stands in any page, though every page says what class of case failed."""
+    cases = [c for q in bundle.data["questions"] for t in q["tests"] for c in t["cases"]]
+    hidden = {x for c in cases if c["hidden"] for x in numbers(c["args"])}
+    hidden -= {x for c in cases if not c["hidden"] for x in numbers(c["args"])}
+    assert len(hidden) > 50
+    text = "".join(page(r) for r in Results(term, NAME))
+    assert not [x for x in hidden if x in text]
+    assert "a hidden case (" in text or "failed" in text
+
+
+def test_feedback_lies_where_nbgrader_looks(term, capsys):
+    """One page for each student, as feedback/STUDENT/ASSIGNMENT/ASSIGNMENT.html."""
+    assert main(["feedback", NAME, "--course", str(term.root)]) == 0
+    made = list((term.root / "feedback").glob(f"*/{NAME}/{NAME}.html"))
+    assert len(made) == 9
+    assert "release_feedback" in capsys.readouterr().out
+
+
+def test_tables(term, capsys):
+    """Every layout has a row for each student and the gradebook's scores."""
+    marks = list(rows(term, NAME))
+    scores = {r.student: r.score for r in Results(term, NAME)}
+    assert {r.student: r.score for r in marks} == scores
+    for layout, extra in (("nbgrader", 1), ("questions", 2), ("canvas", 2), ("moodle", 1)):
+        table = list(csv.reader(io.StringIO(as_csv(LAYOUTS[layout](NAME, marks)))))
+        assert len(table) == len(marks) + extra
+        assert len({len(row) for row in table}) == 1
+    assert main(["export", NAME, "--course", str(term.root)]) == 0
+    head, full, *_ = capsys.readouterr().out.splitlines()
+    assert head.startswith("student,bang_bang,trapezoid")
+    assert full.endswith("20.0")
+
+
+def test_nothing_becomes_a_formula():
+    """A name that a spreadsheet would run is written as text."""
+    row = Row("=1+1", "@a", "+b", "-c", "1", "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0)
+    for layout in LAYOUTS.values():
+        for cells in csv.reader(io.StringIO(as_csv(layout("x", [row])))):
+            assert not [c for c in cells if c[:1] in set("=+@")]
+
+
+def test_regrade_says_first_and_never_lowers_unasked(course, capsys):
+    """After a threshold moves, --diff names who moves; marks fall only with --lower."""
+    make_class(course, NAME, seed=4, count=5)
+    who = students(course, NAME)
+    how = How(jobs=2, limits=QUICK)
+    before = {one.result.student: one.result for one in grade_class(course, NAME, who, how)}
+    path = course.bundle / f"{NAME}.json"
+    data = json.loads(path.read_text())
+    data["hash"] = "0" * 64
+    for question in data["questions"]:
+        if question["name"] == "witness":
+            question["points"] = 1
+    path.write_text(json.dumps(data))
+    moved = list(moves(course, NAME, who, how))
+    assert {m.by for m in moved} == {-1.0, 0.0}
+    assert {r.student: r.score for r in Results(course, NAME)} == {
+        s: r.score for s, r in before.items()
+    }
+    left = accept(course, NAME, moved, lower=False)
+    assert {m.after.student for m in left} == {m.after.student for m in moved if m.by < 0}
+    kept = [one for one in grade_class(course, NAME, who, how) if one.says.startswith("kept")]
+    assert len(kept) == len(left)
+    assert not accept(course, NAME, moved, lower=True)
+    assert {r.score for r in Results(course, NAME)} == {m.after.score for m in moved}
+    assert list((Results(course, NAME).folder / "old").iterdir())
+
+
+def test_class_report(term):
+    """The report counts misconceptions by name, and names nobody unless asked."""
+    results = list(Results(term, NAME))
+    problems = {p.name: p for p in term.problems(NAME)}
+    text = report(NAME, results, problems)
+    mistakes = [q["mistake"]["name"] for r in results for q in r.questions if q["mistake"]]
+    assert mistakes
+    assert all(name in text for name in mistakes)
+    assert not [r.student for r in results if r.student in text]
+    named = report(NAME, [replace(r, rejected="x") for r in results], problems, names=True)
+    assert all(r.student in named for r in results)
+    assert pseudonym("a") != pseudonym("b")
+
+
+def test_look_alikes(term):
+    """Two who handed in the same unusual work are listed together, with what to ask."""
+    results = list(Results(term, NAME))
+    one = next(r for r in results if sum(q["outcome"] == "wrong" for q in r.questions) > 2)
+    text = report(NAME, [*results, replace(one, student="zz")], {}, names=True)
+    assert "Look-alikes" in text
+    assert f"{one.student} and zz" in text
+
+
+def test_collect_from_downloads(course, tmp_path):
+    """Moodle's, Canvas's and nbgrader's own layouts end in submitted/, the last file of each."""
+    moodle, canvas = tmp_path / "moodle.zip", tmp_path / "canvas.zip"
+    with zipfile.ZipFile(moodle, "w") as archive:
+        archive.writestr("Ada Lovelace_101_assignsubmission_file/notebook.ipynb", "1")
+        archive.writestr("Ada Lovelace_101_assignsubmission_file/notebook(3).ipynb", "2")
+        archive.writestr("Bob_102_assignsubmission_file/readme.txt", "x")
+        archive.writestr("../../evil.ipynb", "x")
+    with zipfile.ZipFile(canvas, "w") as archive:
+        archive.writestr("hoppergrace_LATE_7_99_01_paths-1.ipynb", "3")
+    inbound = tmp_path / "inbound"
+    folder = inbound / f"carl+{NAME}+2026-03-01 10:00:00 UTC+abc"
+    folder.mkdir(parents=True)
+    (folder / f"{NAME}.ipynb").write_text("4")
+    (inbound / f"eve+{NAME}+2026-03-01 10:00:00 UTC+abc").symlink_to("/etc")
+    said = [str(x) for source in (moodle, canvas, inbound) for x in collect(course, NAME, source)]
+    taken = {p.parent.parent.name: p.read_text() for p in course.submitted.glob("*/*/*.ipynb")}
+    assert taken == {"Ada-Lovelace-101": "2", "hoppergrace-7": "3", "carl": "4"}
+    assert (course.submitted / "carl" / NAME / "timestamp.txt").read_text().startswith("2026-03-01")
+    assert [x for x in said if "late" in x and "hopper" in x]
+    assert [x for x in said if "no student can be told" in x]
+    assert [x for x in said if "a later one is there" in x]
+    assert [str(x) for x in collect(course, NAME, moodle) if "there already" in str(x)]
+    with pytest.raises(LabkitError, match="neither a folder nor a zip"):
+        list(collect(course, NAME, Path(__file__)))
+
+
+def test_doctor_finds_a_working_sandbox():
+    """On a machine that grades, nothing that is needed is missing."""
+    found = list(examine())
+    assert not [str(x) for x in found if x.needed and not x.fine]
+    assert [x for x in found if x.what == "sandbox"]

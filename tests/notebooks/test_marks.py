@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from labkit.check import Loop, Outcome, fingerprint, mark
+from labkit.check import Loop, Outcome, Tuned, fingerprint, mark
 from labkit.check.mark import recognise
 from labkit.grade.course import Course
 
@@ -103,7 +103,7 @@ def test_points_add_up(name):
         loops += sum(
             problem.points * trial.weight / whole
             for trial in problem.trials
-            if any(isinstance(case, Loop) for case in trial.public)
+            if any(isinstance(case, Loop | Tuned) for case in trial.public)
         )
         assert len(problem.hints) == 3
         assert problem.trials[0].weight == 0.0 or problem.points <= 2, "the gate comes first"

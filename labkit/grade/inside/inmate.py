@@ -130,6 +130,7 @@ def serve(line: Line, codec: Any, withhold: Callable[..., None], limits: dict[st
             line.send({"ran": asked["cell"]} | result)
         if "question" not in asked:
             continue
+        _sweep()
         child = os.fork()
         if child == 0:
             with suppress(BaseException):
@@ -141,6 +142,16 @@ def serve(line: Line, codec: Any, withhold: Callable[..., None], limits: dict[st
             os._exit(0)
         _, status = os.waitpid(child, 0)
         line.send({"over": os.waitstatus_to_exitcode(status)})
+
+
+def _sweep() -> None:
+    """End what the cells left running; a question needs room for a process of its own."""
+    if os.getpid() == 1:  # first of its namespace: -1 is all the others
+        with suppress(ProcessLookupError):
+            os.kill(-1, signal.SIGKILL)
+        with suppress(ChildProcessError):
+            while True:
+                os.waitpid(-1, 0)
 
 
 def _as_data(answer: Any) -> Any:

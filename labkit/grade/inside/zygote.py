@@ -50,7 +50,6 @@ def main() -> None:
     home = None if bare else os.open("/proc/self/ns/pid", os.O_RDONLY)
     line = Line(control)
     line.send({"ready": True})
-    os.dup2(nowhere, 2)
     while True:
         try:
             asked, ends = _read(control)
@@ -69,7 +68,7 @@ def main() -> None:
             os.close(ends[0])
             line.send({"pid": child})
             continue
-        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        os.dup2(nowhere, 2)
         end = Line(socket.socket(fileno=ends[0]))
         try:
             control.close()
@@ -111,6 +110,7 @@ def _load() -> tuple[Any, Any, Any]:
 
 
 def _read(control: socket.socket) -> tuple[dict[str, Any], list[int]]:
+    control.settimeout(None)
     data, ends, _, _ = socket.recv_fds(control, 65536, 1)
     if not data:
         raise Gone("the worker is gone")

@@ -93,7 +93,7 @@ def forget(args: argparse.Namespace) -> int:
 
 def export_course(args: argparse.Namespace) -> int:
     """Write two repositories."""
-    from .export import export_course
+    from .repositories import export_course
 
     student, private = export_course(Course.here(args.course), args.to)
     print(f"for students, without answers: {student}\nprivate, everything: {private}")

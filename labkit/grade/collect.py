@@ -1,0 +1,160 @@
+"""Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
+
+Names and times come from the download, never from within a student's file.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import zipfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from ..errors import LabkitError
+from .course import Course
+from .limits import Limits
+
+_MOODLE = re.compile(r"^(?P<name>[^/]+)_(?P<id>\d+)_assignsubmission_file_?/(?P<file>[^/]+)$")
+_CANVAS = re.compile(
+    r"^(?P<name>[^/_]+)_(?P<late>LATE_)?(?P<id>\d+)_(?P<number>\d+)_(?P<file>[^/]+)$"
+)
+_EXCHANGE = re.compile(r"^(?P<name>[^+/]+)\+(?P<assignment>[^+/]+)\+(?P<when>[^+/]+?)(\+[^/]*)?$")
+
+
+@dataclass(frozen=True)
+class Taken:
+    """One file, and what was done with it.
+
+    Attributes:
+        student: Whose, as the folder is called.
+        file: Its name in the download.
+        says: What was done.
+    """
+
+    student: str
+    file: str
+    says: str
+
+    def __str__(self) -> str:
+        return f"{self.student or '(nobody)'}: {self.file}: {self.says}"
+
+
+@dataclass(frozen=True)
+class _Found:
+    student: str
+    file: str
+    data: bytes
+    when: str = ""
+    late: bool = False
+
+
+def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
+    """Take notebooks from a download.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
+
+    Yields:
+        What was done with each file; of several of one student the last counts.
+
+    Raises:
+        LabkitError: It is neither.
+    """
+    if source.is_dir():
+        found = list(_from_exchange(source, assignment))
+    elif zipfile.is_zipfile(source):
+        found = list(_from_zip(source))
+    else:
+        raise LabkitError(
+            f"{source} is neither a folder nor a zip file; give the download as it is"
+        )
+    by_student: dict[str, list[_Found]] = {}
+    for one in found:
+        if not one.student:
+            yield Taken("", one.file, "not taken; no student can be told from its name")
+        elif not one.file.endswith(".ipynb"):
+            yield Taken(one.student, one.file, "not taken; it is no notebook")
+        else:
+            by_student.setdefault(one.student, []).append(one)
+    for student, files in sorted(by_student.items()):
+        files.sort(key=lambda one: (one.when, _number(one.file)))
+        for one in files[:-1]:
+            yield Taken(student, one.file, "not taken; a later one is there")
+        yield _put(course, assignment, files[-1])
+
+
+def _put(course: Course, assignment: str, one: _Found) -> Taken:
+    folder = course.submitted / one.student / assignment
+    path = folder / f"{assignment}.ipynb"
+    same = path.is_file() and path.read_bytes() == one.data
+    if same:
+        return Taken(one.student, one.file, "there already")
+    again = folder.exists()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    path.write_bytes(one.data)
+    if one.when:
+        (folder / "timestamp.txt").write_text(one.when, encoding="utf-8")
+    says = "taken, in place of an earlier one" if again else "taken"
+    says += "" if one.file == path.name else f", as {path.name}"
+    return Taken(one.student, one.file, says + (", late" if one.late else ""))
+
+
+def _from_zip(path: Path) -> Iterator[_Found]:
+    most = Limits().notebook * 2**20
+    with zipfile.ZipFile(path) as archive:
+        for entry in archive.infolist():
+            if entry.is_dir():
+                continue
+            match = _MOODLE.match(entry.filename) or _CANVAS.match(entry.filename)
+            if match is None:
+                yield _Found("", entry.filename[-80:], b"")
+                continue
+            if entry.file_size > most:
+                yield _Found("", f"{entry.filename[-80:]} ({entry.file_size / 2**20:.0f} MB)", b"")
+                continue
+            with archive.open(entry) as file:
+                data = file.read(most)
+            parts = match.groupdict()
+            late = bool(parts.get("late"))
+            yield _Found(f"{_slug(parts['name'])}-{parts['id']}", parts["file"], data, late=late)
+
+
+def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
+    for inside in sorted(folder.iterdir()):
+        match = _EXCHANGE.match(inside.name)
+        if match is None or inside.is_symlink() or not inside.is_dir():
+            continue
+        if match["assignment"] != assignment:
+            continue
+        for path in sorted(inside.glob("*.ipynb")):
+            if path.is_symlink() or path.stat().st_size > Limits().notebook * 2**20:
+                yield _Found("", path.name, b"")
+                continue
+            yield _Found(_slug(match["name"]), path.name, path.read_bytes(), _time(match["when"]))
+
+
+def _time(text: str) -> str:
+    """The exchange's time in the form of ``timestamp.txt``; now, if it cannot be read."""
+    from dateutil.parser import parse
+
+    try:
+        return str(parse(text))
+    except (ValueError, OverflowError):
+        return str(datetime.now(UTC))
+
+
+def _slug(name: str) -> str:
+    """A name as a folder's: letters of any script, digits, and hyphens."""
+    return re.sub(r"[^\w.]+", "-", name).strip("-._")[:60] or "nobody"
+
+
+def _number(name: str) -> int:
+    """The number that a browser or platform put on a repeated file: notebook(3), notebook-3."""
+    match = re.search(r"[(-](\d+)\)?\.ipynb$", name)
+    return int(match[1]) if match else 0

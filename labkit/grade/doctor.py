@@ -1,0 +1,161 @@
+"""What isolation this machine gives, and how to get the rest."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+from .inside import seccomp
+from .limits import Limits, slowness
+from .sandbox import NoIsolation, Sandbox
+
+_APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
+_NAMESPACES = Path("/proc/sys/user/max_user_namespaces")
+_CLONE = Path("/proc/sys/kernel/unprivileged_userns_clone")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at.
+
+    Attributes:
+        what: It.
+        fine: Whether it is as it should be.
+        says: What was found, or the line that mends it.
+        needed: Whether grading refuses without it.
+    """
+
+    what: str
+    fine: bool
+    says: str
+    needed: bool = True
+
+    def __str__(self) -> str:
+        mark = "ok  " if self.fine else ("FAIL" if self.needed else "note")
+        return f"[{mark}] {self.what}: {self.says}"
+
+
+def examine() -> Iterator[Finding]:
+    """Look at everything that grading needs, the sandbox last, by making one and trying it."""
+    fine = sys.version_info[:2] == (3, 11)
+    says = platform.python_version() if fine else "PyBullet's newest wheels are for Python 3.11"
+    yield Finding("Python", fine, says)
+    missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
+    mend = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
+    yield Finding("instructor's packages", not missing, mend if missing else "there")
+    program = shutil.which("bwrap")
+    yield Finding("bubblewrap", program is not None, program or f"missing; {_install()}")
+    fine = seccomp.supported()
+    yield Finding("filter of system calls", fine, platform.machine())
+    yield from _namespaces()
+    yield from sandbox()
+    yield Finding(
+        "speed", True, f"time limits are multiplied by {slowness():g} on this machine", needed=False
+    )
+
+
+def sandbox() -> Iterator[Finding]:
+    """Make a sandbox and try to get out of it."""
+    try:
+        with Sandbox(999) as made, made.enter("student", Limits()) as inside:
+            inside.line.send({"cell": 0, "source": _TRY, "answers": []})
+            failed = str(inside.line.read(30.0).get("error", "it did not answer"))
+            yield Finding("sandbox", not failed, failed or made.level)
+            counted = made.group is not None
+            says = made.group.says if made.group else (
+                "no cgroup here: memory is limited for each process, not for all together; "
+                "grade as root, or under `systemd-run --user --scope -p Delegate=yes`"
+            )  # fmt: skip
+            yield Finding("limits of a whole sandbox", counted, says, needed=False)
+            away = os.geteuid() == 0
+            says = f"user {made.uid}" if away else "yours, without any rights, in a user namespace"
+            yield Finding("a user of its own", away, says, needed=False)
+    except NoIsolation as error:
+        yield Finding("sandbox", False, f"{error}\n{_elsewhere()}")
+
+
+_TRY = """
+import os, socket
+bad = []
+try:
+    socket.create_connection(("192.0.2.1", 80), 1)
+    bad.append("it has a network")
+except PermissionError:
+    pass
+except OSError as error:
+    bad.append(f"sockets are not refused: {error}")
+if len([x for x in os.listdir("/proc") if x.isdigit()]):
+    bad.append("it sees processes")
+try:
+    open("/usr/x", "w")
+    bad.append("it can write to /usr")
+except OSError:
+    pass
+if os.path.exists("/home") or os.path.exists("/etc/passwd"):
+    bad.append("it sees files of the machine")
+import ctypes
+if ctypes.CDLL(None).unshare(0x10000000) == 0:
+    bad.append("it can make namespaces")
+if bad:
+    raise RuntimeError("; ".join(bad))
+"""
+
+
+def _namespaces() -> Iterator[Finding]:
+    if os.geteuid() == 0:
+        return
+    if _CLONE.exists() and _CLONE.read_text().strip() == "0":
+        yield Finding(
+            "user namespaces",
+            False,
+            "switched off; type: sudo sysctl kernel.unprivileged_userns_clone=1",
+        )
+    elif _NAMESPACES.exists() and _NAMESPACES.read_text().strip() == "0":
+        yield Finding(
+            "user namespaces",
+            False,
+            "switched off; type: sudo sysctl user.max_user_namespaces=10000",
+        )
+    elif _APPARMOR.exists() and _APPARMOR.read_text().strip() == "1":
+        yield Finding(
+            "user namespaces",
+            Path("/etc/apparmor.d/bwrap").exists(),
+            "Ubuntu's AppArmor restricts them; give bubblewrap a profile (see below), or for this "
+            "boot: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0",
+            needed=False,
+        )
+    else:
+        yield Finding("user namespaces", True, "allowed")
+
+
+def _install() -> str:
+    for tool, line in (
+        ("apt-get", "sudo apt-get install bubblewrap"),
+        ("dnf", "sudo dnf install bubblewrap"),
+        ("pacman", "sudo pacman -S bubblewrap"),
+    ):
+        if shutil.which(tool):
+            return f"type: {line}"
+    return "grade on Linux; macOS and Windows have no bubblewrap, so use the container"
+
+
+def _elsewhere() -> str:
+    """How isolation is had in the places where people grade."""
+    return """  Debian:       sudo apt-get install bubblewrap
+  Ubuntu 24.04: sudo apt-get install bubblewrap apparmor, then as /etc/apparmor.d/bwrap
+                  abi <abi/4.0>,
+                  profile bwrap /usr/bin/bwrap flags=(unconfined) { userns, }
+                and: sudo systemctl reload apparmor
+  Docker:       docker run --security-opt seccomp=unconfined --security-opt apparmor=unconfined \\
+                  --security-opt systempaths=unconfined --cap-add SYS_ADMIN ...
+                (for the container that grades, and for no other; the sandbox has its own filter)
+  Kubernetes:   a Job of its own, not the students' hub: spec.hostUsers: false, and
+                  securityContext: {capabilities: {add: [SYS_ADMIN]}, procMount: Unmasked,
+                    seccompProfile: {type: Unconfined}, appArmorProfile: {type: Unconfined}}
+                `labkit grade NAME --shard i/n` splits a class over an indexed Job"""

@@ -1,0 +1,134 @@
+"""Feedback: one page for each student, verdicts in words, nothing that should stay hidden.
+
+It is made from the result alone, so no hidden case and no reference value can be in it; whatever a
+student's code said is shown as text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from .course import Course
+from .results import Result, write
+
+_STYLE = """
+body { font: 1rem/1.55 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto; padding: 0 1rem;
+  color: #1b1b1b; background: #fff }
+h1 { font-size: 1.6rem } h2 { font-size: 1.2rem; margin-top: 2.2rem; border-top: 1px solid #767676;
+  padding-top: 1rem }
+.total { font-size: 1.2rem } ul { padding-left: 1.2rem } li { margin: .3rem 0 }
+.yes { color: #0a5c2b } .no { color: #a1161b }
+pre { background: #f4f4f4; padding: .8rem; overflow-x: auto; white-space: pre-wrap }
+.tip { border-left: .3rem solid #1f5fa8; padding-left: .8rem }
+@media (prefers-color-scheme: dark) { body { color: #eee; background: #161616 }
+  pre { background: #262626 } .yes { color: #7ddc9b } .no { color: #ff9a9a } }
+"""
+_HEAD = """<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<main>
+"""
+_WORDS = {
+    "right": "right",
+    "wrong": "not yet right",
+    "error": "it stopped with an error",
+    "not attempted": "not attempted",
+}
+
+
+def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
+    """The page of one student.
+
+    Args:
+        result: What came of the submission.
+        comments: What the teacher wrote by hand, by question.
+
+    Returns:
+        HTML in one piece: no scripts, nothing loaded from anywhere.
+    """
+    title = escape(f"{result.assignment}: feedback for {result.student}")
+    lines = [_HEAD.format(title=title, style=_STYLE), f"<h1>{title}</h1>"]
+    if result.rejected:
+        lines.append(
+            f'<p class="total"><strong>Not graded:</strong> {escape(result.rejected)}.</p>'
+            "<p>Mend this and hand it in again, or talk to your teacher.</p>"
+        )
+    else:
+        right = sum(q["outcome"] == "right" for q in result.questions)
+        lines.append(
+            f'<p class="total"><strong>{result.score:g} of {result.points:g} points.</strong> '
+            f"{right} of {len(result.questions)} questions are right.</p>"
+        )
+    lines += [f"<p>Note: {escape(note)}.</p>" for note in result.notes]
+    for question in result.questions:
+        lines += _question(question, (comments or {}).get(question["name"], ""))
+    if result.cells:
+        lines.append("<h2>Cells that did not run</h2><ul>")
+        for cell in result.cells:
+            what = f"{cell['kind']}: {cell['error']}" if cell["kind"] != "died" else cell["error"]
+            lines.append(f"<li>Cell {cell['cell'] + 1}: {escape(what)}</li>")
+        lines.append("</ul>")
+    return "\n".join([*lines, "</main>", "</body>", "</html>", ""])
+
+
+def write_feedback(
+    course: Course, assignment: str, results: Iterable[Result], comments: Mapping[str, Any]
+) -> list[Path]:
+    """Write the pages where ``nbgrader release_feedback`` looks for them.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        results: Of its students.
+        comments: Written by hand: by student, then by question.
+
+    Returns:
+        The files.
+    """
+    made = []
+    for result in results:
+        path = course.root / "feedback" / result.student / assignment / f"{assignment}.html"
+        write(path, page(result, comments.get(result.student)))
+        made.append(path)
+    return made
+
+
+def _question(question: Mapping[str, Any], comment: str) -> Iterable[str]:
+    outcome, name = question["outcome"], escape(question["name"])
+    mark = "yes" if outcome == "right" else "no"
+    yield f'<section aria-labelledby="{name}"><h2 id="{name}"><code>{name}</code></h2>'
+    yield (
+        f'<p><strong class="{mark}">{_WORDS[outcome].capitalize()}.</strong> '
+        f"{question['earned']:g} of {question['points']:g} points.</p>"
+    )
+    if outcome in {"wrong", "error"}:
+        yield "<ul>"
+        for test in question["tests"]:
+            right = test["outcome"] == "right"
+            gate = "" if test["weight"] else " (needed before anything counts)"
+            says = "" if right else f": {escape(test['says'])}"
+            word = '<span class="yes">passed</span>' if right else '<span class="no">failed</span>'
+            yield f"<li>{word}: {escape(test['name'])}{gate}{says}</li>"
+        yield "</ul>"
+    if question["mistake"]:
+        yield (
+            f'<p class="tip"><strong>A well-known one: {escape(question["mistake"]["name"])}.'
+            f"</strong> {escape(question['mistake']['says'])}</p>"
+        )
+    yield from (f"<p>Note: {escape(note)}.</p>" for note in question["notes"])
+    if comment:
+        yield f'<p class="tip"><strong>Your teacher:</strong> {escape(comment)}</p>'
+    if question["source"] and outcome != "not attempted":
+        source = escape(question["source"])
+        yield f'<details><summary>Your answer</summary><pre tabindex="0">{source}</pre></details>'
+    yield "</section>"

@@ -1,0 +1,93 @@
+"""Regrade: whose mark moves after a test has changed, said before anything is written."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..errors import LabkitError
+from .batch import How, grade_class
+from .course import Course
+from .results import Result, Results
+
+
+@dataclass(frozen=True)
+class Move:
+    """A mark before and after.
+
+    Attributes:
+        before: The result that counts now, if there is one.
+        after: The new one.
+    """
+
+    before: Result | None
+    after: Result
+
+    @property
+    def by(self) -> float:
+        """How far the mark moves."""
+        return round(self.after.score - (self.before.score if self.before else 0.0), 4)
+
+    def __str__(self) -> str:
+        if self.before is None:
+            return f"{self.after.student}: new, {self.after.score:g} of {self.after.points:g}"
+        each = {q["name"]: q["earned"] for q in self.before.questions}
+        parts = [
+            f"{q['name']} {each.get(q['name'], 0.0):g} -> {q['earned']:g}"
+            for q in self.after.questions
+            if q["earned"] != each.get(q["name"], 0.0)
+        ]
+        says = f" ({'; '.join(parts)})" if parts else ""
+        return (
+            f"{self.after.student}: {self.before.score:g} -> {self.after.score:g}, "
+            f"{self.by:+g}{says}"
+        )
+
+
+class _Elsewhere(Course):
+    """The course, but results go to another folder."""
+
+    place: Path
+
+    @property
+    def results(self) -> Path:
+        """The other folder."""
+        return self.place
+
+
+def moves(
+    course: Course, assignment: str, students: Sequence[str], how: How
+) -> Iterator[Move | LabkitError]:
+    """Grade aside, and compare with the results that count; nothing of the course is changed."""
+    with tempfile.TemporaryDirectory(prefix="labkit-regrade-") as folder:
+        aside = _Elsewhere(course.root)
+        object.__setattr__(aside, "place", Path(folder))
+        now = Results(course, assignment)
+        for graded in grade_class(aside, assignment, students, replace(how, again=True)):
+            if isinstance(graded, LabkitError):
+                yield graded
+                continue
+            yield Move(now.get(graded.result.student), graded.result)
+
+
+def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: bool) -> list[Move]:
+    """Let new results count; the old ones are kept beside them.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        moved: What `moves` found.
+        lower: Whether marks may fall; otherwise those keep their old result.
+
+    Returns:
+        What was left as it was.
+    """
+    results, left = Results(course, assignment), []
+    for move in moved:
+        if move.by < 0 and move.before is not None and not lower:
+            left.append(move)
+        else:
+            results.keep(move.after)
+    return left

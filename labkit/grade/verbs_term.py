@@ -1,0 +1,143 @@
+"""The instructor's verbs for the rest of the term: feedback, marks, regrade, report, collect."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError
+from .course import Course
+from .verbs import in_part, nobody
+from .verbs_course import course_option
+
+Verbs = Any
+
+
+def add_all(verbs: Verbs) -> None:
+    """All of them."""
+    verb = _verb(verbs, "feedback", feedback, "write a page for each student")
+    verb.add_argument("--student", metavar="S", help="only this one")
+    verb = _verb(verbs, "export", export, "marks as a table")
+    verb.add_argument(
+        "--layout", choices=("nbgrader", "questions", "canvas", "moodle"), default="questions"
+    )
+    verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
+    verb = _verb(verbs, "regrade", regrade, "grade again after a test or its points have changed")
+    verb.add_argument("--student", metavar="S", help="only this one")
+    verb.add_argument("--diff", action="store_true", help="only say whose mark would move")
+    verb.add_argument("--lower", action="store_true", help="let marks fall too")
+    verb.add_argument("--jobs", type=int, metavar="N", help="workers (default: one per core)")
+    verb = _verb(
+        verbs, "class-report", class_report, "what the class got right, and what it got wrong"
+    )
+    verb.add_argument("--names", action="store_true", help="with names, for your eyes only")
+    verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
+    verb.add_argument(
+        "--jplag", type=Path, metavar="DIR", help="also write answers for JPlag there"
+    )
+    verb = _verb(
+        verbs, "collect", collect, "take downloads from Moodle, Canvas or nbgrader's exchange"
+    )
+    verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
+
+
+def feedback(args: argparse.Namespace) -> int:
+    """Write the pages."""
+    from .feedback import write_feedback
+    from .gradebook import comments
+    from .results import Results
+
+    here = Course.here(args.course)
+    results = [r for r in Results(here, args.name) if args.student in {None, r.student}]
+    if not results:
+        raise nobody(args.name, args.student)
+    made = write_feedback(here, args.name, results, comments(here, args.name))
+    print(f"{len(made)} pages in {here.root / 'feedback'}; hand them out with")
+    print(f"  nbgrader release_feedback {args.name}")
+    return 0
+
+
+def export(args: argparse.Namespace) -> int:
+    """Write the table."""
+    from .export import LAYOUTS, as_csv, rows
+
+    here = Course.here(args.course)
+    marks = list(rows(here, args.name))
+    if not marks:
+        raise nobody(args.name, None)
+    _out(as_csv(LAYOUTS[args.layout](args.name, marks)), args.to)
+    return 0
+
+
+def regrade(args: argparse.Namespace) -> int:
+    """Say whose mark moves; without ``--diff``, let it."""
+    from .batch import How, workers
+    from .gradebook import record
+    from .regrade import Move, accept, moves
+
+    here = Course.here(args.course)
+    who = in_part(here, args.name, args.student)
+    found = list(moves(here, args.name, who, How(jobs=args.jobs or workers())))
+    moved = [m for m in found if isinstance(m, Move)]
+    for move in sorted(moved, key=lambda m: m.by):
+        if move.by or move.before is None:
+            print(move)
+    changed = sum(bool(m.by) for m in moved)
+    print(f"{changed} of {len(moved)} marks move, {sum(m.by < 0 for m in moved)} of them down")
+    for error in found:
+        if isinstance(error, LabkitError):
+            print(f"not graded: {error}", file=sys.stderr)
+    if args.diff:
+        return 0
+    left = accept(here, args.name, moved, lower=args.lower)
+    if left:
+        print(f"{len(left)} marks would fall and stay as they are; --lower lets them")
+    for sentence in record(here, args.name, [m.after for m in moved if m not in left]):
+        print(sentence)
+    return 0
+
+
+def class_report(args: argparse.Namespace) -> int:
+    """Write the report."""
+    from .class_report import for_jplag, report
+    from .results import Results
+
+    here = Course.here(args.course)
+    results = list(Results(here, args.name))
+    if not results:
+        raise nobody(args.name, None)
+    problems = {p.name: p for p in here.problems(args.name)}
+    _out(report(args.name, results, problems, names=args.names), args.to)
+    if args.jplag:
+        print(f"{for_jplag(results, args.jplag)} answers in {args.jplag}", file=sys.stderr)
+    return 0
+
+
+def collect(args: argparse.Namespace) -> int:
+    """Take what lies there, and say what was done with it."""
+    from .collect import collect as take
+
+    here = Course.here(args.course)
+    here.notebook_source(args.name)
+    for source in args.sources:
+        for taken in take(here, args.name, source):
+            print(taken, flush=True)
+    return 0
+
+
+def _verb(verbs: Verbs, name: str, do: Any, says: str) -> argparse.ArgumentParser:
+    verb: argparse.ArgumentParser = verbs.add_parser(name, help=says)
+    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    course_option(verb)
+    verb.set_defaults(do=do)
+    return verb
+
+
+def _out(text: str, where: Path | None) -> None:
+    if where is None:
+        sys.stdout.write(text)
+    else:
+        where.write_text(text, encoding="utf-8")
+        print(f"written: {where}")

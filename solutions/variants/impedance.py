@@ -1,0 +1,96 @@
+"""Right answers of notebook 05, written otherwise."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+
+
+def msd_by_error(state: Any, target: Any, force: float, *, m: float, b: float, k: float) -> Any:
+    """With arrays, and the error as actual minus target."""
+    y = np.subtract(state, target[:2])
+    return target[2] + (force - np.dot([k, b], y)) / m
+
+
+class Mass:
+    """A callable object."""
+
+    def __call__(
+        self, state: Any, target: Any, force: float, *, m: float, b: float, k: float
+    ) -> Any:
+        """Newton's law, m times the acceleration first."""
+        x, dx = state
+        pull = k * (target[0] - x) + b * (target[1] - dx)
+        return (m * target[2] + pull + force) / m
+
+
+def inertia_by_inverse(M: Any, J: Any) -> Any:
+    """With the inverse written out."""
+    return np.linalg.inv(J @ np.linalg.inv(M) @ np.transpose(J))
+
+
+def inertia_by_root(M: Any, J: Any) -> Any:
+    """By the Cholesky factor, into lists."""
+    W = np.linalg.solve(np.linalg.cholesky(M), np.asarray(J).T)
+    return np.linalg.pinv(W.T @ W).tolist()
+
+
+def impedance_by_terms(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> Any:
+    """With `Model.terms`, diagonal matrices, and inverse dynamics of a joint acceleration."""
+    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    K, D = np.diag(stiffness * np.ones(6)), np.diag(damping * np.ones(6))
+    Minv = np.linalg.inv(M)
+    L = np.linalg.inv(J @ Minv @ J.T)
+    F = K @ lk.se3.pose_error(target.pose, T) + D @ (target.twist - J @ state.dq)
+    ddq = Minv @ J.T @ (L @ (target.dtwist - drift) + F)
+    return lk.JointTorque(M @ ddq + c + g)
+
+
+def impedance_by_parts(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> Any:
+    """Position and orientation apart, the logarithm written out."""
+    q, dq = state.q, state.dq
+    T, J = model.pose(q), model.tip_jacobian(q)
+    turn = lk.se3.rotation_log(target.pose[:3, :3] @ T[:3, :3].T)
+    e = np.concatenate([target.pose[:3, 3] - T[:3, 3], turn])
+    V = np.concatenate([J[:3] @ dq, J[3:] @ dq])
+    F = stiffness * e - damping * (V - target.twist)
+    F = F + model.operational_inertia(q) @ (target.dtwist - model.tip_jacobian_rate(q, dq) @ dq)
+    return lk.JointTorque(model.bias(q, dq) + J.T @ F)
+
+
+def shaped_by_factor(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> Any:
+    """The textbook's form, with the factor (Lambda M_d^-1 - I) before the wrench."""
+    T, J, drift, _, c, g = model.terms(state.q, state.dq)
+    L = model.operational_inertia(state.q)
+    share = L @ np.linalg.inv(inertia)
+    F = damping * (target.twist - J @ state.dq) + stiffness * lk.se3.pose_error(target.pose, T)
+    tip = L @ (target.dtwist - drift) + share @ F + (share - np.eye(6)) @ wrench
+    return lk.JointTorque(J.T @ tip + c + g)
+
+
+def stiffness_with_ones(force: Any, displacement: Any) -> Any:
+    """With a column of ones for the offset."""
+    A = np.column_stack([displacement, np.ones(len(displacement))])
+    return np.linalg.lstsq(A, force, rcond=None)[0][:3].T
+
+
+def stiffness_by_covariances(force: Any, displacement: Any) -> Any:
+    """By the covariances of force and displacement, into lists."""
+    both = np.cov(np.column_stack([force, displacement]).T)
+    return (both[:3, 3:] @ np.linalg.inv(both[3:, 3:])).tolist()

@@ -1,0 +1,72 @@
+"""A released course in a folder of its own, and a sandbox, for the tests of the grader."""
+
+from __future__ import annotations
+
+import copy
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from labkit.grade.course import Course
+from labkit.grade.limits import Limits
+from labkit.grade.release import release
+from labkit.grade.results import Bundle
+from labkit.grade.sandbox import Sandbox
+
+ROOT = Path(__file__).parents[2]
+QUICK = Limits(cell=2.0, call=1.0, question=20.0, wall=60.0)
+SEED = 7
+
+
+@pytest.fixture(scope="session")
+def released(tmp_path_factory):
+    """A course with 01_paths released, never written to again."""
+    root = tmp_path_factory.mktemp("course")
+    (root / "solutions").symlink_to(ROOT / "solutions")
+    shutil.copy(ROOT / "nbgrader_config.py", root)
+    course = Course(root)
+    release(course, "01_paths", SEED)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    """A copy of it, to write to."""
+    root = tmp_path / "course"
+    shutil.copytree(released.root, root, symlinks=True)
+    return Course(root)
+
+
+@pytest.fixture(scope="session")
+def bundle(released):
+    return Bundle.of(released, "01_paths")
+
+
+@pytest.fixture(scope="session")
+def sandbox():
+    with Sandbox(900) as sandbox:
+        yield sandbox
+
+
+@pytest.fixture(scope="session")
+def _blank(released):
+    return json.loads((released.release / "01_paths" / "01_paths.ipynb").read_text())
+
+
+@pytest.fixture(scope="session")
+def _solved(released):
+    return json.loads((released.solution / "01_paths" / "01_paths.ipynb").read_text())
+
+
+@pytest.fixture
+def blank(_blank):
+    """The assignment as it is handed out, as JSON data."""
+    return copy.deepcopy(_blank)
+
+
+@pytest.fixture
+def solved(_solved):
+    """The assignment with the right answers in it."""
+    return copy.deepcopy(_solved)

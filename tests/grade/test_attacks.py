@@ -1,0 +1,68 @@
+"""Attacks: no undeserved point, no secret, no process left, no submission harmed by another."""
+
+from __future__ import annotations
+
+import copy
+import os
+from pathlib import Path
+
+import pytest
+from attacks import CLASSES
+from conftest import QUICK
+from notebooks import add, put, raw
+
+from labkit.grade.checker import grade
+from labkit.grade.limits import Limits
+
+FAST = Limits(cell=0.5, call=0.3, question=5.0, wall=30.0)
+
+
+def launch(attack, blank, bundle, sandbox, root):
+    """Grade a notebook that holds one attack and nothing else."""
+    if attack.cell:
+        add(blank, attack.cell.replace("{root}", str(root)))
+    if attack.answer:
+        put(blank, "bang_bang", attack.answer.replace("NAME", "bang_bang"))
+    return grade(raw(blank), "mallory", bundle, sandbox, FAST)
+
+
+def said(result):
+    """All that the student's code could make the result say."""
+    words = [t["says"] for q in result.questions for t in q["tests"]]
+    return "\n".join([*words, *(f"{c['error']} {c['output']}" for c in result.cells)])
+
+
+def processes_of(uid):
+    """Processes that belong to a user."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if folder.stat().st_uid == uid:
+                found.append(folder.name)
+        except OSError:
+            continue
+    return found
+
+
+def test_enough():
+    """There are at least 12 classes and 100 attacks."""
+    assert len(CLASSES) >= 12
+    assert sum(map(len, CLASSES.values())) >= 100
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", CLASSES)
+def test_attacks_earn_nothing(kind, _blank, solved, released, bundle, sandbox):
+    """An attack earns 0 points, reads nothing, leaves nothing, and harms nobody after it."""
+    wrong = []
+    for name, attack in CLASSES[kind].items():
+        result = launch(attack, copy.deepcopy(_blank), bundle, sandbox, released.root)
+        text = said(result)
+        if result.score or result.rejected or "GOT" in text:
+            wrong.append((name, result.score, result.rejected, text[text.find("GOT") :][:90]))
+        if any(ord(c) < 32 for q in result.questions for t in q["tests"] for c in t["says"]):
+            wrong.append((name, "control characters"))
+        if os.geteuid() == 0 and processes_of(sandbox.uid):
+            wrong.append((name, "left processes"))
+    assert not wrong
+    assert grade(raw(solved), "honest", bundle, sandbox, QUICK).score == 20

@@ -1,0 +1,246 @@
+"""A class: expected marks, the same however it is graded, and whatever is killed meanwhile."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+from conftest import QUICK, ROOT
+
+from labkit.cli import main
+from labkit.grade.batch import Graded, How, common_failures, grade_class, in_shard
+from labkit.grade.engines import grade_with_nbgrader, students
+from labkit.grade.gradebook import open_gradebook, record
+from labkit.grade.results import Results
+from labkit.grade.synthetic import differences, make_class
+
+NAME = "01_paths"
+PART = 8
+
+
+def grade_all(course, **how):
+    return [
+        one
+        for one in grade_class(course, NAME, students(course, NAME), How(limits=QUICK, **how))
+        if isinstance(one, Graded)
+    ]
+
+
+def verdicts(course):
+    return {result.student: result.verdict for result in Results(course, NAME)}
+
+
+@pytest.fixture
+def part(course):
+    """A course with the first few of the synthetic class, all of them harmless."""
+    make_class(course, NAME, seed=3, count=PART)
+    return course
+
+
+@pytest.mark.slow
+def test_synthetic_class_gets_what_it_deserves(course):
+    """Forty submissions of every kind earn, question by question, what they deserve."""
+    make_class(course, NAME, seed=1)
+    done = grade_all(course, jobs=2)
+    assert len(done) == 40
+    assert not list(differences(course, NAME))
+    record(course, NAME, [one.result for one in done])
+    with open_gradebook(course) as (book, _):
+        scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
+    assert scores == {one.result.student: one.result.score for one in done}
+
+
+def test_class_is_drawn_from_its_seed(course):
+    """A seed gives the same class again, another one another order."""
+    first = make_class(course, NAME, seed=1, count=40)
+    assert first == make_class(course, NAME, seed=1, count=40)
+    other = make_class(course, NAME, seed=2, count=40)
+    assert {k: v["kind"] for k, v in first.items()} != {k: v["kind"] for k, v in other.items()}
+
+
+@pytest.mark.slow
+def test_serial_parallel_and_dask_agree(part):
+    """Verdicts and scores are equal with one worker, with two, in shards, and through Dask."""
+    from distributed import LocalCluster
+
+    grade_all(part)
+    serial = verdicts(part)
+    assert len(serial) == PART
+    grade_all(part, jobs=2, again=True)
+    assert verdicts(part) == serial
+    for result in Path(Results(part, NAME).folder).glob("*.json"):
+        result.unlink()
+    for k in (1, 2, 3):
+        grade_all(part, shard=(k, 3))
+    assert verdicts(part) == serial
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        grade_all(part, dask=cluster.scheduler_address, again=True)
+    assert verdicts(part) == serial
+
+
+def test_resume(part):
+    """What is graded and has not changed is not graded again; what has changed is."""
+    grade_all(part, jobs=2)
+    assert {one.says for one in grade_all(part)} == {"as before"}
+    who = students(part, NAME)[0]
+    path = part.submitted / who / NAME
+    next(path.iterdir()).write_bytes(b"{")
+    assert sum(one.says != "as before" for one in grade_all(part)) == 1
+
+
+def test_killed_worker(part):
+    """A worker that is killed loses nothing: its submission goes to the next one."""
+
+    def kill_one():
+        for _ in range(200):
+            time.sleep(0.02)
+            for folder in Path("/proc").glob("[0-9]*"):
+                try:
+                    words = (folder / "cmdline").read_bytes().split(b"\0")
+                    parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+                except (OSError, IndexError):
+                    continue
+                if b"labkit.grade.worker" in words and parent == os.getpid():
+                    time.sleep(1.0)
+                    os.kill(int(folder.name), signal.SIGKILL)
+                    return
+
+    thread = threading.Thread(target=kill_one)
+    thread.start()
+    done = grade_all(part)
+    thread.join()
+    assert len(done) == PART
+    assert not list(differences(part, NAME))
+
+
+def test_killed_run(part):
+    """A run that is killed leaves whole results, no half ones; the next run does the rest."""
+    words = [sys.executable, "-m", "labkit.cli", "grade", NAME, "--jobs", "1"]
+    run = subprocess.Popen(
+        [*words, "--course", str(part.root)],
+        env=dict(os.environ, PYTHONPATH=str(ROOT)),
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    for _ in range(2):
+        run.stdout.readline()
+    run.kill()
+    run.wait()
+    run.stdout.close()
+    before = len(list(Results(part, NAME)))
+    assert 2 <= before < PART
+    deadline = time.monotonic() + 30
+    while time.monotonic() < deadline:  # the worker ends by itself, once nobody listens
+        done = grade_all(part)
+        if len(done) == PART:
+            break
+    assert sum(one.says == "as before" for one in done) >= before
+    assert not list(differences(part, NAME))
+
+
+def test_results_outlive_a_crash_while_writing(part):
+    """A half-written result is no result, and is made again."""
+    grade_all(part, jobs=2)
+    results = Results(part, NAME)
+    who = students(part, NAME)[0]
+    text = results.path(who).read_text()
+    results.path(who).write_text(text[: len(text) // 2])
+    assert results.get(who) is None
+    grade_all(part)
+    assert results.get(who) is not None
+
+
+@pytest.mark.slow
+def test_same_scores_as_nbgrader_on_honest_work(course):
+    """On honest submissions nbgrader's own engine comes to the same scores."""
+    make_class(course, NAME, seed=5, count=12)
+    kinds = json.loads((course.build.parent / "class" / f"{NAME}.json").read_text())
+    honest = ("perfect", "perfect, in other words", "mistakes, the first of each")
+    for student, about in kinds.items():
+        if about["kind"] in honest:
+            mark = grade_with_nbgrader(course, NAME, student)
+            assert mark.score == about["score"], about["kind"]
+
+
+def test_loud_when_many_fail(part):
+    """A test that more than 30 % fail is named."""
+    results = [one.result for one in grade_all(part, jobs=2)]
+    said = list(common_failures(results * 2))
+    assert said
+    assert all("fail the test" in sentence for sentence in said)
+    assert not list(common_failures([r for r in results if r.score == r.points] * 5))
+
+
+def test_shards_are_a_partition():
+    """Each student is in just one shard."""
+    for n in (1, 2, 7):
+        for k in range(50):
+            assert sum(in_shard(f"s{k}", (i, n)) for i in range(1, n + 1)) == 1
+
+
+def test_manual_grades_and_comments_survive(part):
+    """Grading again changes automatic scores only, and says where a hand was at work."""
+    done = [one.result for one in grade_all(part, jobs=2)]
+    record(part, NAME, done)
+    who = next(r for r in done if r.score == r.points)
+    with open_gradebook(part) as (book, _):
+        grade = book.find_grade("circle-check", NAME, NAME, who.student)
+        grade.manual_score, grade.extra_credit = 1.5, 0.5
+        book.find_comment("circle", NAME, NAME, who.student).manual_comment = "see me"
+        book.db.commit()
+    record(part, NAME, done)
+    with open_gradebook(part) as (book, _):
+        grade = book.find_grade("circle-check", NAME, NAME, who.student)
+        assert (grade.manual_score, grade.auto_score, grade.extra_credit) == (1.5, 4.0, 0.5)
+        assert book.find_comment("circle", NAME, NAME, who.student).manual_comment == "see me"
+        assert book.find_submission(NAME, who.student).score == 20 - 4 + 1.5 + 0.5
+
+
+def test_late_rules_and_timestamps(part):
+    """Times come from the collector's file; an unreadable one is said, and costs nothing."""
+    done = [one.result for one in grade_all(part, jobs=2)]
+    early, odd = done[0].student, done[1].student
+    (part.submitted / early / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
+    (part.submitted / odd / NAME / "timestamp.txt").write_text("yesterday or so")
+    notes = record(part, NAME, done)
+    assert [note for note in notes if odd in note and "no time" in note]
+    with open_gradebook(part) as (book, _):
+        assert book.find_submission(NAME, early).timestamp.year == 2030
+        assert book.find_submission(NAME, odd).timestamp is None
+
+
+def test_command(part, capsys):
+    """`labkit grade` prints a line each, JSON on request, and refuses without a sandbox."""
+    assert main(["grade", NAME, "--course", str(part.root)]) == 0
+    out = capsys.readouterr().out
+    assert out.count("\n[") >= PART - 1
+    assert "isolation: bubblewrap" in out
+    assert main(["grade", NAME, "--course", str(part.root), "--json"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert {json.loads(line)["student"] for line in lines} == set(students(part, NAME))
+    assert main(["grade", NAME, "--course", str(part.root), "--shard", "5/4"]) == 2
+    assert "--shard 5/4" in capsys.readouterr().err
+
+
+def test_refuses_without_bubblewrap(part, capsys, monkeypatch):
+    """No bubblewrap: nothing is graded, the line that mends it is said; unsafe must be typed."""
+    folder = Path(sys.executable).parent
+    monkeypatch.setenv("PATH", str(folder))
+    arguments = ["grade", NAME, "--course", str(part.root)]
+    assert main(arguments) == 2
+    assert "apt-get install bubblewrap" in capsys.readouterr().err
+    assert not list(Results(part, NAME))
+    assert main([*arguments, "--unsafe-no-isolation"]) == 0
+    assert {r.isolation for r in Results(part, NAME)} == {
+        "none (asked for by --unsafe-no-isolation)"
+    }
+    monkeypatch.undo()
+    assert main(arguments) == 0
+    assert all(r.isolation.startswith("bubblewrap") for r in Results(part, NAME))

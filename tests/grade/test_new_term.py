@@ -1,0 +1,66 @@
+"""A term begins, ends and is forgotten; a course is exported."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from labkit import LabkitError
+from labkit.grade import term
+from labkit.grade.course import Course
+from labkit.grade.release import FORBIDDEN
+from labkit.grade.repositories import export_course
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def course(tmp_path):
+    """A course of its own, with nothing released yet."""
+    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
+    shutil.copy(ROOT / "nbgrader_config.py", tmp_path)
+    return Course(tmp_path)
+
+
+def test_a_term_has_a_seed_of_its_own_and_a_record(course):
+    """A new term draws a seed that is not the public one, and keeps each bundle's hash."""
+    record = term.new_term(course, None, ("01_paths",))
+    bundle = json.loads((course.bundle / "01_paths.json").read_text())
+    assert record["seed"] == bundle["seed"] == term.seed_of(course) != term.PUBLIC_SEED
+    assert record["bundles"] == {"01_paths": bundle["hash"]}
+
+
+def test_the_next_term_archives_the_names_and_forgets_them(course):
+    """What holds names moves into one folder, and one command deletes it."""
+    (course.submitted / "ada" / "01_paths").mkdir(parents=True)
+    folder = term.archive(course)
+    assert not course.submitted.exists()
+    assert (folder / "submitted" / "ada").is_dir()
+    assert term.forget(course) == [folder]
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("seed", [term.PUBLIC_SEED])
+def test_a_known_seed_is_refused(course, seed):
+    """The public seed makes no secret, and the sentence says so."""
+    with pytest.raises(LabkitError, match="may be known; take another"):
+        term.new_term(course, seed)
+
+
+def test_the_students_repository_holds_no_answer(tmp_path):
+    """The export for students has the notebooks and labkit, and nothing of the solutions."""
+    student, private = export_course(Course(ROOT), tmp_path / "out")
+    assert (student / "assignments/01_paths/01_paths.ipynb").exists()
+    assert (student / "labkit/run.py").exists()
+    assert not (student / "solutions").exists()
+    assert not (student / "labkit/grade").exists()
+    assert (private / "solutions/paths.py").exists()
+    for path in student.rglob("*.ipynb"):
+        assert not any(word in path.read_text() for word in FORBIDDEN)
+
+
+def test_an_export_never_overwrites(tmp_path):
+    """A folder that is there already is left alone."""
+    with pytest.raises(LabkitError, match="there already"):
+        export_course(Course(ROOT), tmp_path)
