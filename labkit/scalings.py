@@ -6,6 +6,7 @@ from the end on it is the end at rest.  A duration of zero is allowed: already t
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar, Self
@@ -16,7 +17,7 @@ START, END = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class _Profile:
+class _Profile(ABC):
     """A fixed shape, stretched over a duration.
 
     Attributes:
@@ -60,9 +61,9 @@ class _Profile:
         s, ds, dds = self.shape(t / T)
         return s, ds / T, dds / (T * T)
 
+    @abstractmethod
     def shape(self, x: float) -> tuple[float, float, float]:
         """Value and derivatives with respect to x = t / duration, for x in [0, 1)."""
-        raise NotImplementedError
 
 
 @dataclass(frozen=True)
