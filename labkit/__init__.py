@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from .board import Board
     from .camera import Camera, looking_at
     from .detection import detect_tags, find_tag
-    from .dials import dials
+    from .interactive import dials
     from .intrinsics import Intrinsics
     from .looking import Following, Lookups, Reading
     from .readiness import ready
@@ -47,7 +47,7 @@ _LATER = {
     "Tag": "tags",
     "check": "",
     "detect_tags": "detection",
-    "dials": "dials",
+    "dials": "interactive",
     "find_tag": "detection",
     "looking_at": "camera",
     "plotting": "",

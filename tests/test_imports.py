@@ -33,7 +33,7 @@ LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 SIMULATE = {"arm", "world", "scene", "camera", "board", "looks"}
 MODEL = {"model", "baseline"}
 ENGINES = "numpy, pybullet, pinocchio"
-DRAW = {"plotting", "replay", "sensor_plots", "dials"}
+DRAW = {"plotting", "replay", "sensor_plots", "interactive"}
 SEE = {"camera", "tags", "detection", "calibration", "edges"}
 
 
@@ -115,6 +115,16 @@ def python(program):
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
+
+
+def test_a_public_name_means_the_same_whichever_module_was_loaded_first():
+    """A name loaded late may not be hidden by a module of the same name."""
+    kind = "lambda: {name: type(getattr(labkit, name)).__name__ for name in labkit.__all__}"
+    modules = ", ".join(
+        f"labkit.{path.stem}" for path in LABKIT.glob("*.py") if not path.stem.startswith("_")
+    )
+    alone = python(f"import labkit; print(({kind})())")
+    assert python(f"import labkit, {modules}; print(({kind})())") == alone
 
 
 def test_importing_labkit_loads_no_drawing_nor_notebook_package():

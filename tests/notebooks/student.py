@@ -7,6 +7,7 @@ from contextlib import redirect_stdout
 from dataclasses import dataclass, field
 from io import StringIO
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import matplotlib
 import nbformat
@@ -113,6 +114,7 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
 def run_kernel(name, parts, folder):
     """Run a notebook in a real kernel; returns it executed, its CPU time [s] and memory [MB]."""
     from nbclient import NotebookClient
+    from traitlets.config import Config
 
     shutil.copy(COURSE.release / name / desk.FILE, folder)
     notebook = fill(name, parts)
@@ -122,8 +124,16 @@ def run_kernel(name, parts, folder):
             "print(_t.process_time(), _r.getrusage(_r.RUSAGE_SELF).ru_maxrss / 1024)"
         )
     )
-    NotebookClient(
-        notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(folder)}}
-    ).execute()
+    place = {"metadata": {"path": str(folder)}}
+    with TemporaryDirectory() as sockets:
+        # Files, for two kernels that start at once may be given the same free port.
+        files = {"transport": "ipc", "ip": f"{sockets}/kernel"}
+        NotebookClient(
+            notebook,
+            timeout=120,
+            kernel_name="python3",
+            resources=place,
+            config=Config({"KernelManager": files}),
+        ).execute()
     seconds, megabytes = map(float, notebook.cells.pop().outputs[0].text.split())
     return notebook, seconds, megabytes

@@ -1,4 +1,4 @@
-"""Dials: sliders with a typed number beside each, and a figure that follows them.
+"""Interactive figures: sliders with a typed number beside each, and a figure that follows them.
 
 Without a page to turn them in, the figure of the starting values is all there is, so a notebook
 runs the same with nobody looking.
