@@ -20,10 +20,10 @@ from myst_nb import glue
 from PIL import Image
 
 from labkit import Arm, Log, Table, World, metrics, plotting
-from labkit.camera import Camera, looking_at
-from labkit.film import AT, EYE
-from labkit.intrinsics import Intrinsics
 from labkit.replay import Motion, motion_html
+from labkit.study.film import AT, EYE
+from labkit.vision.camera import Camera, looking_at
+from labkit.vision.intrinsics import Intrinsics
 
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
 """Line colours in light mode; `book.css` has their sisters for dark mode, contrast above 4.5."""

@@ -33,8 +33,9 @@ import cv2
 import matplotlib.pyplot as plt
 import numpy as np
 
-from labkit import detection, estimation, se3, sensing
-from labkit.board import Board
+from labkit import se3
+from labkit.vision import detection, estimation, sensing
+from labkit.vision.board import Board
 
 # %% [markdown]
 # ## A picture
