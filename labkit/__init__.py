@@ -26,7 +26,7 @@ from .world import World
 
 if TYPE_CHECKING:
     from . import check, plotting, replay
-    from .interactive import dials
+    from .interactive import dials, progress
     from .readiness import ready
     from .vision.board import Board
     from .vision.camera import Camera, looking_at
@@ -51,6 +51,7 @@ _LATER = {
     "find_tag": "vision.detection",
     "looking_at": "vision.camera",
     "plotting": "",
+    "progress": "interactive",
     "ready": "readiness",
     "replay": "",
 }
@@ -120,6 +121,7 @@ __all__ = [
     "looking_at",
     "metrics",
     "plotting",
+    "progress",
     "ready",
     "replay",
     "robot",
