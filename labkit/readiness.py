@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+import sys
 from importlib.metadata import version
 
 import numpy as np
@@ -24,14 +25,11 @@ def ready() -> None:
         LabkitError: The arm did not move as it should.
     """
     moved = _nudge()
-    used = psutil.Process().memory_info().rss / 2**20
     free = psutil.virtual_memory().available / 2**30
-    parts = ", ".join(f"{name} {version(name)}" for name in ("pybullet", "pin", "numpy"))
-    print(
-        f"labkit {__version__} is ready: the arm moved {moved:.1f} mm "
-        f"({parts}; Python {platform.python_version()} on {platform.system()} "
-        f"{platform.machine()}; "
-        f"{used:.0f} MB used, {free:.1f} GB free)"
+    engines = ", ".join(f"{name} {version(name)}" for name in ("pybullet", "pin"))
+    print(  # short enough for one line of a notebook beside its file browser
+        f"labkit {__version__}: the arm moved {moved:.0f} mm; Python {platform.python_version()}, "
+        f"{sys.platform} {platform.machine()}, {engines}, {free:.0f} GB free"
     )
 
 

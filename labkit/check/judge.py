@@ -111,8 +111,9 @@ class Close:
         at = np.unravel_index(int(np.argmax(np.where(bad, off, -1.0))), b.shape)
         index = str(int(at[0])) if b.ndim == 1 else str(tuple(map(int, at)))
         if b.size <= 9:
-            return f"{_of(part)}expected {_shown(b)}, got {_shown(a)}"
-        return f"{_of(part)}at index {index} expected {_number(b[at])}, got {_number(a[at])}"
+            return f"{_of(part)}expected {_shown(b)}, got {_shown(a)}{_factor(a, b)}"
+        at_index = f"at index {index} expected {_number(b[at])}, got {_number(a[at])}"
+        return f"{_of(part)}{at_index}{_factor(a, b)}"
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,11 @@ class Within:
             x = float(as_array(answer, (), "the answer"))
         except LabkitError as error:
             return str(error)
-        return None if self.distance(x, expected) <= 1.0 else f"got {_number(x)}"
+        return (
+            None
+            if self.distance(x, expected) <= 1.0
+            else f"got {_number(x)}, which is none of the right ones"
+        )
 
     def same(self, answer: Any, other: Any) -> bool:
         """Whether two answers, right or wrong, are the same number."""
@@ -280,11 +285,38 @@ def _number(x: Any) -> str:
     return f"{float(x):.6g}"
 
 
+def in_brief(x: Any) -> str:
+    """A number, or a vector or matrix of them, as one would write it by hand."""
+    a = np.asarray(x, dtype=float)
+    if a.ndim:
+        tiny = 1e-9 * max(1.0, float(np.max(np.abs(a), initial=0.0)))
+        return f"[{', '.join(map(in_brief, np.where(np.abs(a) < tiny, 0.0, a)))}]"
+    return f"{float(a) + 0.0:.5g}"  # adding zero takes the sign from -0
+
+
+_FACTORS = {
+    -1.0: "the same with the other sign",
+    float(np.degrees(1.0)): "these look like degrees, where radians belong",
+    float(np.radians(1.0)): "these look like degrees taken for radians",
+    1e3: "a thousand times too large: millimetres for metres?",
+    1e-3: "a thousand times too small",
+    2.0: "twice what is expected",
+    0.5: "half of what is expected",
+}
+"""What it means that all numbers are off by one and the same factor."""
+
+
+def _factor(a: Array, b: Array) -> str:
+    """What to say where the answer is the expected one times a telling factor."""
+    for factor, means in _FACTORS.items():
+        if b.any() and np.allclose(a, factor * b, rtol=1e-6, atol=1e-9 * np.abs(b).max()):
+            return f"; {means}"
+    return ""
+
+
 def _shown(x: Any) -> str:
     if isinstance(x, np.ndarray) and x.dtype.kind in "fiub":
-        return np.array2string(x, precision=4, suppress_small=True, separator=", ").replace(
-            "\n", ""
-        )
+        return in_brief(x)
     if isinstance(x, int | float | np.number) and not isinstance(x, bool):
         return _number(x)
     text = " ".join(repr(x).split())

@@ -13,6 +13,7 @@ from typing import Any
 from ..errors import LabkitError
 from .judge import AtMost, Judge
 from .question import Call, Case, Choice, Mistake, Question, Raised, Test
+from .raised import told
 
 
 class Outcome(Enum):
@@ -193,7 +194,7 @@ def _failure(error: BaseException) -> _Failure:
     """What to say of an exception that came out of the student's code, or of the loop around it."""
     cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
     kind = cause.kind if isinstance(cause, Failed) else type(cause).__name__
-    sentence = str(error) if isinstance(error, LabkitError | Failed) else f"{kind}: {error}"
+    sentence = str(error) if isinstance(error, LabkitError) else told(error)
     return _Failure(kind, sentence, not_attempted=kind == "NotImplementedError")
 
 
@@ -223,6 +224,8 @@ def _try(
 
 def _difference(question: Question, case: Case, answer: Any) -> str | None:
     """How an answer differs from what is expected; None if it does not."""
+    if answer is None and isinstance(case, Call | Choice):
+        return "it gave nothing back (None); does every way through it end in a return?"
     if isinstance(case, Call):
         return question.judge(answer, case.expected)
     if isinstance(case, Choice):

@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, is_dataclass, replace
 from typing import Any
 
+import numpy as np
+
 from ..arm import Arm
 from ..controllers import springs
 from ..errors import TypeMismatch
@@ -22,7 +24,7 @@ from ..run import run
 from ..study.trials import Runner, Trials
 from ..world import Thing, World
 from .codec import decode, encode
-from .judge import JUDGES, Judge
+from .judge import JUDGES, Judge, in_brief
 
 
 @dataclass(frozen=True, eq=False)
@@ -358,7 +360,13 @@ def _answer(data: Mapping[str, Any]) -> Any:
 
 
 def _short(x: Any) -> str:
-    text = " ".join(repr(x.tolist() if hasattr(x, "tolist") else x).split())
+    if isinstance(x, np.ndarray) and (x.ndim > 1 or x.size > 7):
+        return f"<{' x '.join(map(str, x.shape))} numbers>"
+    if isinstance(x, np.ndarray):
+        return in_brief(x)
+    text = " ".join(repr(x).split())
+    if isinstance(x, float):
+        return text if len(text) <= 8 else in_brief(x)
     if len(text) <= 48:
         return text
     named = is_dataclass(x) or hasattr(x, "_fields")

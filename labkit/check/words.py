@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import textwrap
 
-from .mark import Outcome, TestResult, Verdict
-from .question import Question
+from .mark import Outcome, Verdict
+from .question import Question, Test
+
+WIDTH = 79
+"""Of a line, in characters."""
 
 _HEADS = {
     Outcome.NOT_ATTEMPTED: "not attempted yet",
@@ -45,7 +48,7 @@ def tell(
         if also and not any(case.hidden for test in question.tests for case in test.cases):
             lines.append(f"  The teacher also tries: {'; '.join(also)}.")
     else:
-        lines += [f"  {_line(result)}" for result in verdict.tests]
+        lines += _results(question, verdict)
         if verdict.mistake is not None:
             lines.append(f"  This is a well-known one: {verdict.mistake.name}.")
             lines.append(f"  {verdict.mistake.says}")
@@ -61,14 +64,49 @@ def tell(
 def wrapped(line: str) -> str:
     """A line folded where a notebook would otherwise break it within a word."""
     margin = " " * (len(line) - len(line.lstrip()))
-    return textwrap.fill(line, 79, subsequent_indent=f"{margin}  ", break_long_words=False)
+    return textwrap.fill(line, WIDTH, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
-def _line(result: TestResult) -> str:
-    gate = "" if result.weight else " (needed before anything counts)"
-    if result.outcome is Outcome.RIGHT:
-        return f"[passed] {result.name}{gate}"
-    return f"[failed] {result.name}{gate}: {result.says}"
+def _results(question: Question, verdict: Verdict) -> list[str]:
+    """Each test in a line; of one that failed also the call, and what came of it."""
+    lines: list[str] = []
+    said: set[str] = set()
+    for test, result in zip(question.tests, verdict.tests, strict=True):
+        gate = "" if result.weight else " (needed before anything counts)"
+        if result.outcome is Outcome.RIGHT:
+            lines.append(f"  [passed] {result.name}{gate}")
+            continue
+        where, why = _split(question, test, result.says)
+        short = f"  [failed] {result.name}{gate}: {where}{why}"
+        if why in said and ", got " not in why:
+            lines.append(f"  [failed] {result.name}{gate}: the same")
+        elif len(short) <= WIDTH:
+            lines.append(short)
+        else:
+            lines.append(f"  [failed] {result.name}{gate}:")
+            lines += [f"      {part}" for part in _parts(f"{where}{why}")]
+        said.add(why)
+    return lines
+
+
+def _split(question: Question, test: Test, says: str) -> tuple[str, str]:
+    """What was tried, and what came of it."""
+    for case in test.cases:
+        where = case.shown(question.name)
+        if says.startswith(where):
+            return where, says.removeprefix(where)
+    return "", says
+
+
+def _parts(text: str) -> list[str]:
+    """A call and two answers too long for a line: the answers below each other."""
+    before, found, rest = text.partition("expected ")
+    expected, got, given = rest.partition(", got ")
+    if not (found and got):
+        return [text]
+    given, _, means = given.partition("; ")
+    more = [f"({means})"] if means else []
+    return [before.rstrip(), f"  expected {expected}", f"  got      {given}", *more]
 
 
 def _printed(text: str, most: int = 6) -> list[str]:

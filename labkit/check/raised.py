@@ -1,0 +1,55 @@
+"""An exception out of a student's code, in words: which line it was, and what to do about it."""
+
+from __future__ import annotations
+
+import linecache
+import re
+import sysconfig
+from pathlib import Path
+from types import TracebackType
+
+from ..commands import State
+from ..motion import PoseSample, Sample
+
+_MINE = str(Path(__file__).parents[1])
+_LIBRARIES = tuple({_MINE, *(sysconfig.get_path(p) for p in ("stdlib", "purelib", "platlib"))})
+
+
+def line_of(error: BaseException) -> str:
+    """The last line outside labkit and all libraries that the exception came through, or ""."""
+    found = ""
+    step: TracebackType | None = error.__traceback__
+    while step is not None:
+        file = step.tb_frame.f_code.co_filename
+        if not file.startswith(_LIBRARIES):
+            found = linecache.getline(file, step.tb_lineno, step.tb_frame.f_globals).strip()
+        step = step.tb_next
+    return found if len(found) <= 100 else f"{found[:97]}..."
+
+
+def remedy(error: BaseException) -> str:
+    """What to do about it, where Python's and numpy's own words leave one alone, or ""."""
+    text = str(error)
+    if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
+        return f"it has {', '.join(error.obj._fields)}"
+    if isinstance(error, TypeError) and re.search("'(State|Sample|PoseSample)'", text):
+        return "compute with the arrays in it, such as target.position or state.q"
+    if "read-only" in text:
+        return "what you are given cannot be changed; make a new array, or write on x.copy()"
+    if "matmul" in text and (sizes := re.search(r"size (\d+) is different from (\d+)", text)):
+        b, a = sizes.groups()
+        return f"left of the @ are {a} columns, right of it {b} rows; these must be equal"
+    if isinstance(error, TypeError) and "argument" in text and "()" in text:
+        return "leave the names in the function's first line as they were given"
+    return ""
+
+
+def told(error: BaseException) -> str:
+    """The exception in one sentence: its type, its words, the line, the remedy."""
+    kind, text = type(error).__name__, str(error)
+    if isinstance(error, ValueError) and "gufunc signature" in text:
+        text = "sizes that do not fit"
+    line, way_out = line_of(error), remedy(error)
+    sentence = f"{kind}: {text}" if text else kind
+    sentence += f", in the line `{line}`" if line else ""
+    return f"{sentence}; {way_out}" if way_out else sentence
