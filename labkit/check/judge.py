@@ -282,7 +282,7 @@ def _of(part: str) -> str:
 
 
 def _number(x: Any) -> str:
-    return f"{float(x):.6g}"
+    return f"{float(x):.6g}" if abs(float(x)) > 1e-10 else "0"
 
 
 def in_brief(x: Any) -> str:

@@ -194,7 +194,8 @@ def _failure(error: BaseException) -> _Failure:
     """What to say of an exception that came out of the student's code, or of the loop around it."""
     cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
     kind = cause.kind if isinstance(cause, Failed) else type(cause).__name__
-    sentence = str(error) if isinstance(error, LabkitError) else told(error)
+    known = isinstance(error, Failed) or (isinstance(error, LabkitError) and error.__cause__)
+    sentence = str(error) if known else told(error)
     return _Failure(kind, sentence, not_attempted=kind == "NotImplementedError")
 
 

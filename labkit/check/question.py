@@ -11,11 +11,13 @@ import json
 import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, is_dataclass, replace
+from inspect import isroutine
 from typing import Any
 
 import numpy as np
 
 from ..arm import Arm
+from ..arrays import Array
 from ..controllers import springs
 from ..errors import TypeMismatch
 from ..metrics import since, summary
@@ -50,6 +52,8 @@ class Call:
     def shown(self, name: str) -> str:
         """The call as a student would type it."""
         words = [_short(x) for x in self.args]
+        if len(", ".join(words)) > 60:
+            words = [_sized(x) if isinstance(x, np.ndarray) else _short(x) for x in self.args]
         words += [f"{key}={_short(x)}" for key, x in self.kwargs.items()]
         return f"{name}({', '.join(words)})"
 
@@ -360,10 +364,10 @@ def _answer(data: Mapping[str, Any]) -> Any:
 
 
 def _short(x: Any) -> str:
-    if isinstance(x, np.ndarray) and (x.ndim > 1 or x.size > 7):
-        return f"<{' x '.join(map(str, x.shape))} numbers>"
     if isinstance(x, np.ndarray):
-        return in_brief(x)
+        return _sized(x) if x.ndim > 1 or x.size > 7 else in_brief(x)
+    if isroutine(x):
+        return x.__name__
     text = " ".join(repr(x).split())
     if isinstance(x, float):
         return text if len(text) <= 8 else in_brief(x)
@@ -371,3 +375,7 @@ def _short(x: Any) -> str:
         return text
     named = is_dataclass(x) or hasattr(x, "_fields")
     return f"{type(x).__name__}(...)" if named else f"{text[:45]}..."
+
+
+def _sized(x: Array) -> str:
+    return f"<{' x '.join(map(str, x.shape))} numbers>"

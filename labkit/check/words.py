@@ -84,7 +84,7 @@ def _results(question: Question, verdict: Verdict) -> list[str]:
             lines.append(short)
         else:
             lines.append(f"  [failed] {result.name}{gate}:")
-            lines += [f"      {part}" for part in _parts(f"{where}{why}")]
+            lines += [f"      {part}" for part in _parts(f"{where}{why}", verdict.mistake is None)]
         said.add(why)
     return lines
 
@@ -98,14 +98,14 @@ def _split(question: Question, test: Test, says: str) -> tuple[str, str]:
     return "", says
 
 
-def _parts(text: str) -> list[str]:
-    """A call and two answers too long for a line: the answers below each other."""
+def _parts(text: str, guess: bool) -> list[str]:
+    """A call and two answers too long for a line: the answers below each other, and a guess why."""
     before, found, rest = text.partition("expected ")
     expected, got, given = rest.partition(", got ")
     if not (found and got):
         return [text]
     given, _, means = given.partition("; ")
-    more = [f"({means})"] if means else []
+    more = [f"({means})"] if means and guess else []
     return [before.rstrip(), f"  expected {expected}", f"  got      {given}", *more]
 
 

@@ -126,3 +126,26 @@ def steps_not_seconds(log: lk.Log, model: lk.Model) -> Array:
     power = np.sum(log.tau * log.dq, axis=1)
     dt = float(log.t[1] - log.t[0])
     return np.asarray((power_balance(log, model) + power) * dt - power)
+
+
+def arm_of_the_tip(axes: Any, origins: Any, tip: Any) -> Array:
+    """Every axis taken as if it went through the world's origin."""
+    return _columns(axes, np.broadcast_to(tip, (7, 3)))
+
+
+def rows_swapped(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
+    """Takes the angular rows for the velocity of the centre of mass."""
+    return mass_matrix(masses, inertias, rotations, np.roll(com_jacobians, 3, axis=1))
+
+
+def without_g(masses: Any, com_jacobians: Any) -> Array:
+    """Kilograms for newtons."""
+    return gravity(masses, com_jacobians) / 9.81
+
+
+def all_signs_plus(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
+    """The third slope of Christoffel's symbols added, not taken off."""
+    D = _slopes(mass_matrix, q)
+    return np.asarray(
+        0.5 * sum(np.einsum(e, D, dq) for e in ("ijk,k->ij", "ikj,k->ij", "jki,k->ij"))
+    )

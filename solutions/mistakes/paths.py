@@ -167,3 +167,60 @@ def an_end_point(theta: float, duration: float) -> float:
 def a_late_time(theta: float, duration: float) -> float:
     """A time in the second half: the value is shifted there, but nothing breaks."""
     return 0.75 * duration
+
+
+def still_but_accelerated(t: float, duration: float) -> tuple[float, float, float]:
+    """Holds t at the ends, and asks the formulas there: the acceleration stays on."""
+    a = 4.0 / duration**2
+    t = min(max(t, 0.0), duration)
+    if t < duration / 2.0:
+        return a * t**2 / 2.0, a * t, a
+    left = duration - t
+    return 1.0 - a * left**2 / 2.0, a * left, -a
+
+
+def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
+    """The way in metres, never divided by its length."""
+    from ..paths import trapezoid
+
+    s, ds, dds = trapezoid(t, distance, v_max, a_max)
+    return s * distance, ds * distance, dds * distance
+
+
+def clockwise(s: float, start: Any, centre: Any) -> lk.Sample:
+    """Goes round the other way."""
+    x, dx, ddx = circle(-s, start, centre)
+    return lk.Sample(x, -dx, ddx)
+
+
+def accelerates_outwards(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The second derivative with the other sign."""
+    x, dx, ddx = circle(s, start, centre)
+    return lk.Sample(x, dx, -ddx)
+
+
+def half_an_arctangent(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The arctangent of y / x, which takes a start behind the centre for one before it."""
+    out = np.array(start, dtype=float) - centre
+    return circle(s, [*(centre[:2] + (out if out[0] > 0.0 else -out)[:2]), start[2]], centre)
+
+
+def still_by_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
+    """The path at s(t), its derivatives still those by s."""
+    return path(scaling(t)[0])
+
+
+def schedule_twice(path: Path, scaling: Scaling, t: float) -> lk.Sample:
+    """Pairs derivatives of the same order: ddx dds."""
+    s, ds, dds = scaling(t)
+    x, dx, ddx = path(s)
+    return lk.Sample(x, dx * ds, ddx * dds)
+
+
+def starts_anew_after_the_end(durations: Sequence[float], t: float) -> tuple[int, float]:
+    """Takes every duration off, so that after the end the last segment begins again."""
+    for index, duration in enumerate(durations):
+        if t < duration:
+            return index, t
+        t -= duration
+    return len(durations) - 1, t

@@ -111,3 +111,25 @@ def sine_of_the_angle(R_wd: Any, R_wt: Any) -> Array:
 def matrices_subtracted(R_wd: Any, R_wt: Any) -> Array:
     """Subtracts the matrices and reads the skew part of the difference."""
     return lk.se3.vee(R_wd - R_wt)
+
+
+def only_shifts(T_ab: Any, p_b: Any) -> Array:
+    """The rotation is lost."""
+    return np.asarray(T_ab[:3, 3] + p_b)
+
+
+def minus_forgotten(T_ab: Any) -> Array:
+    """The translation turned, but not negated."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = T_ab[:3, :3].T, T_ab[:3, :3].T @ T_ab[:3, 3]
+    return T
+
+
+def logarithms_subtracted(R_wd: Any, R_wt: Any) -> Array:
+    """The rotation vectors of both orientations subtracted."""
+    return lk.se3.rotation_log(R_wd) - lk.se3.rotation_log(R_wt)
+
+
+def backwards_in_tool_axes(R_wd: Any, R_wt: Any) -> Array:
+    """Transposes the wrong one: the turn backwards, and in the desired tool's axes."""
+    return lk.se3.rotation_log(R_wd.T @ R_wt)

@@ -60,7 +60,10 @@ except lk.LabkitError as error:
 arm = lk.Arm("left")
 model, q0 = arm.model, arm.robot.ready
 arm.reset(q0)
-arm.state()
+state = arm.state()
+print("t: ", state.t, "s")
+print("q: ", state.q.round(3), "rad")
+print("dq:", state.dq, "rad/s")
 
 # %% [markdown]
 # A controller compares the two. In this course an *error* is always **target minus actual**, the same
@@ -71,8 +74,10 @@ def joint_error(target, state):
     """The error of the joint angles.
 
     Args:
-        target: An lk.Sample of joint angles: position, velocity, acceleration, each of shape (7,).
-        state: An lk.State: t, q, dq.
+        target: An lk.Sample of joint angles: position in [rad], velocity in [rad/s] and
+            acceleration in [rad/s^2], each of shape (7,).
+        state: An lk.State: time t in [s], angles q in [rad] and speeds dq in [rad/s], q and dq
+            of shape (7,).
 
     Returns:
         Target minus actual, shape (7,), in [rad].
@@ -91,7 +96,8 @@ def joint_error(target, state):
 # number, the gain `k` in 1/s. The error then shrinks like $e^{-kt}$, for the speed of a joint *is* the
 # rate at which its error falls: $\dot e = -\dot q = -k\,e$.
 #
-# Let it go to a place an arm's width away. The dashed line is that prediction.
+# Let it go to other angles, half a radian away at the most. The dashed line is that prediction for the
+# first joint. (While your function is missing, a stand-in reports no error, and the arm stays.)
 
 # %%
 def stays(target, state):
@@ -124,8 +130,8 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# Here is the same run in three dimensions. Drag to look around, move the slider to go back and forth in
-# time. The see-through arm is the target, which stands still.
+# Here is the same run in three dimensions. Press *Play*, or move the slider to go back and forth in time;
+# drag to look around. The see-through arm is the target, which stands still.
 
 # %%
 lk.replay.show(lk.replay.motion_of(log, "Towards a place in joint space"))
@@ -213,7 +219,7 @@ print("in the world:      ", cup_world.round(3))
 # %% [markdown]
 # ## How far is the hand turned?
 #
-# Now the one that fooled the report's authors, and a dozen teams after them. The hand should point
+# Now the one that fooled the report's authors, and other teams of their year. The hand should point
 # straight down and is tilted by a few degrees. What is the error?
 #
 # It is tempting to write both orientations as roll, pitch and yaw and to subtract. But these three are
@@ -321,11 +327,19 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# For a level hand that is only turned about the vertical, all three would have agreed, which is why so
-# many programs get away with it. When you test an orientation error, tilt the hand.
+# (The plot under the arm shows how far the tip's *place* is off; the tilt is in the figure above.) For a
+# hand whose axes lie along the world's, turned about the vertical only, all three errors would have been
+# the same, which is why so many programs get away with it. When you test an orientation error, point the
+# hand down and tilt it.
 #
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart and run all*), save, and hand in this file with
-# its name as it is. The teacher runs your functions on further cases; of what kind they are is said above
-# each stub. `nbgrader validate` tells only whether all is well: for the reasons read the checks here.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 00_warmup.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

@@ -53,7 +53,8 @@ def bang_bang(t, duration):
         duration: How long the motion lasts, in [s].
 
     Returns:
-        (s, ds, dds): s, its speed in [1/s] and its acceleration in [1/s^2].
+        (s, ds, dds): s from 0 to 1, its speed in [1/s] and its acceleration in [1/s^2]. At rest,
+        all derivatives 0, before the start and from the end of the motion on.
     """
     ### BEGIN SOLUTION
     from solutions.paths import bang_bang as answer
@@ -113,7 +114,8 @@ def trapezoid(t, distance, v_max, a_max):
         a_max: Top acceleration, in [m/s^2].
 
     Returns:
-        (s, ds, dds): s, its speed in [1/s] and its acceleration in [1/s^2].
+        (s, ds, dds): s from 0 to 1, its speed in [1/s] and its acceleration in [1/s^2]. At rest,
+        all derivatives 0, before the start and from the end of the motion on.
     """
     ### BEGIN SOLUTION
     from solutions.paths import trapezoid as answer
@@ -191,12 +193,14 @@ def compose(path, scaling, t):
     """The motion of a path on a schedule.
 
     Args:
-        path: A function of s that gives an lk.Sample, derivatives with respect to s.
-        scaling: A function of t that gives (s, ds, dds).
+        path: A function of s that gives an lk.Sample of three arrays of shape (3,): the point in
+            [m] and its derivatives with respect to s.
+        scaling: A function of t that gives (s, ds, dds), three numbers.
         t: Time since the start, in [s].
 
     Returns:
-        lk.Sample(position, velocity, acceleration) at time t, derivatives with respect to time.
+        lk.Sample(position, velocity, acceleration) at time t, each of shape (3,), in [m], [m/s] and
+        [m/s^2].
     """
     ### BEGIN SOLUTION
     from solutions.paths import compose as answer
@@ -286,7 +290,8 @@ def segment_at(durations, t):
         t: Time since the start of the first, in [s]; any real number.
 
     Returns:
-        (index, local_time): its number, counted from 0, and the time since it began, in [s].
+        (index, local_time): its number, counted from 0, and the time since it began, in [s]: below
+        0 before the first begins, and longer than it lasts after the end of the last.
     """
     ### BEGIN SOLUTION
     from solutions.paths import segment_at as answer
@@ -371,6 +376,12 @@ def witness(theta, duration):
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart and run all*), save, and hand in this file with
-# its name as it is. The teacher runs your functions on further cases; of what kind they are is said above
-# each stub. `nbgrader validate` tells only whether all is well: for the reasons read the checks here.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 01_paths.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

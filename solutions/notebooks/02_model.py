@@ -315,10 +315,11 @@ def coriolis(mass_matrix, q, dq):
 
 
 # %% [markdown]
-# How would you know that it is right? One famous test is that $\dot M - 2C$ must be skew: Coriolis
-# torques do no work. Try it on $C = \dot M / 2$, a bold guess, and it passes, for $\dot M - 2C$ is then
-# zero, and zero is skew. So a second test is needed, of the torque itself: Lagrange's equation gives
-# $C\dot q = \dot M \dot q - \nabla T$. A matrix that passes only one of the two is wrong.
+# How would you know that it is right? One famous test is that $\dot M - 2C$ must be skew: then what
+# $C\dot q$ takes is just what the changing $M$ stores, and no energy is made or lost. Try it on $C =
+# \dot M / 2$, a bold guess, and it passes, for $\dot M - 2C$ is then zero, and zero is skew. So a
+# second test is needed, of the torque itself: Lagrange's equation gives $C\dot q = \dot M \dot q -
+# \nabla T$. A matrix that passes only one of the two is wrong.
 
 # %%
 def coriolis_at(q, dq):
@@ -431,13 +432,19 @@ plt.ylabel("power from elsewhere [W]")
 plt.legend(frameon=False)
 lk.plotting.show(
     "Power that does not come from the motors, during a quick move: "
-    + "; ".join(f"{name}, {x.min():.1f} W at the least" for name, x in left.items())
+    + "; ".join(f"{name}, up to {np.abs(x).max():.1f} W" for name, x in left.items())
     + ". With friction the balance follows what friction takes."
 )
 
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart and run all*), save, and hand in this file with
-# its name as it is. The teacher runs your functions on further cases; of what kind they are is said above
-# each stub. `nbgrader validate` tells only whether all is well: for the reasons read the checks here.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 02_model.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

@@ -619,6 +619,12 @@ lk.replay.show(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart and run all*), save, and hand in this file with
-# its name as it is. The teacher runs your functions on further cases; of what kind they are is said above
-# each stub. `nbgrader validate` tells only whether all is well: for the reasons read the checks here.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 04_torque_control.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

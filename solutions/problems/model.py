@@ -75,6 +75,13 @@ JACOBIAN = Problem(
             mistakes.axis_for_velocity,
             "A revolute joint's linear part is z × r.",
         ),
+        Wrong(
+            "every axis through the origin",
+            "The arm r goes from the joint's axis to the tip, so it is tip minus the joint's "
+            "origin, not the tip alone.",
+            mistakes.arm_of_the_tip,
+            "A moment arm begins at the axis.",
+        ),
     ),
     variants=(variants.jacobian_by_rows, variants.jacobian_by_hat),
 )
@@ -137,6 +144,13 @@ MASS_MATRIX = Problem(
             mistakes.half_of_it,
             "T = ½ dqᵀ M dq.",
         ),
+        Wrong(
+            "the rows swapped",
+            "Rows 0 to 2 of each Jacobian belong to the velocity and go with the mass; rows 3 "
+            "to 5 to the turning, with the inertia.",
+            mistakes.rows_swapped,
+            "A twist is (v, w), linear part first.",
+        ),
     ),
     variants=(variants.mass_matrix_vectorised, variants.MassMatrix()),
 )
@@ -192,6 +206,12 @@ GRAVITY = Problem(
             "Ten times too small: the report has 0.981 where 9.81 belongs.",
             mistakes.a_tenth,
             "Print a number with its unit, and ask whether you believe it.",
+        ),
+        Wrong(
+            "masses for weights",
+            "These are kg m, not N m: the weight of a mass is 9.81 m/s² times it.",
+            mistakes.without_g,
+            "Write the unit of every factor.",
         ),
     ),
     variants=(variants.gravity_as_forces, variants.gravity_by_dot),
@@ -254,6 +274,13 @@ CORIOLIS = Problem(
             "This is the transpose. The minus goes to the slope along the row's own joint, ∂M_jk/∂q_i.",
             mistakes.signs_mixed,
             "The minus is the slope of the kinetic energy along q_i.",
+        ),
+        Wrong(
+            "all three slopes added",
+            "The third one, ∂M_jk/∂q_i, is taken off: it is the slope of the kinetic energy, on "
+            "the other side of Lagrange's equation.",
+            mistakes.all_signs_plus,
+            "The signs are +, +, -.",
         ),
     ),
     variants=(variants.coriolis_in_loops,),

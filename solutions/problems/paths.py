@@ -80,6 +80,13 @@ BANG_BANG = Problem(
             mistakes.twice_too_slow,
             "Check the end point of every time scaling: s(T) = 1.",
         ),
+        Wrong(
+            "at rest, but still accelerating",
+            "Before the start and from T on nothing moves: s is right there and ds is 0, so dds "
+            "must be 0 as well.",
+            mistakes.still_but_accelerated,
+            "The derivative of a constant is zero.",
+        ),
     ),
     variants=(variants.bang_bang_list, variants.bang_bang_array),
 )
@@ -138,6 +145,13 @@ TRAPEZOID = Problem(
             "distance.",
             mistakes.limits_on_s,
             "Units: a limit in m/s bounds distance·ds, not ds.",
+        ),
+        Wrong(
+            "metres in place of s",
+            "This is the way in metres. s goes from 0 to 1: divide way, speed and acceleration "
+            "by the distance.",
+            mistakes.way_for_s,
+            "s has no unit.",
         ),
     ),
     variants=(variants.trapezoid_by_phases,),
@@ -228,6 +242,27 @@ CIRCLE = Problem(
             mistakes.rates_without_two_pi,
             "The chain rule again: dφ/ds = 2π.",
         ),
+        Wrong(
+            "clockwise",
+            "Seen from above it goes round with the clock. Angles grow counter-clockwise: θ = "
+            "θ₀ + 2πs.",
+            mistakes.clockwise,
+            "Angles about z grow from x to y.",
+        ),
+        Wrong(
+            "accelerated outwards",
+            "The second derivative points from the point to the axis: differentiating a cosine "
+            "twice gives minus a cosine.",
+            mistakes.accelerates_outwards,
+            "What goes round is pulled inwards.",
+        ),
+        Wrong(
+            "the arctangent of y/x",
+            "y/x is the same for opposite points, so a start behind the centre lands before it. "
+            "Use np.arctan2(y, x), or turn the spoke without any angle.",
+            mistakes.half_an_arctangent,
+            "atan2 knows the quadrant, atan does not.",
+        ),
     ),
     variants=(variants.circle_by_rotation, variants.circle_tuple),
 )
@@ -298,6 +333,20 @@ COMPOSE = Problem(
             "A path knows nothing of time: ask it at s, which the schedule gives.",
             mistakes.time_for_s,
             "s is where, t is when.",
+        ),
+        Wrong(
+            "still the derivatives with respect to s",
+            "These are dx and ddx of the path. With respect to time each needs its chain rule: "
+            "what is d/dt of x(s(t))?",
+            mistakes.still_by_s,
+            "A derivative has a variable; say it aloud.",
+        ),
+        Wrong(
+            "ddx·dds",
+            "Derivatives of the same order are not multiplied. Differentiate dx·ds once more: "
+            "the product rule gives two terms.",
+            mistakes.schedule_twice,
+            "The second derivative of x(s(t)) is ddx·ds² + dx·dds.",
         ),
     ),
     variants=(variants.compose_matrix,),
@@ -370,6 +419,13 @@ SEGMENT_AT = Problem(
             "After the end the last one stays on.",
             mistakes.runs_out_of_segments,
             "A reference is asked at any time.",
+        ),
+        Wrong(
+            "the last segment begins again",
+            "After the end the last segment is still on: its local time goes on growing, so do "
+            "not take off its duration.",
+            mistakes.starts_anew_after_the_end,
+            "Say what happens at the ends before you write the loop.",
         ),
     ),
     variants=(variants.segment_by_searchsorted, variants.segment_by_walking),

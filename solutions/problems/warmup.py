@@ -41,7 +41,7 @@ JOINT_ERROR = Problem(
             "seven different errors, on a moving arm",
             (
                 call(
-                    _sample(READY + 0.01 * np.arange(1, 8), 0.2 * np.ones(7)),
+                    _sample(READY + 0.01 * np.arange(-3, 4), 0.2 * np.ones(7)),
                     _state(READY, 0.1 * np.ones(7)),
                 ),
             ),
@@ -146,6 +146,13 @@ TRANSFORM_POINT = Problem(
             mistakes.turns_backwards,
             "R_ab takes components in b to components in a.",
         ),
+        Wrong(
+            "the rotation is lost",
+            "The components of p_b are along b's axes. Turn them into a's axes with R_ab before "
+            "you add the translation.",
+            mistakes.only_shifts,
+            "Every vector has axes; add only vectors in the same ones.",
+        ),
     ),
     variants=(variants.point_homogeneous, variants.point_by_einsum),
 )
@@ -199,6 +206,12 @@ INVERSE_TRANSFORM = Problem(
             "-R_ab t would be right if t were in b's axes. It is in a's, so R_abᵀ brings it over.",
             mistakes.turned_forwards,
             "Let the subscripts cancel: R_ba t_a.",
+        ),
+        Wrong(
+            "the minus forgotten",
+            "The way from a to b, seen from b, is R_abᵀ t; from b back to a it is -R_abᵀ t.",
+            mistakes.minus_forgotten,
+            "Test an inverse by multiplying: T_ab T_ba = I.",
         ),
     ),
     variants=(variants.inverse_by_solving, variants.inverse_by_blocks),
@@ -289,6 +302,20 @@ ORIENTATION_ERROR = Problem(
             "R_wd - R_wt is no rotation, and its skew part is not the turn between them.",
             mistakes.matrices_subtracted,
             "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "two rotation vectors subtracted",
+            "The logarithms of two orientations are turns about different axes, and their "
+            "difference is no turn. Multiply first, R_wd R_wtᵀ, then take one logarithm.",
+            mistakes.logarithms_subtracted,
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "the wrong one transposed",
+            "R_wdᵀ R_wt goes from the desired to the actual orientation, in the tool's axes. "
+            "The actual one is undone, R_wtᵀ, and stands on the right.",
+            mistakes.backwards_in_tool_axes,
+            "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
         ),
     ),
     variants=(variants.OrientationError(), variants.by_quaternion),
