@@ -316,10 +316,10 @@ def coriolis(mass_matrix, q, dq):
 
 # %% [markdown]
 # How would you know that it is right? One famous test is that $\dot M - 2C$ must be skew: then what
-# $C\dot q$ takes is just what the changing $M$ stores, and no energy is made or lost. Try it on $C =
-# \dot M / 2$, a bold guess, and it passes, for $\dot M - 2C$ is then zero, and zero is skew. So a
-# second test is needed, of the torque itself: Lagrange's equation gives $C\dot q = \dot M \dot q -
-# \nabla T$. A matrix that passes only one of the two is wrong.
+# $C\dot q$ takes is just what the changing $M$ stores, and no energy is made or lost. Try it on
+# $C = \dot M / 2$, a bold guess, and it passes, for $\dot M - 2C$ is then zero, and zero is skew. So a
+# second test is needed, of the torque itself: Lagrange's equation gives
+# $C\dot q = \dot M \dot q - \nabla T$. A matrix that passes only one of the two is wrong.
 
 # %%
 def coriolis_at(q, dq):

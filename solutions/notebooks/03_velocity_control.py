@@ -46,13 +46,13 @@ def joint_velocity_pd(state, target, *, kp, kd):
     """Joint speeds that follow a joint trajectory.
 
     Args:
-        state: An lk.State: t, q, dq.
-        target: An lk.Sample of joint angles: position, velocity, acceleration.
+        state: An lk.State: angles q in [rad] and speeds dq in [rad/s], shape (7,) each.
+        target: An lk.Sample of joint angles: position, velocity, acceleration, shape (7,) each.
         kp: Gain on the error of the angles, a number or shape (7,), in [1/s].
         kd: Gain on the error of the speeds, a number or shape (7,), without unit.
 
     Returns:
-        An lk.JointVelocity.
+        An lk.JointVelocity of shape (7,), in [rad/s].
     """
     ### BEGIN SOLUTION
     from solutions.velocity_control import joint_velocity_pd as answer
@@ -201,11 +201,11 @@ def damped_inverse(J, damping):
     """The damped pseudo-inverse of a Jacobian.
 
     Args:
-        J: Shape (6, 7).
+        J: Jacobian, rows (v, w), shape (6, 7).
         damping: What stands before |dq|^2, at least 0; 0 is the pseudo-inverse.
 
     Returns:
-        Shape (7, 6).
+        The matrix that turns a twist (v, w) into joint speeds, shape (7, 6).
     """
     ### BEGIN SOLUTION
     from solutions.velocity_control import damped_inverse as answer
@@ -271,14 +271,15 @@ def workspace_velocity_pd(state, target, model, *, kp, damping):
     """Joint speeds that make the tip follow a target of poses.
 
     Args:
-        state: An lk.State: t, q, dq.
-        target: An lk.PoseSample: pose T_wd (4, 4), twist (6,) and dtwist (6,), in world axes.
-        model: The lk.Model: pose(q) and tip_jacobian(q).
+        state: An lk.State: angles q in [rad], shape (7,).
+        target: An lk.PoseSample: pose T_wd (4, 4), twist (v, w) and its rate dtwist, (6,) each,
+            in world axes, [m/s] and [rad/s].
+        model: The lk.Model: pose(q) is T_wt, (4, 4), and tip_jacobian(q) is (6, 7), world axes.
         kp: Gain on the error of position and orientation, a number or shape (6,), in [1/s].
         damping: Of the inverse, as in damped_inverse.
 
     Returns:
-        An lk.JointVelocity.
+        An lk.JointVelocity of shape (7,), in [rad/s].
     """
     ### BEGIN SOLUTION
     from solutions.velocity_control import workspace_velocity_pd as answer

@@ -159,8 +159,9 @@ plt.figure(figsize=(8, 3.4), layout="constrained")
 heights = {}
 for (name, log), style in zip(logs.items(), ("-", "--", "-.", ":")):
     z = 1e3 * lk.metrics.tip_poses(log)[:, 2, 3]
-    heights[name] = z[-1] - z[0]
-    plt.plot(log.t, z - z[0], style, label=name)
+    z = (z - z[0]).round(3) + 0.0
+    heights[name] = z[-1]
+    plt.plot(log.t, z, style, label=name)
 plt.xlabel("time [s]")
 plt.ylabel("height of the tip [mm]")
 plt.gcf().legend(loc="outside lower center", ncols=2, frameon=False)
@@ -365,7 +366,8 @@ with_rotor = model.mass_matrix(ready)[6, 6]
 rates = np.geomspace(50.0, 2000.0, 200)
 plt.figure(figsize=(8, 3), layout="constrained")
 radius = {}
-for (name, inertia), style in zip({"the disc alone": bare, "with its rotor": with_rotor}.items(), ("-", "--")):
+discs = ("the disc alone", bare, "-"), ("with its rotor", with_rotor, "--")
+for name, inertia, style in discs:
     largest = [np.abs(np.linalg.eigvals(my_sampled_joint(inertia, 8.0, 1.5, 1 / r))).max() for r in rates]
     plt.loglog(rates, largest, style, label=f"{name}, {inertia:.3f} kg m²")
     radius[name] = np.interp(200.0, rates, largest)
@@ -391,9 +393,9 @@ for armature in (0.0, 0.05):
     plant = replace(carries_itself, name=f"armature {armature:g}", armature=armature)
     try:
         log = stay(plant, springs, 1.0, q0=ready + 0.02)
-        print(f"{plant.name}: it holds, {lk.metrics.summary(log)}")
+        print(f"{plant.name}: it holds,\n  {lk.metrics.summary(log)}")
     except lk.errors.Diverged as error:
-        print(f"{plant.name}: {error}")
+        print(f"{plant.name}: {error}".replace("; ", ";\n  "))
 
 # %% [markdown]
 # This is why every simulated Baxter that is driven by torques needs rotors in its data, though the data
@@ -465,7 +467,8 @@ factors = {}
 for plant, mark in ((suppressed, "o"), (lk.BAXTER, "x")):
     tau, g = rest_torques(plant)
     factors[plant.name] = my_gravity_factor(tau, g)
-    plt.plot(g.ravel(), tau.ravel(), mark, mfc="none", label=f"{plant.name}: factor {factors[plant.name]:+.3f}")
+    label = f"{plant.name}: factor {factors[plant.name]:+.3f}"
+    plt.plot(g.ravel(), tau.ravel(), mark, mfc="none", label=label)
 plt.xlabel("the model's gravity [N m]")
 plt.ylabel("torque commanded at rest [N m]")
 plt.legend(frameon=False)
@@ -576,7 +579,11 @@ def rethinks_example(model):
 my_choose_gains = use("choose_gains", choose_gains, rethinks_example)
 
 loaded = replace(lk.BAXTER, name="with 1 kg", payload=1.0)
-occasions = (("slow line", lk.BAXTER, slow_line), ("circle", lk.BAXTER, circle), ("circle, 1 kg", loaded, circle))
+occasions = (
+    ("slow line", lk.BAXTER, slow_line),
+    ("circle", lk.BAXTER, circle),
+    ("circle, 1 kg", loaded, circle),
+)
 steps = np.array([0.5, 0.75, 1.0, 1.25, 1.6, 2.0])
 kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
 plt.figure(figsize=(7, 3.2), layout="constrained")

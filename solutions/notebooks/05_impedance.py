@@ -312,7 +312,8 @@ wall = lk.Wall(tip + [gap + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
 def forwards(way, duration=2.0):
     """The tip goes a way along x or y and stays there; a target of poses."""
     path = lk.PosePath(lk.Line(tip, tip + way), T_ready[:3, :3])
-    return lk.Chain([lk.Trajectory(path, lk.Quintic(duration)), lk.Hold(lk.se3.pose(T_ready[:3, :3], tip + way), 1.0)])
+    there = lk.se3.pose(T_ready[:3, :3], tip + way)
+    return lk.Chain([lk.Trajectory(path, lk.Quintic(duration)), lk.Hold(there, 1.0)])
 
 
 into_the_wall = forwards([gap + beyond, 0.0, 0.0])
@@ -333,7 +334,10 @@ def press(stiffness):
     ax.set_ylabel("force on the wall [N]")
     ax.legend(frameon=False)
     last = pressed(log)[-20:].mean()
-    return figure, f"With K = {stiffness:.0f} N/m the tip presses with {last:.1f} N; expected are {force:.1f} N."
+    return figure, (
+        f"With K = {stiffness:.0f} N/m the tip presses with {last:.1f} N; "
+        f"expected are {force:.1f} N."
+    )
 
 
 dials = lk.dials(press, stiffness=(100.0, 1000.0, 300.0))
@@ -407,7 +411,8 @@ def ten_pushes(controller, newtons=8.0, seed=5):
 
 def strongest_axis_only(force, displacement):
     """A stand-in: along each axis the two pushes that go that way, and nothing else."""
-    return np.diag([(force[i, i] - force[i + 3, i]) / (displacement[i, i] - displacement[i + 3, i]) for i in range(3)])
+    push, gone = force[:3] - force[3:6], displacement[:3] - displacement[3:6]
+    return np.diag(np.diag(push) / np.diag(gone))
 
 
 my_apparent_stiffness = use("apparent_stiffness", apparent_stiffness, strongest_axis_only)
@@ -471,8 +476,9 @@ def apart(one, other):
 
 
 lk.plotting.show(
-    "Where pushes of 10 N move the tip: a circle for springs at the tip, a slanted ellipse for springs in the "
-    f"joints. What was measured differs from what was expected by {apart(at_tip, np.diag(K[:3])):.0f} % at the "
+    "Where pushes of 10 N move the tip: a circle for springs at the tip, a slanted ellipse for "
+    "springs in the joints. What was measured differs from what was expected by "
+    f"{apart(at_tip, np.diag(K[:3])):.0f} % at the "
     f"tip and by {apart(in_joints, predicted):.0f} % in the joints."
 )
 

@@ -101,7 +101,7 @@ def tag_pose(pixels, K, size):
 
     Args:
         pixels: Corners in the order of tag_corners, shape (4, 2) in [px].
-        K: The camera's matrix, shape (3, 3).
+        K: The camera's matrix, shape (3, 3) in [px].
         size: Side of the black square, in [m].
 
     Returns:
@@ -222,7 +222,9 @@ def show_reference(samples, title):
     below.set_xlabel("time [s]")
     above.set_title(title, loc="left", fontsize="medium")
     fastest = max(abs(x.velocity[0]) for x in samples)
-    lk.plotting.show(f"{title}: place and speed over time. The reference is at most {fastest:.2f} m/s quick.")
+    lk.plotting.show(
+        f"{title}: place and speed over time. The reference is at most {fastest:.2f} m/s quick."
+    )
 
 
 show_reference(report, "Algorithm 1, lines of 6 s, a look every 5 s")
@@ -237,8 +239,8 @@ def blend(t, reference, goal, duration):
 
     Args:
         t: Time since the blend began, in [s], at least 0.
-        reference: lk.Sample of what the reference did when it began.
-        goal: lk.Sample of where to be at the end, how fast, with what acceleration.
+        reference: lk.Sample of what the reference did when it began, shape (n,) each.
+        goal: lk.Sample of where to be at the end, how fast, with what acceleration, shape (n,) each.
         duration: How long it lasts, in [s].
 
     Returns:
@@ -296,7 +298,7 @@ def predict(mean, covariance, age, accel_noise):
 
     Args:
         mean: Position [m] and velocity [m/s], shape (6,).
-        covariance: Shape (6, 6).
+        covariance: Of the mean, in the squares of its units, shape (6, 6).
         age: How far forward, in [s].
         accel_noise: Power of the unknown acceleration, in [m^2/s^3].
 
