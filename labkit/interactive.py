@@ -62,7 +62,8 @@ def dials(
         widgets.link((slider, "value"), (typed, "value"))
         sliders[name] = slider
         rows.append(widgets.HBox([slider, typed]))
-    display(widgets.VBox([*rows, caption]))
+    span = ", ".join(f"{name} from {a:g} to {b:g}" for name, (a, b, _) in ranges.items())
+    display(_saying(widgets.VBox, f"Dials: {span}")([*rows, caption]))
     follow()
     for slider in sliders.values():
         slider.observe(follow, "value")
@@ -83,7 +84,7 @@ def progress(doing: str, total: float) -> Callable[[float], None]:
 
     bar = widgets.FloatProgress(0.0, max=total)
     words = widgets.Label(f"{doing} …")
-    display(widgets.HBox([bar, words]))
+    place = display(_saying(widgets.HBox, f"{doing} …")([bar, words]), display_id=True)
     shown = began = time.monotonic()
 
     def tell(done: float) -> None:
@@ -93,6 +94,13 @@ def progress(doing: str, total: float) -> Callable[[float], None]:
             return
         shown, bar.value = now, done
         left = (now - began) * (total - done) / done if done else 0.0
-        words.value = f"{doing}: about {left:.0f} s left" if done < total else f"{doing}: done"
+        words.value = f"{doing}: about {left:.0f} s left"
+        if done >= total and place is not None:  # a saved notebook keeps words, but no bar
+            place.update({"text/plain": f"{doing}: done"}, raw=True)
 
     return tell
+
+
+def _saying(box: type[Any], words: str) -> type[Any]:
+    """A box whose text is readable where no widget can be shown."""
+    return type(box.__name__, (box,), {"__repr__": lambda self: words})

@@ -13,10 +13,10 @@ def shown(monkeypatch):
 
     class Picture:
         def update(self, thing, **about):
-            things.append(about)
+            things.append(about if "metadata" in about else thing)
 
     def display(thing, **about):
-        things.append(about or thing)
+        things.append(about if "metadata" in about else thing)
         return Picture()
 
     monkeypatch.setattr("labkit.interactive.display", display)
@@ -58,4 +58,12 @@ def test_a_bar_says_how_long_it_takes_and_when_it_is_done(shown, monkeypatch):
     tell(3.0)
     assert bar.value == 2.5
     tell(10.0)
-    assert bar.value == 10.0 and words.value == "pushing: done"
+    assert bar.value == 10.0 and shown[1:] == [{"text/plain": "pushing: done"}]
+
+
+def test_boxes_are_words_where_no_widget_can_be_shown(shown):
+    """A page that shows the saved notebook as text is told what was there."""
+    lk.dials(lambda kd: (plt.figure(), ""), kd=(0.0, 2.0, 1.0))
+    lk.progress("pushing", 10.0)
+    assert repr(shown[0]) == "Dials: kd from 0 to 2"
+    assert repr(shown[2]) == "pushing …"

@@ -13,7 +13,15 @@ def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(caps
     out, err = capsys.readouterr()
     assert err == ""
     assert out.count("\n") == 1
-    for word in (lk.__version__, "the arm moved", "mm", "Python 3", "pybullet 3", "pin ", "GB free"):
+    for word in (
+        lk.__version__,
+        "the arm moved",
+        "mm",
+        "Python 3",
+        "pybullet 3",
+        "pin ",
+        "GB free",
+    ):
         assert word in out
     assert len(out) <= 110  # a notebook beside its file browser breaks longer lines
     assert float(out.split("the arm moved ")[1].split(" mm")[0]) > 50.0

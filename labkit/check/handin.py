@@ -96,6 +96,11 @@ def look(path: Path) -> HandIn:
     unrun = [name for name, verdict in verdicts.items() if verdict.endswith("not run")]
     if unrun:
         notes.append(f"not run since it was opened: {', '.join(unrun)}; marking runs them again")
+    wrong = [
+        name for name, says in verdicts.items() if name not in unrun and ": right." not in says
+    ]
+    if wrong:
+        notes.append(f"not yet right: {', '.join(wrong)}; what is right counts all the same")
     return HandIn(name, tuple(problems), tuple(notes), verdicts)
 
 

@@ -34,6 +34,20 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert str(found).endswith("01_paths: ready to hand in.")
 
 
+def test_what_is_not_yet_right_is_named(folder):
+    """A wrong answer may be handed in, and is told beforehand."""
+
+    def change(cells):
+        for cell in cells:
+            if 'check("witness"' in "".join(cell["source"]):
+                words = "witness: not yet right. 0 of 2 points.\n"
+                cell["outputs"] = [{"output_type": "stream", "name": "stdout", "text": [words]}]
+        return cells
+
+    found = look(edited(folder / "01_paths.ipynb", change))
+    assert any(note.startswith("not yet right: witness;") for note in found.notes)
+
+
 def test_another_name_is_to_be_mended(folder):
     """A notebook that a browser renamed is told its right name."""
     path = (folder / "01_paths.ipynb").rename(folder / "01_paths(3).ipynb")

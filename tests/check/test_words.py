@@ -5,9 +5,10 @@ from dataclasses import replace
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
+import numpy as np
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
-from labkit.check import Test, mark
+from labkit.check import Call, Test, mark
 from labkit.check.words import head, tell
 
 
@@ -75,3 +76,21 @@ def test_prints_are_shown_in_part():
     words = said(double, printed="\n".join(["x" * 500, *map(str, range(20))]))
     assert "your code printed" in words and "... and 15 more lines" in words
     assert max(map(len, words.splitlines())) < 200
+
+
+def test_long_answers_stand_below_each_other():
+    """Two answers too long for a line can be compared number by number."""
+    calls = (Call((np.eye(3),), expected=np.arange(6.0)),)
+    question = replace(DOUBLE, tests=(Test("a long one", calls),), mistakes=())
+    lines = said(lambda x: -np.arange(6.0), question).splitlines()
+    at = next(k for k, line in enumerate(lines) if "expected" in line)
+    assert "double(<3 x 3 numbers>)" in lines[at - 1]
+    assert lines[at].index("[0, 1") == lines[at + 1].index("[0, -1")
+    assert "(the same with the other sign)" in lines[at + 2]
+
+
+def test_the_same_failure_is_told_once():
+    """What went wrong in the same way again is not told again."""
+    words = said(lambda x: None)
+    assert words.count("it gave nothing back (None)") == 1
+    assert words.count(": the same") == 2
