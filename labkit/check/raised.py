@@ -22,7 +22,8 @@ def line_of(error: BaseException) -> str:
     while step is not None:
         file = step.tb_frame.f_code.co_filename
         if not file.startswith(_LIBRARIES):
-            found = linecache.getline(file, step.tb_lineno, step.tb_frame.f_globals).strip()
+            line = linecache.getline(file, step.tb_lineno, step.tb_frame.f_globals).strip()
+            found = line or found  # code that a dataclass writes has no line
         step = step.tb_next
     return found if len(found) <= 100 else f"{found[:97]}..."
 
