@@ -6,9 +6,12 @@ student's metadata says about points and roles is never read.
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+from .inside.cells import plain
 
 Cell = Mapping[str, Any]
 
@@ -85,6 +88,19 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
             steps.append(Step(k, cell["source"], answers))
     told = {name: tuple(said) for name, said in notes.items() if said}
     return Plan(tuple(steps), places, told, tuple(_own(cells, manifest, set(places.values()))))
+
+
+def imports(manifest: Sequence[Cell]) -> tuple[str, ...]:
+    """Modules that the release's setup cells import, which every submission runs."""
+    found: dict[str, None] = {}
+    for m in manifest:
+        if m["kind"] == "setup" and m["type"] == "code":
+            for node in ast.walk(ast.parse(plain(m["source"]))):
+                if isinstance(node, ast.Import):
+                    found |= dict.fromkeys(alias.name for alias in node.names)
+                elif isinstance(node, ast.ImportFrom) and node.module:
+                    found[node.module] = None
+    return tuple(found)
 
 
 def _own(

@@ -12,7 +12,7 @@ import shutil
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -29,6 +29,7 @@ from .limits import Limits
 MEND = "apt-get install bubblewrap"
 FIRST_UID = 64000
 """Users of the sandboxes when root grades: this one and those above, one for each worker."""
+MOST_USERS = 1000
 _LAB = "/lab"
 
 
@@ -55,21 +56,22 @@ class Sandbox:
 
     Args:
         slot: Which worker's; root gives each a user of its own.
+        loads: Modules that submissions will import, to be loaded once for all.
         isolated: False only if somebody typed ``--unsafe-no-isolation``.
 
     Raises:
         NoIsolation: It cannot be made here.
     """
 
-    def __init__(self, slot: int = 0, *, isolated: bool = True) -> None:
-        self.uid = FIRST_UID + slot % 1000 if os.geteuid() == 0 else 0
+    def __init__(self, slot: int = 0, loads: Sequence[str] = (), *, isolated: bool = True) -> None:
+        self.uid, self._claim = _user(slot)
         self.isolated = isolated
         self.group = Group.make(f"labkit-{os.getpid()}-{slot}") if isolated else None
         self._log = os.memfd_create("labkit-sandbox-log")
         ours, theirs = socket.socketpair()
         try:
             self.process = subprocess.Popen(
-                command() if isolated else _bare(),
+                [*(command() if isolated else _bare()), *loads],
                 stdin=theirs.fileno(),
                 stdout=subprocess.DEVNULL,
                 stderr=self._log,
@@ -133,6 +135,8 @@ class Sandbox:
         os.close(self._log)
         if self.group is not None:
             self.group.remove()
+        if self._claim is not None:
+            self._claim.close()
 
     def __enter__(self) -> Sandbox:
         return self
@@ -157,6 +161,25 @@ class Sandbox:
     def _words(self) -> str:
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()
         return lines[-1][:300] if lines else "it gave no reason"
+
+
+def _user(slot: int) -> tuple[int, socket.socket | None]:
+    """A user that no other sandbox has, and what keeps it ours until it is closed; 0 without root.
+
+    The kernel counts processes by user, so two graders on one machine must not share one.
+    """
+    if os.geteuid():
+        return 0, None
+    for k in range(MOST_USERS):
+        uid = FIRST_UID + (slot + k) % MOST_USERS
+        claim = socket.socket(socket.AF_UNIX)
+        try:
+            claim.bind(f"\0labkit-sandbox-{uid}")  # goes with the process, however that ends
+        except OSError:
+            claim.close()
+            continue
+        return uid, claim
+    raise NoIsolation(f"all {MOST_USERS} users for sandboxes are taken; end some graders")
 
 
 def command() -> list[str]:

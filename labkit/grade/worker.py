@@ -14,6 +14,7 @@ from typing import Any
 
 from .checker import grade, rejection
 from .limits import Limits
+from .plan import imports
 from .results import Bundle, Result
 from .sandbox import Broken, NoIsolation, Sandbox
 from .submission import Submission
@@ -40,7 +41,8 @@ class Desk:
         data, note, why = submission.read(limits.notebook)
         for _ in range(TRIES):
             if self.sandbox is None:
-                self.sandbox = Sandbox(self.slot, isolated=self.isolated)
+                loads = imports(bundle.data["cells"])
+                self.sandbox = Sandbox(self.slot, loads, isolated=self.isolated)
             if why:
                 return rejection(why, submission.student, bundle, self.sandbox.level)
             try:
