@@ -13,7 +13,7 @@ from labkit.check.judge import Close
 from labkit.check.question import Question, Test
 from labkit.grade.checker import grade
 from labkit.grade.inside import cells
-from labkit.grade.plan import plan
+from labkit.grade.plan import imports, plan
 from labkit.grade.results import Bundle, Result
 
 
@@ -193,6 +193,13 @@ def test_names_that_a_cell_needs():
     assert cells.look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
     assert cells.look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
     assert "SyntaxError" in cells.look("def f(:")["broken"]
+
+
+def test_what_every_submission_imports_is_known(bundle):
+    """Modules that the release's setup cells import are known before any submission runs."""
+    assert imports(bundle.data["cells"]) == (
+        "labkit", "labkit.check", "matplotlib.pyplot", "numpy"
+    )  # fmt: skip
 
 
 def test_plan_prefers_what_is_written(bundle, blank, solved):

@@ -18,7 +18,6 @@ from labkit.errors import LabkitError
 from labkit.grade.batch import Graded, How, grade_class
 from labkit.grade.class_report import pseudonym, report
 from labkit.grade.collect import collect
-from labkit.grade.doctor import examine
 from labkit.grade.engines import students
 from labkit.grade.export import LAYOUTS, Row, as_csv, rows
 from labkit.grade.feedback import page
@@ -208,10 +207,3 @@ def test_collect_from_downloads(course, tmp_path):
     assert [str(x) for x in collect(course, NAME, moodle) if "there already" in str(x)]
     with pytest.raises(LabkitError, match="neither a folder nor a zip"):
         list(collect(course, NAME, Path(__file__)))
-
-
-def test_doctor_finds_a_working_sandbox():
-    """On a machine that grades, nothing that is needed is missing."""
-    found = list(examine())
-    assert not [str(x) for x in found if x.needed and not x.fine]
-    assert [x for x in found if x.what == "sandbox"]
