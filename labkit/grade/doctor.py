@@ -73,7 +73,7 @@ def examine() -> Iterator[Finding]:
 def sandbox() -> Iterator[Finding]:
     """Make a sandbox and try to get out of it."""
     try:
-        with Sandbox(999) as made, made.enter("student", Limits()) as inside:
+        with Sandbox() as made, made.enter("student", Limits()) as inside:
             inside.line.send({"cell": 0, "source": _TRY, "answers": []})
             failed = str(inside.line.read(30.0).get("error", "it did not answer"))
             yield Finding("sandbox", not failed, failed or made.level)

@@ -25,8 +25,8 @@ TRIES = 2
 class Desk:
     """What a worker keeps from one job to the next: its sandbox."""
 
-    def __init__(self, slot: int, *, isolated: bool) -> None:
-        self.slot, self.isolated = slot, isolated
+    def __init__(self, *, isolated: bool) -> None:
+        self.isolated = isolated
         self.sandbox: Sandbox | None = None
 
     def do(self, job: dict[str, Any]) -> Result:
@@ -42,7 +42,7 @@ class Desk:
         for _ in range(TRIES):
             if self.sandbox is None:
                 loads = imports(bundle.data["cells"])
-                self.sandbox = Sandbox(self.slot, loads, isolated=self.isolated)
+                self.sandbox = Sandbox(loads, isolated=self.isolated)
             if why:
                 return rejection(why, submission.student, bundle, self.sandbox.level)
             try:
@@ -68,11 +68,11 @@ def _bundle(path: str, key: str) -> Bundle:
     return bundle
 
 
-def main(slot: int, *, isolated: bool) -> int:
+def main(*, isolated: bool) -> int:
     """Serve until stdin ends."""
     out = os.fdopen(os.dup(1), "w", encoding="ascii")
     os.dup2(2, 1)
-    desk = Desk(slot, isolated=isolated)
+    desk = Desk(isolated=isolated)
     try:
         for line in sys.stdin:
             try:
@@ -88,4 +88,4 @@ def main(slot: int, *, isolated: bool) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]), isolated="--no-isolation" not in sys.argv))
+    sys.exit(main(isolated="--no-isolation" not in sys.argv))
