@@ -12,7 +12,7 @@ PAIRS = 15
 
 
 def diagram(target, controller):
-    """Drake's discrete plant at 1 kHz, the controller a system in Python, state and torque logged."""
+    """Drake's discrete plant at 1 kHz, its controller written in Python, with a log."""
     from pydrake.multibody.parsing import Parser
     from pydrake.multibody.plant import MultibodyPlant
     from pydrake.systems.analysis import Simulator
