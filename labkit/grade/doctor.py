@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from textwrap import wrap
 
 from .inside import seccomp
 from .limits import Limits, slowness
@@ -158,7 +159,9 @@ def _install() -> str:
 
 def elsewhere() -> str:
     """How isolation is had in the places where people grade."""
-    security, rights = DOCKER[:3], DOCKER[3:]
+    options = " ".join([*DOCKER, "--memory=8g", "--pids-limit=500", "IMAGE"])
+    lines = " \\\n    ".join(wrap(f"docker run {options}", 80, break_on_hyphens=False))
+    rights = [x.removeprefix("--cap-add=") for x in DOCKER if x.startswith("--cap-add=")]
     return f"""Debian
   sudo apt-get install bubblewrap
 
@@ -174,15 +177,14 @@ Ubuntu 24.04, WSL 2
     sudo aa-disable /etc/apparmor.d/bwrap-userns-restrict
 
 Docker, for a container that grades and does nothing else
-  docker run {" ".join(security)} \\
-    {" ".join(rights)} --memory=8g --pids-limit=500 IMAGE
+  {lines}
 
 Kubernetes, a Job of its own and no pod of the students' hub
   spec:
     hostUsers: false
     containers:
       - securityContext:
-          capabilities: {{add: [{", ".join(x.partition("=")[2] for x in rights)}]}}
+          capabilities: {{add: [{", ".join(rights)}]}}
           procMount: Unmasked
           seccompProfile: {{type: Unconfined}}
           appArmorProfile: {{type: Unconfined}}
