@@ -18,7 +18,6 @@ from controls import CONTROLS, PLAIN, VICTIM, After
 from handmade import add, hand_in, nbgrader
 
 from labkit.grade.batch import Graded, How, grade_class
-from labkit.grade.course import Course
 from labkit.grade.engines import students
 from labkit.grade.feedback import page
 from labkit.grade.gradebook import open_gradebook
@@ -28,26 +27,22 @@ NAME = "01_paths"
 FAST = How(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))
 EVERYBODY = (*CONTROLS, VICTIM)
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("controls")]
-
 
 def student(kind):
     """A name that sorts as the controls stand, so that the one that ends the run comes last."""
     return f"{EVERYBODY.index(kind):02d} {kind}"
 
 
-@pytest.fixture(scope="module")
-def graded(released, tmp_path_factory):
+@pytest.fixture
+def graded(course, tmp_path):
     """A class of attackers and one honest student, graded by nbgrader, then in isolation."""
-    root = tmp_path_factory.mktemp("controls") / "course"
-    shutil.copytree(released.root, root, symlinks=True)
-    course, mark = Course(root), f"0.000{os.getpid()}"
-    with (root / "nbgrader_config.py").open("a") as file:
+    mark = f"0.000{os.getpid()}"
+    with (course.root / "nbgrader_config.py").open("a") as file:
         file.write("c.pop('Autograde')\n")  # nbgrader's own steps
     ask_plainly(course)
     try:
         with server() as (port, heard):
-            own = {"loot": root.parent / "loot", "port": port, "mark": mark}
+            own = {"loot": tmp_path / "loot", "port": port, "mark": mark}
             for kind, control in CONTROLS.items():
                 notebook = short(course.release / NAME / f"{NAME}.ipynb")
                 hand_in(course, NAME, student(kind), control.attack.planted(notebook, 0, **own))
@@ -60,7 +55,7 @@ def graded(released, tmp_path_factory):
                 look(grade, course, heard, own) for grade in (grade_with_nbgrader, grade_isolated)
             )
     finally:
-        end(mark, str(root))
+        end(mark, str(course.root))
 
 
 @contextmanager
@@ -165,16 +160,11 @@ def test_every_class_has_its_control():
     assert CONTROLS.keys() == CLASSES.keys()
 
 
-@pytest.mark.parametrize("kind", CONTROLS)
-def test_control(kind, graded):
-    """It pays or harms under plain nbgrader, and not here."""
+@pytest.mark.slow
+def test_controls(graded):
+    """Each pays or harms under plain nbgrader, and not here: nothing earned, taken or left."""
     nbgraders, ours = graded
-    assert CONTROLS[kind].does(nbgraders, kind)
-    assert not CONTROLS[kind].does(ours, kind)
-
-
-def test_nothing_is_earned_taken_or_left(graded):
-    """Here the attackers get 0 points and nothing else, and who comes after them all of his."""
-    _, ours = graded
+    assert not [kind for kind, one in CONTROLS.items() if not one.does(nbgraders, kind)]
+    assert not [kind for kind, one in CONTROLS.items() if one.does(ours, kind)]
     assert ours.scores == dict.fromkeys(CONTROLS, 0.0) | {VICTIM: 20.0}
     assert not ours.loot and not ours.calls and not ours.left
