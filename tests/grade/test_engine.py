@@ -223,7 +223,7 @@ def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
               "    return lk.JointVelocity(target.velocity + gain * (target.position - state.q))")  # fmt: skip
     names: dict[str, object] = {}
     exec(source, names)
-    here = loop.ask(names["follow"])
+    here = loop.measured(loop.ask(names["follow"]))
     measure = next(iter(here))
     limits = {measure: here[measure] * (1 + 1e-9)}
     for share, points in ((1.0, 4.0), (0.999, 0.0)):
