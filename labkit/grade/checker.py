@@ -15,6 +15,7 @@ from .. import errors
 from ..check.codec import decode_answer, encode
 from ..check.mark import Failed, Outcome, TestResult, Tried, Verdict, mark, try_public
 from ..check.question import Question
+from . import seen
 from .inside.wire import Gone, TooLate, TooMuch
 from .limits import Limits
 from .plan import Plan, plan
@@ -71,7 +72,10 @@ def grade(
         student,
         score=round(sum(v.earned for v in verdicts), 2),
         points=bundle.points,
-        questions=tuple(_verdict(v, todo) for v in verdicts),
+        questions=tuple(
+            _verdict(question, verdict, todo)
+            for question, verdict in zip(questions, verdicts, strict=True)
+        ),
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
         cells=failed,
         own=todo.own,
@@ -199,7 +203,7 @@ def _lost(question: Question) -> list[TestResult]:
     return [TestResult(t.name, t.weight, Outcome.ERROR, says) for t in question.tests]
 
 
-def _verdict(verdict: Verdict, todo: Plan) -> dict[str, Any]:
+def _verdict(question: Question, verdict: Verdict, todo: Plan) -> dict[str, Any]:
     return {
         "name": verdict.name,
         "outcome": verdict.outcome.value,
@@ -218,4 +222,13 @@ def _verdict(verdict: Verdict, todo: Plan) -> dict[str, Any]:
         "mistake": verdict.mistake and {"name": verdict.mistake.name, "says": verdict.mistake.says},
         "notes": [clean(note) for note in todo.notes.get(verdict.name, ())],
         "source": todo.source(verdict.name),
+        **_seen(question, verdict),
     }
+
+
+def _seen(question: Question, verdict: Verdict) -> dict[str, Any]:
+    """What the student may see of his work; nothing where it is too odd to be drawn."""
+    try:
+        return {"runs": seen.runs(question, verdict), "numbers": seen.numbers(question, verdict)}
+    except Exception:
+        return {"runs": [], "numbers": None}

@@ -31,7 +31,8 @@ class Result:
         score: Points; 0 where it was rejected.
         points: What full marks would be.
         rejected: Why it could not be graded, in a sentence; empty where it was.
-        questions: One verdict each, as data: name, outcome, earned, points, tests, mistake, notes.
+        questions: One verdict each, as data: name, outcome, earned, points, tests, mistake, notes,
+            source, and what `seen` adds, which older results lack: runs, numbers.
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
         own: The student's own cells, where they stood.
