@@ -21,7 +21,13 @@ def add(verbs: Verbs) -> None:
     verb.add_argument("--student", metavar="S", help="only this one")
     verb = _verb(verbs, "export", export, "marks as a table")
     verb.add_argument(
-        "--layout", choices=("nbgrader", "questions", "canvas", "moodle"), default="questions"
+        "--layout",
+        choices=("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"),
+        default="questions",
+        help="moodle is for its gradebook, moodle-worksheet for the assignment's own page",
+    )
+    verb.add_argument(
+        "--column", metavar="NAME", help="the assignment as the platform calls it: 'Paths (4711)'"
     )
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
     verb = _verb(verbs, "regrade", regrade, "grade again after a test or its points have changed")
@@ -61,13 +67,16 @@ def feedback(args: argparse.Namespace) -> int:
 
 def export(args: argparse.Namespace) -> int:
     """Write the table."""
-    from .export import LAYOUTS, as_csv, rows
+    from .export import LAYOUTS, as_csv, left_out, rows
 
     here = Course.here(args.course)
     marks = list(rows(here, args.name))
     if not marks:
         raise nobody(args.name, None)
-    _out(as_csv(LAYOUTS[args.layout](args.name, marks)), args.to)
+    lost = left_out(args.layout, marks)
+    if lost:
+        print(lost, file=sys.stderr)
+    _out(as_csv(LAYOUTS[args.layout](args.column or args.name, marks)), args.to)
     return 0
 
 
