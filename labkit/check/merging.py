@@ -18,15 +18,16 @@ def merge(mine: Cells, new: Cells) -> Cells:
         new: The cells of the new release.
 
     Returns:
-        The new release, in its order.  An answer is found by its cell's id, else by the function it
-        defines; a cell of the student's own follows the cell that it followed.
+        The new release, in its order.  An answer is found by the function that it defines, else by
+        the question that its cell was made for; a cell of the student's own follows the cell that
+        it followed.
     """
     merged = copy.deepcopy(new)
     known = {cell["id"] for cell in new}
     for cell in merged:
         grading = cell["metadata"].get("nbgrader", {})
         if grading.get("solution"):
-            answer = _answer(mine, cell["id"], grading["grade_id"])
+            answer = _answer(mine, grading["grade_id"])
             if answer is not None and "raise NotImplementedError" not in answer:
                 cell["source"] = answer
     anchor = -1
@@ -43,8 +44,10 @@ def merge(mine: Cells, new: Cells) -> Cells:
     return result
 
 
-def _answer(mine: Cells, cell_id: str, name: str) -> str | None:
-    for cell in reversed(mine):  # the last one counts, as it does in marking
-        if cell.get("id") == cell_id or defines(cell, name):
-            return str(cell["source"])
-    return None
+def _answer(mine: Cells, name: str) -> str | None:
+    """The last cell that answers, which is the one that counts in marking."""
+    defining = [cell for cell in mine if defines(cell, name)]
+    made_for = [
+        cell for cell in mine if cell["metadata"].get("nbgrader", {}).get("grade_id") == name
+    ]
+    return next((str(cell["source"]) for cell in reversed(defining or made_for)), None)

@@ -9,6 +9,7 @@ import builtins
 import re
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from .. import errors
@@ -35,6 +36,10 @@ _KNOWN = (
 )
 MOST_LOST = 3
 """After so many calls of one question that died or hung, it is not asked any more."""
+ADDED = (
+    "this question came after the notebook was handed in, which does not have it; it counts 0 "
+    "until the new notebook is handed in, into which `labkit merge` brings the work done so far"
+)
 
 
 def grade(
@@ -58,23 +63,25 @@ def grade(
     if isinstance(cells, str):
         return rejection(cells, student, bundle, sandbox.level, data)
     todo = plan(cells, bundle.data["cells"])
-    questions = bundle.questions
+    absent = bundle.added - todo.places.keys()
+    todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
+    questions = [question for question in bundle.questions if question.name not in absent]
     with Seat(sandbox, todo, limits) as seat:
         tried = [_public(question, seat) for question in questions]
-        verdicts = [
-            _guarded(question, seat, before)
+        verdicts = {
+            question.name: _guarded(question, seat, before)
             for question, before in zip(questions, tried, strict=True)
-        ]
+        }
         failed = tuple(seat.failed())
         spent = seat.spent
     return Result(
         bundle.data["assignment"],
         student,
-        score=round(sum(v.earned for v in verdicts), 2),
+        score=round(sum(v.earned for v in verdicts.values()), 2),
         points=bundle.points,
         questions=tuple(
-            _verdict(question, verdict, todo)
-            for question, verdict in zip(questions, verdicts, strict=True)
+            _verdict(question, verdicts.get(question.name) or _absent(question), todo)
+            for question in bundle.questions
         ),
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
         cells=failed,
@@ -196,6 +203,11 @@ def _guarded(question: Question, seat: Seat, tried: Tried) -> Verdict:
         return Verdict(question.name, Outcome.ERROR, 0.0, question.points, tests)
     finally:
         seat.close()
+
+
+def _absent(question: Question) -> Verdict:
+    tests = tuple(TestResult(t.name, t.weight, Outcome.NOT_ATTEMPTED) for t in question.tests)
+    return Verdict(question.name, Outcome.NOT_ATTEMPTED, 0.0, question.points, tests)
 
 
 def _lost(question: Question) -> list[TestResult]:

@@ -130,7 +130,8 @@ class Bundle:
     """What a release leaves for graders.
 
     Attributes:
-        data: Assignment, seed, manifest, questions with their hidden cases, hash.
+        data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
+            any, the questions ``added`` when some had handed in already.
     """
 
     data: Mapping[str, Any]
@@ -153,6 +154,11 @@ class Bundle:
     def questions(self) -> tuple[Question, ...]:
         """Its questions, hidden cases included; read once for all submissions."""
         return tuple(map(read_question, self.data["questions"]))
+
+    @property
+    def added(self) -> frozenset[str]:
+        """Questions that came when some had handed in already."""
+        return frozenset(self.data.get("added", ()))
 
     @property
     def points(self) -> float:
