@@ -89,6 +89,6 @@ def _keep_what_was_written(gone: Iterable[Any]) -> None:
         if marked or said:
             name = cell.name.removesuffix("-check")
             raise LabkitError(
-                f"{name} would go, and with it {len(marked) + len(said)} marks or comments that were "
-                "given by hand; keep the question and give it 0 points"
+                f"{name} would go, with {len(marked) + len(said)} marks or comments given by hand; "
+                "keep the question and give it 0 points"
             )

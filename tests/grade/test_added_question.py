@@ -27,41 +27,48 @@ NAME, LATER = "01_paths", "compose"
 SEED = 7
 
 
-@pytest.fixture
-def early(tmp_path, monkeypatch):
-    """A course whose assignment had a question less at first; and a function that adds it."""
-    root = tmp_path / "course"
+def becomes(course, monkeypatch, *, complete):
+    """The course's sources with the later question, or without it."""
+    whole = (ROOT / "solutions/notebooks" / f"{NAME}.py").read_text()
+    cell = re.search(rf'^# %% question="{LATER}"\n.*?(?=^# %%)', whole, re.MULTILINE | re.DOTALL)
+    text = whole if complete else whole.replace(cell.group(), "")
+    course.notebook_source(NAME).write_text(text)
+    problems = Course(ROOT).problems(NAME)
+    kept = tuple(p for p in problems if complete or p.name != LATER)
+    monkeypatch.setattr(Course, "problems", lambda self, name: kept)
+
+
+@pytest.fixture(scope="module")
+def early(tmp_path_factory):
+    """A question less at first; two hand in, are graded, and one gets a mark by hand."""
+    root = tmp_path_factory.mktemp("early") / "course"
     (root / "solutions").mkdir(parents=True)
     shutil.copytree(ROOT / "solutions/notebooks", root / "solutions/notebooks")
     shutil.copy(ROOT / "nbgrader_config.py", root)
     course = Course(root)
-    source = course.notebook_source(NAME)
-    whole, problems = source.read_text(), course.problems(NAME)
-    cell = re.search(rf'^# %% question="{LATER}"\n.*?(?=^# %%)', whole, re.MULTILINE | re.DOTALL)
-
-    def become(complete):
-        source.write_text(whole if complete else whole.replace(cell.group(), ""))
-        kept = problems if complete else tuple(p for p in problems if p.name != LATER)
-        monkeypatch.setattr(Course, "problems", lambda self, name: kept)
-
-    become(False)
-    release(course, NAME, SEED)
-    return course, become
-
-
-@pytest.fixture
-def marked(early):
-    """Two hand in, are graded, and one gets a mark and a comment by hand."""
-    course, become = early
-    solved = json.loads((course.solution / NAME / f"{NAME}.ipynb").read_text())
-    blank = json.loads((course.release / NAME / f"{NAME}.ipynb").read_text())
-    hand_in(course, "ada", raw(solved))
-    hand_in(course, "bob", raw(blank))
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        becomes(course, monkeypatch, complete=False)
+        release(course, NAME, SEED)
+    for student, folder in (("ada", course.solution), ("bob", course.release)):
+        hand_in(course, student, (folder / NAME / f"{NAME}.ipynb").read_bytes())
     record(course, NAME, graded(course))
     with open_gradebook(course) as (book, _):
         book.find_grade("circle-check", NAME, NAME, "bob").manual_score = 1.5
         book.find_comment("circle", NAME, NAME, "bob").manual_comment = "see me"
         book.db.commit()
+    return course
+
+
+@pytest.fixture
+def marked(early, tmp_path, monkeypatch):
+    """A copy of that course, and a function that adds the question or takes it away."""
+    course = Course(shutil.copytree(early.root, tmp_path / "course"))
+    problems = Course.problems
+
+    def become(complete):
+        monkeypatch.setattr(Course, "problems", problems)
+        becomes(course, monkeypatch, complete=complete)
+
     return course, become
 
 
