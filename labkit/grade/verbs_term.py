@@ -47,6 +47,12 @@ def add(verbs: Verbs) -> None:
         verbs, "collect", collect, "take downloads from Moodle, Canvas or nbgrader's exchange"
     )
     verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
+    verb = _verb(
+        verbs, "rehearse", rehearse, "play a term through with a class that never was, in a folder"
+    )
+    verb.add_argument("--count", type=int, default=12, help="how many students (default: 12)")
+    verb.add_argument("--to", type=Path, required=True, metavar="DIR", help="made if need be")
+    verb.add_argument("--jobs", type=int, metavar="N", help="workers (default: one per core)")
 
 
 def feedback(args: argparse.Namespace) -> int:
@@ -95,6 +101,10 @@ def regrade(args: argparse.Namespace) -> int:
             print(move)
     changed = sum(bool(m.by) for m in moved)
     print(f"{changed} of {len(moved)} marks move, {sum(m.by < 0 for m in moved)} of them down")
+    before = {m.before.points for m in moved if m.before} - {m.after.points for m in moved}
+    if before:
+        full = ", ".join(f"{points:g}" for points in sorted(before))
+        print(f"full marks were {full} and are {moved[0].after.points:g} now")
     for error in found:
         if isinstance(error, LabkitError):
             print(f"not graded: {error}", file=sys.stderr)
@@ -133,6 +143,18 @@ def collect(args: argparse.Namespace) -> int:
     for source in args.sources:
         for taken in take(here, args.name, source):
             print(taken, flush=True)
+    return 0
+
+
+def rehearse(args: argparse.Namespace) -> int:
+    """Download, collect, grade, hand back, report, export; go on where it was stopped."""
+    from .batch import How, workers
+    from .rehearsal import rehearse as play
+
+    here = Course.here(args.course)
+    here.notebook_source(args.name)
+    for sentence in play(here, args.name, args.to, args.count, How(jobs=args.jobs or workers())):
+        print(sentence, flush=True)
     return 0
 
 

@@ -109,7 +109,9 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
     assert made.questions == 6
     assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
     assert main(["regrade", NAME, "--course", str(course.root)]) == 0
-    assert "0 of 2 marks move" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "0 of 2 marks move" in said
+    assert "full marks were 16 and are 20 now" in said
     assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
     with open_gradebook(course) as (book, _):
         assert book.find_comment("circle", NAME, NAME, "bob").manual_comment == "see me"
