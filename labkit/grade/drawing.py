@@ -35,7 +35,7 @@ def side_by_side(expected: Sequence[float], given: Sequence[float], alt: str) ->
     """The numbers of an answer, crosses, beside those expected, rings."""
     low, high = min(0.0, *expected, *given), max(0.0, *expected, *given)
     axes = _Axes((0.5, len(expected) + 0.5), (low, high if high > low else low + 1.0))
-    parts = [*axes.drawn(("number in the answer", ""))]
+    parts = [*axes.drawn(("number in the answer", ""), whole=True)]
     for k, (wanted, came) in enumerate(zip(expected, given, strict=True), start=1):
         x, ring, cross = axes.x(k), axes.y(wanted), axes.y(came)
         parts += [
@@ -63,13 +63,15 @@ class _Axes:
     def point(self, across: float, up: float) -> str:
         return f"{self.x(across):.1f},{self.y(up):.1f}"
 
-    def drawn(self, labels: tuple[str, str]) -> Iterator[str]:
+    def drawn(self, labels: tuple[str, str], *, whole: bool = False) -> Iterator[str]:
         right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
         for value in _ticks(*self.up, 4):
             y = self.y(value)
             yield f'<line class="grid" x1="{LEFT}" y1="{y:.1f}" x2="{right}" y2="{y:.1f}"/>'
             yield f'<text x="{LEFT - 6}" y="{y + 4:.1f}" class="end">{value:g}</text>'
         for value in _ticks(*self.across, 6):
+            if whole and value % 1.0:
+                continue
             x = self.x(value)
             yield f'<text x="{x:.1f}" y="{bottom + 16}" class="middle">{value:g}</text>'
         yield f'<text x="{right}" y="{HEIGHT - 4}" class="end">{escape(labels[0])}</text>'

@@ -41,7 +41,7 @@ def own_work(question: Mapping[str, Any]) -> Iterator[str]:
     """What there is to be seen of a question, as HTML."""
     for run in question.get("runs", ()):
         yield from _run(run)
-    if question.get("numbers"):
+    if question.get("numbers") and question["numbers"]["of"] > 1:  # one stands in the reason
         yield from _numbers(question["numbers"])
 
 

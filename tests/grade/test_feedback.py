@@ -242,7 +242,9 @@ def test_figures_say_what_they_show():
     assert 'role="img" aria-label="A &lt;curve&gt;."' in text
     assert {">2</text>", ">4</text>", ">6</text>"} <= set(re.findall(r">\d+</text>", text))
     assert "#" not in text
-    assert side_by_side([1.0], [1.0], "same").count("<circle") == 1
+    assert side_by_side([1.0, 2.0], [1.0, 2.0], "same").count("<circle") == 2
+    across = re.findall(r'class="middle">([^<]+)<', side_by_side([1.0] * 3, [2.0] * 3, "three"))
+    assert across == ["1", "2", "3"]
     assert side_by_side([0.0, 0.0], [0.0, 0.0], "zeros").count("<circle") == 2
 
 
