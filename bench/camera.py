@@ -7,7 +7,7 @@ import numpy as np
 
 import labkit as lk
 from labkit import se3
-from labkit.camera import BACKGROUND
+from labkit.vision.camera import BACKGROUND
 
 EYE, AT = (1.5, 0.3, 0.7), (0.85, 0.3, -0.26)
 """Where the camera of the measured frame stands and what it looks at: a table, arm and tag."""

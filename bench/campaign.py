@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 
-from labkit.campaign import work_through
+from labkit.study.campaign import work_through
 from solutions.campaign import grid, numbers
 
 

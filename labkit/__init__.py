@@ -26,31 +26,32 @@ from .world import World
 
 if TYPE_CHECKING:
     from . import check, plotting, replay
-    from .board import Board
-    from .camera import Camera, looking_at
-    from .detection import detect_tags, find_tag
-    from .interactive import dials
-    from .intrinsics import Intrinsics
-    from .looking import Following, Lookups, Reading
+    from .interactive import dials, progress
     from .readiness import ready
-    from .tags import Tag
+    from .vision.board import Board
+    from .vision.camera import Camera, looking_at
+    from .vision.detection import detect_tags, find_tag
+    from .vision.intrinsics import Intrinsics
+    from .vision.looking import Following, Lookups, Reading
+    from .vision.tags import Tag
 
 __version__ = "0.1.0"
 
 _LATER = {
-    "Board": "board",
-    "Camera": "camera",
-    "Following": "looking",
-    "Intrinsics": "intrinsics",
-    "Lookups": "looking",
-    "Reading": "looking",
-    "Tag": "tags",
+    "Board": "vision.board",
+    "Camera": "vision.camera",
+    "Following": "vision.looking",
+    "Intrinsics": "vision.intrinsics",
+    "Lookups": "vision.looking",
+    "Reading": "vision.looking",
+    "Tag": "vision.tags",
     "check": "",
-    "detect_tags": "detection",
+    "detect_tags": "vision.detection",
     "dials": "interactive",
-    "find_tag": "detection",
-    "looking_at": "camera",
+    "find_tag": "vision.detection",
+    "looking_at": "vision.camera",
     "plotting": "",
+    "progress": "interactive",
     "ready": "readiness",
     "replay": "",
 }
@@ -120,6 +121,7 @@ __all__ = [
     "looking_at",
     "metrics",
     "plotting",
+    "progress",
     "ready",
     "replay",
     "robot",

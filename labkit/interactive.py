@@ -1,4 +1,4 @@
-"""Interactive figures: sliders with a typed number beside each, and a figure that follows them.
+"""What answers while one looks: figures under sliders with typed numbers, and bars of progress.
 
 Without a page to turn them in, the figure of the starting values is all there is, so a notebook
 runs the same with nobody looking.
@@ -6,6 +6,7 @@ runs the same with nobody looking.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -66,3 +67,32 @@ def dials(
     for slider in sliders.values():
         slider.observe(follow, "value")
     return sliders
+
+
+def progress(doing: str, total: float) -> Callable[[float], None]:
+    """A bar for what takes more than a moment.
+
+    Args:
+        doing: What is being done, such as "following the tag".
+        total: How much there is to do: runs, seconds, anything.
+
+    Returns:
+        To be told how much is done; cheap enough for every tick of a control loop.
+    """
+    import ipywidgets as widgets
+
+    bar = widgets.FloatProgress(0.0, max=total)
+    words = widgets.Label(f"{doing} …")
+    display(widgets.HBox([bar, words]))
+    shown = began = time.monotonic()
+
+    def tell(done: float) -> None:
+        nonlocal shown
+        now = time.monotonic()
+        if done < total and now - shown < 0.2:
+            return
+        shown, bar.value = now, done
+        left = (now - began) * (total - done) / done if done else 0.0
+        words.value = f"{doing}: about {left:.0f} s left" if done < total else f"{doing}: done"
+
+    return tell

@@ -16,11 +16,11 @@ from matplotlib import colors
 from matplotlib.figure import Figure
 
 from . import metrics
-from .analysis import Loop
-from .maps import ErrorMap
 from .model import Model
 from .motion import PoseSample
 from .run import Log
+from .study.analysis import Loop
+from .study.maps import ErrorMap
 
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")

@@ -35,11 +35,11 @@ from labkit import (
     Table,
     metrics,
     run,
-    tasks,
 )
-from labkit.campaign import Job, Meter, Row, cells, pick, table, work_through
-from labkit.recorded import keep_campaign
-from labkit.tasks import Task
+from labkit.study import tasks
+from labkit.study.campaign import Job, Meter, Row, cells, pick, table, work_through
+from labkit.study.recorded import keep_campaign
+from labkit.study.tasks import Task
 
 from .claims import Verdict, verdicts
 from .gains import Tuned, five

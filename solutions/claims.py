@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from labkit.campaign import Row, pick
 from labkit.errors import OutOfRange
+from labkit.study.campaign import Row, pick
 
 from .comparison import paired_difference
 

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 import labkit
-from labkit import BAXTER, IDEAL, Arm, Model, Plant, metrics, run, tasks
-from labkit.campaign import Meter, cells, pick, work_through
-from labkit.maps import ErrorMap
+from labkit import BAXTER, IDEAL, Arm, Model, Plant, metrics, run
+from labkit.study import tasks
+from labkit.study.campaign import Meter, cells, pick, work_through
+from labkit.study.maps import ErrorMap
 
 from .joint_torque import ComputedTorque
 from .joint_velocity import JointVelocityPD

@@ -9,8 +9,8 @@ from typing import Any
 import matplotlib
 
 from labkit import plotting
-from labkit.campaign import cells
-from labkit.film import film
+from labkit.study.campaign import cells
+from labkit.study.film import film
 
 from .campaign import FIVE, TASKS, joints, perform
 from .tag_task import staged

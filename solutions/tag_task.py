@@ -16,11 +16,11 @@ import numpy as np
 
 from labkit import Chain, Circle, Hold, PosePath, Quintic, Spline, Trajectory, World, robot, se3
 from labkit.arrays import Array
-from labkit.board import Board
-from labkit.camera import Camera, looking_at
-from labkit.looking import Following, Lookups
-from labkit.tags import Tag
-from labkit.tasks import Task, ready_pose
+from labkit.study.tasks import Task, ready_pose
+from labkit.vision.board import Board
+from labkit.vision.camera import Camera, looking_at
+from labkit.vision.looking import Following, Lookups
+from labkit.vision.tags import Tag
 
 from .tag_following import TagFollower
 from .visual_servoing import SequentialServoing

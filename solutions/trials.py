@@ -11,10 +11,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from labkit import BAXTER, Arm, metrics, run, tasks
-from labkit.campaign import Meter, cells, pick, work_through
+from labkit import BAXTER, Arm, metrics, run
 from labkit.errors import Diverged
-from labkit.trials import LINE, Trials
+from labkit.study import tasks
+from labkit.study.campaign import Meter, cells, pick, work_through
+from labkit.study.trials import LINE, Trials
 
 from .joint_velocity import JointVelocityPD
 

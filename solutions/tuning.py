@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from labkit import BAXTER, Arm, Hold, Plant, robot, run
-from labkit.analysis import ultimate_gain, velocity_joint_of
 from labkit.arrays import Array
 from labkit.metrics import joint_error
-from labkit.tuning import Trial, Tuning, report_procedure
+from labkit.study.analysis import ultimate_gain, velocity_joint_of
+from labkit.study.tuning import Trial, Tuning, report_procedure
 
 from .joint_velocity import JointVelocityPD
 

@@ -13,13 +13,13 @@ import numpy as np
 
 from labkit import BangBang, Line, PoseSample, Trajectory, se3
 from labkit.arrays import as_vector
-from labkit.looking import Reading
 from labkit.motion import PosePath
+from labkit.vision.looking import Reading
 
 
 @dataclass(eq=False)
 class SequentialServoing:
-    """A follower for `labkit.looking.Following`; look up every 5 s, and wait for each look-up.
+    """A follower for `lk.Following`: look up every 5 s, and wait for each look-up.
 
     Attributes:
         T_wt: Pose of the tip at the start, shape (4, 4); its orientation is kept.

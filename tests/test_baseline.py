@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit import recorded, tasks
 from labkit.baseline import (
     HARDWARE,
     MOVEIT,
@@ -31,6 +30,7 @@ from labkit.baseline import (
 )
 from labkit.baseline.__main__ import drive
 from labkit.paths import Line
+from labkit.study import recorded, tasks
 
 ROBOT = lk.robot("left")
 POST = Box("post", (0.62, 0.62, 0.15), (0.08, 0.08, 0.5))

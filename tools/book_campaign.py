@@ -11,8 +11,8 @@ from typing import Any
 
 from book_pages import CACHE, CAMPAIGN, ROOT, key_of
 
-from labkit import recorded
-from labkit.campaign import pick, work_through
+from labkit.study import recorded
+from labkit.study.campaign import pick, work_through
 
 JOBS = 2  # the rows are the same with any number
 

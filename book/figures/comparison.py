@@ -16,9 +16,9 @@ from myst_nb import glue
 
 import labkit as lk
 from labkit import metrics
-from labkit.campaign import pick
 from labkit.plotting import AXES, STYLES
 from labkit.replay.motion import JOINTS
+from labkit.study.campaign import pick
 from solutions import campaign
 from solutions.campaign import BASELINE, FEED_FORWARD, FIVE, TABLES, WAYS
 from solutions.claims import IMPEDANCE, THREE

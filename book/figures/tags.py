@@ -7,7 +7,7 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.detection import detect_tags, find_tag
+from labkit.vision.detection import detect_tags, find_tag
 from solutions.tag_scenes import circling_board
 
 from .page import Question, address, figure, framed, holds, number, numbers, quiz

@@ -13,7 +13,7 @@ try:
 except ModuleNotFoundError as missing:
     raise ModuleNotFoundError(
         f'the baseline needs {missing.name}, which is not installed: pip install "labkit[baseline]"'
-        "; its recorded runs need nothing: labkit.recorded.names()",
+        "; its recorded runs need nothing: labkit.study.recorded.names()",
         name=missing.name,
     ) from missing
 

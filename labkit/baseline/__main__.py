@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .. import recorded, tasks
 from ..arm import Arm
 from ..metrics import summary
 from ..motion import Chain, Hold
 from ..plant import BAXTER
 from ..run import Log, run
 from ..scene import Table
-from ..tasks import Task
+from ..study import recorded, tasks
+from ..study.tasks import Task
 from . import RATE, PlanningScene, PositionServer, VelocityServer, along, plan, quickest
 
 FOLDER = Path(__file__).parents[1] / "data" / "recorded"

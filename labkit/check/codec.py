@@ -17,7 +17,7 @@ from ..arrays import locked
 from ..errors import TypeMismatch
 from ..model import Model
 from ..run import Log
-from ..trials import Runner, Trials
+from ..study.trials import Runner, Trials
 from .judge import Ratio
 
 DATA = (

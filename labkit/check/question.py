@@ -19,7 +19,7 @@ from ..errors import TypeMismatch
 from ..metrics import since, summary
 from ..plant import IDEAL, Plant
 from ..run import Log, run
-from ..trials import Runner, Trials
+from ..study.trials import Runner, Trials
 from ..world import Thing, World
 from .codec import decode, encode
 from .judge import JUDGES, Judge

@@ -448,12 +448,14 @@ def rest_torques(plant, poses=8, seed=1):
     """What the springs command at rest, and the model's gravity there, shape (poses, 7) each."""
     random = np.random.default_rng(seed)
     tau, g = [], []
+    shown = lk.progress(f"holding {poses} poses, plant {plant.name}", poses)
     with lk.Arm("left", plant, seed) as arm:
-        for q in ready + random.uniform(-0.4, 0.4, (poses, 7)):
+        for k, q in enumerate(ready + random.uniform(-0.4, 0.4, (poses, 7))):
             arm.reset(q)
             log = lk.run(arm, lk.Hold(q, 1.2), holding)
             tau.append(log.command[-20:].mean(axis=0))
             g.append(model.gravity(log.q[-1]))
+            shown(k + 1)
     return np.array(tau), np.array(g)
 
 

@@ -395,11 +395,13 @@ def ten_pushes(controller, newtons=8.0, seed=5):
     random = np.random.default_rng(seed)
     directions = np.vstack([np.eye(3), -np.eye(3), random.standard_normal((4, 3))])
     force, gone = [], []
-    for way in directions:
+    shown = lk.progress("ten pushes", 10)
+    for k, way in enumerate(directions):
         F = newtons * way / np.linalg.norm(way)
         log = meet(controller, lk.Hold(T_ready, 1.6), lk.Push(F), on=replace(plant, payload=0.3))
         force.append(F + 0.2 * random.standard_normal(3))
         gone.append(displacement(log)[-1] / 1e3)
+        shown(k + 1)
     return np.array(force), np.array(gone)
 
 

@@ -33,8 +33,9 @@ import cv2
 import matplotlib.pyplot as plt
 import numpy as np
 
-from labkit import detection, estimation, se3, sensing
-from labkit.board import Board
+from labkit import se3
+from labkit.vision import detection, estimation, sensing
+from labkit.vision.board import Board
 
 # %% [markdown]
 # ## A picture
@@ -371,6 +372,7 @@ class Follower:
 
 def position_mode(state, target):
     """Joint angles for the reference's pose; the arm's own position mode does the rest."""
+    shown(state.t)
     return lk.JointPosition(arm.model.inverse_kinematics(target.pose, state.q, posture=arm.robot.ready))
 
 
@@ -379,7 +381,9 @@ board.place(se3.pose(np.eye(3), round_it_goes(0.0).position))
 board.move(round_it_goes)
 watching = lk.Camera(world, lk.looking_at(centre + [0.75, -0.1, 0.45], centre))
 follow = lk.Following(lk.Lookups(watching, board.tag, rate=10.0, delay=0.1), Follower())
+shown = lk.progress("following the tag", 10.0)
 log = lk.run(arm, follow, position_mode, rate=100.0, duration=10.0)
+shown(10.0)
 
 goal = np.array([round_it_goes(t).position + offset for t in log.t])
 tips = np.array([arm.model.pose(q)[:3, 3] for q in log.q])

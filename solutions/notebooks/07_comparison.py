@@ -29,7 +29,8 @@ import control
 import matplotlib.pyplot as plt
 import numpy as np
 
-from labkit import analysis, maps, metrics, recorded, trials
+from labkit import metrics
+from labkit.study import analysis, maps, recorded, trials
 
 # %% [markdown]
 # ## One number for a run

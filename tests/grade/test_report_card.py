@@ -11,7 +11,7 @@ from labkit.grade.report_card import functions_from, make, markdown, write
 COURSE = Course.here(Path(__file__))
 FILE = """
 MISTAKES = {"joint_error": [lambda target, state: 0.5 * (target.position - state.q)]}
-VARIANTS = {"joint_error": [lambda target, state: -(state.q - target.position),
+VARIANTS = {"00_warmup/joint_error": [lambda target, state: -(state.q - target.position),
                             lambda target, state: state.q]}
 """
 

@@ -20,9 +20,11 @@ export class Plot {
    * @param series list of {name, values, dash?, colour?, width?}
    * @param x      abscissae, one per value
    * @param scrub  called with an abscissa when the reader drags over the plot
+   * @param zero   whether the axis starts at zero
+   * @param least  the least that the axis spans, however little the values do
    */
-  constructor({ title, series, x, xName = "time [s]", scrub, zero = false }) {
-    Object.assign(this, { title, series, x, xName, zero, now: x[0] });
+  constructor({ title, series, x, xName = "time [s]", scrub, zero = false, least = 1e-12 }) {
+    Object.assign(this, { title, series, x, xName, zero, least, now: x[0] });
     const id = unique("plot");
     this.art = svg("svg", { class: "lk-plot", role: "img", "aria-labelledby": id, focusable: "false" });
     this.element = h("div", { class: "lk-plotbox" }, h("p", { class: "lk-plottitle", id }, title), this.art);
@@ -52,7 +54,8 @@ export class Plot {
     const tall = HEIGHT - TOP - BOTTOM;
     let low = this.zero ? 0 : Infinity, high = -Infinity;
     for (const { values } of this.series) for (const v of values) { low = Math.min(low, v); high = Math.max(high, v); }
-    if (high - low < 1e-12) { low -= 0.5; high += 0.5; }
+    if (high - low < this.least) high = low + this.least;
+    if (high - low < 1e-9) { low -= 0.5; high += 0.5; }
     const pad = 0.05 * (high - low);
     high += pad;
     if (!(this.zero && low === 0)) low -= pad;

@@ -1,0 +1,219 @@
+"""Baxter's looks: the meshes that cameras see, moved with the joints before each picture.
+
+They belong to no physics: arms in the engine are seven bodies without a shape.  Where a world has
+only one arm, or none, the other hangs at Rethink's neutral pose.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from .. import se3
+from ..arrays import Array, locked
+from ..quiet import quiet
+from ..robot import robot
+from ..world import World
+
+with quiet():
+    import pybullet as bullet
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A mesh of one colour.
+
+    Attributes:
+        points: Corners, shape (n, 3) in [m].
+        centre: Of a ball around it, shape (3,) in [m].
+        radius: Of that ball, in [m].
+    """
+
+    points: Array
+    centre: Array
+    radius: float
+
+    @cached_property
+    def _hull(self) -> Array:
+        """Planes of the convex hull, outward normals and offsets, shape (planes, 4)."""
+        return np.asarray(ConvexHull(self.points).equations)
+
+    def encloses(self, point: Array) -> bool:
+        """Whether a point is within the convex hull: the real shells are hollow."""
+        return bool((self._hull[:, :3] @ point + self._hull[:, 3]).max() < -0.002)
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One mesh of the robot.
+
+    Attributes:
+        mesh: Its shape.
+        parent: The joint that carries it.
+        T_jp: Its pose in that joint's moving frame, shape (4, 4).
+        colour: Red, green, blue, opacity, from 0 to 1.
+        file: The mesh's file.
+    """
+
+    mesh: Mesh
+    parent: str
+    T_jp: Array
+    colour: tuple[float, ...]
+    file: str
+
+
+class Looks:
+    """What cameras see of the robot in one world; made when the first camera opens its eye.
+
+    Attributes:
+        world: Where it stands.
+        bodies: PyBullet's numbers of the pieces.
+        poses: Pose of each piece in the world at the last update, shape (pieces, 4, 4).
+    """
+
+    @staticmethod
+    def of(world: World) -> Looks:
+        """The looks of the robot in ``world``: there is one."""
+        found = next((thing for thing in world.shown if isinstance(thing, Looks)), None)
+        return Looks(world) if found is None else found
+
+    def __init__(self, world: World) -> None:
+        """Load the meshes into ``world``."""
+        self.world = world
+        self.bodies = [self._load(piece) for piece in pieces()]
+        self._seen = np.ones(len(self.bodies), dtype=bool)
+        self._centres = np.array([[*p.mesh.centre, 1.0] for p in pieces()])
+        self._radii = np.array([p.mesh.radius for p in pieces()])
+        self._at: bytes = b""
+        world.show(self)
+        self.update()
+
+    def update(self) -> None:
+        """Move every piece to where the joints are now."""
+        q = {side: robot(side).neutral for side in ("left", "right")}
+        q |= {arm.robot.side: arm.truth().q for arm in self.world.arms}
+        now = q["left"].tobytes() + q["right"].tobytes()
+        if now == self._at:
+            return
+        self._at = now
+        frames = joint_frames(q)
+        self.poses = np.array([frames[piece.parent] @ piece.T_jp for piece in pieces()])
+        for body, T in zip(self.bodies, self.poses, strict=True):
+            bullet.resetBasePositionAndOrientation(
+                body,
+                T[:3, 3].tolist(),
+                se3.quaternion(T[:3, :3]).tolist(),
+                physicsClientId=self.world.client,
+            )
+
+    @property
+    def balls(self) -> tuple[Array, Array]:
+        """A ball around each piece: centres in the world (pieces, 3) and radii (pieces,) in [m]."""
+        return np.einsum("nij,nj->ni", self.poses, self._centres)[:, :3], self._radii
+
+    def draw_only(self, wanted: Any) -> None:
+        """Leave pieces out of the pictures to come: they would cost time and show nothing.
+
+        Args:
+            wanted: Which pieces to draw, shape (pieces,), bool.
+        """
+        for i in np.flatnonzero(wanted != self._seen):
+            *rgb, opacity = pieces()[i].colour
+            bullet.changeVisualShape(
+                self.bodies[i],
+                -1,
+                rgbaColor=[*rgb, opacity if wanted[i] else 0.0],
+                physicsClientId=self.world.client,
+            )
+        self._seen = np.array(wanted)
+
+    def around(self, point: Array) -> str | None:
+        """The joint whose link a point of the world, shape (3,) in [m], is inside of, if any."""
+        centres, radii = self.balls
+        for i in np.flatnonzero(np.linalg.norm(centres - point, axis=1) < radii):
+            T = self.poses[i]
+            if pieces()[i].mesh.encloses(T[:3, :3].T @ (point - T[:3, 3])):
+                return pieces()[i].parent
+        return None
+
+    def _load(self, piece: Piece) -> int:
+        client = self.world.client
+        with quiet():
+            shape = bullet.createVisualShape(
+                bullet.GEOM_MESH,
+                fileName=piece.file,
+                rgbaColor=list(piece.colour),
+                physicsClientId=client,
+            )
+            return int(bullet.createMultiBody(0, -1, shape, physicsClientId=client))
+
+
+def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
+    """Pose in the world of every joint's moving frame, and of the base.
+
+    Args:
+        q: Joint angles of each side, shape (7,) in [rad].
+    """
+    angle = {
+        name: float(x)
+        for side, angles in q.items()
+        for name, x in zip(robot(side).joint_names, angles, strict=True)
+    }
+    frames: dict[str, Array] = {"base": np.eye(4)}
+    for name, parent, T in _joints():
+        c, s = np.cos(angle.get(name, 0.0)), np.sin(angle.get(name, 0.0))
+        turn = np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+        frames[name] = frames[parent] @ T @ turn
+    return frames
+
+
+@cache
+def pieces() -> tuple[Piece, ...]:
+    """All the robot's pieces."""
+    data = files("labkit") / "data"
+    return tuple(
+        Piece(
+            mesh=_mesh(p["mesh"]),
+            parent=p["parent"],
+            T_jp=_placed(p),
+            colour=tuple(p["rgba"]),
+            file=str(data / p["mesh"]),
+        )
+        for p in _table()["pieces"]
+    )
+
+
+@cache
+def _table() -> dict[str, Any]:
+    table: dict[str, Any] = json.loads(
+        (files("labkit") / "data" / "baxter_visual.json").read_text()
+    )
+    return table
+
+
+@cache
+def _joints() -> tuple[tuple[str, str, Array], ...]:
+    return tuple((j["name"], j["parent"], _placed(j)) for j in _table()["joints"])
+
+
+@cache
+def _mesh(name: str) -> Mesh:
+    lines = (files("labkit") / "data" / name).read_text().splitlines()
+    points = np.array([x.split()[1:4] for x in lines if x.startswith("v ")], dtype=float)
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    radius = float(np.linalg.norm(points - centre, axis=1).max())
+    return Mesh(locked(points), locked(centre), radius)
+
+
+def _placed(thing: dict[str, Any]) -> Array:
+    x, y, z, w = thing["quaternion"]
+    half = np.array([x, y, z])
+    sine = float(np.linalg.norm(half))
+    phi = half * (2.0 * np.arctan2(sine, w) / sine) if sine > 0.0 else half
+    return locked(se3.pose(se3.rotation(phi), np.array(thing["position"])))

@@ -1,0 +1,46 @@
+"""Following a tag as a task."""
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit.study import tasks
+from solutions import tag_task
+
+
+@pytest.fixture(scope="module")
+def chases():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tag_task, "DURATION", 2.5)
+        return [tag_task.followed(seed) for seed in (0, 0, 1)]
+
+
+def test_the_same_seed_records_the_same_reference(chases):
+    a, b, c = ([x.task.target(t).pose[:3, 3] for t in np.linspace(0, 2.5, 50)] for x in chases)
+    np.testing.assert_array_equal(a, b)
+    assert np.abs(np.subtract(a, c)).max() > 1e-5, "another seed, other noise"
+
+
+def test_the_reference_is_smooth_and_starts_at_the_ready_pose(chases):
+    target = chases[0].task.target
+    np.testing.assert_allclose(target(0.0).pose, tasks.ready_pose(), atol=1e-9)
+    h = 1e-4
+    for t in np.linspace(0.1, 2.4, 40):
+        slope = (target(t + h).pose[:3, 3] - target(t - h).pose[:3, 3]) / (2 * h)
+        np.testing.assert_allclose(slope, target(t).twist[:3], atol=1e-4)
+
+
+def test_the_reference_goes_where_the_tag_goes(chases):
+    chase = chases[0]
+    late = chase.t > 1.0
+    tips = np.array([chase.task.target(t).pose[:3, 3] for t in chase.t[late]])
+    moved = np.linalg.norm(chase.goal - chase.goal[0], axis=1).max()
+    assert moved > 0.03
+    assert chase.miss(chase.t[late], tips).mean() < 0.3 * moved
+    np.testing.assert_allclose(chase.miss(chase.t, chase.goal), 0.0, atol=1e-12)
+
+
+def test_its_joint_angles_take_the_tip_along(chases):
+    model, task = lk.Model(), chases[0].task
+    for t in np.linspace(0.0, 2.5, 30):
+        assert np.abs(model.pose_error(task.target(t).pose, task.joints(t).position)).max() < 1e-5
