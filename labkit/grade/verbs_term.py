@@ -66,7 +66,8 @@ def feedback(args: argparse.Namespace) -> int:
     if not results:
         raise nobody(args.name, args.student)
     made = write_feedback(here, args.name, results, comments(here, args.name))
-    print(f"{len(made)} pages in {here.root / 'feedback'}; hand them out with")
+    size = sum(path.stat().st_size for path in made) / 1e6
+    print(f"{len(made)} pages, {size:.1f} MB, in {here.root / 'feedback'}; hand them out with")
     print(f"  nbgrader release_feedback {args.name}")
     return 0
 
