@@ -121,7 +121,8 @@ def _answer(
 ) -> tuple[int | None, set[int]]:
     """The cell that answers a question, and empty stubs that must not take its place."""
     name = m["grade_id"]
-    at_home = {k for k, cell in own.items() if cell["id"] == m["id"] or cell["grade_id"] == name}
+    at_home = {k for k, cell in own.items() if cell["grade_id"] == name}
+    at_home |= {k for k, cell in own.items() if not cell["grade_id"] and cell["id"] == m["id"]}
     defines = {k for k, cell in own.items() if name in cell["functions"]}
     binds = {k for k, cell in own.items() if name in cell["binds"]}
     stubs = {k for k in defines if name in own[k]["stubs"]}

@@ -40,8 +40,9 @@ def raw(notebook):
 
 def hand_in(course, assignment, student, notebook):
     folder = course.submitted / student / assignment
-    folder.mkdir(parents=True)
-    (folder / f"{assignment}.ipynb").write_bytes(raw(notebook))
+    folder.mkdir(parents=True, exist_ok=True)
+    data = notebook if isinstance(notebook, bytes) else raw(notebook)
+    (folder / f"{assignment}.ipynb").write_bytes(data)
 
 
 def nbgrader(folder, *words):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -230,7 +231,7 @@ def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
               "    return lk.JointVelocity(target.velocity + gain * (target.position - state.q))")  # fmt: skip
     names: dict[str, object] = {}
     exec(source, names)
-    here = loop.ask(names["follow"])
+    here = loop.measured(loop.ask(names["follow"]))
     measure = next(iter(here))
     limits = {measure: here[measure] * (1 + 1e-9)}
     for share, points in ((1.0, 4.0), (0.999, 0.0)):
@@ -241,6 +242,14 @@ def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
         notebook = {"nbformat": 4, "cells": [{"cell_type": "code", "id": "x", "source": source}]}
         result = grade(raw(notebook), "ada", Bundle(data), sandbox, QUICK)
         assert result.score == points, result.questions
+        assert result.questions[0]["runs"] == [], "a hidden run is not for his eyes"
+    tests = (Test("it follows", (replace(tight, hidden=False),)),)
+    shown = Bundle(data | {"questions": [replace(question, tests=tests).data()]})
+    seen = [grade(raw(notebook), "ada", shown, sandbox, QUICK) for _ in range(2)]
+    (run,) = seen[0].questions[0]["runs"]
+    assert run["measures"][measure] == pytest.approx(here[measure], rel=1e-5)
+    assert run["motion"]
+    assert seen[0].verdict == seen[1].verdict, "the same run again, to the last digit"
     assert question.calls == ()
     assert isinstance(Call((1,)), Call)
 
