@@ -9,7 +9,7 @@
 # with these rights, but not the image.
 FROM python:3.11-slim-bookworm
 RUN apt-get update && apt-get install -y --no-install-recommends \
-      make git bubblewrap chromium nodejs npm && rm -rf /var/lib/apt/lists/*
+      make git libgomp1 bubblewrap chromium nodejs npm && rm -rf /var/lib/apt/lists/*
 WORKDIR /lab
 COPY . .
 RUN make .venv/.course

@@ -35,6 +35,7 @@ SCRIPT = """\
 # Make the environment, the first time only, and open the notebooks.
 set -eu
 cd "$(dirname "$0")"
+sh need.sh ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
 python=$(sh find_python.sh)
 if [ ! -e .venv/.done ]; then
   "$python" -m venv .venv
@@ -71,7 +72,8 @@ def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
             shutil.copytree(course.release / name, top / "assignments" / name)
         _wheel(course.root, top)
         shutil.copy(course.root / "constraints.txt", top)
-        shutil.copy(course.root / "tools" / "find_python.sh", top)
+        for tool in ("find_python.sh", "need.sh"):
+            shutil.copy(course.root / "tools" / tool, top)
         (top / "start.sh").write_text(SCRIPT)
         (top / "START.html").write_text(START.format(names=", ".join(names)), encoding="utf-8")
         to.parent.mkdir(parents=True, exist_ok=True)
