@@ -3,6 +3,10 @@
 SHELL := /bin/sh
 BIN := .venv/bin
 INSTALL = $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# What Debian brings, for a student, for whoever grades, for whoever tests.
+FOR_ALL := ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
+FOR_GRADING := $(FOR_ALL) bwrap:bubblewrap
+FOR_TESTS := $(FOR_GRADING) chromium,chromium-browser,google-chrome:chromium node:nodejs
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
 
@@ -11,13 +15,13 @@ ASSIGNMENT ?= 01_paths
 help: ## list the verbs
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
 
-demo: .venv/.course .venv/.programs ## release, grade a small class, build the book, say where to look
+demo: for-grading .venv/.course ## release, grade a small class, build the book, say where to look
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/demo.py
 
-test: .venv/.dev .venv/.test-programs lint types ## everything: style, types, all tests
+test: for-tests .venv/.dev lint types ## everything: style, types, all tests
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
 
-quick: .venv/.dev ## the quick tests, under two minutes
+quick: for-tests .venv/.dev ## the quick tests, under two minutes
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow" --ignore tests/book --ignore tests/replay
 
 lab: .venv/.student ## open the students' notebooks
@@ -26,7 +30,7 @@ lab: .venv/.student ## open the students' notebooks
 release: .venv/.course ## make the students' notebooks; SEED=n for hidden cases of your own
 	@$(BIN)/labkit release $(if $(filter command line environment,$(origin SEED)),--seed $(SEED))
 
-grade: .venv/.course .venv/.programs ## grade submitted/ ; ASSIGNMENT=01_paths
+grade: for-grading .venv/.course ## grade submitted/ ; ASSIGNMENT=01_paths
 	@$(BIN)/labkit grade $(ASSIGNMENT)
 
 book: .venv/.course ## build the book: book/_build/html/index.html
@@ -35,7 +39,7 @@ book: .venv/.course ## build the book: book/_build/html/index.html
 book-zip: .venv/.course ## the book as one file to hand out
 	@$(BIN)/python tools/build_book.py --zip
 
-book-pdf: .venv/.course .venv/.test-programs ## the book to print
+book-pdf: for-tests .venv/.course ## the book to print
 	@$(BIN)/python tools/build_book.py --pdf
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)
@@ -71,8 +75,17 @@ clean: ## forget everything that was made
 
 # Environments: a student's, an instructor's, a developer's, each one more than the one before.
 
-.venv/.made:
-	@python=$$(sh tools/find_python.sh) && "$$python" -c 'import ensurepip, venv' 2>/dev/null || sh tools/need.sh none:python3.11-venv
+.PHONY: for-all for-grading for-tests
+for-all:
+	@sh tools/need.sh $(FOR_ALL)
+
+for-grading:
+	@sh tools/need.sh $(FOR_GRADING)
+
+for-tests:
+	@sh tools/need.sh $(FOR_TESTS)
+
+.venv/.made: | for-all
 	@echo "making .venv with $$(sh tools/find_python.sh)"
 	@"$$(sh tools/find_python.sh)" -m venv .venv && touch $@
 
@@ -87,9 +100,3 @@ clean: ## forget everything that was made
 .venv/.dev: .venv/.course
 	@echo "installing what a developer needs"
 	@$(INSTALL) -e '.[dev]' && touch $@
-
-.venv/.programs: .venv/.made
-	@sh tools/need.sh bwrap:bubblewrap && touch $@
-
-.venv/.test-programs: .venv/.programs
-	@sh tools/need.sh chromium,chromium-browser,google-chrome:chromium node:nodejs && touch $@

@@ -27,7 +27,7 @@ def main():
             continue
         for key, value in measured.items():
             figures[key] = None if value is None else float(f"{value:.4g}")
-            print(f"  {key:30s}{'not installed' if value is None else f'{value:.4g}'}", flush=True)
+            print(f"  {key:30s}{'not here' if value is None else f'{value:.4g}'}", flush=True)
     OUT.parent.mkdir(exist_ok=True)
     OUT.write_text(json.dumps(figures, indent=1) + "\n")
     print(f"written to {OUT}")

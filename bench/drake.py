@@ -12,11 +12,12 @@ PAIRS = 15
 
 
 def diagram(target, controller):
-    """Drake's discrete plant at 1 kHz with the controller as a system written in Python."""
+    """Drake's discrete plant at 1 kHz, its controller written in Python, with a log."""
     from pydrake.multibody.parsing import Parser
     from pydrake.multibody.plant import MultibodyPlant
     from pydrake.systems.analysis import Simulator
     from pydrake.systems.framework import DiagramBuilder, LeafSystem
+    from pydrake.systems.primitives import LogVectorOutput
 
     class Controlled(LeafSystem):
         def __init__(self):
@@ -37,11 +38,15 @@ def diagram(target, controller):
     system = builder.AddSystem(Controlled())
     builder.Connect(plant.get_state_output_port(), system.get_input_port())
     builder.Connect(system.get_output_port(), plant.get_applied_generalized_force_input_port())
+    ports = plant.get_state_output_port(), system.get_output_port()
+    logs = [LogVectorOutput(port, builder, publish_period=1e-3) for port in ports]
     simulator = Simulator(builder.Build())
 
     def run():
         context = simulator.get_mutable_context()
         context.SetTime(0.0)
+        for log in logs:
+            log.FindMutableLog(context).Clear()
         inside = plant.GetMyMutableContextFromRoot(context)
         plant.SetPositions(inside, target(0.0).position)
         plant.SetVelocities(inside, np.zeros(7))

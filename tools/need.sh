@@ -1,11 +1,22 @@
 #!/bin/sh
-# Make sure that programs are there: sh tools/need.sh PROGRAM[,OTHER]:PACKAGE ...
+# Make sure that what a verb needs is there: sh tools/need.sh THING[,OTHER]:PACKAGE ...
+# A thing is a program, a library (libNAME.so.N) or one of Python's modules (NAME.py).
 # As root it installs the Debian packages that are missing; else it prints the one line to run.
+python=$(sh "$(dirname "$0")/find_python.sh" 2>/dev/null)
+
+there() {
+  case "$1" in
+    *.py) [ -z "$python" ] || "$python" -c "import ${1%.py}" 2>/dev/null ;;
+    *.so.*) [ -z "$python" ] || "$python" -c "import ctypes; ctypes.CDLL('$1')" 2>/dev/null ;;
+    *) command -v "$1" >/dev/null 2>&1 ;;
+  esac
+}
+
 missing=""
 for pair in "$@"; do
   found=""
-  for program in $(echo "${pair%%:*}" | tr ',' ' '); do
-    command -v "$program" >/dev/null 2>&1 && found=yes
+  for thing in $(echo "${pair%%:*}" | tr ',' ' '); do
+    there "$thing" && found=yes
   done
   [ -n "$found" ] || missing="$missing ${pair##*:}"
 done

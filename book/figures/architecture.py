@@ -20,8 +20,8 @@ LAYERS = (
     ("What is known", ("plant", "robot", "limits", "model")),
     ("What moves", ("commands", "world", "scene", "sensors", "arm")),
     ("The loop", ("run", "metrics")),
-    ("What looks", ("vision",)),
-    ("What compares, judges and shows", ("study", "baseline", "check", "plotting", "replay")),
+    ("What looks, compares and draws", ("vision", "study", "baseline", "plotting")),
+    ("What judges and shows", ("check", "replay")),
     ("For instructors", ("grade", "cli")),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""

@@ -8,13 +8,14 @@ from pathlib import Path
 from IPython.display import HTML
 from myst_nb import glue
 
+from labkit.grade.doctor import elsewhere
 from labkit.grade.limits import Limits
 
 from .page import table
 
 BENCH = Path(__file__).parents[2] / "build/bench.json"
 MEASURED = 0.64
-"""Seconds of a worker for one submission of 00_warmup, by ``python bench/grading.py``."""
+"""Seconds of a worker for one submission of 00_warmup, by ``python -m bench.grading``."""
 CLASSES, CORES = (40, 400, 10_000), (2, 8, 64)
 
 
@@ -26,7 +27,7 @@ def _overhead() -> tuple[float, str]:
             return float(told), "as measured on this machine by make bench."
     return (
         MEASURED,
-        "as measured on a small shared machine; python bench/grading.py measures yours.",
+        "as measured on a small shared machine; python -m bench.grading measures yours.",
     )
 
 
@@ -39,6 +40,11 @@ def table_of_effort() -> HTML:
     rows = [(f"{n:,}", *(_said(n * seconds / cores) for cores in CORES)) for n in CLASSES]
     head = ("Submissions", *(f"{cores} cores" for cores in CORES))
     return table(head, rows, "Time to grade a class, where hardly anything is to be computed")
+
+
+def ways_to_isolate() -> None:
+    """What a sandbox takes, in the places where people grade, as `labkit doctor` says it."""
+    print(elsewhere())
 
 
 def _said(seconds: float) -> str:

@@ -20,7 +20,7 @@ from myst_nb import glue
 from PIL import Image
 
 from labkit import Arm, Log, Table, World, metrics, plotting
-from labkit.replay import Motion, motion_html
+from labkit.replay import motion_html, motion_of
 from labkit.study.film import AT, EYE
 from labkit.vision.camera import Camera, looking_at
 from labkit.vision.intrinsics import Intrinsics
@@ -130,29 +130,9 @@ def framed(inside: str, caption: str, alt: str, words: str = "") -> str:
     )
 
 
-def motion_of(log: Log, title: str, label: str = "", ghosts: Mapping[str, Log] | None = None,
-              torque: bool = True) -> Motion:  # fmt: skip
-    """A run as the viewer shows it, beside others drawn as ghosts."""
-    error = np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1)
-    T_wd = metrics.target_poses(log)
-    return Motion(
-        log.side,
-        log.t,
-        log.q,
-        title=title,
-        label=label or log.controller,
-        target_position=T_wd[:, :3, 3],
-        target_rotation=T_wd[:, :3, :3],
-        path=T_wd[:: max(1, len(log) // 120), :3, 3],
-        error=error,
-        tau=log.tau if torque else None,
-        ghosts={name: other.q for name, other in (ghosts or {}).items()},
-    )
-
-
 def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
     """A run as a 3-D replay in the page; a picture of its middle where there is no WebGL."""
-    motion = motion_of(log, title, **options)
+    motion = motion_of(log, title, reference=False, **{"torque": True, **options})
     return HTML(motion_html(motion, caption=caption, poster=poster(log)))
 
 

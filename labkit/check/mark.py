@@ -5,14 +5,15 @@ The function may live here or in another process; marking does not care.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-from ..errors import LabkitError
+from ..errors import Diverged, LabkitError
+from ..run import Log
 from .judge import AtMost, Judge
-from .question import Call, Case, Choice, Mistake, Question, Raised, Test
+from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .raised import told
 
 
@@ -60,6 +61,23 @@ class TestResult:
 
 
 @dataclass(frozen=True, eq=False)
+class Ran:
+    """A run of the arm on a case that the student can see.
+
+    Attributes:
+        test: The name of the test that it belongs to.
+        case: What was asked.
+        log: What the arm did; up to the moment when it ran away, if it did.
+        complete: Whether it came to its end.
+    """
+
+    test: str
+    case: Loop | Tuned
+    log: Log
+    complete: bool
+
+
+@dataclass(frozen=True, eq=False)
 class Verdict:
     """What came of a question.
 
@@ -71,6 +89,7 @@ class Verdict:
         tests: One result each.
         mistake: The known mistake that gives the same answers, if there is one.
         answers: What came back from each public call, for figures.
+        runs: The public runs of the arm, for replays.
     """
 
     name: str
@@ -80,6 +99,7 @@ class Verdict:
     tests: tuple[TestResult, ...]
     mistake: Mistake | None = None
     answers: tuple[Any, ...] = ()
+    runs: tuple[Ran, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +108,7 @@ class Tried:
 
     Attributes:
         results: One for each test, as far as its public cases tell.
-        answers: What came back, by the call's identity.
+        answers: What came back, by the case's identity.
     """
 
     results: tuple[TestResult, ...]
@@ -116,7 +136,8 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
     )
     outcome, mistake = _outcome(question, results), None
     answers = [tried.answers.get(id(call)) for call in question.calls]
-    if outcome in (Outcome.WRONG, Outcome.ERROR) and len(tried.answers) == len(answers):
+    asked = all(id(call) in tried.answers for call in question.calls)
+    if outcome in (Outcome.WRONG, Outcome.ERROR) and asked:
         mistake = recognise(question, answers)
     return Verdict(
         name=question.name,
@@ -126,7 +147,17 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
         tests=results,
         mistake=mistake,
         answers=tuple(answers),
+        runs=tuple(_runs(question, tried)),
     )
+
+
+def _runs(question: Question, tried: Tried) -> Iterator[Ran]:
+    for test in question.tests:
+        for case in test.cases:
+            answer = tried.answers.get(id(case))
+            log = answer.log if isinstance(answer, _Failure) else answer
+            if isinstance(case, Loop | Tuned) and isinstance(log, Log):
+                yield Ran(test.name, case, log, complete=log is answer)
 
 
 def try_public(question: Question, function: Callable[..., Any]) -> Tried:
@@ -181,6 +212,7 @@ class _Failure(Raised):
 
     sentence: str
     not_attempted: bool = False
+    log: Log | None = None
 
 
 def _answer(case: Case, function: Callable[..., Any]) -> Any:
@@ -196,7 +228,8 @@ def _failure(error: BaseException) -> _Failure:
     kind = cause.kind if isinstance(cause, Failed) else type(cause).__name__
     known = isinstance(error, Failed) or (isinstance(error, LabkitError) and error.__cause__)
     sentence = str(error) if known else told(error)
-    return _Failure(kind, sentence, not_attempted=kind == "NotImplementedError")
+    log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
+    return _Failure(kind, sentence, not_attempted=kind == "NotImplementedError", log=log)
 
 
 def _try(
@@ -209,7 +242,7 @@ def _try(
     """Put some cases of one test, until one fails."""
     for case in cases:
         answer = _answer(case, function)
-        if isinstance(case, Call | Choice) and not case.hidden:
+        if not case.hidden:
             answers[id(case)] = answer
         where = f"a hidden case ({test.also})" if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
@@ -229,12 +262,10 @@ def _difference(question: Question, case: Case, answer: Any) -> str | None:
         return "it gave nothing back (None); does every way through it end in a return?"
     if isinstance(case, Call):
         return question.judge(answer, case.expected)
-    if isinstance(case, Choice):
-        try:
-            answer = case.measured(answer)
-        except LabkitError as error:
-            return str(error)
-    return AtMost()(answer, case.expected)
+    try:
+        return AtMost()(case.measured(answer), case.expected)
+    except LabkitError as error:
+        return str(error)
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import re
+from collections.abc import Callable
 from typing import Any
 
 from .handin import defines
@@ -18,24 +20,25 @@ def merge(mine: Cells, new: Cells) -> Cells:
         new: The cells of the new release.
 
     Returns:
-        The new release, in its order.  An answer is found by its cell's id, else by the function it
-        defines; a cell of the student's own follows the cell that it followed.
+        The new release, in its order.  An answer is found by the function that it defines, else by
+        the question that its cell was made for; a cell of the student's own follows the cell that
+        it followed.
     """
     merged = copy.deepcopy(new)
-    known = {cell["id"] for cell in new}
+    home = _homes(new)
     for cell in merged:
         grading = cell["metadata"].get("nbgrader", {})
         if grading.get("solution"):
-            answer = _answer(mine, cell["id"], grading["grade_id"])
+            answer = _answer(mine, grading["grade_id"])
             if answer is not None and "raise NotImplementedError" not in answer:
                 cell["source"] = answer
     anchor = -1
-    place = {cell["id"]: k for k, cell in enumerate(merged)}
     after: dict[int, Cells] = {}
     for cell in mine:
-        if cell.get("id") in known:
-            anchor = place[cell["id"]]
-        elif "nbgrader" not in cell.get("metadata", {}) and cell["source"].strip():
+        place = home(cell)
+        if place is not None:
+            anchor = place
+        elif _is_own(cell, new):
             after.setdefault(anchor, []).append(copy.deepcopy(cell))
     result = after.get(-1, [])
     for k, cell in enumerate(merged):
@@ -43,8 +46,38 @@ def merge(mine: Cells, new: Cells) -> Cells:
     return result
 
 
-def _answer(mine: Cells, cell_id: str, name: str) -> str | None:
-    for cell in reversed(mine):  # the last one counts, as it does in marking
-        if cell.get("id") == cell_id or defines(cell, name):
-            return str(cell["source"])
-    return None
+def _homes(new: Cells) -> Callable[[dict[str, Any]], int | None]:
+    """A function that tells where in the new release a released cell belongs.
+
+    Ids count the cells of a release, so where a question was added they mean other cells from there
+    on; what a cell is for and what it says are better signs.
+    """
+    purposes = {_purpose(cell): k for k, cell in enumerate(new) if _purpose(cell)}
+    sources = {cell["source"]: k for k, cell in enumerate(new)}
+    ids = {cell["id"]: k for k, cell in enumerate(new)}
+
+    def home(cell: dict[str, Any]) -> int | None:
+        for found in (purposes.get(_purpose(cell)), sources.get(cell["source"])):
+            if found is not None:
+                return found
+        return ids.get(cell.get("id"))
+
+    return home
+
+
+def _purpose(cell: dict[str, Any]) -> str:
+    return str(cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", ""))
+
+
+def _is_own(cell: dict[str, Any], new: Cells) -> bool:
+    """Whether the student added a cell; one of an older release has an id of the release's form."""
+    stem = new[0]["id"].rpartition("-")[0]
+    released = re.fullmatch(rf"{re.escape(stem)}-\d+", str(cell.get("id", "")))
+    return not _purpose(cell) and not released and bool(cell["source"].strip())
+
+
+def _answer(mine: Cells, name: str) -> str | None:
+    """The last cell that answers, which is the one that counts in marking."""
+    defining = [cell for cell in mine if defines(cell, name)]
+    made_for = [cell for cell in mine if _purpose(cell) == name]
+    return next((str(cell["source"]) for cell in reversed(defining or made_for)), None)

@@ -22,7 +22,7 @@ from ..controllers import springs
 from ..errors import TypeMismatch
 from ..metrics import since, summary
 from ..plant import IDEAL, Plant
-from ..run import run
+from ..run import Log, run
 from ..study.trials import Runner, Trials
 from ..world import Thing, World
 from .codec import decode, encode
@@ -90,8 +90,8 @@ class Loop:
     expected: Any = field(default_factory=dict)
     hidden: bool = False
 
-    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
-        """The measures of the run that the function makes."""
+    def ask(self, function: Callable[..., Any]) -> Log:
+        """The run that the function makes."""
 
         def controller(state: Any, target: Any) -> Any:
             return function(state, target, **self.kwargs)
@@ -99,10 +99,13 @@ class Loop:
         arm = Arm(self.side, self.plant, self.seed, world=World(things=self.things))
         arm.reset(arm.robot.ready if self.q0 is None else self.q0)
         try:
-            log = run(arm, self.target, controller, self.rate, self.duration)
+            return run(arm, self.target, controller, self.rate, self.duration)
         finally:
             arm.world.close()
-        return asdict(summary(since(log, self.settle), arm.model))
+
+    def measured(self, answer: Log) -> dict[str, float]:
+        """The measures of a run, fields of `metrics.Summary`."""
+        return asdict(summary(since(answer, self.settle)))
 
     def shown(self, name: str) -> str:
         """The run in words."""
@@ -167,10 +170,14 @@ class Tuned:
     expected: Any = field(default_factory=dict)
     hidden: bool = False
 
-    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
-        """The measures of the run that the function's gains make."""
+    def ask(self, function: Callable[..., Any]) -> Log:
+        """The run that the function's gains make."""
         kp, kd = function(*self.args)
         return self.loop.ask(springs(kp, kd))
+
+    def measured(self, answer: Log) -> dict[str, float]:
+        """The measures of a run, fields of `metrics.Summary`."""
+        return self.loop.measured(answer)
 
     def shown(self, name: str) -> str:
         """The run in words."""

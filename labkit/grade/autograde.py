@@ -48,7 +48,7 @@ def _grade(about: dict[str, Any]) -> Result:
     if result is None:
         bundle = Bundle.of(course, about["assignment"])
         submission = Submission.of(course, about["assignment"], about["student"])
-        worker = Worker(0)
+        worker = Worker()
         try:
             result = Result.read(worker.ask(job(course, bundle, submission, Limits())))
         finally:

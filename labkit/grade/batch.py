@@ -21,6 +21,8 @@ from .submission import Submission
 
 LOUD = 0.3
 """Above this share of a class that fails one test, the run says so: is the test to blame?"""
+FEW = 5
+"""Of fewer who tried nothing is concluded."""
 
 
 @dataclass(frozen=True)
@@ -134,7 +136,11 @@ def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) 
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:
-    """Tests that so many fail that the test, or the lecture, may be to blame; a sentence each."""
+    """Questions with a test that so many fail that it, or the lecture, may be to blame.
+
+    Yields:
+        One sentence for each question, the test that most fail in it.
+    """
     graded = [r for r in results if not r.rejected]
     failed: Counter[tuple[str, str]] = Counter()
     tried: Counter[str] = Counter()
@@ -145,12 +151,16 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
             tried[question["name"]] += 1
             for one in question["tests"]:
                 failed[question["name"], one["name"]] += one["outcome"] != "right"
+    loud: dict[str, list[tuple[int, str]]] = {}
     for (name, test), count in failed.most_common():
-        if count > LOUD * tried[name] and tried[name] >= 5:
-            yield (
-                f"{count} of {tried[name]} who tried {name} fail the test {test!r}: "
-                "is it the test, the text or the lecture?"
-            )
+        if count > LOUD * tried[name] and tried[name] >= FEW:
+            loud.setdefault(name, []).append((count, test))
+    for name, ((count, test), *others) in loud.items():
+        more = f"; so it is with {len(others)} more of its tests" if others else ""
+        yield (
+            f"{count} of {tried[name]} who tried {name} fail the test {test!r}{more}: "
+            "is it the test, the text or the lecture?"
+        )
 
 
 def _still_good(

@@ -9,12 +9,14 @@ import builtins
 import re
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from .. import errors
 from ..check.codec import decode_answer, encode
 from ..check.mark import Failed, Outcome, TestResult, Tried, Verdict, mark, try_public
 from ..check.question import Question
+from . import seen
 from .inside.wire import Gone, TooLate, TooMuch
 from .limits import Limits
 from .plan import Plan, plan
@@ -34,6 +36,10 @@ _KNOWN = (
 )
 MOST_LOST = 3
 """After so many calls of one question that died or hung, it is not asked any more."""
+ADDED = (
+    "this question came after the notebook was handed in, which does not have it; it counts 0 "
+    "until the new notebook is handed in, into which `labkit merge` brings the work done so far"
+)
 
 
 def grade(
@@ -57,21 +63,26 @@ def grade(
     if isinstance(cells, str):
         return rejection(cells, student, bundle, sandbox.level, data)
     todo = plan(cells, bundle.data["cells"])
-    questions = bundle.questions
+    absent = bundle.added - todo.places.keys()
+    todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
+    questions = [question for question in bundle.questions if question.name not in absent]
     with Seat(sandbox, todo, limits) as seat:
         tried = [_public(question, seat) for question in questions]
-        verdicts = [
-            _guarded(question, seat, before)
+        verdicts = {
+            question.name: _guarded(question, seat, before)
             for question, before in zip(questions, tried, strict=True)
-        ]
+        }
         failed = tuple(seat.failed())
         spent = seat.spent
     return Result(
         bundle.data["assignment"],
         student,
-        score=round(sum(v.earned for v in verdicts), 2),
+        score=round(sum(v.earned for v in verdicts.values()), 2),
         points=bundle.points,
-        questions=tuple(_verdict(v, todo) for v in verdicts),
+        questions=tuple(
+            _verdict(question, verdicts.get(question.name) or _absent(question), todo)
+            for question in bundle.questions
+        ),
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
         cells=failed,
         own=todo.own,
@@ -194,12 +205,17 @@ def _guarded(question: Question, seat: Seat, tried: Tried) -> Verdict:
         seat.close()
 
 
+def _absent(question: Question) -> Verdict:
+    tests = tuple(TestResult(t.name, t.weight, Outcome.NOT_ATTEMPTED) for t in question.tests)
+    return Verdict(question.name, Outcome.NOT_ATTEMPTED, 0.0, question.points, tests)
+
+
 def _lost(question: Question) -> list[TestResult]:
     says = "the answer cannot be compared with anything"
     return [TestResult(t.name, t.weight, Outcome.ERROR, says) for t in question.tests]
 
 
-def _verdict(verdict: Verdict, todo: Plan) -> dict[str, Any]:
+def _verdict(question: Question, verdict: Verdict, todo: Plan) -> dict[str, Any]:
     return {
         "name": verdict.name,
         "outcome": verdict.outcome.value,
@@ -218,4 +234,13 @@ def _verdict(verdict: Verdict, todo: Plan) -> dict[str, Any]:
         "mistake": verdict.mistake and {"name": verdict.mistake.name, "says": verdict.mistake.says},
         "notes": [clean(note) for note in todo.notes.get(verdict.name, ())],
         "source": todo.source(verdict.name),
+        **_seen(question, verdict),
     }
+
+
+def _seen(question: Question, verdict: Verdict) -> dict[str, Any]:
+    """What the student may see of his work; nothing where it is too odd to be drawn."""
+    try:
+        return {"runs": seen.runs(question, verdict), "numbers": seen.numbers(question, verdict)}
+    except Exception:
+        return {"runs": [], "numbers": None}

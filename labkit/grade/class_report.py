@@ -90,12 +90,14 @@ def _questions(graded: Sequence[Result]) -> Iterator[str]:
     for result in graded:
         for question in result.questions:
             outcomes[question["name"]][question["outcome"]] += 1
-            shares[question["name"]].append(question["earned"] / question["points"])
+            if question["points"]:
+                shares[question["name"]].append(question["earned"] / question["points"])
     yield from ("## Questions", "", "| question | right | wrong | error | not tried | mean |")
     yield "|---|---:|---:|---:|---:|---:|"
     for name, count in outcomes.items():
         cells = [count[x] for x in ("right", "wrong", "error", "not attempted")]
-        yield f"| {name} | {' | '.join(map(str, cells))} | {mean(shares[name]):.0%} |"
+        share = f"{mean(shares[name]):.0%}" if shares[name] else "voided"
+        yield f"| {name} | {' | '.join(map(str, cells))} | {share} |"
     yield ""
 
 

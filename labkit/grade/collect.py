@@ -1,6 +1,9 @@
 """Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
 
-Names and times come from the download, never from within a student's file.
+Names and times come from the download, never from within a student's file.  Moodle puts
+``NAME_PARTICIPANT_assignsubmission_file_`` before each file, as a folder or not; Canvas calls each
+``NAME_[LATE_]USER_ATTACHMENT_FILE`` (its ``lib/content_zipper.rb``).  The numbers are kept for the
+export; see `lms`.
 """
 
 from __future__ import annotations
@@ -8,16 +11,20 @@ from __future__ import annotations
 import re
 import shutil
 import zipfile
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 from ..errors import LabkitError
 from .course import Course
 from .limits import Limits
+from .lms import Known, folders, known, remember
 
-_MOODLE = re.compile(r"^(?P<name>[^/]+)_(?P<id>\d+)_assignsubmission_file_?/(?P<file>[^/]+)$")
+_MOODLE = re.compile(
+    r"^(?P<name>[^/]+)_(?P<id>\d+)_assignsubmission_file(?:_?/|_)(?:[^/]+/)*(?P<file>[^/]+)$"
+)
 _CANVAS = re.compile(
     r"^(?P<name>[^/_]+)_(?P<late>LATE_)?(?P<id>\d+)_(?P<number>\d+)_(?P<file>[^/]+)$"
 )
@@ -49,6 +56,7 @@ class _Found:
     data: bytes
     when: str = ""
     late: bool = False
+    known: Known | None = None
 
 
 def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
@@ -73,8 +81,16 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         raise LabkitError(
             f"{source} is neither a folder nor a zip file; give the download as it is"
         )
+    before = known(course, assignment)
+    people = {one.known: one.student for one in found if one.known is not None}
+    places = folders(people, before, people)
+    for name, count in Counter(people.values()).items():
+        if count > 1:
+            yield Taken("", name, f"{count} students are called so; told apart by their number")
+    remember(course, assignment, {folder: one for one, folder in places.items()})
     by_student: dict[str, list[_Found]] = {}
     for one in found:
+        one = one if one.known is None else replace(one, student=places[one.known])
         if not one.student:
             yield Taken("", one.file, "not taken; no student can be told from its name")
         elif not one.file.endswith(".ipynb"):
@@ -111,7 +127,8 @@ def _from_zip(path: Path) -> Iterator[_Found]:
         for entry in archive.infolist():
             if entry.is_dir():
                 continue
-            match = _MOODLE.match(entry.filename) or _CANVAS.match(entry.filename)
+            moodle = _MOODLE.match(entry.filename)
+            match = moodle or _CANVAS.match(entry.filename)
             if match is None:
                 yield _Found("", entry.filename[-80:], b"")
                 continue
@@ -121,8 +138,9 @@ def _from_zip(path: Path) -> Iterator[_Found]:
             with archive.open(entry) as file:
                 data = file.read(most)
             parts = match.groupdict()
+            who = Known("moodle" if moodle else "canvas", parts["id"], parts["name"])
             late = bool(parts.get("late"))
-            yield _Found(f"{_slug(parts['name'])}-{parts['id']}", parts["file"], data, late=late)
+            yield _Found(_slug(who.name), parts["file"], data, late=late, known=who)
 
 
 def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:

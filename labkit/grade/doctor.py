@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from textwrap import wrap
 
 from .inside import seccomp
 from .limits import Limits, slowness
@@ -18,6 +19,16 @@ from .sandbox import NoIsolation, Sandbox
 _APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
 _NAMESPACES = Path("/proc/sys/user/max_user_namespaces")
 _CLONE = Path("/proc/sys/kernel/unprivileged_userns_clone")
+
+DOCKER = (
+    "--security-opt=seccomp=unconfined",
+    "--security-opt=apparmor=unconfined",
+    "--security-opt=systempaths=unconfined",
+    "--cap-add=SYS_ADMIN",
+    "--cap-add=NET_ADMIN",
+)
+"""What a container needs in which sandboxes are made: namespaces, mounts, and a network that is a
+loopback without anything behind it.  The sandbox has a filter of system calls of its own."""
 
 
 @dataclass(frozen=True)
@@ -63,21 +74,22 @@ def examine() -> Iterator[Finding]:
 def sandbox() -> Iterator[Finding]:
     """Make a sandbox and try to get out of it."""
     try:
-        with Sandbox(999) as made, made.enter("student", Limits()) as inside:
+        with Sandbox() as made, made.enter("student", Limits()) as inside:
             inside.line.send({"cell": 0, "source": _TRY, "answers": []})
             failed = str(inside.line.read(30.0).get("error", "it did not answer"))
             yield Finding("sandbox", not failed, failed or made.level)
             counted = made.group is not None
             says = made.group.says if made.group else (
                 "no cgroup here: memory is limited for each process, not for all together; "
-                "grade as root, or under `systemd-run --user --scope -p Delegate=yes`"
+                "grade as root, or under `systemd-run --user --scope -p Delegate=yes`; "
+                "a container's own --memory and --pids-limit hold for it as a whole"
             )  # fmt: skip
             yield Finding("limits of a whole sandbox", counted, says, needed=False)
             away = os.geteuid() == 0
             says = f"user {made.uid}" if away else "yours, without any rights, in a user namespace"
             yield Finding("a user of its own", away, says, needed=False)
     except NoIsolation as error:
-        yield Finding("sandbox", False, f"{error}\n{_elsewhere()}")
+        yield Finding("sandbox", False, f"{error}\n\n{elsewhere()}")
 
 
 _TRY = """
@@ -126,7 +138,7 @@ def _namespaces() -> Iterator[Finding]:
         yield Finding(
             "user namespaces",
             Path("/etc/apparmor.d/bwrap").exists(),
-            "Ubuntu's AppArmor restricts them; give bubblewrap a profile (see below), or for this "
+            "Ubuntu's AppArmor restricts them; give bubblewrap a profile (as below), or for this "
             "boot: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0",
             needed=False,
         )
@@ -145,17 +157,38 @@ def _install() -> str:
     return "grade on Linux; macOS and Windows have no bubblewrap, so use the container"
 
 
-def _elsewhere() -> str:
+def elsewhere() -> str:
     """How isolation is had in the places where people grade."""
-    return """  Debian:       sudo apt-get install bubblewrap
-  Ubuntu 24.04: sudo apt-get install bubblewrap apparmor, then as /etc/apparmor.d/bwrap
-                  abi <abi/4.0>,
-                  profile bwrap /usr/bin/bwrap flags=(unconfined) { userns, }
-                and: sudo systemctl reload apparmor
-  Docker:       docker run --security-opt seccomp=unconfined --security-opt apparmor=unconfined \\
-                  --security-opt systempaths=unconfined --cap-add SYS_ADMIN ...
-                (for the container that grades, and for no other; the sandbox has its own filter)
-  Kubernetes:   a Job of its own, not the students' hub: spec.hostUsers: false, and
-                  securityContext: {capabilities: {add: [SYS_ADMIN]}, procMount: Unmasked,
-                    seccompProfile: {type: Unconfined}, appArmorProfile: {type: Unconfined}}
-                `labkit grade NAME --shard i/n` splits a class over an indexed Job"""
+    options = " ".join([*DOCKER, "--memory=8g", "--pids-limit=500", "IMAGE"])
+    lines = " \\\n    ".join(wrap(f"docker run {options}", 80, break_on_hyphens=False))
+    rights = [x.removeprefix("--cap-add=") for x in DOCKER if x.startswith("--cap-add=")]
+    return f"""Debian
+  sudo apt-get install bubblewrap
+
+Ubuntu 24.04, WSL 2
+  sudo apt-get install bubblewrap apparmor-utils
+  write this to /etc/apparmor.d/bwrap, then: sudo systemctl reload apparmor
+    abi <abi/4.0>,
+    include <tunables/global>
+    profile bwrap /usr/bin/bwrap flags=(unconfined) {{
+      userns,
+    }}
+  where there is a profile that leaves its children no rights (Ubuntu 25.04), first:
+    sudo aa-disable /etc/apparmor.d/bwrap-userns-restrict
+
+Docker, for a container that grades and does nothing else
+  {lines}
+
+Kubernetes, a Job of its own and no pod of the students' hub
+  spec:
+    hostUsers: false
+    containers:
+      - securityContext:
+          capabilities: {{add: [{", ".join(rights)}]}}
+          procMount: Unmasked
+          seccompProfile: {{type: Unconfined}}
+          appArmorProfile: {{type: Unconfined}}
+  An indexed Job shares a class out: labkit grade NAME --shard i/n
+
+macOS, Windows
+  the container, or WSL 2"""

@@ -1,6 +1,19 @@
 """Marks as tables: nbgrader's, one column per question, and what Canvas and Moodle read.
 
 Marks come from the gradebook, so what was changed by hand and what late rules took away counts.
+
+Canvas: the first columns are Student, ID, SIS User ID, SIS Login ID, Section, in this order; a row
+whose first cell holds "Points Possible" gives full marks; a student is known by ID, else by SIS ID,
+else by login, else by name; an assignment's column is called ``TITLE (NUMBER)``, and a title that
+Canvas does not know makes a new assignment (github.com/instructure/canvas-lms,
+``lib/gradebook_importer.rb``; the columns also at
+teaching.resources.osu.edu, "Import CSV File to Carmen Grades").
+
+Moodle has two doors.  The gradebook's import (docs.moodle.org/en/Grade_import) asks which column to
+know users by: "Email address" goes to ``useremail``, "ID number" to ``useridnumber``.  The
+assignment's own grading worksheet needs the columns Identifier, Grade and Last modified (grade);
+the identifier is "Participant" and the number that the download of submissions bears
+(github.com/moodle/moodle, ``mod/assign/feedback/offline/importgradeslib.php``).
 """
 
 from __future__ import annotations
@@ -13,6 +26,7 @@ from typing import Any
 
 from .course import Course
 from .gradebook import open_gradebook
+from .lms import Known, known
 
 
 @dataclass(frozen=True)
@@ -24,7 +38,8 @@ class Row:
         first: First name, if the gradebook knows it.
         last: Last name.
         email: Address.
-        lms: His number in the learning platform.
+        lms: His number in the learning platform, if the gradebook knows it.
+        known: How the platform knows him from which his work was collected, or None.
         when: When it came in, as text.
         due: When it was due, as text.
         questions: Points of each question, with their maximum.
@@ -44,15 +59,26 @@ class Row:
     raw: float
     penalty: float
     points: float
+    known: Known | None = None
 
     @property
     def score(self) -> float:
         """What counts."""
         return round(max(0.0, self.raw - self.penalty), 4)
 
+    @property
+    def login(self) -> str:
+        """His login: the name of his folder, unless that was made from a download."""
+        return "" if self.known else self.student
+
+    def number(self, system: str) -> str:
+        """His number in a platform, empty if it is not known."""
+        return self.known.number if self.known and self.known.system == system else ""
+
 
 def rows(course: Course, assignment: str) -> Iterator[Row]:
     """Everybody's marks, in order of name."""
+    by_platform = known(course, assignment)
     with open_gradebook(course) as (book, _):
         for submission in sorted(
             book.assignment_submissions(assignment), key=lambda s: str(s.student.id)
@@ -74,6 +100,7 @@ def rows(course: Course, assignment: str) -> Iterator[Row]:
                 raw=float(submission.score),
                 penalty=float(submission.late_submission_penalty or 0.0),
                 points=float(submission.max_score),
+                known=by_platform.get(str(who.id)),
             )
 
 
@@ -102,23 +129,48 @@ def questions(assignment: str, marks: Sequence[Row]) -> list[list[Any]]:
     return table
 
 
-def canvas(assignment: str, marks: Sequence[Row]) -> list[list[Any]]:
-    """What Canvas's gradebook imports: its five columns, then the assignment's."""
-    table: list[list[Any]] = [
-        ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", assignment]
-    ]
+def canvas(column: str, marks: Sequence[Row]) -> list[list[Any]]:
+    """What Canvas's gradebook imports; ``column`` as Canvas calls it, "Paths (4711)"."""
+    table: list[list[Any]] = [["Student", "ID", "SIS User ID", "SIS Login ID", "Section", column]]
     table.append(["    Points Possible", "", "", "", "", marks[0].points if marks else ""])
     for r in marks:
         name = ", ".join(x for x in (r.last, r.first) if x) or r.student
-        table.append([name, r.lms, "", r.student, "", r.score])
+        table.append([name, r.number("canvas") or r.lms, "", r.login, "", r.score])
     return table
 
 
-def moodle(assignment: str, marks: Sequence[Row]) -> list[list[Any]]:
-    """What Moodle's grade import maps: a column to know the user by, and the grade."""
-    table: list[list[Any]] = [["ID number", "Username", "Email address", assignment]]
-    table += [[r.lms, r.student, r.email, r.score] for r in marks]
+def moodle(column: str, marks: Sequence[Row]) -> list[list[Any]]:
+    """What Moodle's gradebook imports: columns to know the user by, and the grade."""
+    table: list[list[Any]] = [
+        ["First name", "Last name", "ID number", "Username", "Email address", column]
+    ]
+    table += [[r.first, r.last, r.lms, r.login, r.email, r.score] for r in marks]
     return table
+
+
+def moodle_worksheet(column: str, marks: Sequence[Row]) -> list[list[Any]]:
+    """What a Moodle assignment reads as its grading worksheet: who came in its download."""
+    table: list[list[Any]] = [
+        ["Identifier", "Full name", "Grade", "Maximum Grade", "Last modified (grade)"]
+    ]
+    table += [
+        [f"Participant {number}", r.known.name if r.known else "", r.score, r.points, ""]
+        for r in marks
+        if (number := r.number("moodle"))
+    ]
+    return table
+
+
+def left_out(layout: str, marks: Sequence[Row]) -> str:
+    """Whom a platform will not know by a table, in a sentence; empty if it knows all."""
+    ways = {
+        "canvas": lambda r: r.number("canvas") or r.lms or r.login,
+        "moodle": lambda r: r.email or r.lms or r.login,
+        "moodle-worksheet": lambda r: r.number("moodle"),
+    }
+    lost = [r.student for r in marks if layout in ways and not ways[layout](r)]
+    some = ", ".join(lost[:5]) + (", ..." if len(lost) > 5 else "")
+    return f"{len(lost)} of {len(marks)} cannot be told by this table: {some}" if lost else ""
 
 
 LAYOUTS: dict[str, Callable[[str, Sequence[Row]], list[list[Any]]]] = {
@@ -126,6 +178,7 @@ LAYOUTS: dict[str, Callable[[str, Sequence[Row]], list[list[Any]]]] = {
     "questions": questions,
     "canvas": canvas,
     "moodle": moodle,
+    "moodle-worksheet": moodle_worksheet,
 }
 
 

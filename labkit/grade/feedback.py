@@ -1,36 +1,31 @@
 """Feedback: one page for each student, verdicts in words, nothing that should stay hidden.
 
-It is made from the result alone, so no hidden case and no reference value can be in it; whatever a
-student's code said is shown as text.
+It is made from the result alone, so no hidden case and no reference value of one can be in it;
+whatever a student's code said is shown as text.  A page with a replay brings the viewer and the
+robot along, 1.7 MB; its policy names each script by its hash, and nothing is loaded from anywhere.
 """
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Iterable, Mapping
+from functools import cache
+from hashlib import sha256
 from html import escape
 from pathlib import Path
 from typing import Any
 
+from ..replay import viewer_scripts
 from .course import Course
+from .own_work import has_replay, own_work
 from .results import Result, write
 
-_STYLE = """
-body { font: 1rem/1.55 system-ui, sans-serif; max-width: 46rem; margin: 2rem auto; padding: 0 1rem;
-  color: #1b1b1b; background: #fff }
-h1 { font-size: 1.6rem } h2 { font-size: 1.2rem; margin-top: 2.2rem; border-top: 1px solid #767676;
-  padding-top: 1rem }
-.total { font-size: 1.2rem } ul { padding-left: 1.2rem } li { margin: .3rem 0 }
-.yes { color: #0a5c2b } .no { color: #a1161b }
-pre { background: #f4f4f4; padding: .8rem; overflow-x: auto; white-space: pre-wrap }
-.tip { border-left: .3rem solid #1f5fa8; padding-left: .8rem }
-@media (prefers-color-scheme: dark) { body { color: #eee; background: #161616 }
-  pre { background: #262626 } .yes { color: #7ddc9b } .no { color: #ff9a9a } }
-"""
+PAGE = Path(__file__).parents[1] / "data" / "feedback"
 _HEAD = """<!doctype html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <style>{style}</style>
@@ -54,10 +49,14 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
         comments: What the teacher wrote by hand, by question.
 
     Returns:
-        HTML in one piece: no scripts, nothing loaded from anywhere.
+        HTML in one piece, readable without its scripts.
     """
     title = escape(f"{result.assignment}: feedback for {result.student}")
-    lines = [_HEAD.format(title=title, style=_STYLE), f"<h1>{title}</h1>"]
+    style, scripts = _style(), _scripts() if has_replay(result) else ()
+    lines = [
+        _HEAD.format(title=title, style=style, policy=_policy(style, scripts)),
+        f"<h1>{title}</h1>",
+    ]
     if result.rejected:
         lines.append(
             f'<p class="total"><strong>Not graded:</strong> {escape(result.rejected)}.</p>'
@@ -78,7 +77,8 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
             what = f"{cell['kind']}: {cell['error']}" if cell["kind"] != "died" else cell["error"]
             lines.append(f"<li>Cell {cell['cell'] + 1}: {escape(what)}</li>")
         lines.append("</ul>")
-    return "\n".join([*lines, "</main>", "</body>", "</html>", ""])
+    lines += ["</main>", *(f"<script>{script}</script>" for script in scripts)]
+    return "\n".join([*lines, "</body>", "</html>", ""])
 
 
 def write_feedback(
@@ -103,6 +103,28 @@ def write_feedback(
     return made
 
 
+@cache
+def _style() -> str:
+    return (PAGE / "page.css").read_text(encoding="utf-8")
+
+
+@cache
+def _scripts() -> tuple[str, ...]:
+    return (*viewer_scripts(), (PAGE / "page.js").read_text(encoding="utf-8"))
+
+
+@cache
+def _policy(style: str, scripts: tuple[str, ...]) -> str:
+    """The content security policy: this style, these scripts, nothing else."""
+    rules = ["default-src 'none'", f"style-src {_hash(style)}"]
+    rules += [f"script-src {' '.join(map(_hash, scripts))}"] if scripts else []
+    return "; ".join([*rules, "base-uri 'none'", "form-action 'none'"])
+
+
+def _hash(text: str) -> str:
+    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
+
+
 def _question(question: Mapping[str, Any], comment: str) -> Iterable[str]:
     outcome, name = question["outcome"], escape(question["name"])
     mark = "yes" if outcome == "right" else "no"
@@ -120,6 +142,7 @@ def _question(question: Mapping[str, Any], comment: str) -> Iterable[str]:
             word = '<span class="yes">passed</span>' if right else '<span class="no">failed</span>'
             yield f"<li>{word}: {escape(test['name'])}{gate}{says}</li>"
         yield "</ul>"
+    yield from own_work(question)
     if question["mistake"]:
         yield (
             f'<p class="tip"><strong>A well-known one: {escape(question["mistake"]["name"])}.'

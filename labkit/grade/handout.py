@@ -30,20 +30,8 @@ first time only, and opens Jupyter in your browser.</li>
 <code>checks.json</code>, which the checks need: leave it there.</p></main></html>
 """
 
-SCRIPT = """\
-#!/bin/sh
-# Make the environment, the first time only, and open the notebooks.
-set -eu
-cd "$(dirname "$0")"
-python=$(sh find_python.sh)
-if [ ! -e .venv/.done ]; then
-  "$python" -m venv .venv
-  echo "fetching what the lab needs, a few minutes"
-  .venv/bin/pip install --quiet --disable-pip-version-check -c constraints.txt ./labkit-*.whl
-  touch .venv/.done
-fi
-PATH="$PWD/.venv/bin:$PATH" exec .venv/bin/jupyter lab --notebook-dir assignments
-"""
+STUDENT_TOOLS = ("find_python.sh", "need.sh")
+"""What ``tools/start.sh`` calls."""
 
 
 def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
@@ -71,8 +59,10 @@ def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
             shutil.copytree(course.release / name, top / "assignments" / name)
         _wheel(course.root, top)
         shutil.copy(course.root / "constraints.txt", top)
-        shutil.copy(course.root / "tools" / "find_python.sh", top)
-        (top / "start.sh").write_text(SCRIPT)
+        (top / "tools").mkdir()
+        for tool in STUDENT_TOOLS:
+            shutil.copy(course.root / "tools" / tool, top / "tools")
+        shutil.copy(course.root / "tools" / "start.sh", top)
         (top / "START.html").write_text(START.format(names=", ".join(names)), encoding="utf-8")
         to.parent.mkdir(parents=True, exist_ok=True)
         with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -36,12 +36,17 @@ class _Remembered(Loop):
 
     memory: Memory = field(default_factory=dict)
 
-    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
-        """The measures of the run; runs that raise are made again."""
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The measures of the run, for a log takes room; runs that raise are made again."""
         key = (function, _run_key(self))
         if key not in self.memory:
-            self.memory[key] = super().ask(function)
+            self.memory[key] = super().measured(super().ask(function))
         return self.memory[key]
+
+    def measured(self, answer: Any) -> dict[str, float]:
+        """What `ask` gave."""
+        measures: dict[str, float] = answer
+        return measures
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +55,17 @@ class _RememberedGains(Tuned):
 
     memory: Memory = field(default_factory=dict)
 
-    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
-        """The measures of the run; runs that raise are made again."""
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The measures of the run, for a log takes room; runs that raise are made again."""
         key = (function, json.dumps(encode(self.args)), _run_key(self.loop))
         if key not in self.memory:
-            self.memory[key] = super().ask(function)
+            self.memory[key] = super().measured(super().ask(function))
         return self.memory[key]
+
+    def measured(self, answer: Any) -> dict[str, float]:
+        """What `ask` gave."""
+        measures: dict[str, float] = answer
+        return measures
 
 
 def _run_key(loop: Loop) -> str:
@@ -127,11 +137,10 @@ def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[f
 def _distance(question: Question, case: Case, function: Callable[..., Any]) -> float:
     """How far an answer is off, in tolerances; infinite where none came."""
     try:
-        answer = case.ask(function)
+        answer: Any = case.ask(function)
         if isinstance(case, Call):
             return question.judge.distance(answer, case.expected)
-        measures = case.measured(answer) if isinstance(case, Choice) else answer
-        return AtMost().distance(measures, case.expected)
+        return AtMost().distance(case.measured(answer), case.expected)
     except Exception:
         return float("inf")
 

@@ -6,9 +6,12 @@ student's metadata says about points and roles is never read.
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
+
+from .inside.cells import plain
 
 Cell = Mapping[str, Any]
 
@@ -87,6 +90,19 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     return Plan(tuple(steps), places, told, tuple(_own(cells, manifest, set(places.values()))))
 
 
+def imports(manifest: Sequence[Cell]) -> tuple[str, ...]:
+    """Modules that the release's setup cells import, which every submission runs."""
+    found: dict[str, None] = {}
+    for m in manifest:
+        if m["kind"] == "setup" and m["type"] == "code":
+            for node in ast.walk(ast.parse(plain(m["source"]))):
+                if isinstance(node, ast.Import):
+                    found |= dict.fromkeys(alias.name for alias in node.names)
+                elif isinstance(node, ast.ImportFrom) and node.module:
+                    found[node.module] = None
+    return tuple(found)
+
+
 def _own(
     cells: Sequence[Cell], manifest: Sequence[Cell], places: set[int]
 ) -> Iterator[dict[str, str]]:
@@ -105,7 +121,8 @@ def _answer(
 ) -> tuple[int | None, set[int]]:
     """The cell that answers a question, and empty stubs that must not take its place."""
     name = m["grade_id"]
-    at_home = {k for k, cell in own.items() if cell["id"] == m["id"] or cell["grade_id"] == name}
+    at_home = {k for k, cell in own.items() if cell["grade_id"] == name}
+    at_home |= {k for k, cell in own.items() if not cell["grade_id"] and cell["id"] == m["id"]}
     defines = {k for k, cell in own.items() if name in cell["functions"]}
     binds = {k for k, cell in own.items() if name in cell["binds"]}
     stubs = {k for k in defines if name in own[k]["stubs"]}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import os
 import queue
@@ -31,8 +30,8 @@ class Died(LabkitError):
 class Worker:
     """One worker process, started when it is first needed and again after it died."""
 
-    def __init__(self, slot: int, *, isolated: bool = True) -> None:
-        self.slot, self.isolated = slot, isolated
+    def __init__(self, *, isolated: bool = True) -> None:
+        self.isolated = isolated
         self.process: subprocess.Popen[str] | None = None
 
     def ask(self, job: Job) -> str:
@@ -72,7 +71,7 @@ class Worker:
 
     def _ask(self, job: Job) -> dict[str, Any]:
         if self.process is None:
-            words = [sys.executable, "-m", "labkit.grade.worker", str(self.slot)]
+            words = [sys.executable, "-m", "labkit.grade.worker"]
             here = str(Path(labkit.__file__).parent.parent)
             self.process = subprocess.Popen(
                 words if self.isolated else [*words, "--no-isolation"],
@@ -110,7 +109,7 @@ def locally(jobs: Sequence[Job], count: int, *, isolated: bool = True) -> Iterat
     done: queue.SimpleQueue[Done] = queue.SimpleQueue()
     for job in jobs:
         waiting.put(job)
-    workers = [Worker(k, isolated=isolated) for k in range(min(count, len(jobs)))]
+    workers = [Worker(isolated=isolated) for _ in range(min(count, len(jobs)))]
 
     def serve(worker: Worker) -> None:
         with suppress(queue.Empty):
@@ -136,7 +135,6 @@ def locally(jobs: Sequence[Job], count: int, *, isolated: bool = True) -> Iterat
             worker.close()
 
 
-_slots = itertools.count()
 _here: list[Worker] = []
 _lock = threading.Lock()
 
@@ -146,7 +144,7 @@ def on_dask(text: str) -> str:
     job = json.loads(text)
     with _lock:
         if not _here:
-            _here.append(Worker(os.getpid() % 1000, isolated=job.pop("isolated")))
+            _here.append(Worker(isolated=job.pop("isolated")))
         job.pop("isolated", None)
         try:
             return json.dumps({"result": _here[0].ask(job)})

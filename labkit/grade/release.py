@@ -10,7 +10,7 @@ import hashlib
 import json
 import logging
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,7 @@ from ..check.notebook import FILE
 from ..errors import LabkitError
 from .course import Course
 from .notebook import Notebook, solution_notebook, source_notebook
+from .room import make_room
 
 FORBIDDEN = ("BEGIN SOLUTION", "BEGIN HIDDEN", "from solutions", "import solutions")
 
@@ -64,15 +65,17 @@ def release(course: Course, name: str, seed: int) -> Released:
 
     Raises:
         UnknownName: No such assignment.
-        LabkitError: nbgrader refused, or an answer would have leaked.
+        LabkitError: nbgrader refused, an answer would have leaked, or marks given by hand would
+            have been lost.
     """
     problems = {problem.name: problem for problem in course.problems(name)}
     questions = {key: problem.question(seed) for key, problem in problems.items()}
     source = source_notebook(course.notebook_source(name), questions)
+    added = make_room(course, name, source)
     public = _checks(name, [q.public() for q in questions.values()])
     _write(course.source / name, source, public)
     _write(course.solution / name, solution_notebook(source, problems), public)
-    _write_bundle(course, name, seed, source, questions)
+    _write_bundle(course, name, seed, source, questions, added)
     _generate(course, name)
     _verify(course.release / name, questions)
     hidden = sum(case.hidden for q in questions.values() for t in q.tests for case in t.cases)
@@ -107,18 +110,27 @@ def _write(folder: Path, notebook: Notebook, checks: str) -> None:
 
 
 def _write_bundle(
-    course: Course, name: str, seed: int, source: Notebook, questions: Mapping[str, Question]
+    course: Course,
+    name: str,
+    seed: int,
+    source: Notebook,
+    questions: Mapping[str, Question],
+    added: Iterable[str],
 ) -> None:
-    data = {
+    path = course.bundle / f"{name}.json"
+    before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    late = sorted({*before.get("added", ()), *added} & set(questions))
+    data: dict[str, Any] = {
         "assignment": name,
         "seed": seed,
         "cells": manifest(source),
         "questions": [q.data() for q in questions.values()],
+        **({"added": late} if late else {}),
     }
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), sort_keys=True)
     data["hash"] = hashlib.sha256(text.encode()).hexdigest()
     course.bundle.mkdir(parents=True, exist_ok=True)
-    (course.bundle / f"{name}.json").write_text(json.dumps(data) + "\n", encoding="utf-8")
+    path.write_text(json.dumps(data) + "\n", encoding="utf-8")
 
 
 def _generate(course: Course, name: str) -> None:
@@ -129,8 +141,7 @@ def _generate(course: Course, name: str) -> None:
     result = api.generate_assignment(name, force=True, create=True)
     if not result["success"]:
         raise LabkitError(
-            f"nbgrader could not make {name}: {reason(result)}; "
-            "if submissions are there already, their cells must stay the same"
+            f"nbgrader could not make {name}: {reason(result)}; mend that and release it again"
         )
     path = course.release / name / f"{name}.ipynb"
     notebook = nbformat.read(path, as_version=4)

@@ -12,12 +12,13 @@ from pathlib import Path
 
 from ..errors import LabkitError
 from .course import Course
+from .handout import STUDENT_TOOLS
 from .release import FORBIDDEN
 
 FOR_STUDENTS = (
     "labkit/",
     "assignments/",
-    "tools/find_python.sh",
+    *(f"tools/{tool}" for tool in STUDENT_TOOLS),
     "LICENSE",
     "constraints.txt",
     "pyproject.toml",
@@ -29,20 +30,6 @@ README = """\
 
 On Linux (x86-64) with Python 3.11 type `sh start.sh`: it makes `.venv`, the first time only, and
 opens Jupyter on `assignments/`. Begin with the lowest number.
-"""
-
-START = """\
-#!/bin/sh
-# Make the environment, the first time only, and open the notebooks.
-set -eu
-cd "$(dirname "$0")"
-python=$(sh tools/find_python.sh)
-if [ ! -e .venv/.done ]; then
-  "$python" -m venv .venv
-  .venv/bin/pip install --quiet --disable-pip-version-check -c constraints.txt -e .
-  touch .venv/.done
-fi
-PATH="$PWD/.venv/bin:$PATH" exec .venv/bin/jupyter lab --notebook-dir assignments
 """
 
 
@@ -69,7 +56,7 @@ def export_course(course: Course, to: Path) -> tuple[Path, Path]:
             _copy(course.root / name, student / name)
         _copy(course.root / name, private / name)
     (student / "README.md").write_text(README, encoding="utf-8")
-    (student / "start.sh").write_text(START, encoding="utf-8")
+    _copy(course.root / "tools/start.sh", student / "start.sh")
     for path in student.rglob("*.ipynb"):
         text = path.read_text(encoding="utf-8")
         if leak := next((word for word in FORBIDDEN if word in text), None):

@@ -31,7 +31,8 @@ class Result:
         score: Points; 0 where it was rejected.
         points: What full marks would be.
         rejected: Why it could not be graded, in a sentence; empty where it was.
-        questions: One verdict each, as data: name, outcome, earned, points, tests, mistake, notes.
+        questions: One verdict each, as data: name, outcome, earned, points, tests, mistake, notes,
+            source, and what `seen` adds, which older results lack: runs, numbers.
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
         own: The student's own cells, where they stood.
@@ -129,7 +130,8 @@ class Bundle:
     """What a release leaves for graders.
 
     Attributes:
-        data: Assignment, seed, manifest, questions with their hidden cases, hash.
+        data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
+            any, the questions ``added`` when some had handed in already.
     """
 
     data: Mapping[str, Any]
@@ -152,6 +154,11 @@ class Bundle:
     def questions(self) -> tuple[Question, ...]:
         """Its questions, hidden cases included; read once for all submissions."""
         return tuple(map(read_question, self.data["questions"]))
+
+    @property
+    def added(self) -> frozenset[str]:
+        """Questions that came when some had handed in already."""
+        return frozenset(self.data.get("added", ()))
 
     @property
     def points(self) -> float:

@@ -6,13 +6,14 @@ submission.
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 import shutil
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
@@ -28,8 +29,11 @@ from .limits import Limits
 
 MEND = "apt-get install bubblewrap"
 FIRST_UID = 64000
-"""Users of the sandboxes when root grades: this one and those above, one for each worker."""
+MOST_USERS = 1000
+"""When root grades, each sandbox is given a user of its own among these."""
 _LAB = "/lab"
+_ROLES = ("student", "parse")  # the ends of stdin and of stdout of the process inside
+_numbers = itertools.count()
 
 
 class NoIsolation(LabkitError):
@@ -44,34 +48,36 @@ class Broken(BaseException):
 
 
 class Inside:
-    """A process in the sandbox, and the line to it."""
+    """A process in the sandbox, the line to it, and the line to what forked it."""
 
-    def __init__(self, line: Line, pid: int) -> None:
-        self.line, self.pid = line, pid
+    def __init__(self, line: Line, parent: Line, pid: int) -> None:
+        self.line, self.parent, self.pid = line, parent, pid
 
 
 class Sandbox:
     """One sandbox, for one submission at a time.
 
     Args:
-        slot: Which worker's; root gives each a user of its own.
+        loads: Modules that submissions will import, to be loaded once for all.
         isolated: False only if somebody typed ``--unsafe-no-isolation``.
 
     Raises:
         NoIsolation: It cannot be made here.
     """
 
-    def __init__(self, slot: int = 0, *, isolated: bool = True) -> None:
-        self.uid = FIRST_UID + slot % 1000 if os.geteuid() == 0 else 0
+    def __init__(self, loads: Sequence[str] = (), *, isolated: bool = True) -> None:
+        self.uid, self._claim = _user()
         self.isolated = isolated
-        self.group = Group.make(f"labkit-{os.getpid()}-{slot}") if isolated else None
+        self.group = Group.make(f"labkit-{os.getpid()}-{next(_numbers)}") if isolated else None
         self._log = os.memfd_create("labkit-sandbox-log")
-        ours, theirs = socket.socketpair()
+        ends = [socket.socketpair() for _ in _ROLES]
+        self._lines = {role: Line(ours) for role, (ours, _) in zip(_ROLES, ends, strict=True)}
+        stdin, stdout = (theirs for _, theirs in ends)
         try:
             self.process = subprocess.Popen(
-                command() if isolated else _bare(),
-                stdin=theirs.fileno(),
-                stdout=subprocess.DEVNULL,
+                [*(command() if isolated else _bare()), *loads],
+                stdin=stdin.fileno(),
+                stdout=stdout.fileno(),
                 stderr=self._log,
                 env=environment() if isolated else _bare_environment(),
                 preexec_fn=None if self.group is None else self.group.enter,
@@ -79,10 +85,11 @@ class Sandbox:
         except OSError as error:
             raise NoIsolation(f"no sandbox: {error}; try: {MEND}") from None
         finally:
-            theirs.close()
-        self.line = Line(ours)
+            stdin.close()
+            stdout.close()
         try:
-            self.line.read(120.0)
+            for line in self._lines.values():
+                line.read(120.0)
         except (Gone, TooLate, TooMuch):
             said = self._words()
             self.close()
@@ -101,11 +108,19 @@ class Sandbox:
 
     @contextmanager
     def enter(self, role: str, limits: Limits, **more: Any) -> Iterator[Inside]:
-        """A fresh process inside, for as long as the block runs; nothing of it stays."""
+        """A fresh process inside, for as long as the block runs; nothing of it stays.
+
+        Args:
+            role: "student" or "parse".
+            limits: What it may use.
+            more: What else it is told.
+        """
         ours, theirs = socket.socketpair()
-        message = {"role": role, "limits": limits.data(), "uid": self.uid, **more}
+        message = {"limits": limits.data(), "uid": self.uid, **more}
+        parent = self._lines[role]
         with theirs:
-            inside = Inside(Line(ours), int(self._ask(message, theirs)["pid"]))
+            pid = int(self._ask(parent, message, theirs)["pid"])
+        inside = Inside(Line(ours), parent, pid)
         try:
             try:
                 said = inside.line.read(20.0)
@@ -120,11 +135,12 @@ class Sandbox:
 
     def kill(self, inside: Inside, *, whole: bool = False) -> None:
         """Kill a process inside and all that it started, or only what it started."""
-        self._ask({"kill": inside.pid, "whole": whole})
+        self._ask(inside.parent, {"kill": inside.pid, "whole": whole})
 
     def close(self) -> None:
         """End everything inside."""
-        self.line.close()  # the first process inside sees it, and goes
+        for line in self._lines.values():
+            line.close()  # the first processes inside see it, and go
         try:
             self.process.wait(2.0)
         except subprocess.TimeoutExpired:
@@ -133,6 +149,8 @@ class Sandbox:
         os.close(self._log)
         if self.group is not None:
             self.group.remove()
+        if self._claim is not None:
+            self._claim.close()
 
     def __enter__(self) -> Sandbox:
         return self
@@ -145,18 +163,38 @@ class Sandbox:
     ) -> None:
         self.close()
 
-    def _ask(self, message: dict[str, Any], end: socket.socket | None = None) -> dict[str, Any]:
-        """Tell the sandbox's first process what to do, and take its word that it is done."""
+    def _ask(
+        self, line: Line, message: dict[str, Any], end: socket.socket | None = None
+    ) -> dict[str, Any]:
+        """Tell one of the first processes what to do, and take its word that it is done."""
         try:
             data = json.dumps(message).encode()
-            socket.send_fds(self.line.end, [data], [end.fileno()] if end else [])
-            return self.line.read(20.0)
+            socket.send_fds(line.end, [data], [end.fileno()] if end else [])
+            return line.read(20.0)
         except (OSError, Gone, TooLate, TooMuch) as error:
             raise Broken(f"{error}; it said: {self._words()}") from None
 
     def _words(self) -> str:
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()
         return lines[-1][:300] if lines else "it gave no reason"
+
+
+def _user() -> tuple[int, socket.socket | None]:
+    """A user that no other sandbox has, and what keeps it ours until it is closed; 0 without root.
+
+    The kernel counts processes by user, so two graders on one machine must not share one.
+    """
+    if os.geteuid():
+        return 0, None
+    for uid in range(FIRST_UID, FIRST_UID + MOST_USERS):
+        claim = socket.socket(socket.AF_UNIX)
+        try:
+            claim.bind(f"\0labkit-sandbox-{uid}")  # goes with the process, however that ends
+        except OSError:
+            claim.close()
+            continue
+        return uid, claim
+    raise NoIsolation(f"all {MOST_USERS} users for sandboxes are taken; end some graders")
 
 
 def command() -> list[str]:

@@ -21,7 +21,13 @@ def add(verbs: Verbs) -> None:
     verb.add_argument("--student", metavar="S", help="only this one")
     verb = _verb(verbs, "export", export, "marks as a table")
     verb.add_argument(
-        "--layout", choices=("nbgrader", "questions", "canvas", "moodle"), default="questions"
+        "--layout",
+        choices=("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"),
+        default="questions",
+        help="moodle is for its gradebook, moodle-worksheet for the assignment's own page",
+    )
+    verb.add_argument(
+        "--column", metavar="NAME", help="the assignment as the platform calls it: 'Paths (4711)'"
     )
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
     verb = _verb(verbs, "regrade", regrade, "grade again after a test or its points have changed")
@@ -41,6 +47,12 @@ def add(verbs: Verbs) -> None:
         verbs, "collect", collect, "take downloads from Moodle, Canvas or nbgrader's exchange"
     )
     verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
+    verb = _verb(
+        verbs, "rehearse", rehearse, "play a term through with a class that never was, in a folder"
+    )
+    verb.add_argument("--count", type=int, default=12, help="how many students (default: 12)")
+    verb.add_argument("--to", type=Path, required=True, metavar="DIR", help="made if need be")
+    verb.add_argument("--jobs", type=int, metavar="N", help="workers (default: one per core)")
 
 
 def feedback(args: argparse.Namespace) -> int:
@@ -54,20 +66,24 @@ def feedback(args: argparse.Namespace) -> int:
     if not results:
         raise nobody(args.name, args.student)
     made = write_feedback(here, args.name, results, comments(here, args.name))
-    print(f"{len(made)} pages in {here.root / 'feedback'}; hand them out with")
+    size = sum(path.stat().st_size for path in made) / 1e6
+    print(f"{len(made)} pages, {size:.1f} MB, in {here.root / 'feedback'}; hand them out with")
     print(f"  nbgrader release_feedback {args.name}")
     return 0
 
 
 def export(args: argparse.Namespace) -> int:
     """Write the table."""
-    from .export import LAYOUTS, as_csv, rows
+    from .export import LAYOUTS, as_csv, left_out, rows
 
     here = Course.here(args.course)
     marks = list(rows(here, args.name))
     if not marks:
         raise nobody(args.name, None)
-    _out(as_csv(LAYOUTS[args.layout](args.name, marks)), args.to)
+    lost = left_out(args.layout, marks)
+    if lost:
+        print(lost, file=sys.stderr)
+    _out(as_csv(LAYOUTS[args.layout](args.column or args.name, marks)), args.to)
     return 0
 
 
@@ -86,6 +102,10 @@ def regrade(args: argparse.Namespace) -> int:
             print(move)
     changed = sum(bool(m.by) for m in moved)
     print(f"{changed} of {len(moved)} marks move, {sum(m.by < 0 for m in moved)} of them down")
+    before = {m.before.points for m in moved if m.before} - {m.after.points for m in moved}
+    if before:
+        full = ", ".join(f"{points:g}" for points in sorted(before))
+        print(f"full marks were {full} and are {moved[0].after.points:g} now")
     for error in found:
         if isinstance(error, LabkitError):
             print(f"not graded: {error}", file=sys.stderr)
@@ -124,6 +144,18 @@ def collect(args: argparse.Namespace) -> int:
     for source in args.sources:
         for taken in take(here, args.name, source):
             print(taken, flush=True)
+    return 0
+
+
+def rehearse(args: argparse.Namespace) -> int:
+    """Download, collect, grade, hand back, report, export; go on where it was stopped."""
+    from .batch import How, workers
+    from .rehearsal import rehearse as play
+
+    here = Course.here(args.course)
+    here.notebook_source(args.name)
+    for sentence in play(here, args.name, args.to, args.count, How(jobs=args.jobs or workers())):
+        print(sentence, flush=True)
     return 0
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from .checker import grade, rejection
 from .limits import Limits
+from .plan import imports
 from .results import Bundle, Result
 from .sandbox import Broken, NoIsolation, Sandbox
 from .submission import Submission
@@ -24,8 +25,8 @@ TRIES = 2
 class Desk:
     """What a worker keeps from one job to the next: its sandbox."""
 
-    def __init__(self, slot: int, *, isolated: bool) -> None:
-        self.slot, self.isolated = slot, isolated
+    def __init__(self, *, isolated: bool) -> None:
+        self.isolated = isolated
         self.sandbox: Sandbox | None = None
 
     def do(self, job: dict[str, Any]) -> Result:
@@ -40,7 +41,8 @@ class Desk:
         data, note, why = submission.read(limits.notebook)
         for _ in range(TRIES):
             if self.sandbox is None:
-                self.sandbox = Sandbox(self.slot, isolated=self.isolated)
+                loads = imports(bundle.data["cells"])
+                self.sandbox = Sandbox(loads, isolated=self.isolated)
             if why:
                 return rejection(why, submission.student, bundle, self.sandbox.level)
             try:
@@ -66,11 +68,11 @@ def _bundle(path: str, key: str) -> Bundle:
     return bundle
 
 
-def main(slot: int, *, isolated: bool) -> int:
+def main(*, isolated: bool) -> int:
     """Serve until stdin ends."""
     out = os.fdopen(os.dup(1), "w", encoding="ascii")
     os.dup2(2, 1)
-    desk = Desk(slot, isolated=isolated)
+    desk = Desk(isolated=isolated)
     try:
         for line in sys.stdin:
             try:
@@ -86,4 +88,4 @@ def main(slot: int, *, isolated: bool) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(int(sys.argv[1]), isolated="--no-isolation" not in sys.argv))
+    sys.exit(main(isolated="--no-isolation" not in sys.argv))

@@ -3,7 +3,17 @@
 from __future__ import annotations
 
 from .motion import Motion
-from .page import Dial, Explorer, demo_html, explorer_html, motion_html, run_files, shared_files
+from .page import (
+    Dial,
+    Explorer,
+    demo_html,
+    explorer_html,
+    motion_html,
+    recorded_html,
+    run_files,
+    shared_files,
+    viewer_scripts,
+)
 from .recorded import motion_of
 from .widget import demo, show
 
@@ -16,7 +26,9 @@ __all__ = [
     "explorer_html",
     "motion_html",
     "motion_of",
+    "recorded_html",
     "run_files",
     "shared_files",
     "show",
+    "viewer_scripts",
 ]

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -58,6 +59,26 @@ def motion_html(
             f" {LIMIT / 1000:.0f} kB: give fewer ghosts, a shorter run or a lower rate."
         )
     return _figure(text, caption or motion.title, motion.alt, motion.description, poster, root)
+
+
+def recorded_html(data: Mapping[str, Any], description: str, caption: str) -> str:
+    """A replay from the data of `Motion.data`, for a page that brings the viewer with it.
+
+    Args:
+        data: What the viewer reads.
+        description: The motion in words.
+        caption: Text under it.
+
+    Returns:
+        HTML without inline code; see `viewer_scripts`.
+    """
+    return _figure(_compact(data), caption, str(data["alt"]), description, None, None)
+
+
+@cache
+def viewer_scripts() -> tuple[str, ...]:
+    """The viewer and the robot as scripts to put into a page that must be one file, 1.7 MB."""
+    return tuple((VIEWER / name).read_text(encoding="utf-8") for name in ("viewer.js", "robot.js"))
 
 
 @dataclass(frozen=True)

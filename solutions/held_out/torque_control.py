@@ -167,7 +167,7 @@ def tuned(random: Random, side: Any, payload: float) -> Tuned:
     loop = Loop(
         tour, side=side, plant=replace(lk.BAXTER, payload=payload), seed=int(random.integers(1000))
     )
-    left = Tuned((model,), loop).ask(choose_gains)
+    left = loop.measured(Tuned((model,), loop).ask(choose_gains))
     limits = {
         "rms_mm": round(2.0 * left["rms_mm"], 1),
         "rms_velocity_mm_s": round(2.8 * left["rms_velocity_mm_s"]),

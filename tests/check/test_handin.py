@@ -103,6 +103,27 @@ def test_merging_keeps_answers_and_own_cells(folder):
     assert len(merged) == len(new) + 1
 
 
+def test_merging_after_a_question_was_added(folder):
+    """Where a question was added all ids below it move on; answers and own cells find theirs."""
+    new = read_cells(folder / "01_paths.ipynb")
+    at = next(k for k, c in enumerate(new) if c["source"].startswith("def compose"))
+    mine = [dict(c) for c in new[:at] + new[at + 2 :]]  # its check goes with it
+    for k, cell in enumerate(mine):
+        cell["id"] = f"01-paths-{k:02d}"
+    there = next(k for k, c in enumerate(mine) if c["source"].startswith("def witness"))
+    mine[there]["source"] = "def witness(theta, duration):\n    return duration / 2"
+    own = {"cell_type": "code", "id": "0badcafe", "metadata": {}, "source": "print('mine')"}
+    mine.insert(there + 1, own)
+    merged = merge(mine, new)
+    where = next(k for k, c in enumerate(merged) if c["source"].startswith("def witness"))
+    assert "duration / 2" in merged[where]["source"]
+    assert merged[where + 1] == own
+    kept = [k for k in range(len(merged)) if k not in (where, where + 1)]
+    assert [merged[k] for k in kept] == [
+        c for c in new if not c["source"].startswith("def witness")
+    ]
+
+
 def test_merging_an_untouched_notebook_gives_the_new_release(folder):
     """Without any work of the student's, the merge is the new release."""
     cells = read_cells(folder / "01_paths.ipynb")

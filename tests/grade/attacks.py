@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from handmade import add, put
+
 
 @dataclass(frozen=True)
 class Attack:
@@ -21,6 +23,17 @@ class Attack:
 
     cell: str = ""
     answer: str = ""
+
+    def planted(self, notebook, at=2, **own):
+        """Put it into a notebook; words in braces stand for what is the test's own."""
+        cell, answer = self.cell, self.answer.replace("NAME", "bang_bang")
+        for word, value in own.items():
+            cell = cell.replace("{" + word + "}", str(value))
+        if cell:
+            add(notebook, cell, at)
+        if answer:
+            put(notebook, "bang_bang", answer)
+        return notebook
 
 
 def cells(**sources: str) -> dict[str, Attack]:

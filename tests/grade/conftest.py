@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import json
-import os
 import shutil
 
 import pytest
@@ -44,8 +43,7 @@ def bundle(released):
 
 @pytest.fixture(scope="session")
 def sandbox():
-    worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0")  # each has a user of its own
-    with Sandbox(900 + int(worker[2:])) as sandbox:
+    with Sandbox() as sandbox:
         yield sandbox
 
 

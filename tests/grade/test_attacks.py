@@ -8,21 +8,12 @@ from pathlib import Path
 
 import pytest
 from attacks import CLASSES
-from handmade import QUICK, add, put, raw
+from handmade import QUICK, raw
 
 from labkit.grade.checker import grade
 from labkit.grade.limits import Limits
 
 FAST = Limits(cell=0.5, call=0.3, question=5.0, wall=30.0)
-
-
-def launch(attack, blank, bundle, sandbox, root):
-    """Grade a notebook that holds one attack and nothing else."""
-    if attack.cell:
-        add(blank, attack.cell.replace("{root}", str(root)))
-    if attack.answer:
-        put(blank, "bang_bang", attack.answer.replace("NAME", "bang_bang"))
-    return grade(raw(blank), "mallory", bundle, sandbox, FAST)
 
 
 def said(result):
@@ -55,7 +46,8 @@ def test_attacks_earn_nothing(kind, _blank, solved, released, bundle, sandbox):
     """An attack earns 0 points, reads nothing, leaves nothing, and harms nobody after it."""
     wrong = []
     for name, attack in CLASSES[kind].items():
-        result = launch(attack, copy.deepcopy(_blank), bundle, sandbox, released.root)
+        notebook = attack.planted(copy.deepcopy(_blank), root=released.root)
+        result = grade(raw(notebook), "mallory", bundle, sandbox, FAST)
         text = said(result)
         if result.score or result.rejected or "GOT" in text:
             wrong.append((name, result.score, result.rejected, text[text.find("GOT") :][:90]))

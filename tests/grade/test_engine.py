@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from labkit.check.judge import Close
 from labkit.check.question import Question, Test
 from labkit.grade.checker import grade
 from labkit.grade.inside import cells
-from labkit.grade.plan import plan
+from labkit.grade.plan import imports, plan
 from labkit.grade.results import Bundle, Result
 
 
@@ -195,6 +196,13 @@ def test_names_that_a_cell_needs():
     assert "SyntaxError" in cells.look("def f(:")["broken"]
 
 
+def test_what_every_submission_imports_is_known(bundle):
+    """Modules that the release's setup cells import are known before any submission runs."""
+    assert imports(bundle.data["cells"]) == (
+        "labkit", "labkit.check", "matplotlib.pyplot", "numpy"
+    )  # fmt: skip
+
+
 def test_plan_prefers_what_is_written(bundle, blank, solved):
     """Of several definitions the last one counts that is no empty stub, with a note."""
     stub = cell_of(blank, "circle")
@@ -223,7 +231,7 @@ def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
               "    return lk.JointVelocity(target.velocity + gain * (target.position - state.q))")  # fmt: skip
     names: dict[str, object] = {}
     exec(source, names)
-    here = loop.ask(names["follow"])
+    here = loop.measured(loop.ask(names["follow"]))
     measure = next(iter(here))
     limits = {measure: here[measure] * (1 + 1e-9)}
     for share, points in ((1.0, 4.0), (0.999, 0.0)):
@@ -234,6 +242,14 @@ def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
         notebook = {"nbformat": 4, "cells": [{"cell_type": "code", "id": "x", "source": source}]}
         result = grade(raw(notebook), "ada", Bundle(data), sandbox, QUICK)
         assert result.score == points, result.questions
+        assert result.questions[0]["runs"] == [], "a hidden run is not for his eyes"
+    tests = (Test("it follows", (replace(tight, hidden=False),)),)
+    shown = Bundle(data | {"questions": [replace(question, tests=tests).data()]})
+    seen = [grade(raw(notebook), "ada", shown, sandbox, QUICK) for _ in range(2)]
+    (run,) = seen[0].questions[0]["runs"]
+    assert run["measures"][measure] == pytest.approx(here[measure], rel=1e-5)
+    assert run["motion"]
+    assert seen[0].verdict == seen[1].verdict, "the same run again, to the last digit"
     assert question.calls == ()
     assert isinstance(Call((1,)), Call)
 

@@ -11,21 +11,22 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from handmade import QUICK
+from handmade import QUICK, ROOT
 
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.batch import Graded, How, grade_class
 from labkit.grade.class_report import pseudonym, report
 from labkit.grade.collect import collect
-from labkit.grade.doctor import examine
 from labkit.grade.engines import students
-from labkit.grade.export import LAYOUTS, Row, as_csv, rows
+from labkit.grade.export import LAYOUTS, Row, as_csv, left_out, rows
 from labkit.grade.feedback import page
 from labkit.grade.gradebook import record
+from labkit.grade.lms import FILE, Known, known
 from labkit.grade.regrade import accept, moves
 from labkit.grade.results import Results
 from labkit.grade.synthetic import make_class
+from labkit.grade.term import archive
 
 NAME = "01_paths"
 
@@ -200,7 +201,7 @@ def test_collect_from_downloads(course, tmp_path):
     (inbound / f"eve+{NAME}+2026-03-01 10:00:00 UTC+abc").symlink_to("/etc")
     said = [str(x) for source in (moodle, canvas, inbound) for x in collect(course, NAME, source)]
     taken = {p.parent.parent.name: p.read_text() for p in course.submitted.glob("*/*/*.ipynb")}
-    assert taken == {"Ada-Lovelace-101": "2", "hoppergrace-7": "3", "carl": "4"}
+    assert taken == {"Ada-Lovelace": "2", "hoppergrace-7": "3", "carl": "4"}
     assert (course.submitted / "carl" / NAME / "timestamp.txt").read_text().startswith("2026-03-01")
     assert [x for x in said if "late" in x and "hopper" in x]
     assert [x for x in said if "no student can be told" in x]
@@ -210,8 +211,64 @@ def test_collect_from_downloads(course, tmp_path):
         list(collect(course, NAME, Path(__file__)))
 
 
-def test_doctor_finds_a_working_sandbox():
-    """On a machine that grades, nothing that is needed is missing."""
-    found = list(examine())
-    assert not [str(x) for x in found if x.needed and not x.fine]
-    assert [x for x in found if x.what == "sandbox"]
+def download(path, names):
+    with zipfile.ZipFile(path, "w") as archive:
+        for name in names:
+            archive.writestr(name, name)
+    return path
+
+
+def test_collect_tells_people_of_one_name_apart(course, tmp_path):
+    """Moodle's number is in a folder's name only where it must be, and stays there."""
+    file = "{}_{}_assignsubmission_file_{}n.ipynb"
+    first = [file.format("Li Wei", 7, "/"), file.format("Bob", 8, "")]
+    later = [file.format("Li Wei", 7, "/"), file.format("Li Wei", 9, "/sub/")]
+    other = [file.format("Kim", 1, "/"), file.format("Kim", 2, "/")]
+    for number, names in enumerate((first, later, other)):
+        said = [str(x) for x in collect(course, NAME, download(tmp_path / f"{number}.zip", names))]
+    assert any("2 students are called so" in x for x in said)
+    folders = {path.name for path in course.submitted.iterdir()}
+    assert folders == {"Li-Wei", "Li-Wei-9", "Bob", "Kim-1", "Kim-2"}
+    assert known(course, NAME)["Li-Wei-9"] == Known("moodle", "9", "Li Wei")
+    assert not known(course, "02_model")
+
+
+def test_numbers_go_with_the_term(course, tmp_path):
+    """What a platform calls its students lies in a folder of no repository, and is archived."""
+    names = ["hoppergrace_LATE_7_99_n.ipynb"]
+    list(collect(course, NAME, download(tmp_path / "a.zip", names)))
+    assert (course.root / FILE).exists()
+    assert "/course_private/" in (ROOT / ".gitignore").read_text().split()
+    assert FILE.startswith("course_private/")
+    folder = archive(course)
+    assert not (course.root / FILE).exists()
+    assert (folder / "lms.json").exists()
+
+
+def test_canvas_layout():
+    """Canvas' five columns in its order, full marks below, students by Canvas' own number."""
+    canvas = row("hoppergrace-7", known=Known("canvas", "7", "hoppergrace"))
+    table = LAYOUTS["canvas"]("Paths (4711)", [canvas, row("ada", lms="42", first="A", last="L")])
+    assert table[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Paths (4711)"]
+    assert "Points Possible" in table[1][0]
+    assert table[1][5] == 2.0
+    assert table[2] == ["hoppergrace-7", "7", "", "", "", 1.0]
+    assert table[3] == ["L, A", "42", "", "ada", "", 1.0]
+    assert not left_out("canvas", [canvas, row("ada")])
+
+
+def test_moodle_layouts():
+    """The gradebook knows users by address, the worksheet by the number of the download."""
+    moodle = row("Ada-Lovelace", known=Known("moodle", "101", "Ada Lovelace"))
+    table = LAYOUTS["moodle-worksheet"]("Paths", [moodle, row("carl")])
+    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(table[0])
+    assert table[1:] == [["Participant 101", "Ada Lovelace", 1.0, 2.0, ""]]
+    assert left_out("moodle-worksheet", [moodle, row("carl")]).startswith("1 of 2 cannot be told")
+    table = LAYOUTS["moodle"]("Paths", [row("carl", email="c@x.org", lms="9")])
+    assert table[0][2:] == ["ID number", "Username", "Email address", "Paths"]
+    assert table[1][2:] == ["9", "carl", "c@x.org", 1.0]
+    assert "Ada-Lovelace" in left_out("moodle", [moodle])
+
+
+def row(student, *, first="", last="", email="", lms="", known=None):
+    return Row(student, first, last, email, lms, "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0, known)

@@ -1,0 +1,108 @@
+"""A rehearsal: the whole term of one assignment, from the download to the marks, with a class that
+never was.
+"""  # noqa: D205
+
+from __future__ import annotations
+
+import shutil
+import time
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..errors import LabkitError
+from .batch import Graded, How, common_failures, grade_class
+from .class_report import report
+from .collect import collect
+from .course import Course
+from .engines import students
+from .export import LAYOUTS, as_csv, rows
+from .feedback import write_feedback
+from .gradebook import comments, record
+from .release import release
+from .results import Results, write
+from .synthetic import differences, make_class
+from .term import PUBLIC_SEED
+
+LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
+
+
+def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Iterator[str]:
+    """Play a term through in a folder of its own; what is done already is not done again.
+
+    Args:
+        course: Where the sources are; nothing is written there.
+        name: The assignment.
+        to: The folder; a course is made in it.
+        count: How many students.
+        how: How to grade.
+
+    Yields:
+        What was done, a sentence each, with its time.
+
+    Raises:
+        LabkitError: A mark is not what the submission deserves.
+    """
+    stage = Course(to.resolve())
+    clock = _Clock()
+    if not (stage.root / "nbgrader_config.py").exists():
+        stage.root.mkdir(parents=True, exist_ok=True)
+        (stage.root / "solutions").symlink_to(course.root / "solutions")
+        shutil.copy(course.root / "nbgrader_config.py", stage.root)
+    download = stage.root / f"{name}-{count}-moodle.zip"
+    if not download.exists():
+        yield clock.says(str(release(stage, name, PUBLIC_SEED)))
+        _hand_in(stage, name, count, download)
+        size = download.stat().st_size / 1e6
+        yield clock.says(f"{count} hand in; their download has {size:.1f} MB")
+    taken = list(collect(stage, name, download))
+    yield clock.says(f"collected: {sum('taken' in t.says for t in taken)} of {len(taken)} are new")
+    who = students(stage, name)
+    graded = [one for one in grade_class(stage, name, who, how) if isinstance(one, Graded)]
+    new = sum(one.says != "as before" for one in graded)
+    yield clock.says(f"graded: {new} of {len(graded)} anew", each=new)
+    if len(graded) < len(who):
+        raise LabkitError(f"{len(who) - len(graded)} of {len(who)} were not graded; run it again")
+    results = list(Results(stage, name))
+    notes = record(stage, name, results)
+    yield clock.says(f"in the gradebook: {len(results)}, {len(notes)} to look at")
+    pages = write_feedback(stage, name, results, comments(stage, name))
+    size = sum(page.stat().st_size for page in pages) / 1e6
+    yield clock.says(f"feedback: {len(pages)} pages, {size:.0f} MB", each=len(pages))
+    problems = {p.name: p for p in stage.problems(name)}
+    write(stage.root / "report.md", report(name, results, problems))
+    yield clock.says(f"class report: report.md, {len(list(common_failures(results)))} to doubt")
+    marks = list(rows(stage, name))
+    for layout in LAYOUTS_TO_TRY:
+        write(stage.root / f"marks-{layout}.csv", as_csv(LAYOUTS[layout](name, marks)))
+    yield clock.says(f"exported: {', '.join(f'marks-{x}.csv' for x in LAYOUTS_TO_TRY)}")
+    wrong = list(differences(stage, name))
+    if wrong:
+        raise LabkitError(f"{len(wrong)} marks are not what was deserved: {'; '.join(wrong[:3])}")
+    yield clock.says("every mark is what was deserved")
+
+
+class _Clock:
+    """How long each step took."""
+
+    def __init__(self) -> None:
+        self.last = time.perf_counter()
+
+    def says(self, text: str, each: int = 0) -> str:
+        now = time.perf_counter()
+        spent, self.last = now - self.last, now
+        share = f", {spent / each:.2f} s each" if each else ""
+        return f"{text} ({spent / 60:.1f} min{share})"
+
+
+def _hand_in(stage: Course, name: str, count: int, download: Path) -> None:
+    """Let a class hand in on Moodle: one zip, as a teacher downloads it."""
+    make_class(stage, name, PUBLIC_SEED, count)
+    unfinished = download.with_suffix(".new")
+    with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as archive:
+        for number, student in enumerate(students(stage, name), start=1001):
+            folder = stage.submitted / student / name
+            for path in sorted(folder.iterdir()):
+                archive.write(path, f"{student}_{number}_assignsubmission_file/{path.name}")
+            shutil.rmtree(folder.parent)
+    unfinished.replace(download)
