@@ -45,12 +45,18 @@ def remedy(error: BaseException) -> str:
     return ""
 
 
-def told(error: BaseException) -> str:
-    """The exception in one sentence: its type, its words, the line, the remedy."""
-    kind, text = type(error).__name__, str(error)
+def explained(error: BaseException) -> str:
+    """What the exception says, the line that raised it, and the remedy."""
+    text = str(error)
     if isinstance(error, ValueError) and "gufunc signature" in text:
         text = "sizes that do not fit"
     line, way_out = line_of(error), remedy(error)
-    sentence = f"{kind}: {text}" if text else kind
-    sentence += f", in the line `{line}`" if line else ""
+    where = f"in the line `{line}`" if line else ""
+    sentence = ", ".join(part for part in (text, where) if part)
     return f"{sentence}; {way_out}" if way_out else sentence
+
+
+def told(error: BaseException) -> str:
+    """The exception in one sentence: its type, and `explained`."""
+    sentence = explained(error)
+    return f"{type(error).__name__}: {sentence}" if sentence else type(error).__name__

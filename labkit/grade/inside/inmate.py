@@ -22,6 +22,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from labkit.check.raised import explained
+
 from .cells import plain
 from .wire import Gone, Line
 
@@ -167,7 +169,7 @@ def _as_data(answer: Any) -> Any:
 
 def _sentence(error: BaseException) -> str:
     try:
-        text = str(error)[:SAYS]
+        text = explained(error)[:SAYS]
     except BaseException:
         text = "(its message cannot be shown)"
     if isinstance(error, SyntaxError):
