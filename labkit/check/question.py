@@ -109,7 +109,7 @@ class Loop:
 
     def shown(self, name: str) -> str:
         """The run in words."""
-        return f"a run of the {self.plant.name} {self.side} arm with {name} as its controller"
+        return f"a run of the {self.side} arm ({self.plant.name}) with {name} as its controller"
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,8 +182,8 @@ class Tuned:
     def shown(self, name: str) -> str:
         """The run in words."""
         plant = self.loop.plant
-        carries = f" with {plant.payload:g} kg in its gripper" if plant.payload else ""
-        return f"a run of the {plant.name} {self.loop.side} arm{carries} with the gains of {name}"
+        carries = f", {plant.payload:g} kg in its gripper" if plant.payload else ""
+        return f"a run of the {self.loop.side} arm ({plant.name}{carries}) with the gains of {name}"
 
 
 Case = Call | Loop | Choice | Tuned
