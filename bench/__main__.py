@@ -8,9 +8,19 @@ import json
 import sys
 from pathlib import Path
 
-from . import camera, campaign, closed_loop, drake, grading, realistic, start, viewer
+from . import camera, campaign, closed_loop, drake, grading, notebooks, realistic, start, viewer
 
-MEASUREMENTS = (start, closed_loop, realistic, drake, campaign, camera, viewer, grading)
+MEASUREMENTS = (
+    start,
+    closed_loop,
+    realistic,
+    drake,
+    campaign,
+    camera,
+    viewer,
+    notebooks,
+    grading,
+)
 OUT = Path("build/bench.json")
 
 

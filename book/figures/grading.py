@@ -14,32 +14,36 @@ from labkit.grade.limits import Limits
 from .page import table
 
 BENCH = Path(__file__).parents[2] / "build/bench.json"
-MEASURED = 0.16
-"""Seconds of a worker for one submission of 00_warmup, by ``python -m bench.grading``."""
+MEASURED = {"grading_overhead_s": 0.16, "notebook_mb": 357.0, "notebook_s": 9.4}
+"""What ``make bench`` gave on two quiet cores."""
 CLASSES, CORES = (40, 400, 10_000), (2, 8, 64)
 
 
-def _overhead() -> tuple[float, str]:
-    """Seconds for each submission, and where the number is from."""
-    if BENCH.exists():
-        told = json.loads(BENCH.read_text()).get("grading_overhead_s")
-        if told is not None:
-            return float(told), "as measured on this machine by make bench."
-    return (
-        MEASURED,
-        "as measured on two quiet cores; python -m bench.grading measures yours.",
-    )
+def _measured(key: str) -> tuple[float, str]:
+    """A figure of the bench, and where it is from."""
+    here = json.loads(BENCH.read_text()).get(key) if BENCH.exists() else None
+    if here is not None:
+        return float(here), "as make bench measured on this machine"
+    return MEASURED[key], "as make bench measured on two quiet cores"
 
 
 def table_of_effort() -> HTML:
     """How long classes take on how many cores."""
-    seconds, origin = _overhead()
-    limits = Limits()
-    glue("origin", f"A solved notebook 00 takes a worker {seconds:.2g} s, {origin}", display=False)
-    glue("memory", f"{limits.memory}", display=False)
+    seconds, origin = _measured("grading_overhead_s")
+    told = f"A solved notebook 00 takes a worker {seconds:.2g} s, {origin}."
+    glue("origin", told, display=False)
+    glue("memory", f"{Limits().memory}", display=False)
     rows = [(f"{n:,}", *(_said(n * seconds / cores) for cores in CORES)) for n in CLASSES]
     head = ("Submissions", *(f"{cores} cores" for cores in CORES))
     return table(head, rows, "Time to grade a class, where hardly anything is to be computed")
+
+
+def kernel() -> None:
+    """What the hungriest of the solved notebooks takes of its kernel."""
+    for name in ("mb", "s"):
+        number, origin = _measured(f"notebook_{name}")
+        glue(f"kernel_{name}", f"{number:.0f}", display=False)
+        glue("kernel_origin", origin, display=False)
 
 
 def ways_to_isolate() -> None:

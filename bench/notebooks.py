@@ -1,0 +1,47 @@
+"""What a student's machine, or a hub, has to give: time and memory of the solved notebooks."""
+
+import shutil
+import tempfile
+from pathlib import Path
+
+import nbformat
+
+from labkit.grade.course import Course
+from labkit.grade.release import release
+
+ROOT = Path(__file__).parents[1]
+USED = """
+import resource, time
+print(time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+"""
+
+
+def worked_through(path):
+    """Processor time [s] and peak memory [MB] of a kernel that runs a notebook."""
+    from nbclient import NotebookClient
+
+    notebook = nbformat.read(path, as_version=4)
+    notebook.cells.append(nbformat.v4.new_code_cell(USED))
+    place = {"metadata": {"path": str(path.parent)}}
+    NotebookClient(notebook, timeout=240, kernel_name="python3", resources=place).execute()
+    return tuple(map(float, notebook.cells[-1].outputs[-1].text.split()))
+
+
+def measure():
+    """The most seconds and megabytes that a solved notebook takes of its kernel."""
+    found = {}
+    with tempfile.TemporaryDirectory(prefix="labkit-bench-") as folder:
+        (Path(folder) / "solutions").symlink_to(ROOT / "solutions")
+        shutil.copy(ROOT / "nbgrader_config.py", folder)
+        course = Course(Path(folder))
+        for name in course.names():
+            release(course, name, seed=1)
+            found[name] = worked_through(course.solution / name / f"{name}.ipynb")
+    return {
+        "notebook_s": max(seconds for seconds, _ in found.values()),
+        "notebook_mb": max(megabytes for _, megabytes in found.values()),
+    }
+
+
+if __name__ == "__main__":
+    print(measure())
