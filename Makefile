@@ -6,7 +6,7 @@ INSTALL = $(BIN)/pip install --quiet --disable-pip-version-check --constraint co
 # What Debian brings, for a student, for whoever grades, for whoever tests.
 FOR_ALL := ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
 FOR_GRADING := $(FOR_ALL) bwrap:bubblewrap
-FOR_TESTS := $(FOR_GRADING) chromium,chromium-browser,google-chrome:chromium node:nodejs
+FOR_TESTS := $(FOR_GRADING) chromium,chromium-browser,google-chrome:chromium node:nodejs libatomic.so.1:libatomic1
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
 

@@ -37,13 +37,14 @@ def test_pages_of_the_contents_exist(book):
 def test_the_reference_has_every_module():
     """What can be imported is described; commands and the inside of the sandbox are no library."""
     told = "".join(p.read_text() for p in (ROOT / "book/reference").glob("*.md"))
-    described = set(re.findall(r"automodule:: labkit\.(\w+)$", told, re.M))
-    there = {
-        p.stem
-        for p in (ROOT / "labkit").iterdir()
-        if p.suffix == ".py" or (p / "__init__.py").exists()
-    }
-    assert there - described - {"__init__", "cli", "grade"} == set()
+    described = set(re.findall(r"automodule:: labkit\.([\w.]+)$", told, re.M))
+    whole = {"check", "grade", "replay", "baseline"}  # what these give stands in their __init__
+    folders = {p.parent for p in (ROOT / "labkit").glob("*/__init__.py")}
+    there = {p.stem for p in (ROOT / "labkit").glob("*.py")} | whole - {"grade"}
+    for folder in folders:
+        if folder.name not in whole:
+            there |= {f"{folder.name}.{p.stem}" for p in folder.glob("*.py")}
+    assert {x for x in there - described if not x.endswith("__init__")} - {"cli"} == set()
 
 
 def test_the_picture_of_the_modules_has_the_order_that_imports_keep():

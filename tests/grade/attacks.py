@@ -25,14 +25,17 @@ class Attack:
     answer: str = ""
 
     def planted(self, notebook, at=2, **own):
-        """Put it into a notebook; words in braces stand for what is the test's own."""
+        """Put it into a notebook; words in braces stand for what is the test's own.
+
+        GOT stands there in disguise, for whoever fails is shown the line that failed.
+        """
         cell, answer = self.cell, self.answer.replace("NAME", "bang_bang")
         for word, value in own.items():
             cell = cell.replace("{" + word + "}", str(value))
         if cell:
-            add(notebook, cell, at)
+            add(notebook, cell.replace("GOT", r"G\x4fT"), at)
         if answer:
-            put(notebook, "bang_bang", answer)
+            put(notebook, "bang_bang", answer.replace("GOT", r"G\x4fT"))
         return notebook
 
 

@@ -151,7 +151,7 @@ def test_gains_that_were_chosen_are_seen_at_work():
 def test_numbers_beside_those_expected(result):
     """Where a formula is wrong on a public input, its numbers stand beside those expected."""
     found = result.questions[1]["numbers"]
-    assert found == {"call": "double([1.0, 2.0, 3.0])", "expected": [3.0, 4.0, 9.0],
+    assert found == {"call": "double([1, 2, 3])", "expected": [3.0, 4.0, 9.0],
                      "given": [2.0, 4.0, 6.0], "of": 3}  # fmt: skip
     text = page(result)
     assert "Of 3 numbers, number 3 is farthest off: expected 9, yours 6." in text
