@@ -42,7 +42,12 @@ class HandIn:
         lines = [f"[mend] {text}" for text in self.problems]
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {verdict}" for verdict in self.verdicts.values()]
-        end = "mend the above first." if self.problems else "ready to hand in."
+        right = sum(": right." in verdict for verdict in self.verdicts.values())
+        end = (
+            "mend the above first."
+            if self.problems
+            else f"whole; when it was last run, {right} of {len(self.verdicts)} tasks were right."
+        )
         return "\n".join([*lines, f"{self.assignment}: {end}"])
 
     def for_the_forum(self) -> str:

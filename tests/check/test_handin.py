@@ -31,7 +31,7 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     found = look(folder / "01_paths.ipynb")
     assert found.problems == ()
     assert set(found.verdicts.values()) >= {"bang_bang: not run"}
-    assert str(found).endswith("01_paths: ready to hand in.")
+    assert str(found).endswith("whole; when it was last run, 0 of 6 tasks were right.")
 
 
 def test_what_is_not_yet_right_is_named(folder):
