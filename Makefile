@@ -36,7 +36,7 @@ grade: for-grading .venv/.course ## grade submitted/ ; ASSIGNMENT=01_paths
 book: .venv/.course ## build the book: book/_build/html/index.html
 	@$(BIN)/python tools/build_book.py
 
-book-zip: .venv/.course ## the book as one file to hand out
+book-zip: .venv/.course build/campaign.json ## the book as one file to hand out
 	@$(BIN)/python tools/build_book.py --zip
 
 book-pdf: for-tests .venv/.course ## the book to print
@@ -47,6 +47,9 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@PYTHON="$(CURDIR)/$(BIN)/python" sh tools/vendor.sh
 
 campaign: .venv/.course ## every controller on every task: build/campaign.json
+	@$(BIN)/python -m solutions.campaign
+
+build/campaign.json: # the book to hand out has the films
 	@$(BIN)/python -m solutions.campaign
 
 bench: .venv/.dev ## measure speeds as ratios: build/bench.json
