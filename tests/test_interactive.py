@@ -29,11 +29,12 @@ def test_a_slider_redraws_with_the_caption_as_alt_text(shown):
     def draw(kp):
         return plt.figure(), f"kp is {kp:g}"
 
+    others = plt.get_fignums()
     sliders = lk.dials(draw, kp=(0.0, 10.0, 4.0))
     sliders["kp"].value = 7.0
     captions = [x["metadata"]["image/png"]["alt"] for x in shown if isinstance(x, dict)]
     assert captions == ["kp is 4", "kp is 7"]
-    assert not plt.get_fignums()
+    assert plt.get_fignums() == others
 
 
 def test_a_typed_number_moves_the_slider(shown):
