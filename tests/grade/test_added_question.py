@@ -23,6 +23,8 @@ from labkit.grade.gradebook import open_gradebook, record
 from labkit.grade.release import release
 from labkit.grade.results import Results
 
+pytestmark = pytest.mark.slow  # whole classes are graded
+
 NAME, LATER = "01_paths", "compose"
 SEED = 7
 

@@ -21,6 +21,8 @@ from labkit.grade.gradebook import open_gradebook, record
 from labkit.grade.results import Results
 from labkit.grade.synthetic import differences, make_class
 
+pytestmark = pytest.mark.slow  # whole classes are graded
+
 NAME = "01_paths"
 PART = 8
 

@@ -27,6 +27,8 @@ from labkit.grade.results import Result
 from labkit.metrics import Summary
 from labkit.replay.motion import unpack
 
+pytestmark = pytest.mark.slow  # whole classes are graded
+
 AXE = (ROOT / "tests/vendor/axe.min.js").read_text()
 TAGS = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 READY = lk.Model("left").robot.ready

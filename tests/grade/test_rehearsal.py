@@ -16,6 +16,8 @@ from labkit.grade.rehearsal import rehearse
 from labkit.grade.results import Results
 from labkit.grade.synthetic import expected_file
 
+pytestmark = pytest.mark.slow  # whole classes are graded
+
 NAME, COUNT = "00_warmup", 6
 
 

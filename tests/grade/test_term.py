@@ -28,6 +28,8 @@ from labkit.grade.results import Results
 from labkit.grade.synthetic import make_class
 from labkit.grade.term import archive
 
+pytestmark = pytest.mark.slow  # whole classes are graded
+
 NAME = "01_paths"
 
 
