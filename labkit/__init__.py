@@ -14,12 +14,13 @@ from .arm import Arm
 from .arrays import as_array
 from .commands import Command, JointPosition, JointTorque, JointVelocity, State
 from .errors import LabkitError
+from .log import Log
 from .model import Link, Model, links
 from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 from .paths import Circle, Line, Polyline, Spline
 from .plant import BAXTER, IDEAL, Plant
 from .robot import robot
-from .run import Controller, Log, run
+from .run import Controller, run
 from .scalings import BangBang, Cubic, Quintic, Trapezoid
 from .scene import Push, Spring, Table, Wall
 from .world import World

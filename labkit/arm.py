@@ -49,6 +49,7 @@ class Arm:
         plant: How it differs from the textbook.
         model: A model that knows of this plant's rotors and payload.
         world: Where it stands.
+        saturated: Whether a limit cut the command that the arm follows, at any time since it came.
     """
 
     def __init__(
@@ -78,7 +79,7 @@ class Arm:
         self.plant = plant
         self.model = Model(side, plant)
         self.world = World() if world is None else world
-        self._check_open()
+        self.check_open()
         self._random = np.random.default_rng(seed)
         self._client = self.world.client
         with quiet():
@@ -145,7 +146,7 @@ class Arm:
         """
         kind, world = type(command), self.world
         if world.client < 0:
-            raise _closed()
+            self.check_open()
         if kind is JointTorque:
             wanted = command.value
             allowed = _cut(wanted, self._effort)
@@ -156,7 +157,7 @@ class Arm:
             wanted = allowed = self.model.within_limits(command.value, "JointPosition")
         else:
             raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
-        self._wanted, self._saturated = allowed, allowed is not wanted
+        self._wanted, self.saturated = allowed, allowed is not wanted
         if kind is not self._kind:
             self._enter(kind)
         self._fresh = True
@@ -173,7 +174,7 @@ class Arm:
             JointLimitExceeded: A joint is out of its range.
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
-        self._check_open()
+        self.check_open()
         for i in _JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
         self._sensors.reset()
@@ -200,11 +201,6 @@ class Arm:
             return self._total
         return motor_torques(self._read())
 
-    @property
-    def saturated(self) -> bool:
-        """Whether a limit cut the command that the arm follows, at any time since it came."""
-        return self._saturated
-
     def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
         """Push the tip during the next physics step; world axes, at the tip's origin.
 
@@ -227,6 +223,11 @@ class Arm:
                 self._body, 6, m.tolist(), bullet.WORLD_FRAME, physicsClientId=self._client
             )
 
+    def check_open(self) -> None:
+        """Raise `Closed` if the world it stands in was closed."""
+        if self.world.client < 0:
+            raise Closed("this arm's world was closed; make a new Arm")
+
     def lost_ticks(self, ticks: int) -> list[bool]:
         """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
         if not self.plant.lost_ticks:
@@ -234,8 +235,11 @@ class Arm:
         return [bool(x < self.plant.lost_ticks) for x in self._random.random(ticks)]
 
     def observe(self) -> tuple[State, State, Array]:
-        """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
-        rows = self._read()
+        """What `run` writes down: the truth, the state as reported, and `torque`, read at once.
+
+        The world must be open: `run` sees to that, and asks a thousand times a second.
+        """
+        rows = bullet.getJointStates(self._body, _JOINTS, self._client)
         truth = self._exact(rows)
         torque = self._total if self._kind is JointTorque else motor_torques(rows)
         return truth, self._reported(rows) if self._reports.every else truth, torque
@@ -300,9 +304,8 @@ class Arm:
             if self.plant.gravity_compensation:
                 wanted = total + self._own.gravity(angles(rows))
                 total = _cut(wanted, self._effort)
-                self._saturated |= total is not wanted
-            self._total = total
-            self._total_list = total.tolist()
+                self.saturated |= total is not wanted
+            self._total, self._total_list = total, total.tolist()
         bullet.setJointMotorControlArray(
             self._body,
             _JOINTS,
@@ -324,7 +327,7 @@ class Arm:
         stops = np.sqrt(2.0 * self._braking * np.abs(gap))
         wanted = np.clip(gain * gap, -stops, stops)
         allowed = _cut(wanted, self._speed)
-        self._saturated |= allowed is not wanted
+        self.saturated |= allowed is not wanted
         self._spin(allowed)
 
     def _spin(self, speeds: Array) -> None:
@@ -361,13 +364,8 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _check_open(self) -> None:
-        if self.world.client < 0:
-            raise _closed()
-
     def _read(self) -> Any:
-        if self.world.client < 0:
-            raise _closed()
+        self.check_open()
         return bullet.getJointStates(self._body, _JOINTS, self._client)
 
     def close(self) -> None:
@@ -389,10 +387,6 @@ def _cut(x: Array, limit: list[float]) -> Array:
     if all(map(le, map(abs, x.tolist()), limit)):  # NumPy is slow with seven numbers
         return x
     return np.clip(x, np.negative(limit), limit)
-
-
-def _closed() -> Closed:
-    return Closed("this arm's world was closed; make a new Arm")
 
 
 def _names() -> str:

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array, as_array, locked
+from .log import Log
 from .metrics import joint_error, joint_speed_error, model_of
 from .model import Model
-from .run import Log
 
 
 @dataclass(frozen=True, eq=False)

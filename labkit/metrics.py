@@ -13,9 +13,9 @@ import numpy as np
 from . import se3
 from .arrays import Array
 from .errors import TypeMismatch
+from .log import Log
 from .model import Model
 from .motion import PoseSample
-from .run import Log
 
 
 def model_of(log: Log) -> Model:

@@ -16,9 +16,9 @@ from matplotlib import colors
 from matplotlib.figure import Figure
 
 from . import metrics
+from .log import Log
 from .model import Model
 from .motion import PoseSample
-from .run import Log
 from .study.analysis import Loop
 from .study.maps import ErrorMap
 

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from .arm import Arm
-from .arrays import Array, as_array, as_number, locked, shown
-from .commands import COMMANDS, JOINTS, Command, State
+from .arrays import as_array, as_number, shown
+from .commands import COMMANDS, Command, State
 from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
+from .log import Log, Recorder
 from .motion import AnySample, PoseSample, Sample, Target
-from .plant import Plant
-from .robot import Side
 from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]
@@ -23,51 +20,6 @@ Controller = Callable[[State, Any], Command]
 
 RUNAWAY = 50.0
 """Joints faster than this, in [rad/s], are out of control: twelve times the quickest's limit."""
-
-
-@dataclass(frozen=True, eq=False)
-class Log:
-    """What happened, one row for each control tick, the last one at the end of the run.
-
-    Attributes:
-        t: Time since the run began, shape (N,) in [s].
-        q: Joint angles as they were, shape (N, 7) in [rad].
-        dq: Joint speeds as they were, shape (N, 7) in [rad/s].
-        tau: Motor torque in the last physics step before the next tick, gravity compensation
-            included, shape (N, 7) in [N m]; the last row repeats the one before.
-        command: What the controller asked for, shape (N, 7), in the unit of `command_type`.
-        target: A `Sample` or `PoseSample` of stacked arrays, (N, ...).
-        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7),
-            tau_ext (N, 7).
-        saturated: Whether a limit of speed or torque cut what the arm did until the next tick,
-            shape (N,).
-        command_type: `JointPosition`, `JointVelocity` or `JointTorque`.
-        controller: The controller's name.
-        plant: The plant that was driven.
-        side: Which arm.
-    """
-
-    t: Array
-    q: Array
-    dq: Array
-    tau: Array
-    command: Array
-    target: AnySample
-    measured: Any
-    saturated: np.ndarray[Any, np.dtype[np.bool_]]
-    command_type: type
-    controller: str
-    plant: Plant
-    side: Side
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return (
-            f"Log({self.controller} on the {self.plant.name} {self.side} arm, "
-            f"{len(self)} ticks, {self.t[-1]:.3g} s)"
-        )
 
 
 def run(
@@ -108,12 +60,15 @@ def run(
             )
     if not isinstance(arm, Arm):
         raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
+    arm.check_open()
     rate = as_number(rate, "rate", above=0.0)
     steps = whole_steps(rate, arm.world.dt, "rate")
     ticks = _ticks(target, duration, steps * arm.world.dt)
     who, whom, world, period = _name(controller), _name(target), arm.world, steps * arm.world.dt
     lost = arm.lost_ticks(ticks)
-    book = _Book(ticks, whom, _first_sample(target, whom))
+    samples = _Samples(target, whom)
+    recorder = Recorder(period, samples.first)
+    saturated = recorder.saturated
     the_target = f"the target {whom}"
     kind, t, k, asked = None, 0.0, 0, who
     often = max(1, round(0.01 / period))  # every 10 ms: nothing runs far in so short a time
@@ -121,126 +76,102 @@ def run(
         for k in range(ticks):
             t, asked = k * period, the_target
             truth, seen, torque = arm.observe()
-            sample = book.checked(target(t), t)
+            sample = samples.checked(target(t), t)
             asked = who
             command = controller(seen, sample)
             if type(command) is not kind:
                 kind = _settled(command, kind, who, t)
-            book.keep(k, truth, seen, torque, command, sample)
+            recorder.keep(truth, seen, torque, command, sample)
             if not k % often and not truth.dq.dot(truth.dq) <= RUNAWAY**2:  # a NaN runs away too
                 raise Diverged(_runaway(arm, truth, who, t))
             if k < ticks - 1:
                 if not lost[k]:
                     arm.apply(command)
                 world.step(steps)
-                book.saturated[k] = arm.saturated
+                saturated.append(arm.saturated)
     except KeyboardInterrupt:
-        if not book.filled:
+        if not len(recorder):
             raise
     except Diverged as error:
-        error.log = book.log(kind, who, arm, period)
+        error.log = recorder.log(kind or type(None), who, arm.plant, arm.robot.side)
         raise
     except (ControllerError, Closed):
         raise
     except Exception as error:
-        book.blame(t)
+        samples.blame(t)
         what = str(error) if isinstance(error, LabkitError) else f"{type(error).__name__}: {error}"
         raise ControllerError(f"{asked} failed at t = {t:.3f} s, tick {k}: {what}") from error
     finally:
         if world.client >= 0:
             arm.stop()
-    book.check_target(period)
-    return book.log(kind, who, arm, period)
+    log = recorder.log(kind or type(None), who, arm.plant, arm.robot.side)
+    samples.check_all(log.target, period)
+    return log
 
 
-_shape = attrgetter("shape")
+_FLOAT = np.dtype(np.float64)
 
 
-class _Book:
-    """What the log is made of, while it is being written: a row of numbers for each tick."""
+class _Samples:
+    """Guards what the target gives: of one kind and shape at all times, and read-only."""
 
-    def __init__(self, ticks: int, whom: str, first: AnySample) -> None:
-        self.filled, self.whom, self.sample_type = 0, whom, type(first)
-        self.shapes = [part.shape for part in first]
-        self.latest = first
-        self.widths = [JOINTS] * 5 + [part.size for part in first]
-        self.rows = np.empty((ticks, sum(self.widths)))
-        self.seen, self.t_seen, self.apart = np.empty((ticks, 3 * JOINTS)), np.empty(ticks), False
-        self.saturated = np.zeros(ticks, dtype=bool)
-
-    def checked(self, sample: Any, t: float) -> AnySample:
-        """The target's sample: of the right kind and shapes, and read-only."""
+    def __init__(self, target: Target, name: str) -> None:
+        """Take the first sample, which settles what the others must be."""
+        self.name = name
         try:
-            good = type(sample) is self.sample_type and [*map(_shape, sample)] == self.shapes
-        except AttributeError:  # lists
+            sample: Any = target(0.0)
+        except Exception as error:
+            what = f"{type(error).__name__}: {error}"
+            raise ControllerError(f"the target {name} failed at t = 0: {what}") from error
+        self.kind: type = type(sample)
+        self.shapes: list[tuple[int, ...]] = [(4, 4), (6,), (6,)]
+        if isinstance(sample, Sample):
+            self.shapes = [(np.size(sample.position),)] * 3
+        self.latest = self.first = self.read(sample, 0.0)
+        self._layout = tuple(part.shape for part in self.first)
+
+    def checked(self, sample: Any, t: float) -> Any:
+        """The sample of time ``t``, if it is as it should be."""
+        try:
+            x, dx, ddx = sample
+            good = (
+                type(sample) is self.kind
+                and x.dtype is dx.dtype is ddx.dtype is _FLOAT
+                and (x.shape, dx.shape, ddx.shape) == self._layout
+            )
+        except (AttributeError, TypeError, ValueError):  # lists, or no sample at all
             good = False
-        self.latest = x, dx, ddx = sample if good else self.read(sample, t)
-        x.setflags(False)  # type: ignore[call-arg]  # as in `locked`
-        dx.setflags(False)  # type: ignore[call-arg]
-        ddx.setflags(False)  # type: ignore[call-arg]
-        return self.latest
+        if not good:
+            sample = x, dx, ddx = self.read(sample, t)
+        x.setflags(False)  # as in `locked`
+        dx.setflags(False)
+        ddx.setflags(False)
+        self.latest = sample
+        return sample
 
     def read(self, sample: Any, t: float) -> AnySample:
-        """Read a sample with care, or say what is wrong with it."""
-        return _read_sample(sample, self.sample_type, self.shapes, self.whom, t)
+        """Read a sample with care, or say what is wrong with it; a copy."""
+        if type(sample) is not self.kind or not isinstance(sample, Sample | PoseSample):
+            raise ControllerError(
+                f"the target {self.name} gave {str(sample)[:80]} ({type(sample).__name__}) at "
+                f"t = {t:.3f} s; a target gives lk.Sample(position, velocity, acceleration) or "
+                "lk.PoseSample(pose, twist, dtwist), the same kind at all times"
+            )
+        parts = zip(sample._fields, sample, self.shapes, strict=True)
+        try:
+            return type(sample)(*(np.array(as_array(x, n, name)) for name, x, n in parts))
+        except LabkitError as error:
+            raise ControllerError(f"the target {self.name} at t = {t:.3f} s: {error}") from error
 
     def blame(self, t: float) -> None:
         """Raise if it was the target that broke the controller."""
         self.read(self.latest, t)
 
-    def keep(
-        self,
-        k: int,
-        truth: State,
-        seen: State,
-        torque: Array,
-        command: Command,
-        sample: AnySample,
-    ) -> None:
-        """Write down one tick; ``torque`` belongs to the tick before."""
-        x, dx, ddx = sample
-        np.concatenate(
-            (truth.q, truth.dq, truth.tau_ext, torque, command.value, x.ravel(), dx, ddx),
-            out=self.rows[k],
-        )
-        if seen is not truth:
-            np.concatenate(seen[1:], out=self.seen[k])
-            self.apart = True
-        self.t_seen[k], self.filled = seen.t, k + 1
-
-    def check_target(self, period: float) -> None:
-        """Raise if a sample held a NaN that did no harm; harmful ones were blamed at once."""
-        target = self.rows[: self.filled, 5 * JOINTS :]
-        for k in np.flatnonzero(~np.isfinite(target).all(axis=1))[:1]:
-            parts = np.split(target[k], np.cumsum(self.widths[5:])[:-1])
-            shaped = zip(parts, self.shapes, strict=True)
-            self.read(self.sample_type(*(x.reshape(shape) for x, shape in shaped)), k * period)
-
-    def log(self, kind: type | None, who: str, arm: Arm, period: float) -> Log:
-        """What was written so far, frozen."""
-        n, edges = self.filled, np.cumsum(self.widths)[:-1]
-        q, dq, tau_ext, torque, command, *target = np.split(self.rows[:n], edges, axis=1)
-        reported = np.split(self.seen[:n], 3, axis=1) if self.apart else (q, dq, tau_ext)
-        shaped = zip(target, self.shapes, strict=True)
-        seen = (self.t_seen[:n], *reported)
-        tau = np.concatenate([torque[1:], torque[-1:]])
-        at_limit = (np.abs(tau) >= arm.robot.effort * (1.0 - 1e-9)).any(axis=1)
-        saturated = self.saturated[:n] | at_limit
-        saturated.setflags(write=False)
-        return Log(
-            t=locked(period * np.arange(n, dtype=np.float64)),
-            q=locked(q),
-            dq=locked(dq),
-            tau=locked(tau),
-            command=locked(command),
-            target=self.sample_type(*(locked(x.reshape(n, *shape)) for x, shape in shaped)),
-            measured=State(*map(locked, seen)),  # type: ignore[arg-type]
-            saturated=saturated,
-            command_type=kind or type(None),
-            controller=who,
-            plant=arm.plant,
-            side=arm.robot.side,
-        )
+    def check_all(self, samples: AnySample, period: float) -> None:
+        """Raise if one held a NaN that did no harm; harmful ones were blamed at once."""
+        good = [np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in samples]
+        for k in np.flatnonzero(~np.logical_and.reduce(good))[:1]:
+            self.read(self.kind(*(x[k] for x in samples)), k * period)
 
 
 def _ticks(target: Target, duration: float | None, period: float) -> int:
@@ -252,36 +183,6 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
                 f"how long? the target {_name(target)} has no duration; give duration=..."
             )
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
-
-
-def _first_sample(target: Target, whom: str) -> AnySample:
-    """The target's first sample, a copy: what kind it is settles what the others must be."""
-    try:
-        sample: Any = target(0.0)
-    except Exception as error:
-        what = f"{type(error).__name__}: {error}"
-        raise ControllerError(f"the target {whom} failed at t = 0: {what}") from error
-    shapes: list[tuple[int, ...]] = [(4, 4), (6,), (6,)]
-    if isinstance(sample, Sample):
-        shapes = [(np.size(sample.position),)] * 3
-    return _read_sample(sample, type(sample), shapes, whom, 0.0)
-
-
-def _read_sample(
-    sample: Any, kind: type, shapes: list[tuple[int, ...]], whom: str, t: float
-) -> AnySample:
-    """Read a sample with care, or say what is wrong with it."""
-    if type(sample) is not kind or not isinstance(sample, Sample | PoseSample):
-        raise ControllerError(
-            f"the target {whom} gave {str(sample)[:80]} ({type(sample).__name__}) at t = {t:.3f} s;"
-            " a target gives lk.Sample(position, velocity, acceleration) or"
-            " lk.PoseSample(pose, twist, dtwist), the same kind at all times"
-        )
-    parts = zip(sample._fields, sample, shapes, strict=True)
-    try:
-        return type(sample)(*(np.array(as_array(x, n, name)) for name, x, n in parts))
-    except LabkitError as error:
-        raise ControllerError(f"the target {whom} at t = {t:.3f} s: {error}") from error
 
 
 def _settled(command: object, kind: type | None, who: str, t: float) -> type:

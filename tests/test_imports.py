@@ -25,6 +25,7 @@ ORDER = [
     {"world", "scene"},
     {"sensors"},
     {"arm"},
+    {"log"},
     {"run"},
     {"metrics"},
 ]  # what comes after these may import all of them

@@ -144,6 +144,24 @@ def test_a_target_of_plain_lists_is_read(ideal):
     assert_allclose(log.target.position[:, 0], log.t)
 
 
+@pytest.mark.parametrize("dtype", [int, np.float32, ">f8", float])
+@pytest.mark.parametrize("order", ["rows", "columns"])
+def test_numbers_are_logged_as_what_they_mean_however_they_lie_in_memory(ideal, dtype, order):
+    """The log keeps bytes: whole numbers, single precision and columns of a table are numbers."""
+    table = np.zeros((7, 3), dtype).T if order == "columns" else np.zeros((3, 7), dtype)
+    table[:] = [[0] * 7, [1] * 7, [2] * 7]
+    seen = []
+
+    def controller(state, target):
+        seen.append(target)
+        return lk.JointVelocity(np.zeros(7))
+
+    log = lk.run(ideal, lambda t: lk.Sample(*table), controller, duration=0.05)
+    for k, part in enumerate(log.target):
+        assert_array_equal(part, np.full((len(log), 7), float(k)))
+    assert_array_equal(log.target.velocity, [target.velocity for target in seen])
+
+
 def test_a_target_that_writes_on_its_own_array_does_not_rewrite_history(ideal):
     buffer = np.zeros((3, 7))
 

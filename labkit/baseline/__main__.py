@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..arm import Arm
+from ..log import Log
 from ..metrics import summary
 from ..motion import Chain, Hold
 from ..plant import BAXTER
-from ..run import Log, run
+from ..run import run
 from ..scene import Table
 from ..study import recorded, tasks
 from ..study.tasks import Task

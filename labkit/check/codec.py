@@ -15,8 +15,8 @@ import numpy as np
 from .. import commands, motion, paths, plant, scalings, scene
 from ..arrays import locked
 from ..errors import TypeMismatch
+from ..log import Log
 from ..model import Model
-from ..run import Log
 from ..study.trials import Runner, Trials
 from .judge import Ratio
 

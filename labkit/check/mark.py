@@ -11,7 +11,7 @@ from enum import Enum
 from typing import Any
 
 from ..errors import Diverged, LabkitError
-from ..run import Log
+from ..log import Log
 from .judge import AtMost, Judge
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .raised import told

@@ -20,9 +20,10 @@ from ..arm import Arm
 from ..arrays import Array
 from ..controllers import springs
 from ..errors import TypeMismatch
+from ..log import Log
 from ..metrics import since, summary
 from ..plant import IDEAL, Plant
-from ..run import Log, run
+from ..run import run
 from ..study.trials import Runner, Trials
 from ..world import Thing, World
 from .codec import decode, encode

@@ -13,8 +13,8 @@ import numpy as np
 from ..check.evidence import evidence
 from ..check.mark import Ran, Verdict
 from ..check.question import Question, Tuned
+from ..log import Log
 from ..replay import Motion, motion_of
-from ..run import Log
 
 LARGEST = 60_000
 """Bytes that one motion may take in a result."""

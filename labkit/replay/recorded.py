@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from .. import metrics
+from ..log import Log
 from ..motion import PoseSample
-from ..run import Log
 from .motion import Motion
 
 

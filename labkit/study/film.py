@@ -16,7 +16,7 @@ from .. import metrics
 from ..arm import Arm
 from ..arrays import Array, as_number
 from ..errors import OutOfRange
-from ..run import Log
+from ..log import Log
 from ..scene import Table
 from ..vision.camera import Camera, looking_at
 from ..vision.intrinsics import Intrinsics

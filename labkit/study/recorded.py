@@ -17,9 +17,9 @@ import numpy as np
 from ..arrays import locked
 from ..commands import COMMANDS, State
 from ..errors import UnknownName
+from ..log import Log
 from ..motion import PoseSample, Sample
 from ..plant import Plant
-from ..run import Log
 
 _ROWS = ("t", "q", "dq", "tau", "command", "saturated")
 _FOLDER = files("labkit") / "data" / "recorded"

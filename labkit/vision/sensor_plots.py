@@ -8,9 +8,9 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 
+from ..log import Log
 from ..motion import PoseSample
 from ..plotting import STYLES
-from ..run import Log
 from .sensing import Quality, Readings
 
 UNITS = {
