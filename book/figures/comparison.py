@@ -93,7 +93,8 @@ def one_table(name: str, plant: str) -> HTML:
         cells = []
         for task in campaign.TASKS:
             x = [row[name] for row in pick(found()["rows"], way=way, task=task, plant=plant)]
-            cells.append(f"{np.mean(x):.3g} [{min(x):.3g}, {max(x):.3g}]")
+            span = f'<span class="lab-range">[{min(x):.3g}, {max(x):.3g}]</span>'
+            cells.append(f"{np.mean(x):.3g} {span}")
         body.append((way, *cells))
     return table(("Way", *campaign.TASKS), body, f"{TABLES[name]}, {plant} arm")
 
@@ -212,14 +213,14 @@ def everything(way: str, task: str) -> HTML:
               "torque [N m]")  # fmt: skip
     for ax, label in zip(axes, labels, strict=True):
         ax.set_ylabel(label)
-        ax.legend(fontsize="x-small", ncols=7, loc="upper right", handlelength=1.6,
+        ax.legend(fontsize="small", ncols=7, loc="upper right", handlelength=1.6,
                   columnspacing=0.8)  # fmt: skip
-        ax.margins(y=0.22)
+        ax.margins(y=0.26)
     axes[-1].set_xlabel("time [s]")
     found = metrics.summary(log, model)
     return figure(
-        f"{way} on the {task}, realistic arm.",
-        f"{way} on the {task}: {found}.",
+        f"{way.capitalize()} on the {task}, realistic arm.",
+        f"{way.capitalize()} on the {task}: {found}.",
         f"Six panels over {found.duration:.3g} s: position and speed of the tip over its target, "
         "its position error along x, y and z, its orientation error, the error of each joint and "
         f"the torque of each motor. {found}. The largest joint error is "

@@ -10,7 +10,7 @@ import labkit as lk
 from labkit.replay import demo_html
 from labkit.replay.motion import JOINTS
 
-from .page import Question, figure, holds, numbers, quiz, table
+from .page import Question, figure, holds, numbers, picture, quiz, table
 
 SEED = 2
 STEP = 1e-6
@@ -19,7 +19,8 @@ STEP = 1e-6
 def jacobian_demo() -> HTML:
     """The live demo of the Jacobian."""
     caption = "Live: turn the joints and watch a column of the tip Jacobian become an arrow."
-    return HTML(demo_html("jacobian", caption=caption))
+    seen = picture("left", lk.IDEAL, lk.robot("left").ready)
+    return HTML(demo_html("jacobian", caption=caption, poster=seen))
 
 
 def checks() -> HTML:

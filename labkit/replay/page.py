@@ -173,13 +173,21 @@ DEMOS = {
 }
 
 
-def demo_html(name: str, *, caption: str = "", side: str = "left", root: str | None = None) -> str:
+def demo_html(
+    name: str,
+    *,
+    caption: str = "",
+    side: str = "left",
+    poster: str | None = None,
+    root: str | None = None,
+) -> str:
     """One of the live demos: "scaling", "jacobian" or "rotation".
 
     Args:
         name: Which.
         caption: Text under it; a description if empty.
         side: The arm of the Jacobian demo.
+        poster: See `motion_html`.
         root: See `motion_html`.
 
     Returns:
@@ -187,7 +195,7 @@ def demo_html(name: str, *, caption: str = "", side: str = "left", root: str | N
     """
     words = DEMOS[name]
     return _figure(
-        _compact({"kind": name, "side": side}), caption or words, words, words, None, root
+        _compact({"kind": name, "side": side}), caption or words, words, words, poster, root
     )
 
 
