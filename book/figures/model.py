@@ -116,7 +116,7 @@ def gravity() -> HTML:
     ax.legend(ncols=3)
     most = rows[np.abs(rows[:, 1]).argmax(), 1]
     neutral = model.gravity(model.robot.neutral)[1]
-    numbers({"g_neutral": neutral, "g_most": most}, ".3g")
+    numbers({"g_neutral": abs(neutral), "g_most": abs(most)}, ".3g")
     holds(abs(most) > 50.0, "the shoulder carries more than 50 N m, the limit of the URDF")
     return figure(
         "The torque that holds the arm, as the shoulder s1 turns and the rest stays neutral.",
