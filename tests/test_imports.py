@@ -20,6 +20,7 @@ ORDER = [
     {"plant"},
     {"robot"},
     {"limits"},
+    {"kinematics"},
     {"model"},
     {"commands"},
     {"world", "scene"},
@@ -32,7 +33,7 @@ ORDER = [
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 # What simulates, and what plans and sees for it.
 SIMULATE = {"arm", "world", "scene", "vision.camera", "vision.board", "vision.looks"}
-MODEL = {"model", "baseline"}
+MODEL = {"kinematics", "model", "baseline"}
 ENGINES = "numpy, pybullet, pinocchio"
 DRAW = {"plotting", "replay", "vision.sensor_plots", "interactive"}
 SEE = {f"vision.{name}" for name in ("camera", "tags", "detection", "calibration", "edges")}
