@@ -184,6 +184,12 @@ class Arm:
         self._kind: type = type(None)
         self.stop()
 
+    def recover(self) -> None:
+        """Come to rest at once, inside the joints' range: what someone does after a runaway."""
+        q = self.truth().q
+        lost = not np.isfinite(q).all()
+        self.reset(None if lost else np.clip(q, self.robot.lower, self.robot.upper))
+
     # What only the experimenter may use
 
     def truth(self) -> State:
