@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 from operator import le
@@ -121,7 +122,7 @@ class Arm:
         self._reports = Reports(plant, self.world.dt, self._random)
         self._sensors = TorqueSensors(self._own, plant, self.world.dt)
         self._effort, self._speed = self.robot.effort.tolist(), self.robot.speed.tolist()
-        self._stiction = list(plant.stiction)
+        self._stiction, self._laden = list(plant.stiction), plant.payload > 0.0
         self.reset(q0)
         self.world.add(self)
         self.world.arms.append(self)
@@ -254,31 +255,14 @@ class Arm:
 
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
-        plant, world = self.plant, self.world
-        steps = world._steps
+        steps = self.world._steps
         if steps > self._deadline:
             self._hold()
-        touchable, rows = world.things or plant.payload, None  # else no torque from outside
-        if (
-            touchable
-            or self._kind is JointPosition
-            or (self._kind is JointTorque and plant.gravity_compensation)
-        ):
-            rows = self._read()
+        touchable = self.world.things or self._laden  # else no torque comes from outside
+        rows = self._read() if touchable or self._looks else None
         if self._reports.every:
             self._report(rows)
-        if self._kind is JointTorque:
-            self._drive_torque(rows)
-        elif self._kind is JointVelocity:
-            if plant.velocity_lag:
-                self._lagged += (self._wanted - self._lagged) * min(
-                    1.0, world.dt / plant.velocity_lag
-                )
-                self._spin(self._lagged)
-            elif self._fresh:  # PyBullet's motors keep their target
-                self._spin(self._wanted)
-        else:
-            self._approach(angles(rows))
+        self._drive(rows)
         self._fresh = False
         if touchable:
             driven = self._total if self._kind is JointTorque else NOTHING
@@ -305,26 +289,34 @@ class Arm:
             self._reports.send(truth, self.world._steps)
 
     def _drive_torque(self, rows: Any) -> None:
-        if self._fresh or self.plant.gravity_compensation:
-            total = self._wanted
-            if self.plant.gravity_compensation:
-                wanted = total + self._own.gravity(angles(rows))
-                total = _cut(wanted, self._effort)
-                self.saturated |= total is not wanted
-            self._total, self._total_list = total, total.tolist()
+        if self._looks:  # it carries its own weight
+            wanted = self._wanted + self._own.gravity(angles(rows))
+            self._total = _cut(wanted, self._effort)
+            self.saturated |= self._total is not wanted
+        elif self._fresh:
+            self._total = self._wanted
         bullet.setJointMotorControlArray(
             self._body,
             _JOINTS,
             bullet.TORQUE_CONTROL,
-            forces=self._total_list,
+            forces=self._total.tolist(),
             physicsClientId=self._client,
         )
 
-    def _approach(self, q: Array) -> None:
+    def _drive_speed(self, rows: Any) -> None:
+        if self.plant.velocity_lag:
+            share = min(1.0, self.world.dt / self.plant.velocity_lag)
+            self._lagged += (self._wanted - self._lagged) * share
+            self._spin(self._lagged)
+        elif self._fresh:  # PyBullet's motors keep their target
+            self._spin(self._wanted)
+
+    def _approach(self, rows: Any) -> None:
         """Turn towards the wanted angles, never faster than the motors can brake before them.
 
         Braking evenly from v takes v^2 / 2a (Lynch & Park, section 9.2.2).
         """
+        q = angles(rows)
         if self._fresh:
             M, g = self._own.mass_matrix(q), self._own.gravity(q)
             self._braking = BRAKING * (self.robot.effort - np.abs(g)) / M.diagonal()
@@ -350,6 +342,12 @@ class Arm:
     def _enter(self, kind: type) -> None:
         """Change the mode: in torque mode the motors' only duty is to be the dry friction."""
         self._kind = kind
+        modes: dict[type, tuple[Callable[[Any], None], bool]] = {
+            JointTorque: (self._drive_torque, self.plant.gravity_compensation),
+            JointVelocity: (self._drive_speed, False),
+            JointPosition: (self._approach, True),
+        }
+        self._drive, self._looks = modes[kind]  # what drives the motors, and whether it must see
         if kind is JointTorque:
             bullet.setJointMotorControlArray(
                 self._body,
