@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from operator import le
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .arrays import Array, as_array, locked, shown
+from .body import load
 from .commands import (
     COMMANDS,
     JOINTS,
@@ -28,7 +26,6 @@ from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
-from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
@@ -83,35 +80,7 @@ class Arm:
         self.check_open()
         self._random = np.random.default_rng(seed)
         self._client = self.world.client
-        with quiet():
-            self._body: int = bullet.loadURDF(
-                _urdf_file(side, plant),
-                useFixedBase=True,
-                flags=bullet.URDF_USE_INERTIA_FROM_FILE,
-                physicsClientId=self._client,
-            )
-        for joint in range(-1, 7):
-            bullet.changeDynamics(
-                self._body,
-                joint,
-                linearDamping=0.0,
-                angularDamping=0.0,
-                jointDamping=0.0 if joint < 0 else plant.viscous[joint],
-                physicsClientId=self._client,
-            )
-        bullet.changeDynamics(
-            self._body,
-            6,
-            contactStiffness=TIP_STIFFNESS,
-            contactDamping=TIP_DAMPING,
-            lateralFriction=1.0,
-            restitution=0.0,
-            physicsClientId=self._client,
-        )
-        # PyBullet would show the ball at the tip; what cameras see of the arm is in `looks`.
-        bullet.changeVisualShape(
-            self._body, 6, rgbaColor=[0, 0, 0, 0], physicsClientId=self._client
-        )
+        self._body = load(self._client, side, plant)
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
         # The arm knows its own weight, not what it carries.
@@ -395,21 +364,3 @@ def _cut(x: Array, limit: list[float]) -> Array:
 
 def _names() -> str:
     return ", ".join(kind.__name__ for kind in COMMANDS)
-
-
-@cache
-def _urdf_file(side: str, plant: Plant) -> str:
-    """PyBullet reads only files: one for each kind of arm, gone with the process."""
-    path = Path(_folder().name) / f"{side}_{len(list(Path(_folder().name).iterdir()))}.urdf"
-    x, y, z = robot(side).T_hand_tip[:3, 3]
-    ball = (
-        f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="{TIP_RADIUS}"/>'
-        "</geometry></collision></link>"
-    )
-    path.write_text(ball.join(robot(side).urdf(plant).rsplit("</link>", 1)))
-    return str(path)
-
-
-@cache
-def _folder() -> tempfile.TemporaryDirectory[str]:
-    return tempfile.TemporaryDirectory(prefix="labkit-")

@@ -24,7 +24,7 @@ ORDER = [
     {"model"},
     {"commands"},
     {"world", "scene"},
-    {"sensors"},
+    {"sensors", "body"},
     {"arm"},
     {"log"},
     {"run"},
@@ -32,7 +32,7 @@ ORDER = [
 ]  # what comes after these may import all of them
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 # What simulates, and what plans and sees for it.
-SIMULATE = {"arm", "world", "scene", "vision.camera", "vision.board", "vision.looks"}
+SIMULATE = {"arm", "body", "world", "scene", "vision.camera", "vision.board", "vision.looks"}
 MODEL = {"kinematics", "model", "baseline"}
 ENGINES = "numpy, pybullet, pinocchio"
 DRAW = {"plotting", "replay", "vision.sensor_plots", "interactive"}

@@ -18,7 +18,7 @@ LAYERS = (
     ("Sentences and numbers", ("errors", "quiet", "arrays", "se3")),
     ("What is wanted", ("motion", "scalings", "paths")),
     ("What is known", ("plant", "robot", "limits", "kinematics", "model")),
-    ("What moves", ("commands", "world", "scene", "sensors", "arm")),
+    ("What moves", ("commands", "world", "scene", "sensors", "body", "arm")),
     ("The loop, and what it did", ("log", "run", "controllers", "metrics", "energy", "impedance")),
     ("What looks, compares and draws", ("vision", "study", "baseline", "plotting")),
     ("What judges and shows", ("check", "replay", "interactive", "readiness", "notation")),
