@@ -77,7 +77,7 @@ def print_pdf(
         for chapter, page in zip(whole.select(".lab-chapter")[1:], pages[1:], strict=True):
             title = chapter.select_one("h1")
             assert title
-            file.add_outline_item(_words(title), numbers[page] - 1)
+            file.add_outline_item(title=_words(title), page_number=numbers[page] - 1)
         file.write(target)
     return target
 

@@ -115,7 +115,7 @@ def test_every_notebook_is_saved_from_the_disk(visit):
 def test_an_exercise_leads_to_its_notebook(visit):
     page = visit("chapters/impedance.html")
     page.get_by_role("link", name="05, impedance").click()
-    assert page.url.endswith("generated/notebooks/05_impedance.html")
+    page.wait_for_url("**/generated/notebooks/05_impedance.html")
     assert page.get_by_role("link", name="Download this notebook").is_visible()
 
 
