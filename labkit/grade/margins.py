@@ -17,9 +17,9 @@ from typing import Any
 import numpy as np
 
 from ..check import Call, Choice, Loop, Question, Tuned
+from ..check.cases import Case
 from ..check.codec import encode
 from ..check.judge import AtMost
-from ..check.question import Case
 from .problem import Problem
 
 ROUNDING = 1e-3

@@ -19,6 +19,7 @@ import jupytext
 import nbformat
 
 from ..check import Question
+from ..check.question_codec import pack_hidden
 from ..errors import LabkitError
 from .problem import Problem
 
@@ -52,7 +53,7 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
         asked.append(name)
         cells.append(_cell("markdown", brief(question), "brief", {}))
         cells.append(_cell("code", cell.source, "answer", _nbgrader(name, solution=True)))
-        check = f"from labkit.check import also\n\nalso({name!r}, {question.pack_hidden()!r})"
+        check = f"from labkit.check import also\n\nalso({name!r}, {pack_hidden(question)!r})"
         check = f"### BEGIN HIDDEN TESTS\n{check}\n### END HIDDEN TESTS\ncheck({name!r}, {name})"
         meta = _nbgrader(f"{name}-check", locked=True, grade=True, points=question.points)
         cells.append(_cell("code", check.replace("'", '"'), "check", meta))

@@ -10,7 +10,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.check import Call, Loop, Tuned
-from labkit.check.question import Case
+from labkit.check.cases import Case
 from labkit.grade.problem import call
 
 from ..torque_control import choose_gains

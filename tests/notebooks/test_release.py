@@ -12,6 +12,7 @@ import nbformat
 import numpy as np
 import pytest
 
+from labkit.check import question_data
 from labkit.grade.course import Course
 from labkit.grade.notebook import source_notebook
 from labkit.grade.release import FORBIDDEN, release
@@ -84,10 +85,10 @@ def test_no_hidden_case_leaves(name):
     text = files(name)["checks.json"].read_text(encoding="utf-8")
     long = re.compile(r"\d\.\d{12,}(?![\de])")
     problems = COURSE.problems(name)
-    public = json.dumps([problem.question(2019).public().data() for problem in problems])
+    public = json.dumps([question_data(problem.question(2019).public()) for problem in problems])
     known = np.array([*map(float, long.findall(public)), np.inf])  # but for the last digits
     for problem in problems:
-        for test in problem.question(2019).data()["tests"]:
+        for test in question_data(problem.question(2019))["tests"]:
             for case in test["cases"]:
                 if case["hidden"]:
                     numbers = set(long.findall(json.dumps(case)))
