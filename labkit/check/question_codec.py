@@ -35,7 +35,7 @@ def question_data(question: Question) -> dict[str, Any]:
                 "name": test.name,
                 "weight": test.weight,
                 "also": test.also,
-                "cases": [_case_data(case) for case in test.cases],
+                "cases": [case_data(case) for case in test.cases],
             }
             for test in question.tests
         ],
@@ -72,7 +72,7 @@ def read_question(data: Mapping[str, Any]) -> Question:
 def pack_hidden(question: Question) -> str:
     """The hidden cases of a question as one line of text."""
     data = {
-        test.name: [_case_data(case) for case in test.cases if case.hidden]
+        test.name: [case_data(case) for case in test.cases if case.hidden]
         for test in question.tests
     }
     text = json.dumps({name: cases for name, cases in data.items() if cases})
@@ -91,9 +91,10 @@ def with_hidden(question: Question, packed: str) -> Question:
     )
 
 
-def _case_data(case: Case) -> dict[str, Any]:
+def case_data(case: Case) -> dict[str, Any]:
+    """A case as JSON data."""
     fields = {
-        key: _case_data(value) if isinstance(value, Loop) else encode(value)
+        key: case_data(value) if isinstance(value, Loop) else encode(value)
         for key, value in vars(case).items()
     }
     return {"case": type(case).__name__, **fields}

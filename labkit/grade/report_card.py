@@ -19,6 +19,7 @@ from ..errors import LabkitError, UnknownName
 from . import margins
 from .course import Course
 from .problem import Problem
+from .remembered import remembering
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question: its name, or "assignment/name" where two assignments ask it."""
@@ -138,7 +139,7 @@ def _row(
     mistakes: Sequence[Callable[..., Any]],
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
-    questions = margins.remembering([problem.question(seed + k) for k in range(DRAWS)])
+    questions = remembering([problem.question(seed + k) for k in range(DRAWS)])
     wrong = {w.name: w.function for w in problem.wrong}
     wrong |= {f"from outside: {_name(f)}": f for f in mistakes}
     right = {"the answer": problem.answer}
