@@ -16,7 +16,6 @@ from labkit.grade.problem import call
 from ..torque_control import choose_gains
 
 Random = np.random.Generator
-STILL = np.zeros(7)
 
 
 def _angles(random: Random, model: lk.Model) -> Any:

@@ -1,10 +1,10 @@
 """A term begins, ends and is forgotten; a course is exported."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
+from courses import copied
 
 from labkit import LabkitError
 from labkit.grade import term
@@ -18,9 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture
 def course(tmp_path):
     """A course of its own, with nothing released yet."""
-    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", tmp_path)
-    return Course(tmp_path)
+    return copied(tmp_path)
 
 
 def test_a_term_has_a_seed_of_its_own_and_a_record(course):

@@ -1,11 +1,11 @@
 """Making notebooks from sources: what is fed in, what comes out, what is refused."""
 
 import json
-import shutil
 from pathlib import Path
 
 import nbformat
 import pytest
+from courses import copied
 
 from labkit.cli import main
 from labkit.errors import LabkitError
@@ -77,11 +77,9 @@ def test_solutions_are_whole(name):
 @pytest.mark.slow
 def test_an_answer_that_leaks_stops_the_release(tmp_path):
     """If an answer stands outside its solution region, nothing is released."""
-    shutil.copytree(COURSE.root / "solutions", tmp_path / "solutions")
-    shutil.copy(COURSE.root / "nbgrader_config.py", tmp_path)
+    course = copied(tmp_path)
     path = tmp_path / "solutions" / "notebooks" / f"{NAME}.py"
     path.write_text(path.read_text() + "\n# %%\nfrom solutions.warmup import joint_error\n")
-    course = Course(tmp_path)
     with pytest.raises(LabkitError, match="nothing released"):
         release(course, NAME, 1)
     assert not (course.release / NAME).exists()

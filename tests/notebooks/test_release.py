@@ -5,12 +5,12 @@ import inspect
 import json
 import math
 import re
-import shutil
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
+from courses import copied
 
 from labkit.check import question_data
 from labkit.grade.course import Course
@@ -27,10 +27,7 @@ each = pytest.mark.parametrize("name", NAMES)
 @pytest.fixture(scope="module")
 def elsewhere(tmp_path_factory):
     """The same course in another folder, released anew with hidden cases of another seed."""
-    root = tmp_path_factory.mktemp("course")
-    shutil.copytree(COURSE.root / "solutions", root / "solutions")
-    shutil.copy(COURSE.root / "nbgrader_config.py", root)
-    course = Course(root)
+    course = copied(tmp_path_factory.mktemp("course"))
     for name in NAMES:
         release(course, name, OTHER_SEED)
     return course
