@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import tempfile
+from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
 from operator import le
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .arrays import Array, as_array, locked, shown
+from .body import load
 from .commands import (
     COMMANDS,
     JOINTS,
@@ -27,7 +26,6 @@ from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
-from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
@@ -82,35 +80,7 @@ class Arm:
         self.check_open()
         self._random = np.random.default_rng(seed)
         self._client = self.world.client
-        with quiet():
-            self._body: int = bullet.loadURDF(
-                _urdf_file(side, plant),
-                useFixedBase=True,
-                flags=bullet.URDF_USE_INERTIA_FROM_FILE,
-                physicsClientId=self._client,
-            )
-        for joint in range(-1, 7):
-            bullet.changeDynamics(
-                self._body,
-                joint,
-                linearDamping=0.0,
-                angularDamping=0.0,
-                jointDamping=0.0 if joint < 0 else plant.viscous[joint],
-                physicsClientId=self._client,
-            )
-        bullet.changeDynamics(
-            self._body,
-            6,
-            contactStiffness=TIP_STIFFNESS,
-            contactDamping=TIP_DAMPING,
-            lateralFriction=1.0,
-            restitution=0.0,
-            physicsClientId=self._client,
-        )
-        # PyBullet would show the ball at the tip; what cameras see of the arm is in `looks`.
-        bullet.changeVisualShape(
-            self._body, 6, rgbaColor=[0, 0, 0, 0], physicsClientId=self._client
-        )
+        self._body = load(self._client, side, plant)
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
         # The arm knows its own weight, not what it carries.
@@ -121,7 +91,7 @@ class Arm:
         self._reports = Reports(plant, self.world.dt, self._random)
         self._sensors = TorqueSensors(self._own, plant, self.world.dt)
         self._effort, self._speed = self.robot.effort.tolist(), self.robot.speed.tolist()
-        self._stiction = list(plant.stiction)
+        self._stiction, self._laden = list(plant.stiction), plant.payload > 0.0
         self.reset(q0)
         self.world.add(self)
         self.world.arms.append(self)
@@ -183,6 +153,12 @@ class Arm:
         self._total = np.zeros(7)
         self._kind: type = type(None)
         self.stop()
+
+    def recover(self) -> None:
+        """Come to rest at once, inside the joints' range: what someone does after a runaway."""
+        q = self.truth().q
+        lost = not np.isfinite(q).all()
+        self.reset(None if lost else np.clip(q, self.robot.lower, self.robot.upper))
 
     # What only the experimenter may use
 
@@ -248,31 +224,14 @@ class Arm:
 
     def act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
-        plant, world = self.plant, self.world
-        steps = world._steps
+        steps = self.world._steps
         if steps > self._deadline:
             self._hold()
-        touchable, rows = world.things or plant.payload, None  # else no torque from outside
-        if (
-            touchable
-            or self._kind is JointPosition
-            or (self._kind is JointTorque and plant.gravity_compensation)
-        ):
-            rows = self._read()
+        touchable = self.world.things or self._laden  # else no torque comes from outside
+        rows = self._read() if touchable or self._looks else None
         if self._reports.every:
             self._report(rows)
-        if self._kind is JointTorque:
-            self._drive_torque(rows)
-        elif self._kind is JointVelocity:
-            if plant.velocity_lag:
-                self._lagged += (self._wanted - self._lagged) * min(
-                    1.0, world.dt / plant.velocity_lag
-                )
-                self._spin(self._lagged)
-            elif self._fresh:  # PyBullet's motors keep their target
-                self._spin(self._wanted)
-        else:
-            self._approach(angles(rows))
+        self._drive(rows)
         self._fresh = False
         if touchable:
             driven = self._total if self._kind is JointTorque else NOTHING
@@ -299,26 +258,34 @@ class Arm:
             self._reports.send(truth, self.world._steps)
 
     def _drive_torque(self, rows: Any) -> None:
-        if self._fresh or self.plant.gravity_compensation:
-            total = self._wanted
-            if self.plant.gravity_compensation:
-                wanted = total + self._own.gravity(angles(rows))
-                total = _cut(wanted, self._effort)
-                self.saturated |= total is not wanted
-            self._total, self._total_list = total, total.tolist()
+        if self._looks:  # it carries its own weight
+            wanted = self._wanted + self._own.gravity(angles(rows))
+            self._total = _cut(wanted, self._effort)
+            self.saturated |= self._total is not wanted
+        elif self._fresh:
+            self._total = self._wanted
         bullet.setJointMotorControlArray(
             self._body,
             _JOINTS,
             bullet.TORQUE_CONTROL,
-            forces=self._total_list,
+            forces=self._total.tolist(),
             physicsClientId=self._client,
         )
 
-    def _approach(self, q: Array) -> None:
+    def _drive_speed(self, rows: Any) -> None:
+        if self.plant.velocity_lag:
+            share = min(1.0, self.world.dt / self.plant.velocity_lag)
+            self._lagged += (self._wanted - self._lagged) * share
+            self._spin(self._lagged)
+        elif self._fresh:  # PyBullet's motors keep their target
+            self._spin(self._wanted)
+
+    def _approach(self, rows: Any) -> None:
         """Turn towards the wanted angles, never faster than the motors can brake before them.
 
         Braking evenly from v takes v^2 / 2a (Lynch & Park, section 9.2.2).
         """
+        q = angles(rows)
         if self._fresh:
             M, g = self._own.mass_matrix(q), self._own.gravity(q)
             self._braking = BRAKING * (self.robot.effort - np.abs(g)) / M.diagonal()
@@ -344,6 +311,12 @@ class Arm:
     def _enter(self, kind: type) -> None:
         """Change the mode: in torque mode the motors' only duty is to be the dry friction."""
         self._kind = kind
+        modes: dict[type, tuple[Callable[[Any], None], bool]] = {
+            JointTorque: (self._drive_torque, self.plant.gravity_compensation),
+            JointVelocity: (self._drive_speed, False),
+            JointPosition: (self._approach, True),
+        }
+        self._drive, self._looks = modes[kind]  # what drives the motors, and whether it must see
         if kind is JointTorque:
             bullet.setJointMotorControlArray(
                 self._body,
@@ -391,21 +364,3 @@ def _cut(x: Array, limit: list[float]) -> Array:
 
 def _names() -> str:
     return ", ".join(kind.__name__ for kind in COMMANDS)
-
-
-@cache
-def _urdf_file(side: str, plant: Plant) -> str:
-    """PyBullet reads only files: one for each kind of arm, gone with the process."""
-    path = Path(_folder().name) / f"{side}_{len(list(Path(_folder().name).iterdir()))}.urdf"
-    x, y, z = robot(side).T_hand_tip[:3, 3]
-    ball = (
-        f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="{TIP_RADIUS}"/>'
-        "</geometry></collision></link>"
-    )
-    path.write_text(ball.join(robot(side).urdf(plant).rsplit("</link>", 1)))
-    return str(path)
-
-
-@cache
-def _folder() -> tempfile.TemporaryDirectory[str]:
-    return tempfile.TemporaryDirectory(prefix="labkit-")

@@ -90,7 +90,9 @@ def as_gains(x: Any, n: int, name: str) -> Array:
         ShapeError: There are too few or too many.
         OutOfRange: One is negative: with e = target - actual every gain is at least 0.
     """
-    gains = as_vector(np.full(n, x) if np.ndim(x) == 0 else x, n, name)
+    if np.ndim(x) == 0:
+        x = np.full(n, as_number(x, name))
+    gains = as_vector(x, n, name)
     for i in np.flatnonzero(gains < 0.0)[:1]:
         raise OutOfRange(
             f"{name} is {gains[i]:g} at index {i}; a gain is at least 0, "

@@ -2,9 +2,8 @@ r"""The model: what the equations know of the arm.  It answers questions and mov
 
 .. math:: M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau + J^T F_{ext}
 
-Kinematics and dynamics are Pinocchio's.  Three Jacobians exist and none is "the Jacobian": each is
-named for the twist it gives.  References: Murray, Li & Sastry (MLS) chapters 3 and 4; Lynch & Park
-chapters 5, 6 and 8.
+References: Murray, Li & Sastry (MLS) chapter 4; Lynch & Park chapter 8.  The computing is
+Pinocchio's.
 """
 
 from __future__ import annotations
@@ -17,23 +16,21 @@ import pinocchio as pin
 
 from . import se3
 from .arrays import Array, as_array
-from .errors import JointLimitExceeded, TypeMismatch, Unreachable
-from .limits import warn_of_singularity, warn_of_speed
-from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
-from .paths import Spline
+from .kinematics import Kinematics
 from .plant import IDEAL, Plant
-from .robot import Robot, Side, robot
+from .robot import Side, robot
 
 _N = 7
 _LOWER = np.tril_indices(_N, -1)
+_AT_REST = np.zeros(_N)
 
 
 class Terms(NamedTuple):
     r"""The equations of motion at one instant; see the `Model` methods of the same quantities.
 
     Attributes:
-        T_wt: `Model.pose`, shape (4, 4).
-        J: `Model.tip_jacobian`, shape (6, 7).
+        T_wt: `Kinematics.pose`, shape (4, 4).
+        J: `Kinematics.tip_jacobian`, shape (6, 7).
         drift: The tip's acceleration while the joints turn evenly, :math:`\dot J\,\dot q`, shape
             (6,).
         M: `Model.mass_matrix`, shape (7, 7) in [kg m^2].
@@ -49,10 +46,8 @@ class Terms(NamedTuple):
     g: Array
 
 
-class Model:
+class Model(Kinematics):
     """Kinematics and dynamics of one arm.
-
-    It holds work space of its own, so give each thread its own model.
 
     Attributes:
         robot: Names and limits.
@@ -65,120 +60,11 @@ class Model:
         Raises:
             UnknownName: Baxter has no such arm.
         """
-        self.robot: Robot = robot(side)
+        super().__init__(robot(side), robot(side).urdf(plant))
         self.plant = plant
-        self._pin = pin.buildModelFromXML(self.robot.urdf(plant))
-        self._tip = self._pin.addFrame(
-            pin.Frame("tip", _N, 0, pin.SE3(self.robot.T_hand_tip), pin.FrameType.OP_FRAME)
-        )
-        self._data = self._pin.createData()
 
     def __repr__(self) -> str:
         return f"Model({self.robot.side!r}, {self.plant.name})"
-
-    # Kinematics
-
-    def pose(self, q: Any) -> Array:
-        """Pose of the gripper's tip in the world, `T_wt` (Lynch & Park, chapter 4).
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-
-        Returns:
-            Shape (4, 4).
-        """
-        pin.forwardKinematics(self._pin, self._data, as_array(q, (_N,), "q"))
-        T: Array = pin.updateFramePlacement(self._pin, self._data, self._tip).homogeneous
-        return T
-
-    def tip_jacobian(self, q: Any) -> Array:
-        r"""The Jacobian of the tip in world axes, :math:`(\dot p, \omega_w) = J\,\dot q`.
-
-        Its rows give the velocity of the tip's origin and the angular velocity; Siciliano calls it
-        the geometric Jacobian.
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-
-        Returns:
-            Shape (6, 7); rows 0-2 in [m/rad], rows 3-5 in [rad/rad].
-        """
-        return self._jacobian(q, pin.LOCAL_WORLD_ALIGNED)
-
-    def body_jacobian(self, q: Any) -> Array:
-        r"""The body Jacobian: the tip's twist in the tip's own axes, :math:`V_b = J_b\,\dot q`.
-
-        MLS eq. 3.55; Lynch & Park, section 5.1.2.
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-
-        Returns:
-            Shape (6, 7), linear rows first.
-        """
-        return self._jacobian(q, pin.LOCAL)
-
-    def spatial_jacobian(self, q: Any) -> Array:
-        r"""The spatial Jacobian: the twist seen from the world's origin, :math:`V_s = J_s\,\dot q`.
-
-        MLS eq. 3.51.  Its linear rows are not the velocity of the tip.
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-
-        Returns:
-            Shape (6, 7), linear rows first.
-        """
-        return self._jacobian(q, pin.WORLD)
-
-    def _jacobian(self, q: Any, frame: Any) -> Array:
-        q = as_array(q, (_N,), "q")
-        J: Array = pin.computeFrameJacobian(self._pin, self._data, q, self._tip, frame)
-        return J
-
-    def tip_jacobian_rate(self, q: Any, dq: Any) -> Array:
-        r"""The time derivative of `tip_jacobian`, :math:`\dot V = J\,\ddot q + \dot J\,\dot q`.
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-            dq: Joint speeds, shape (7,) in [rad/s].
-
-        Returns:
-            Shape (6, 7).
-        """
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
-        pin.computeJointJacobiansTimeVariation(self._pin, self._data, q, dq)
-        pin.updateFramePlacement(self._pin, self._data, self._tip)
-        dJ: Array = pin.getFrameJacobianTimeVariation(
-            self._pin, self._data, self._tip, pin.LOCAL_WORLD_ALIGNED
-        )
-        return dJ
-
-    def manipulability(self, q: Any) -> float:
-        """The volume of the velocity ellipsoid, the product of the Jacobian's singular values.
-
-        Yoshikawa 1985; Lynch & Park, section 5.4.
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-
-        Returns:
-            A number that is zero at a singularity.
-        """
-        return float(np.prod(np.linalg.svd(self.tip_jacobian(q), compute_uv=False)))
-
-    def nearness_to_singularity(self, q: Any) -> float:
-        """The smallest singular value of `tip_jacobian`: how slowly the arm can be made to move.
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-
-        Returns:
-            Zero at a singularity, about 0.1 at a comfortable pose.
-        """
-        return float(np.linalg.svd(self.tip_jacobian(q), compute_uv=False)[-1])
-
-    # Dynamics
 
     def mass_matrix(self, q: Any) -> Array:
         """The mass matrix M(q), symmetric and positive definite (MLS eq. 4.19).
@@ -300,184 +186,6 @@ class Model:
         """Energy in the field of gravity, zero at the height of the world's origin, in [J]."""
         return float(pin.computePotentialEnergy(self._pin, self._data, as_array(q, (_N,), "q")))
 
-    # Inverse kinematics
-
-    def within_limits(self, q: Any, name: str = "q") -> Array:
-        """Read joint angles that the arm can take.
-
-        Args:
-            q: Joint angles, shape (7,) in [rad].
-            name: What to call them in the sentence, if they are out of range.
-
-        Returns:
-            The same.
-
-        Raises:
-            JointLimitExceeded: A joint is outside its range.
-        """
-        angles: Array = as_array(q, (_N,), name)
-        low, high = self.robot.lower - _SLACK, self.robot.upper + _SLACK
-        for i in np.flatnonzero((angles < low) | (angles > high))[:1]:
-            raise JointLimitExceeded(
-                name, self.robot.joint_names[i], angles[i], self.robot.lower[i], self.robot.upper[i]
-            )
-        return angles
-
-    def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
-        """Joint angles that put the tip at a pose; of all those, the nearest to a posture.
-
-        Gauss-Newton on the pose error, with the remaining freedom of the seventh joint spent on
-        coming close to ``posture``, so the answer depends on the pose and the posture alone and a
-        closed path gives closed joint angles.
-
-        Args:
-            T_wt: Pose wanted, shape (4, 4).
-            q0: Where to start the search, shape (7,) in [rad].
-            posture: What to stay close to, shape (7,) in [rad]; None takes ``q0``.
-
-        Returns:
-            Shape (7,) in [rad], within the joint limits, exact to 1e-9 m and rad.
-
-        Raises:
-            Unreachable: No such angles were found; the sentence says how near it came and why.
-        """
-        T_wt = se3.as_pose(T_wt, "T_wt")
-        q = np.clip(as_array(q0, (_N,), "q0"), self.robot.lower, self.robot.upper)
-        near = q if posture is None else as_array(posture, (_N,), "posture")
-        for _ in range(_ITERATIONS):
-            e = self.pose_error(T_wt, q)
-            J = self.tip_jacobian(q)
-            damping = 1e-4 * min(1.0, float(e @ e))  # vanishes at the solution
-            J_inv = J.T @ np.linalg.inv(J @ J.T + damping * np.eye(6))
-            free = near - q
-            free = free - J_inv @ (J @ free)
-            step = J_inv @ e + free
-            if e @ e < 1e-20 and free @ free < 1e-18:
-                return q
-            step *= min(1.0, 0.5 / float(np.abs(step).max()))
-            moved = np.clip(q + step, self.robot.lower, self.robot.upper)
-            if e @ e < 1e-20 and np.abs(moved - q).max() < 1e-9:  # the posture pulls into a limit
-                return q
-            q = moved
-        e = self.pose_error(T_wt, q)
-        if e @ e < 1e-18:
-            return q
-        raise Unreachable(f"the pose {_place(T_wt)} {self._why(T_wt, q, e)}")
-
-    def pose_error(self, T_wd: Any, q: Any) -> Array:
-        """Target minus actual: how far the tip at ``q`` is from a pose.
-
-        Args:
-            T_wd: Desired pose, shape (4, 4).
-            q: Joint angles, shape (7,) in [rad].
-
-        Returns:
-            Position error [m] and orientation error [rad], world axes, shape (6,).
-        """
-        return se3.pose_error(T_wd, self.pose(q))
-
-    def joint_trajectory(self, target: Any, q0: Any, *, samples: int = 101) -> Any:
-        """The joint motion that takes the tip along a workspace target.
-
-        Inverse kinematics runs once along s, each solution seeding the next and all staying close
-        to ``q0``; a quintic spline joins them, and the schedule stays the target's.
-
-        Args:
-            target: A `Trajectory` or a `Chain` of them, of poses; of points, then the tip keeps the
-                orientation that it has at ``q0``; or a `Hold`.
-            q0: Joint angles at the start, shape (7,) in [rad].
-            samples: How many poses to solve along each path.
-
-        Returns:
-            A target of the same make whose samples are joint angles, shape (7,) in [rad].
-
-        Raises:
-            Unreachable: A pose along the way cannot be reached; names s, the pose and the reason.
-            TypeMismatch: It is none of these.
-
-        Warns:
-            LabkitWarning: A joint would exceed its speed limit, or the path comes near a
-                singularity.
-        """
-        q0 = self.within_limits(q0, "q0")
-        if isinstance(target, Chain):
-            parts, q = [], q0
-            for part in target.parts:
-                parts.append(self._joint_trajectory(part, q, q0, samples))
-                q = parts[-1](part.duration).position
-            return Chain(parts)
-        return self._joint_trajectory(target, q0, q0, samples)
-
-    def _joint_trajectory(self, target: Any, q: Array, posture: Array, samples: int) -> Any:
-        if isinstance(target, Hold):
-            T_wt = self._posed(target(0.0), posture)
-            return Hold(self.inverse_kinematics(T_wt, q, posture=posture), target.duration)
-        if not isinstance(target, Trajectory):
-            raise TypeMismatch(
-                f"joint_trajectory takes a Trajectory, Chain or Hold, not {type(target).__name__}"
-            )
-        if isinstance(target.path(0.0), Sample):
-            R_wt = self.pose(posture)[:3, :3]
-            target = Trajectory(PosePath(target.path, R_wt), target.scaling)
-        grid = np.linspace(0.0, 1.0, samples)
-        angles = np.empty((samples, _N))
-        for k, s in enumerate(grid):
-            try:
-                q = self.inverse_kinematics(target.path(s).pose, q, posture=posture)
-            except Unreachable as error:
-                raise Unreachable(f"at s = {s:.2f} {error}") from None
-            angles[k] = q
-        jump = np.abs(np.diff(angles, axis=0)).max()
-        if jump > 0.5:
-            raise Unreachable(
-                f"the joint angles jump by {jump:.2f} rad between two neighbouring poses: the path "
-                "runs through a singularity; move it, or start from another q0"
-            )
-        warn_of_singularity(grid, np.array([self.tip_jacobian(q) for q in angles]))
-        joints = Trajectory(Spline(grid, angles), target.scaling)
-        warn_of_speed(joints, self.robot)
-        return joints
-
-    def _posed(self, sample: Sample | PoseSample, q0: Array) -> Array:
-        if isinstance(sample, PoseSample):
-            return sample.pose
-        return se3.pose(self.pose(q0)[:3, :3], sample.position)
-
-    def _why(self, T_wt: Array, q: Array, e: Array) -> str:
-        """Why a search ended at q with error e: too far, a joint at its limit, or just stuck."""
-        off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
-            f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
-        )
-        shoulder, reach = self._reach()
-        wrist = T_wt[:3, 3] - T_wt[:3, :3] @ (0.0, 0.0, self._wrist_to_tip())
-        distance = float(np.linalg.norm(wrist - shoulder))
-        if distance > reach:
-            return (
-                f"cannot be reached: it puts the wrist {distance:.3f} m from the shoulder and the "
-                f"arm spans {reach:.3f} m {off}; bring it nearer"
-            )
-        at_limit = np.flatnonzero((q - self.robot.lower < 1e-6) | (self.robot.upper - q < 1e-6))
-        if at_limit.size:
-            i = at_limit[0]
-            return (
-                f"cannot be reached: joint {self.robot.joint_names[i]} stands at its limit of "
-                f"{q[i]:.4g} rad {off}; change the orientation, or start from another q0"
-            )
-        return f"was not found from this q0 {off}; start from another q0"
-
-    def _reach(self) -> tuple[Array, float]:
-        """The shoulder's place in the world, and the longest span from it to the wrist's centre."""
-        at_zero = [self._origins(np.zeros(_N))[i] for i in (1, 5)]
-        return at_zero[0], float(np.linalg.norm(at_zero[1] - at_zero[0]))
-
-    def _wrist_to_tip(self) -> float:
-        last = np.array(self.robot.bodies[6]["T_parent"])[:3, 3]
-        return float(np.linalg.norm(last) + self.robot.T_hand_tip[2, 3])
-
-    def _origins(self, q: Array) -> list[Array]:
-        pin.forwardKinematics(self._pin, self._data, q)
-        return [np.array(T.translation) for T in list(self._data.oMi)[1:]]
-
 
 @dataclass(frozen=True, eq=False)
 class Link:
@@ -510,12 +218,3 @@ def links(model: Model, q: Any) -> tuple[Link, ...]:
         J[:3] -= se3.hat(com - T_wl[:3, 3]) @ J[3:]
         out.append(Link(body.mass, np.array(body.inertia), T_wl, com, J))
     return tuple(out)
-
-
-_AT_REST = np.zeros(_N)
-_ITERATIONS = 200
-_SLACK = 1e-9
-
-
-def _place(T: Array) -> str:
-    return f"at ({', '.join(f'{x:.3f}' for x in T[:3, 3])}) m"

@@ -129,7 +129,7 @@ def everything(
             ax.plot(log.t, error[:, k], f"C{k}{STYLES[k]}", label=name)
         ax.plot(log.t, np.linalg.norm(error, axis=1), "k", linewidth=0.8, label="length")
         ax.set_ylabel(label)
-        ax.legend(frameon=False, ncols=4, fontsize="x-small")
+        _legend_above(ax)
     wanted, meaning = None, "inverse kinematics"
     if not isinstance(log.target, PoseSample):
         wanted, meaning = log.target.position, "target"
@@ -146,15 +146,9 @@ def everything(
             ax_i.set_ylabel(name.split("_")[1], rotation=0, labelpad=12)
             ax_i.tick_params(labelsize="x-small", labelbottom=i == 6)
         if i == 0:
-            ax.set_title("joint angles [rad]", loc="left", fontsize="medium")
-            ax.legend(
-                loc="lower right",
-                bbox_to_anchor=(1.0, 0.95),
-                frameon=False,
-                ncols=2,
-                fontsize="x-small",
-            )
-            below.set_title("motor torques [N m]", loc="left", fontsize="medium")
+            ax.set_title("angles [rad]", loc="left", fontsize="medium")
+            _legend_above(ax)
+            below.set_title("torques [N m]", loc="left", fontsize="medium")
     for ax in (tip[3], figure.axes[-2], figure.axes[-1]):
         ax.set_xlabel("time [s]")
     return figure
@@ -165,7 +159,19 @@ def _against(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
         ax.plot(log.t, target[:, k], "0.6", linewidth=4, label="target" if k == 0 else None)
         ax.plot(log.t, actual[:, k], f"C{k}{style}", label=name)
     ax.set_ylabel(label)
-    ax.legend(frameon=False, ncols=4, fontsize="x-small")
+    _legend_above(ax)
+
+
+def _legend_above(ax: Any) -> None:
+    """Outside, where no curve can run through it."""
+    ax.legend(
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        borderaxespad=0.0,
+        frameon=False,
+        ncols=4,
+        fontsize="x-small",
+    )
 
 
 def error_map(found: ErrorMap, point: tuple[float, float] | None = None, *, ax: Any = None) -> Any:

@@ -31,7 +31,8 @@ def run(
 ) -> Log:
     """Let ``controller`` drive ``arm`` after ``target``.
 
-    The arm starts where it is.  Whatever happens, it is left stopped and usable.
+    The arm starts where it is.  Whatever happens, it is left stopped and usable; one that ran away
+    is brought to rest at once.
 
     Args:
         arm: The arm.
@@ -93,14 +94,16 @@ def run(
         if not len(recorder):
             raise
     except Diverged as error:
+        arm.recover()
         error.log = recorder.log(kind or type(None), who, arm.plant, arm.robot.side)
         raise
     except (ControllerError, Closed):
         raise
     except Exception as error:
         samples.blame(t)
-        what = str(error) if isinstance(error, LabkitError) else f"{type(error).__name__}: {error}"
-        raise ControllerError(f"{asked} failed at t = {t:.3f} s, tick {k}: {what}") from error
+        raise ControllerError(
+            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error)}"
+        ) from error
     finally:
         if world.client >= 0:
             arm.stop()
@@ -180,9 +183,23 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
         duration = getattr(target, "duration", None)
         if duration is None:
             raise OutOfRange(
-                f"how long? the target {_name(target)} has no duration; give duration=..."
+                f"how long? the target {_name(target)} has no duration; give duration=..., unless "
+                "target and controller were swapped: run(arm, target, controller)"
             )
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
+
+
+def _what(error: Exception) -> str:
+    """What a controller's error says; of a sample of the other kind, what it is."""
+    if isinstance(error, LabkitError):
+        return str(error)
+    what = f"{type(error).__name__}: {error}"
+    if isinstance(error, AttributeError) and isinstance(error.obj, Sample | PoseSample):
+        has = ", ".join(error.obj._fields)
+        what = f"it asked the target's sample for its {error.name}, and that has only {has}"
+        if isinstance(error.obj, PoseSample):
+            what += "; model.joint_trajectory(target, q0) makes joint angles of poses"
+    return what
 
 
 def _settled(command: object, kind: type | None, who: str, t: float) -> type:

@@ -32,6 +32,12 @@ def side(request):
 
 
 @pytest.fixture
+def model(side):
+    """Each arm's model."""
+    return lk.Model(side)
+
+
+@pytest.fixture
 def random():
     """Random numbers, the same in every run."""
     return np.random.default_rng(2019)

@@ -6,6 +6,11 @@ from numpy.testing import assert_allclose
 from labkit import se3
 
 
+def slope_along(f, q, dq, step=1e-6):
+    """How ``f`` changes as ``q`` moves at ``dq``."""
+    return (f(q + step * dq) - f(q - step * dq)) / (2 * step)
+
+
 def assert_slopes(curve, x, step=1e-5, tolerance=1e-6):
     """``curve(x)`` gives value, derivative, second derivative: the latter are slopes at ``x``."""
     before, here, after = (tuple(map(np.asarray, curve(x + k * step))) for k in (-1, 0, 1))

@@ -93,7 +93,7 @@ def test_one_gain_serves_all_joints():
         ([1, 2], ShapeError, "Kp has shape"),
         (-1.0, OutOfRange, "Kp is -1 at index 0; a gain is at least 0"),
         ([1, 1, -2], OutOfRange, "Kp is -2 at index 2"),
-        (np.nan, NotFinite, "Kp holds nan"),
+        (np.nan, NotFinite, "Kp is nan"),
         ("high", TypeMismatch, "Kp"),
         (None, TypeMismatch, "Kp"),
     ],

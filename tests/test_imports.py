@@ -20,10 +20,11 @@ ORDER = [
     {"plant"},
     {"robot"},
     {"limits"},
+    {"kinematics"},
     {"model"},
     {"commands"},
     {"world", "scene"},
-    {"sensors"},
+    {"sensors", "body"},
     {"arm"},
     {"log"},
     {"run"},
@@ -31,8 +32,8 @@ ORDER = [
 ]  # what comes after these may import all of them
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 # What simulates, and what plans and sees for it.
-SIMULATE = {"arm", "world", "scene", "vision.camera", "vision.board", "vision.looks"}
-MODEL = {"model", "baseline"}
+SIMULATE = {"arm", "body", "world", "scene", "vision.camera", "vision.board", "vision.looks"}
+MODEL = {"kinematics", "model", "baseline"}
 ENGINES = "numpy, pybullet, pinocchio"
 DRAW = {"plotting", "replay", "vision.sensor_plots", "interactive"}
 SEE = {f"vision.{name}" for name in ("camera", "tags", "detection", "calibration", "edges")}

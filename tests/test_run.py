@@ -335,8 +335,17 @@ def test_a_wrong_sign_is_stopped_with_the_time_the_joint_and_the_log(ideal):
     assert isinstance(log, lk.Log)
     assert len(log) > 10
     assert np.linalg.norm(log.dq[-1]) > 50.0
-    ideal.reset()
     assert_stopped(ideal)
+    q = ideal.truth().q
+    again = lk.run(ideal, lk.Hold(q, 0.1), follow)
+    assert_allclose(again.q[-1], q, atol=1e-3)
+
+
+def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
+    pose = lk.Hold(ideal.model.pose(ideal.robot.neutral), 1.0)
+    words = "follow failed .* its position, and that has only pose, twist, dtwist; model.joint_traj"
+    with pytest.raises(ControllerError, match=words):
+        lk.run(ideal, pose, follow)
 
 
 @pytest.mark.parametrize(

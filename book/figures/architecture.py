@@ -17,11 +17,11 @@ HOME = Path(labkit.__file__).parent
 LAYERS = (
     ("Sentences and numbers", ("errors", "quiet", "arrays", "se3")),
     ("What is wanted", ("motion", "scalings", "paths")),
-    ("What is known", ("plant", "robot", "limits", "model")),
-    ("What moves", ("commands", "world", "scene", "sensors", "arm")),
-    ("The loop", ("run", "metrics")),
+    ("What is known", ("plant", "robot", "limits", "kinematics", "model")),
+    ("What moves", ("commands", "world", "scene", "sensors", "body", "arm")),
+    ("The loop, and what it did", ("log", "run", "controllers", "metrics", "energy", "impedance")),
     ("What looks, compares and draws", ("vision", "study", "baseline", "plotting")),
-    ("What judges and shows", ("check", "replay")),
+    ("What judges and shows", ("check", "replay", "interactive", "readiness", "notation")),
     ("For instructors", ("grade", "cli")),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
@@ -48,6 +48,9 @@ def picture() -> HTML:
     row_of = {name: k for k, (_, names) in enumerate(LAYERS) for name in names}
     drawn = set(row_of)
     arrows = {(a, b) for a in drawn - {"cli"} for b in imported(a) & drawn}
+    modules, folders = HOME.glob("[a-z]*.py"), HOME.glob("*/__init__.py")
+    there = {path.stem for path in modules} | {path.parent.name for path in folders}
+    holds(there == drawn, "every module has its place")
     holds(all(row_of[b] <= row_of[a] for a, b in arrows), "imports point down, never up")
     parts = []
     height = len(LAYERS) * 62 + 6

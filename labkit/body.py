@@ -1,0 +1,73 @@
+"""The body: the arm as PyBullet is told of it.  What moves it is in `arm`."""
+
+from __future__ import annotations
+
+import tempfile
+from functools import cache
+from pathlib import Path
+
+from .commands import JOINTS
+from .plant import Plant
+from .quiet import quiet
+from .robot import Side, robot
+from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
+
+with quiet():
+    import pybullet as bullet
+
+
+def load(client: int, side: Side, plant: Plant) -> int:
+    """Load an arm, with a ball for a fingertip, into the world of a PyBullet client.
+
+    Nothing that PyBullet does unasked is left in it: no damping of its own, and joints only as
+    viscous as the plant's.
+
+    Returns:
+        PyBullet's number of the body, whose links and joints 0 to 6 are the arm's.
+    """
+    with quiet():
+        body: int = bullet.loadURDF(
+            _file(side, plant),
+            useFixedBase=True,
+            flags=bullet.URDF_USE_INERTIA_FROM_FILE,
+            physicsClientId=client,
+        )
+    for joint in range(-1, JOINTS):
+        bullet.changeDynamics(
+            body,
+            joint,
+            linearDamping=0.0,
+            angularDamping=0.0,
+            jointDamping=0.0 if joint < 0 else plant.viscous[joint],
+            physicsClientId=client,
+        )
+    bullet.changeDynamics(
+        body,
+        JOINTS - 1,
+        contactStiffness=TIP_STIFFNESS,
+        contactDamping=TIP_DAMPING,
+        lateralFriction=1.0,
+        restitution=0.0,
+        physicsClientId=client,
+    )
+    # PyBullet would show the ball; what cameras see of the arm is in `vision.looks`.
+    bullet.changeVisualShape(body, JOINTS - 1, rgbaColor=[0, 0, 0, 0], physicsClientId=client)
+    return body
+
+
+@cache
+def _file(side: Side, plant: Plant) -> str:
+    """PyBullet reads only files: one for each kind of arm, gone with the process."""
+    path = Path(_folder().name) / f"{side}_{len(list(Path(_folder().name).iterdir()))}.urdf"
+    x, y, z = robot(side).T_hand_tip[:3, 3]
+    ball = (
+        f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="{TIP_RADIUS}"/>'
+        "</geometry></collision></link>"
+    )
+    path.write_text(ball.join(robot(side).urdf(plant).rsplit("</link>", 1)))
+    return str(path)
+
+
+@cache
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    return tempfile.TemporaryDirectory(prefix="labkit-")

@@ -1,0 +1,209 @@
+"""Kinematics: Jacobians are slopes, and inverse kinematics comes back."""
+
+import numpy as np
+import pytest
+from curves import assert_slopes, slope_along
+from numpy.testing import assert_allclose
+
+import labkit as lk
+from labkit import se3
+from labkit.errors import JointLimitExceeded, LabkitError, Unreachable
+
+STEP = 1e-6
+
+
+def test_the_three_jacobians_are_the_slopes_of_the_pose(side, model, states):
+    """Each for its twist: body and spatial by the logarithm, tip by origin and orientation."""
+    for q, dq in states(side):
+        before, T, after = (model.pose(q + k * STEP * dq) for k in (-1, 0, 1))
+        body = (se3.log(se3.inverse(T) @ after) - se3.log(se3.inverse(T) @ before)) / (2 * STEP)
+        space = (se3.log(after @ se3.inverse(T)) - se3.log(before @ se3.inverse(T))) / (2 * STEP)
+        turn = se3.orientation_error(after[:3, :3], before[:3, :3])
+        tip = np.concatenate([after[:3, 3] - before[:3, 3], turn]) / (2 * STEP)
+        assert_allclose(model.body_jacobian(q) @ dq, body, atol=1e-7)
+        assert_allclose(model.spatial_jacobian(q) @ dq, space, atol=1e-7)
+        assert_allclose(model.tip_jacobian(q) @ dq, tip, atol=1e-7)
+
+
+def test_the_jacobians_are_one_another_seen_from_elsewhere(side, model, states):
+    for q, _ in states(side):
+        T, J_b = model.pose(q), model.body_jacobian(q)
+        assert_allclose(model.spatial_jacobian(q), se3.adjoint(T) @ J_b, atol=1e-12)
+        turn = np.kron(np.eye(2), T[:3, :3])
+        assert_allclose(model.tip_jacobian(q), turn @ J_b, atol=1e-12)
+
+
+def test_the_jacobians_rate_is_its_slope(side, model, states):
+    for q, dq in states(side):
+        assert_allclose(
+            model.tip_jacobian_rate(q, dq), slope_along(model.tip_jacobian, q, dq), atol=2e-8
+        )
+
+
+def test_manipulability_is_the_volume_and_nearness_the_shortest_axis(side, model, states):
+    for q, _ in states(side):
+        J = model.tip_jacobian(q)
+        axes = np.sqrt(np.linalg.eigvalsh(J @ J.T))
+        assert model.manipulability(q) == pytest.approx(np.prod(axes))
+        assert model.nearness_to_singularity(q) == pytest.approx(axes[0], rel=1e-6)
+
+
+def test_a_stretched_arm_is_nearer_to_a_singularity_than_a_bent_one(model):
+    stretched, bent = np.zeros(7), model.robot.ready
+    for measure in (model.nearness_to_singularity, model.manipulability):
+        assert measure(stretched) < 0.3 * measure(bent)
+
+
+def test_inverse_kinematics_returns_to_the_pose(side, model, random):
+    """From the ready pose to poses of nearby angles, within limits and to 1e-9."""
+    r = model.robot
+    for _ in range(30):
+        T = model.pose(r.ready + random.uniform(-0.3, 0.3, 7))
+        q = model.inverse_kinematics(T, r.ready)
+        assert_allclose(model.pose(q), T, atol=2e-9)
+        assert (r.lower <= q).all()
+        assert (q <= r.upper).all()
+
+
+def test_of_all_answers_it_gives_the_one_nearest_to_the_posture(side, model, random):
+    """What remains of the way to the posture cannot be gone without moving the tip."""
+    r = model.robot
+    for _ in range(10):
+        T = model.pose(r.ready + random.uniform(-0.2, 0.2, 7))
+        q = model.inverse_kinematics(T, r.ready)
+        *_, null = np.linalg.svd(model.tip_jacobian(q))
+        assert null[-1] @ (r.ready - q) == pytest.approx(0.0, abs=1e-8)
+
+
+def test_the_answer_is_the_posture_itself_where_that_fits(model):
+    r = model.robot
+    q = model.inverse_kinematics(model.pose(r.ready), r.ready + 0.1, posture=r.ready)
+    assert_allclose(q, r.ready, atol=1e-8)
+
+
+def circle(model, turns=1.0):
+    p = model.pose(model.robot.ready)[:3, 3]
+    return lk.Trajectory(lk.Circle(p, p - [0.1, 0.0, 0.0], turns), lk.Quintic(4.0))
+
+
+def test_a_joint_trajectory_keeps_the_tip_on_its_path(model):
+    q0 = model.robot.ready
+    target, R = circle(model), model.pose(q0)[:3, :3]
+    joints = model.joint_trajectory(target, q0)
+    for t in np.linspace(0.0, 4.0, 57):
+        T = model.pose(joints(t).position)
+        assert_allclose(T[:3, 3], target(t).position, atol=1e-6)
+        assert_allclose(T[:3, :3], R, atol=1e-6)
+
+
+def test_a_closed_path_gives_closed_joints(model):
+    q0 = model.robot.ready
+    joints = model.joint_trajectory(circle(model), q0)
+    assert_allclose(joints(0.0).position, q0, atol=1e-8)
+    assert_allclose(joints(4.0).position, joints(0.0).position, atol=1e-8)
+
+
+@pytest.mark.parametrize("t", [0.31, 1.0, 2.2, 3.7])
+def test_a_joint_trajectorys_velocity_and_acceleration_are_its_slopes(model, t):
+    joints = model.joint_trajectory(circle(model), model.robot.ready)
+    assert_slopes(joints, t)
+    x, dx, _ = joints(t)
+    assert_allclose(model.tip_jacobian(x)[:3] @ dx, circle(model)(t).velocity, atol=1e-4)
+
+
+def test_a_joint_trajectory_follows_poses_that_turn(model):
+    q0 = model.robot.ready
+    T = model.pose(q0)
+    goal = se3.rotation([0.0, 0.3, 0.2]) @ T[:3, :3]
+    path = lk.PosePath(lk.Line(T[:3, 3], T[:3, 3] + [0.05, 0.1, 0.05]), T[:3, :3], goal)
+    target = lk.Trajectory(path, lk.Cubic(2.0))
+    joints = model.joint_trajectory(target, q0)
+    for t in np.linspace(0.0, 2.0, 23):
+        assert_allclose(model.pose(joints(t).position), target(t).pose, atol=1e-6)
+
+
+def test_a_chain_stays_a_chain_and_is_continuous(model):
+    q0 = model.robot.ready
+    p = model.pose(q0)[:3, 3]
+    corners = [p, p + [0.1, 0, 0], p + [0.1, 0.1, 0], p]
+    parts = [lk.Trajectory(line, lk.Quintic(1.0)) for line in lk.Polyline(corners).lines]
+    joints = model.joint_trajectory(lk.Chain(parts), q0)
+    assert joints.starts == [0.0, 1.0, 2.0]
+    for t in (1.0, 2.0):
+        assert_allclose(joints(t - 1e-9).position, joints(t).position, atol=1e-7)
+    assert_allclose(joints(3.0).position, q0, atol=1e-7)
+
+
+def test_a_hold_becomes_a_hold_of_joint_angles(model):
+    q0 = model.robot.ready
+    for place in (model.pose(q0), model.pose(q0)[:3, 3]):
+        hold = model.joint_trajectory(lk.Hold(place, 2.0), q0)
+        assert hold.duration == 2.0
+        assert_allclose(hold(1.0).position, q0, atol=1e-8)
+
+
+def test_a_pose_out_of_reach_is_refused_with_the_reach(model):
+    T = model.pose(model.robot.ready)
+    T[:3, 3] += [1.0, 0.0, 0.0]
+    with pytest.raises(
+        Unreachable, match=r"m from the shoulder and the arm spans .* bring it nearer"
+    ):
+        model.inverse_kinematics(T, model.robot.ready)
+
+
+def test_an_unreachable_point_on_the_way_is_named_with_s_the_pose_and_the_limit(model):
+    q0 = model.robot.ready
+    p = model.pose(q0)[:3, 3]
+    far = lk.Trajectory(lk.Line(p, p + [1.0, 0.0, 0.0]), lk.Quintic(2.0))
+    words = r"at s = 0\.\d\d the pose at \(.*\) m cannot be reached: .*(spans|limit of).*(mm|off)"
+    with pytest.raises(Unreachable, match=words):
+        model.joint_trajectory(far, q0)
+
+
+def test_a_joint_at_its_limit_is_named_with_the_limit(model):
+    """The gripper turned about its own axis further than the last joint can."""
+    q0 = model.robot.ready
+    T = model.pose(q0)
+    half = T[:3, :3] @ se3.rotation([0.0, 0.0, 1.7])
+    path = lk.PosePath(lk.Line(T[:3, 3], T[:3, 3]), T[:3, :3], half)
+    down = np.array(q0)
+    down[6] = model.robot.upper[6] - 0.05
+    T = model.pose(down)
+    over = T[:3, :3] @ se3.rotation([0.0, 0.0, 1.2])
+    path = lk.PosePath(lk.Line(T[:3, 3], T[:3, 3]), T[:3, :3], over)
+    name = model.robot.joint_names
+    with pytest.raises(Unreachable, match=rf"joint ({'|'.join(name)}) stands at its limit of"):
+        model.joint_trajectory(lk.Trajectory(path, lk.Quintic(2.0)), down)
+
+
+def test_degrees_are_suspected(model):
+    q = np.degrees(model.robot.neutral)
+    with pytest.raises(JointLimitExceeded, match=r"_s1 at -31\.51 rad is outside .* in degrees\?"):
+        model.within_limits(q)
+
+
+@pytest.mark.parametrize(
+    ("T", "words"),
+    [
+        (np.eye(3), "T_wt has shape"),
+        (np.eye(4) * np.nan, "T_wt holds nan"),
+        (np.diag([1.0, 1, -1, 1]), "determinant -1"),
+        (se3.pose(np.eye(3), [1, 0, 0]).T, "transposed"),
+    ],
+)
+def test_what_is_no_pose_is_refused(model, T, words):
+    with pytest.raises(LabkitError, match=words):
+        model.inverse_kinematics(T, model.robot.ready)
+
+
+@pytest.mark.parametrize("target", [lk.Line([0, 0, 0], [1, 1, 1]), None, lambda t: t])
+def test_a_joint_trajectory_wants_a_trajectory(model, target):
+    with pytest.raises(LabkitError, match="takes a Trajectory, Chain or Hold, not"):
+        model.joint_trajectory(target, model.robot.ready)
+
+
+def test_a_joint_trajectory_of_joint_angles_is_refused(model):
+    q0 = model.robot.ready
+    turn = lk.Trajectory(lk.Line(q0, q0 + 0.1), lk.Cubic(1.0))
+    with pytest.raises(LabkitError, match="position has shape"):
+        model.joint_trajectory(turn, q0)
