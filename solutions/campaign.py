@@ -40,6 +40,7 @@ from labkit.study import tasks
 from labkit.study.campaign import Job, Meter, Row, cells, pick, table, work_through
 from labkit.study.recorded import keep_campaign
 from labkit.study.tasks import Task
+from labkit.verbs import whole
 
 from .claims import Verdict, verdicts
 from .gains import Tuned, five
@@ -258,8 +259,8 @@ def main() -> None:
     from . import pictures
 
     parser = argparse.ArgumentParser(prog="python -m solutions.campaign", description=__doc__)
-    parser.add_argument("--seeds", type=int, default=3, help="how many seeds (3)")
-    parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
+    parser.add_argument("--seeds", type=whole(1), default=3, help="how many seeds (3)")
+    parser.add_argument("--jobs", type=whole(1), default=None, help="processes (one for each core)")
     parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
