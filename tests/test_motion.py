@@ -72,6 +72,34 @@ def chain():
     return Chain([*parts, Hold(C, 0.5)])
 
 
+@pytest.mark.parametrize(
+    ("path", "scaling", "words"),
+    [
+        (lambda s: np.zeros(3), lk.Cubic(1.0), r"the path gave array.* expected lk\.Sample"),
+        (
+            lambda s: (s, 1.0, 0.0),
+            lk.Cubic(1.0),
+            r"the path gave .* \(tuple\), expected lk\.Sample",
+        ),
+        (lambda s: None, lk.Cubic(1.0), r"the path gave None"),
+        (
+            lk.Line(np.zeros(3), np.ones(3)),
+            "half",
+            r"the scaling gave 0\.5 \(float\), expected three",
+        ),
+    ],
+)
+def test_what_is_no_sample_is_a_sentence(path, scaling, words):
+    class Half:
+        duration = 1.0
+
+        def __call__(self, t):
+            return 0.5
+
+    with pytest.raises(lk.errors.TypeMismatch, match=words):
+        lk.Trajectory(path, Half() if scaling == "half" else scaling)(0.5)
+
+
 def test_a_chain_starts_each_part_when_the_one_before_has_ended():
     c = chain()
     assert c.starts == [0.0, 1.0, 2.0]
