@@ -55,9 +55,17 @@ def test_stubs_and_questions_must_match(tmp_path):
     with pytest.raises(LabkitError, match="'double', which has no Problem"):
         source_notebook(text, {})
     one = QUESTIONS["joint_error"]
-    with pytest.raises(LabkitError, match="joint_error"):
-        text.write_text("# %%\nx = 1\n")
-        source_notebook(text, {"joint_error": one})
+    region = "    ### BEGIN SOLUTION\n    return 1\n    ### END SOLUTION\n\n"
+    stub = f'# %% question="joint_error"\ndef joint_error(x):\n{region}'
+    for source, sentence in (
+        ("# %%\nx = 1\n", "has 0 stubs of joint_error"),
+        (stub + stub, "has 2 stubs of joint_error"),
+        (stub.replace("def joint_error", "def error"), "defines no joint_error"),
+        (stub.replace("    ### END SOLUTION\n", ""), "needs one region"),
+    ):
+        text.write_text(source)
+        with pytest.raises(LabkitError, match=sentence):
+            source_notebook(text, {"joint_error": one})
 
 
 @pytest.mark.parametrize("name", COURSE.names())
