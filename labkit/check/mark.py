@@ -12,8 +12,9 @@ from typing import Any
 
 from ..errors import Diverged, LabkitError
 from ..log import Log
+from .cases import Call, Case, Choice, Loop, Tuned
 from .judge import AtMost, Judge
-from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
+from .question import Mistake, Question, Raised, Test
 from .raised import told
 
 

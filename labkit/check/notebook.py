@@ -17,7 +17,8 @@ from . import words
 from .calling import heard
 from .evidence import evidence
 from .mark import Outcome, Verdict, mark
-from .question import Question, read_question
+from .question import Question
+from .question_codec import read_question, with_hidden
 from .source import withheld_names
 
 FILE = "checks.json"
@@ -100,7 +101,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
 
 def also(name: str, packed: str) -> None:
     """Add hidden cases to a question; the teacher's copy of a notebook does so."""
-    desk().questions[name] = desk().question(name).with_hidden(packed)
+    desk().questions[name] = with_hidden(desk().question(name), packed)
 
 
 def hint(name: str, level: int = 1) -> None:

@@ -19,6 +19,8 @@ import jupytext
 import nbformat
 
 from ..check import Question
+from ..check.handin import defines
+from ..check.question_codec import pack_hidden
 from ..errors import LabkitError
 from .problem import Problem
 
@@ -50,21 +52,33 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
             raise LabkitError(f"{path.name} asks {name!r}, which has no Problem")
         question = questions[name]
         asked.append(name)
+        _check_stub(path, name, cell)
         cells.append(_cell("markdown", brief(question), "brief", {}))
         cells.append(_cell("code", cell.source, "answer", _nbgrader(name, solution=True)))
-        check = f"from labkit.check import also\n\nalso({name!r}, {question.pack_hidden()!r})"
+        check = f"from labkit.check import also\n\nalso({name!r}, {pack_hidden(question)!r})"
         check = f"### BEGIN HIDDEN TESTS\n{check}\n### END HIDDEN TESTS\ncheck({name!r}, {name})"
         meta = _nbgrader(f"{name}-check", locked=True, grade=True, points=question.points)
         cells.append(_cell("code", check.replace("'", '"'), "check", meta))
-    if sorted(asked) != sorted(questions):
-        missing = sorted(set(questions) ^ set(asked)) or sorted(asked)
-        raise LabkitError(f"{path.name}: each problem needs just one stub; look at {missing}")
+    for name in questions:
+        if asked.count(name) != 1:
+            raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
     for number, cell in enumerate(cells):
         cell["id"] = f"{path.stem.replace('_', '-')}-{number:02d}"
     meta = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
     return nbformat.from_dict(
         {"cells": cells, "metadata": meta, "nbformat": 4, "nbformat_minor": 5}
     )
+
+
+def _check_stub(path: Path, name: str, cell: Mapping[str, Any]) -> None:
+    marks = [line.strip() for line in cell["source"].splitlines() if "### " in line]
+    if marks != ["### BEGIN SOLUTION", "### END SOLUTION"]:
+        raise LabkitError(
+            f"{path.name}: the stub of {name} needs one region between a line ### BEGIN SOLUTION "
+            "and a line ### END SOLUTION"
+        )
+    if not defines(cell, name):
+        raise LabkitError(f"{path.name}: the stub of {name} defines no {name}")
 
 
 def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:

@@ -10,13 +10,12 @@ import numpy as np
 
 import labkit as lk
 from labkit.check import Call, Loop, Tuned
-from labkit.check.question import Case
+from labkit.check.cases import Case
 from labkit.grade.problem import call
 
 from ..torque_control import choose_gains
 
 Random = np.random.Generator
-STILL = np.zeros(7)
 
 
 def _angles(random: Random, model: lk.Model) -> Any:

@@ -17,7 +17,6 @@ from ..variants import torque_control as variants
 
 MODEL = lk.Model("left", lk.BAXTER)
 READY = MODEL.robot.ready
-STILL = np.zeros(7)
 TORQUE = Close(rtol=1e-6, atol=1e-6)
 KP = np.array([100.0, 100.0, 60.0, 60.0, 20.0, 20.0, 10.0])
 KD = np.array([20.0, 20.0, 12.0, 12.0, 4.0, 4.0, 2.0])
@@ -53,6 +52,36 @@ HINTS_SWITCH = (
     "arm_compensates is False."
 )
 
+TERMS = (
+    Trial(
+        "who carries the weight",
+        (
+            _law(0.0, 0.0, 0.0, compensates=False),
+            _law(0.0, 0.0, 0.0, compensates=True),
+        ),
+        held_out.weight,
+        "the switch both ways",
+    ),
+    Trial(
+        "a target that speeds up",
+        (_law(1.0, 0.0, 0.0, compensates=True),),
+        held_out.speeding_up,
+    ),
+    Trial(
+        "an arm and a target at different speeds",
+        (_law(0.0, 1.0, 1.0, compensates=True),),
+        held_out.moving,
+        "an arm quicker or slower than its target",
+    ),
+    Trial(
+        "everything at once",
+        (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
+        held_out.all_at_once,
+        weight=3.0,
+    ),
+)
+"""One term of the law after another, for both forms of it."""
+
 AUGMENTED_PD = Problem(
     name="augmented_pd",
     points=4,
@@ -70,32 +99,7 @@ AUGMENTED_PD = Problem(
             "both arms, any pose",
             weight=0.0,
         ),
-        Trial(
-            "who carries the weight",
-            (
-                _law(0.0, 0.0, 0.0, compensates=False),
-                _law(0.0, 0.0, 0.0, compensates=True),
-            ),
-            held_out.weight,
-            "the switch both ways",
-        ),
-        Trial(
-            "a target that speeds up",
-            (_law(1.0, 0.0, 0.0, compensates=True),),
-            held_out.speeding_up,
-        ),
-        Trial(
-            "an arm and a target at different speeds",
-            (_law(0.0, 1.0, 1.0, compensates=True),),
-            held_out.moving,
-            "an arm quicker or slower than its target",
-        ),
-        Trial(
-            "everything at once",
-            (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
-            held_out.all_at_once,
-            weight=3.0,
-        ),
+        *TERMS,
         Trial(
             "a run back to a place, from 0.15 rad off",
             (_return(60.0, 15.0, 2.0, 8.0),),
@@ -195,32 +199,7 @@ COMPUTED_TORQUE = Problem(
             "both arms, any pose",
             weight=0.0,
         ),
-        Trial(
-            "who carries the weight",
-            (
-                _law(0.0, 0.0, 0.0, compensates=False),
-                _law(0.0, 0.0, 0.0, compensates=True),
-            ),
-            held_out.weight,
-            "the switch both ways",
-        ),
-        Trial(
-            "a target that speeds up",
-            (_law(1.0, 0.0, 0.0, compensates=True),),
-            held_out.speeding_up,
-        ),
-        Trial(
-            "an arm and a target at different speeds",
-            (_law(0.0, 1.0, 1.0, compensates=True),),
-            held_out.moving,
-            "an arm quicker or slower than its target",
-        ),
-        Trial(
-            "everything at once",
-            (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
-            held_out.all_at_once,
-            weight=3.0,
-        ),
+        *TERMS,
         Trial(
             "a run back to a place, from 0.15 rad off",
             (_return(100.0, 20.0, 1.2, 0.3),),

@@ -7,7 +7,18 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import labkit as lk
-from labkit.check import AtMost, Call, Gains, Loop, Question, Test, Tuned, mark, read_question
+from labkit.check import (
+    AtMost,
+    Call,
+    Gains,
+    Loop,
+    Question,
+    Test,
+    Tuned,
+    mark,
+    question_data,
+    read_question,
+)
 from labkit.check.codec import decode, encode
 from labkit.controllers import springs
 
@@ -82,7 +93,7 @@ def question(limit):
 def test_a_question_about_gains_travels(limit, points):
     """As data and back, hidden or not, it gives the same marks."""
     q = question(limit)
-    again = read_question(json.loads(json.dumps(q.data())))
+    again = read_question(json.loads(json.dumps(question_data(q))))
     assert mark(again, soft).earned == mark(q, soft).earned == points
 
 

@@ -13,7 +13,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
-from labkit.check import Test, also, check, hint, notebook, use
+from labkit.check import Test, also, check, hint, notebook, question_data, use
+from labkit.check.question_codec import pack_hidden
 from labkit.errors import LabkitError, OutOfRange, UnknownName
 
 
@@ -24,7 +25,7 @@ def stub(x):
 @pytest.fixture(autouse=True)
 def desk(tmp_path, monkeypatch):
     """A folder with questions in it."""
-    data = {"assignment": "sample", "questions": [DOUBLE.data()]}
+    data = {"assignment": "sample", "questions": [question_data(DOUBLE)]}
     (tmp_path / notebook.FILE).write_text(json.dumps(data))
     monkeypatch.chdir(tmp_path)
     notebook._desks.clear()
@@ -108,7 +109,7 @@ def test_also_adds_hidden_cases(capsys):
     """The teacher's copy has more cases, and adding them twice changes nothing."""
     question = replace(DOUBLE, tests=(Test("negative", (CALLS[2], HIDDEN), 1.0, "any number"),))
     for _ in range(2):
-        also("double", question.pack_hidden())
+        also("double", pack_hidden(question))
         assert check("double", {2.0: 4.0, 3.0: 6.0, -1.0: -2.0}.get) == 3.0
     assert "a hidden case (any number)" in capsys.readouterr().out
 
