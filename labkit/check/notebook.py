@@ -12,7 +12,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ..errors import LabkitError, OutOfRange, UnknownName
+from ..errors import LabkitError, UnknownName
 from . import words
 from .calling import heard
 from .evidence import evidence
@@ -106,14 +106,12 @@ def also(name: str, packed: str) -> None:
 def hint(name: str, level: int = 1) -> None:
     """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
 
+    Beyond the last one it says so, and where else to ask.
+
     Raises:
-        OutOfRange: There is no such hint.
+        UnknownName: No such question.
     """
-    hints = desk().question(name).hints
-    if not 1 <= level <= len(hints):
-        raise OutOfRange(f"{name} has hints 1 to {len(hints)}, there is no hint {level}")
-    more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
-    print(words.wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}") + more)
+    print(words.hint(desk().question(name), level))
 
 
 def use(
