@@ -178,7 +178,7 @@ def phase_mixed(lag: float, delay: float, margin_deg: float) -> float:
     """The delay's phase in radians among degrees."""
 
     def left(w: float) -> float:
-        return float(90.0 - np.degrees(atan(lag * w)) - delay * w - margin_deg
+        return float(90.0 - np.degrees(atan(lag * w)) - delay * w - margin_deg)
 
     w = brentq(left, 1e-9, 1e6)
     return float(w * sqrt(1.0 + (lag * w) ** 2))
