@@ -27,7 +27,11 @@ def head(verdict: Verdict) -> str:
 
 
 def tell(
-    question: Question, verdict: Verdict, printed: str = "", used: tuple[str, ...] = ()
+    question: Question,
+    verdict: Verdict,
+    printed: str = "",
+    used: tuple[str, ...] = (),
+    leans_on: tuple[str, ...] = (),
 ) -> str:
     """Everything that a student is told.
 
@@ -36,6 +40,7 @@ def tell(
         verdict: What came of it.
         printed: What the student's code wrote while it was tried.
         used: Withheld names that it uses.
+        leans_on: Other answers that it uses, and that are not right.
 
     Returns:
         Lines of text, the verdict first.
@@ -54,6 +59,9 @@ def tell(
         if verdict.mistake is not None:
             lines.append(f"  This is a well-known one: {verdict.mistake.name}.")
             lines.append(f"  {verdict.mistake.says}")
+    if leans_on and verdict.outcome is not Outcome.RIGHT:
+        names = ", ".join(leans_on)
+        lines.append(f"  Note: it uses your {names}, which is not right yet; mend that first.")
     if used:
         names = ", ".join(used)
         lines.append(f"  Note: the question is to write this yourself, and your code uses {names}.")

@@ -179,9 +179,9 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# Two things change with D. The arm keeps closer to its dotted line, for D also makes the motors quicker:
-# in the loop their lag is divided by 1 + kd. And the dotted line itself gets slower, by the same factor.
-# The second weighs more. So from here on kd is 0, and it is kp that is chosen.
+# Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, for D
+# makes the loop less sensitive to their lag. And the arm arrives later. The second weighs more: from here
+# on kd is 0, and it is kp that is chosen.
 
 # %% [markdown]
 # ## From the tip to the joints
@@ -429,10 +429,11 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# Feed-forward draws a fine circle beside the right one. Feedback takes the wrong start away within a
-# second, and with it nearly all of the error. What is left is a few millimetres, largest where the circle
-# is quickest: the motors lag, and the state is some milliseconds old. And the two controllers? One has
-# kp = 5, the other 4. Give both the same gain before you call one of them better.
+# With your own controllers in place: feed-forward draws a fine circle beside the right one. Feedback takes
+# the wrong start away within a second, and with it nearly all of the error. What is left is a few
+# millimetres, largest where the circle is quickest: the motors lag, and the state is some milliseconds
+# old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
+# them better.
 
 # %% [markdown]
 # ## Hand in

@@ -386,7 +386,7 @@ for claim, verdict in found.items():
     print(f"{claim}: {verdict} ({mean:+.2f} ± {half:.2f} mm)")
 
 # %% [markdown]
-# The report's two sentences are both in this table. Its controllers are better than the built-in way, and
+# With your own verdicts in place: the report's two sentences are both in this table. Its controllers are better than the built-in way, and
 # they are worse: it depends on which one is meant, and each of the two is sure enough. And where it ranks
 # workspace against joint control, the rows do not tell. So name the two, the task and the number, and say
 # how sure you are.

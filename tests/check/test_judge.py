@@ -47,6 +47,11 @@ def test_a_command_is_asked_for_by_name():
     assert CLOSE(lk.JointTorque(np.ones(7)), velocity).endswith("not a JointTorque")
 
 
+def test_mistakes_are_alike_within_a_rounding():
+    """A mistake is known by its number, however far it was written out; an answer is not."""
+    assert CLOSE.same(1.96 * V, 1.959964 * V) and CLOSE(1.96 * V, 1.959964 * V) is not None
+
+
 def test_a_number_is_told_its_sign_but_no_chance_factor():
     """The other sign of a single number tells something, twice the number does not."""
     assert CLOSE(-4.0, 4.0).endswith("the same with the other sign")

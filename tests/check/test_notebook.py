@@ -24,7 +24,8 @@ def stub(x):
 @pytest.fixture(autouse=True)
 def desk(tmp_path, monkeypatch):
     """A folder with questions in it."""
-    data = {"assignment": "sample", "questions": [DOUBLE.data()]}
+    questions = [DOUBLE.data(), replace(DOUBLE, name="again").data()]
+    data = {"assignment": "sample", "questions": questions}
     (tmp_path / notebook.FILE).write_text(json.dumps(data))
     monkeypatch.chdir(tmp_path)
     notebook._desks.clear()
@@ -65,6 +66,28 @@ def test_streams_work_again_afterwards(capfd):
     print("here")
     os.write(2, b"there\n")
     assert capfd.readouterr() == ("here\n", "there\n")
+
+
+def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
+    """Where a function calls another answer that is not right, that one is to be mended first."""
+    answers = {"square": square}
+    exec("def double(x):\n    return square(x)\ndef again(x):\n    return double(x)", answers)
+    check("double", answers["double"])
+    assert "it uses your" not in capsys.readouterr().out
+    check("again", answers["again"])
+    assert "it uses your double, which is not right yet" in capsys.readouterr().out
+
+
+def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
+    """Who interrupts a check hears in which line it was, and the streams work again."""
+
+    def endless(x):
+        raise KeyboardInterrupt  # what the button does, wherever the loop is
+
+    with pytest.raises(KeyboardInterrupt, match="double was stopped in the line `raise Keyboard"):
+        check("double", endless)
+    print("heard again")
+    assert capfd.readouterr().out == "heard again\n"
 
 
 def test_hints_lead_on(capsys):
