@@ -7,7 +7,7 @@ import copy
 import importlib
 import inspect
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, is_dataclass
 from functools import cache
 from types import ModuleType
 from typing import Any
@@ -43,7 +43,9 @@ def inline(function: Callable[..., Any], name: str) -> str:
     module = inspect.getmodule(thing)
     assert module is not None
     parts: dict[Key, _Part] = {}
-    wanted = _take(thing.__name__, module, parts)
+    _take(thing.__name__, module, parts)
+    if not plain:
+        _take_attributes(function, parts)
     heads, names = ["from __future__ import annotations"], {}
     for key, part in parts.items():
         if isinstance(part.node, ast.Import | ast.ImportFrom):
@@ -60,17 +62,40 @@ def inline(function: Callable[..., Any], name: str) -> str:
                 {pair: names[x] for pair, x in part.attributes.items()},
             ).visit(copy.deepcopy(part.node))
             bodies.append(ast.unparse(ast.fix_missing_locations(renamed)))
-    assert wanted is not None
-    made = names[wanted] if plain else f"{names[wanted]}({_made_with(function)})"
-    last = f"def {name}(*args, **kwargs):\n    return {made}(*args, **kwargs)"
+    last = f"def {name}(*args, **kwargs):\n    return {_made(function, names)}(*args, **kwargs)"
     return "\n\n".join(["\n".join(dict.fromkeys(heads)), *bodies, last])
 
 
-def _made_with(thing: Any) -> str:
-    """How to make an instance again: its attributes that are parameters of its class."""
+def _made_with(thing: Any) -> dict[str, Any]:
+    """What makes an instance again: its attributes that are parameters, and not as by default."""
     known = vars(thing)
-    parameters = inspect.signature(type(thing)).parameters
-    return ", ".join(f"{name}={known[name]!r}" for name in parameters if name in known)
+    return {
+        name: known[name]
+        for name, parameter in inspect.signature(type(thing)).parameters.items()
+        if name in known and repr(known[name]) != repr(parameter.default)
+    }
+
+
+def _take_attributes(thing: Any, parts: dict[Key, _Part]) -> None:
+    """Collect the functions of the course, and the instances of its classes, in an instance."""
+    for value in _made_with(thing).values():
+        if inspect.isfunction(value) or is_dataclass(value):
+            source = value if inspect.isfunction(value) else type(value)
+            module = inspect.getmodule(source)
+            assert module is not None
+            _take(source.__name__, module, parts)
+            if source is not value:
+                _take_attributes(value, parts)
+
+
+def _made(thing: Any, names: dict[Key, str]) -> str:
+    """A function by its name in the text; an instance as the call that makes it again."""
+    if inspect.isfunction(thing):
+        return names[thing.__module__, thing.__name__]
+    kind = names.get((type(thing).__module__, type(thing).__name__))
+    if kind is None:
+        return repr(thing)
+    return f"{kind}({', '.join(f'{k}={_made(x, names)}' for k, x in _made_with(thing).items())})"
 
 
 def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
