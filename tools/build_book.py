@@ -8,6 +8,7 @@ computes it changes.
 from __future__ import annotations
 
 import argparse
+import base64
 import json
 import os
 import re
@@ -21,8 +22,9 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from book_campaign import compare
-from book_outputs import pack, print_pdf
+from book_outputs import pack
 from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, key_of, page_keys
+from book_print import print_pdf
 
 PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
 MADE = BOOK / "generated"
@@ -76,7 +78,8 @@ def _symbols() -> str:
     rows = ["| In code | In formulas | Meaning | Shape | Unit |", "|---|---|---|---|---|"]
     for s in (*SYMBOLS, *ERRORS):
         meaning = re.sub(r"\b([TRp]_\w+)", r"`\1`", s.meaning)
-        rows.append(f"| `{s.code}` | ${s.latex}$ | {meaning} | {s.shape} | {s.unit} |")
+        unit = s.unit.replace("^2", "²").replace(" ", "\N{NO-BREAK SPACE}")
+        rows.append(f"| `{s.code}` | ${s.latex}$ | {meaning} | {s.shape} | {unit} |")
     return "\n".join(rows) + "\n"
 
 
@@ -89,16 +92,17 @@ def _notebooks(folder: Path) -> None:
         "# The notebooks",
         "",
         "Each notebook is shown here as students receive it, before any answer is written. "
-        "Download it, or open it from the repository with `make lab`.",
+        "Download it, or open it from the repository with `make lab`. The files lie in the folder "
+        "`_static/notebooks` of this book, too.",
         "",
     ]
     for path in found:
         notebook = nbformat.read(path, as_version=4)
         title = _title(notebook, path.stem)
-        _write(folder / path.name, nbformat.writes(_readable(notebook)))
+        page = _readable(notebook, f"{_download(path, 'Download this notebook')}, {path.name}.")
+        _write(folder / path.name, nbformat.writes(page))
         _copy(path, BOOK / "static/notebooks" / path.name)
-        link = f'<a href="../_static/notebooks/{path.name}" download>download</a>'
-        lines.append(f"- [{title}](notebooks/{path.name}), {link}")
+        lines.append(f"- [{title}](notebooks/{path.name}), {_download(path, 'download')}")
     if not found:
         lines.append("No notebook has been released into `assignments/` yet.")
     _write(MADE / "notebooks.md", "\n".join(lines) + "\n")
@@ -108,8 +112,22 @@ def _notebooks(folder: Path) -> None:
             old.unlink()
 
 
-def _readable(notebook: dict) -> dict:
-    """A copy for reading: its code is shown, and it has not been run."""
+def _download(path: Path, text: str) -> str:
+    """A link that saves a file, also where the page comes from the disk.
+
+    There a browser shows a neighbouring file instead of saving it, so the link brings the file.
+    """
+    data = base64.b64encode(path.read_bytes()).decode()
+    return (
+        f'<a href="data:application/x-ipynb+json;base64,{data}" download="{path.name}">{text}</a>'
+    )
+
+
+def _readable(notebook: dict, note: str) -> dict:
+    """A copy for reading: its code is shown, it has not been run, a note follows its title."""
+    from nbformat.v4 import new_markdown_cell
+
+    notebook["cells"].insert(1, new_markdown_cell(note, id="note"))
     for cell in notebook["cells"]:
         if cell["cell_type"] == "code":
             cell["outputs"], cell["execution_count"] = [], None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -47,18 +48,20 @@ def repair(app: Sphinx, problem: Exception | None) -> None:
     """Mend every finished page that was written in this build."""
     if problem or app.builder.format != "html":
         return
+    notebooks = [p.stem for p in Path(app.outdir).glob("generated/notebooks/*.html")]
     for path in sorted(Path(app.outdir).rglob("*.html")):
         if "_static" in path.parts:
             continue
         text = path.read_text(encoding="utf-8")
         if "<!-- mended -->" in text:
             continue
-        path.write_text(mended(text), encoding="utf-8")
+        path.write_text(mended(text, notebooks), encoding="utf-8")
 
 
-def mended(text: str) -> str:
+def mended(text: str, notebooks: Sequence[str] = ()) -> str:
     """One page with names, roles and landmarks that assistive technology needs."""
     page = BeautifulSoup(text, "html.parser")
+    _exercises(page, notebooks)
     for rule in (
         _names,
         _citations,
@@ -70,6 +73,15 @@ def mended(text: str) -> str:
     ):
         rule(page)
     return f"{page}\n<!-- mended -->\n"
+
+
+def _exercises(page: BeautifulSoup, notebooks: Sequence[str]) -> None:
+    """A link "05, impedance" to the list of notebooks goes on to that notebook, if it is there."""
+    for link in page.select('a[href$="generated/notebooks.html"]'):
+        number = link.get_text(strip=True)[:2]
+        for name in notebooks:
+            if number.isdigit() and name.startswith(number):
+                link["href"] = link["href"].replace("notebooks.html", f"notebooks/{name}.html")
 
 
 def _names(page: BeautifulSoup) -> None:

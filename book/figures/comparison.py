@@ -27,6 +27,8 @@ from .page import figure, holds, numbers, replay, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
 FILMS = Path(__file__).parents[2] / "build/campaign.json"
+ARMS = {"ideal": "ideal", "baxter": "realistic"}
+"""The arms as the text calls them."""
 SHOWN = ("late_rms_mm", "late_max_mm", "effort")
 
 
@@ -93,9 +95,10 @@ def one_table(name: str, plant: str) -> HTML:
         cells = []
         for task in campaign.TASKS:
             x = [row[name] for row in pick(found()["rows"], way=way, task=task, plant=plant)]
-            cells.append(f"{np.mean(x):.3g} [{min(x):.3g}, {max(x):.3g}]")
+            span = f'<span class="lab-range">[{min(x):.3g}, {max(x):.3g}]</span>'
+            cells.append(f"{np.mean(x):.3g} {span}")
         body.append((way, *cells))
-    return table(("Way", *campaign.TASKS), body, f"{TABLES[name]}, {plant} arm")
+    return table(("Way", *campaign.TASKS), body, f"{TABLES[name]}, {ARMS[plant]} arm")
 
 
 def tables(plant: str) -> HTML:
@@ -111,11 +114,14 @@ def bars() -> HTML:
     for k, (plant, hatch) in enumerate((("ideal", "//"), ("baxter", ""))):
         mean = [np.mean([_mean(w, t, plant, "late_rms_mm") for t in tasks]) for w in WAYS]
         y = np.arange(len(WAYS)) + 0.2 - 0.4 * k
-        ax.barh(y, mean, 0.38, color=f"C{1 - k}", hatch=hatch, label=plant, edgecolor="#ffffff")
+        ax.barh(
+            y, mean, 0.38, color=f"C{1 - k}", hatch=hatch, label=ARMS[plant], edgecolor="#ffffff"
+        )
         for at, x in zip(y, mean, strict=True):
             ax.text(x * 1.06, at, f"{x:.2g}", va="center", fontsize="small")
         told.append(
-            f"{plant}: " + ", ".join(f"{w} {x:.2g}" for w, x in zip(WAYS, mean, strict=True))
+            f"{ARMS[plant]} arm: "
+            + ", ".join(f"{w} {x:.2g}" for w, x in zip(WAYS, mean, strict=True))
         )
     ax.set(xscale="log", xlabel="RMS error of the tip after the first second [mm]")
     ax.set_yticks(np.arange(len(WAYS)), WAYS)
@@ -195,7 +201,7 @@ def everything(way: str, task: str) -> HTML:
     v, w = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
     wanted_at = campaign.joints(way, task, 0)
     wanted = np.array([wanted_at(x).position for x in log.t])
-    _, axes = plt.subplots(6, 1, figsize=(6.2, 10.0), sharex=True)
+    _, axes = plt.subplots(6, 1, figsize=(6.2, 10.6), sharex=True)
     for k, axis in enumerate(AXES):
         style = f"C{k}{STYLES[k]}"
         axes[0].plot(t, d[thin, k], "#999999", linewidth=4, label="target" if k == 0 else None)
@@ -212,14 +218,13 @@ def everything(way: str, task: str) -> HTML:
               "torque [N m]")  # fmt: skip
     for ax, label in zip(axes, labels, strict=True):
         ax.set_ylabel(label)
-        ax.legend(fontsize="x-small", ncols=7, loc="upper right", handlelength=1.6,
-                  columnspacing=0.8)  # fmt: skip
-        ax.margins(y=0.22)
+        ax.legend(fontsize="small", ncols=7, loc="lower right", bbox_to_anchor=(1.0, 1.0),
+                  borderaxespad=0.0, handlelength=1.6, columnspacing=0.8)  # fmt: skip
     axes[-1].set_xlabel("time [s]")
     found = metrics.summary(log, model)
     return figure(
-        f"{way} on the {task}, realistic arm.",
-        f"{way} on the {task}: {found}.",
+        f"{way.capitalize()} on the {task}, realistic arm.",
+        f"{way.capitalize()} on the {task}: {found}.",
         f"Six panels over {found.duration:.3g} s: position and speed of the tip over its target, "
         "its position error along x, y and z, its orientation error, the error of each joint and "
         f"the torque of each motor. {found}. The largest joint error is "

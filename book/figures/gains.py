@@ -62,7 +62,7 @@ def _task(name: str) -> tuple[Any, Any]:
 
 
 def record(point: Point) -> lk.Log:
-    """Run one point of the grid; the arm starts half a centimetre or so beside its path."""
+    """Run one point of the grid; the arm starts about a centimetre beside its path."""
     controller, task, kp, kd, latency, payload = (
         dial.values[k] for dial, k in zip(DIALS, point, strict=True)
     )
@@ -111,14 +111,21 @@ def make(point: Point) -> tuple[str, str, str]:
     return name, text, fact
 
 
-def explorer(folder: str) -> HTML:
-    """The explorer, whose runs stand in book/static/runs."""
+def _list(values: tuple[float, ...]) -> str:
+    *most, last = (f"{x:g}" for x in values)
+    return f"{', '.join(most)} and {last}"
+
+
+def explorer(folder: str, poster: str) -> HTML:
+    """The explorer, whose runs stand in book/static/runs, behind a picture of the arm."""
     facts = json.loads((Path(__file__).parents[1] / "static/runs/facts.json").read_text())
     runs = {tuple(map(int, key.split("-"))): None for key in facts}
     told = {tuple(map(int, key.split("-"))): text for key, text in facts.items()}
     grid = Explorer(NAME, "Gains of the velocity controllers", DIALS, runs, told)  # type: ignore[arg-type]
     caption = (
         f"{len(runs)} runs on the realistic arm, recorded when the book was made. Each starts "
-        "beside its path; change one thing at a time."
+        "about a centimetre beside its path; change one thing at a time. The dials stop where a "
+        f"run was recorded: Kp at {_list(KP)} 1/s, Kd at {_list(KD)}, the latency at "
+        f"{_list(LATENCY)} ms, the payload at {_list(PAYLOAD)} kg."
     )
-    return HTML(explorer_html(grid, folder, caption=caption))
+    return HTML(explorer_html(grid, folder, caption=caption, poster=poster))

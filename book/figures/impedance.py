@@ -42,9 +42,9 @@ def one_mass() -> HTML:
         ax.plot(t, 1e3 * x, f"C{j}{STYLES[j]}", label=f"ζ = {zeta:g}")
         told.append(f"{zeta:g}: {1e3 * x.max():.0f} mm at most")
     ax.axhline(1e3 * push / k, color="C5", linestyle=":")
-    ax.text(2.15, 1e3 * push / k + 2, "F / k", fontsize="small")
-    ax.set(xlabel="time [s]", ylabel="displacement [mm]")
-    ax.legend()
+    ax.text(2.7, 1e3 * push / k + 2, "F / k", fontsize="small")
+    ax.set(xlabel="time [s]", ylabel="displacement [mm]", ylim=(None, 115))
+    ax.legend(ncols=3)
     return figure(
         "2 kg on a spring of 200 N/m, pushed with 10 N until 1.5 s.",
         "Displacement over three seconds for three damping ratios. All tend to 50 mm while pushed "
@@ -160,7 +160,7 @@ def check_yourself() -> HTML:
             1,
         ),
         Question(
-            "The stiffness matrix stands on the wrong side: F = −K e. What happens?",
+            "The spring has the wrong sign: F = −K e, with e = target − actual. What happens?",
             [
                 ("The arm is softer", "It is no spring at all: it pushes away."),
                 ("The arm leaves", "Yes: the further, the harder it pushes."),

@@ -10,7 +10,7 @@ import labkit as lk
 from labkit.replay import demo_html
 from labkit.replay.motion import JOINTS
 
-from .page import Question, figure, holds, numbers, quiz, table
+from .page import Question, figure, holds, numbers, picture, quiz, table
 
 SEED = 2
 STEP = 1e-6
@@ -19,7 +19,8 @@ STEP = 1e-6
 def jacobian_demo() -> HTML:
     """The live demo of the Jacobian."""
     caption = "Live: turn the joints and watch a column of the tip Jacobian become an arrow."
-    return HTML(demo_html("jacobian", caption=caption))
+    seen = picture("left", lk.IDEAL, lk.robot("left").ready)
+    return HTML(demo_html("jacobian", caption=caption, poster=seen))
 
 
 def checks() -> HTML:
@@ -115,7 +116,7 @@ def gravity() -> HTML:
     ax.legend(ncols=3)
     most = rows[np.abs(rows[:, 1]).argmax(), 1]
     neutral = model.gravity(model.robot.neutral)[1]
-    numbers({"g_neutral": neutral, "g_most": most}, ".3g")
+    numbers({"g_neutral": abs(neutral), "g_most": abs(most)}, ".3g")
     holds(abs(most) > 50.0, "the shoulder carries more than 50 N m, the limit of the URDF")
     return figure(
         "The torque that holds the arm, as the shoulder s1 turns and the rest stays neutral.",

@@ -19,8 +19,9 @@ from IPython.display import HTML
 from myst_nb import glue
 from PIL import Image
 
-from labkit import Arm, Log, Table, World, metrics, plotting
+from labkit import Arm, Log, Plant, Table, World, metrics, plotting
 from labkit.replay import motion_html, motion_of
+from labkit.robot import Side
 from labkit.vision.camera import Camera, looking_at
 from labkit.vision.intrinsics import Intrinsics
 from solutions.film import AT, EYE
@@ -41,7 +42,7 @@ mpl.use("agg")
 mpl.rcParams.update(
     {
         "svg.fonttype": "none",  # letters stay letters: searched, read aloud, scaled
-        "font.size": 10.5,
+        "font.size": 11.5,
         "figure.figsize": (6.0, 3.4),
         "figure.constrained_layout.use": True,
         "axes.prop_cycle": mpl.cycler(color=INKS),
@@ -138,10 +139,15 @@ def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
 
 def poster(log: Log) -> str:
     """What a camera beside the table sees in the middle of a run, as a data address."""
+    return picture(log.side, log.plant, log.q[len(log) // 2])
+
+
+def picture(side: Side, plant: Plant, q: np.ndarray) -> str:
+    """The arm at rest at q, shape (7,) in [rad], seen from beside the table, as a data address."""
     lens = Intrinsics(width=480, height=360, fx=405.0, fy=405.0)
     with World(things=(Table(),)) as world:
-        arm = Arm(log.side, log.plant, world=world)
-        arm.reset(log.q[len(log) // 2])
+        arm = Arm(side, plant, world=world)
+        arm.reset(q)
         return address(Camera(world, looking_at(EYE, AT), lens, samples=1).image())
 
 

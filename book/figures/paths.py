@@ -84,7 +84,9 @@ def scalings() -> HTML:
 
 def scaling_demo() -> HTML:
     """The live demo of the four scalings."""
-    return HTML(demo_html("scaling", caption="Live: choose a way and limits, and compare."))
+    return HTML(
+        demo_html("scaling", caption="Live: choose a length and a duration, and compare the peaks.")
+    )
 
 
 def peak_table() -> HTML:

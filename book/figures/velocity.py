@@ -17,7 +17,7 @@ from solutions.joint_velocity import JointVelocityPD
 from solutions.workspace_velocity import WorkspaceVelocityPD
 
 from .gains import explorer as recorded
-from .page import Question, figure, holds, number, numbers, quiz, replay, tracking
+from .page import Question, figure, holds, number, numbers, picture, quiz, replay, tracking
 
 SEED = 3
 OFFSET = 0.1
@@ -243,4 +243,4 @@ def check_yourself() -> HTML:
 
 def explorer() -> HTML:
     """The gain explorer."""
-    return recorded("../_static/runs/")
+    return recorded("../_static/runs/", picture("left", lk.BAXTER, lk.robot("left").ready))

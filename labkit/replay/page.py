@@ -172,12 +172,15 @@ DEMOS = {
 }
 
 
-def demo_html(name: str, *, caption: str = "", root: str | None = None) -> str:
+def demo_html(
+    name: str, *, caption: str = "", poster: str | None = None, root: str | None = None
+) -> str:
     """One of the live demos: "scaling", "jacobian" or "rotation".
 
     Args:
         name: Which.
         caption: Text under it; a description if empty.
+        poster: See `motion_html`.
         root: See `motion_html`.
 
     Returns:
@@ -188,7 +191,7 @@ def demo_html(name: str, *, caption: str = "", root: str | None = None) -> str:
     """
     data = demo_data(name)
     words = data["alt"]
-    return _figure(_compact(data), caption or words, words, words, None, root)
+    return _figure(_compact(data), caption or words, words, words, poster, root)
 
 
 def demo_data(name: str) -> dict[str, str]:

@@ -39,5 +39,11 @@ def test_the_dials_are_moved_by_keyboard_and_say_recorded(visit):
         "b => document.querySelector('[data-run]').dataset.run !== b", arg=before
     )
     assert "recorded" in page.inner_text(".lk-recorded")
+    typed = page.get_by_label("Kp, typed")
+    typed.fill("12")
+    typed.press("Enter")
+    page.wait_for_function(
+        "document.querySelector('.lk-recorded').textContent.includes('8 is nearest to 12')"
+    )
     page.get_by_label("Task", exact=True).select_option("circle")
     page.wait_for_function("document.querySelector('.lk-recorded').textContent.includes('circle')")

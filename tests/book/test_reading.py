@@ -7,6 +7,8 @@ from urllib.parse import unquote, urlparse
 
 import pytest
 
+ROOT = Path(__file__).parents[2]
+
 pytestmark = pytest.mark.slow
 
 
@@ -95,6 +97,33 @@ def test_without_webgl_words_and_plots_remain(visit, blind_chromium):
     assert page.is_visible(".lk-embed img.lk-poster")
     assert "left arm" in page.get_attribute(".lk-embed img.lk-poster", "alt")
     assert page.locator(".lk-line").count() > 7
+
+
+def test_every_notebook_is_saved_from_the_disk(visit):
+    """The link brings the file: a browser would show a neighbouring one instead of saving it."""
+    page = visit("generated/notebooks.html")
+    links = page.get_by_role("link", name="download", exact=True).all()
+    released = sorted((ROOT / "assignments").glob("*/*.ipynb"))
+    assert len(links) == len(released)
+    for link, notebook in zip(links, released, strict=True):
+        with page.expect_download() as saving:
+            link.click()
+        assert saving.value.suggested_filename == notebook.name
+        assert Path(saving.value.path()).read_bytes() == notebook.read_bytes()
+
+
+def test_an_exercise_leads_to_its_notebook(visit):
+    page = visit("chapters/impedance.html")
+    page.get_by_role("link", name="05, impedance").click()
+    page.wait_for_url("**/generated/notebooks/05_impedance.html")
+    assert page.get_by_role("link", name="Download this notebook").is_visible()
+
+
+def test_words_and_numbers_in_tables_stay_whole_on_a_phone(visit):
+    page = visit("notation.html", phone=True)
+    heights = page.evaluate("""() => [...document.querySelectorAll('td:first-child code')]
+        .map((e) => e.getClientRects().length)""")
+    assert set(heights) == {1}
 
 
 def test_a_phone_loads_the_arm_on_tap(visit):

@@ -73,11 +73,12 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-demo > :is(.lk-readout, .lk-plots) { padding-inline: 0; }
 .lk-dials { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 19rem), 1fr)); gap: 0.35rem 1.2rem; }
 .lk-dial, .lk-choice { display: flex; align-items: center; gap: 0.45rem; min-width: 0; }
-.lk-dial label, .lk-choice label { flex: 0 0 6.2rem; margin: 0; }
+.lk-dial label, .lk-choice label { flex: 0 0 5rem; margin: 0; }
+:is(.lk-player, .lk-demo, .lk-embed) .lk-dial input[type="number"] { width: 4.3rem; padding-inline: 0.4rem; }
 .lk-demo fieldset.lk-dials { grid-template-columns: repeat(auto-fit, minmax(min(100%, 14rem), 1fr)); }
 fieldset .lk-dial label { flex-basis: 2.6rem; }
 .lk-dial input[type="range"] { flex: 1 1 5rem; min-width: 4rem; }
-.lk-dial .lk-unit { flex: 0 0 3rem; font-size: 0.85rem; white-space: nowrap; }
+.lk-dial .lk-unit { flex: 0 0 1.9rem; font-size: 0.85rem; line-height: 1.1; }
 .lk-choice select { flex: 1 1 auto; min-width: 0; }
 .lk-recorded { margin: 0.5rem 0 0; font-size: 0.9rem; }
 .lk-badge { display: inline-block; padding: 0 0.5rem; border: 1px solid var(--lk-quiet); border-radius: 1rem; font-size: 0.8rem; margin-right: 0.4rem; }
@@ -90,10 +91,12 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-canvas { aspect-ratio: 1; }
   .lk-range { flex-basis: 100%; order: -1; }
   .lk-speed { margin-left: auto; }
-  .lk-word, .lk-gap { display: none; }
+  .lk-word { display: none; }
+  .lk-gap { flex-basis: 100%; height: 0; } /* views in one row, moves in the next */
+  .lk-bar .lk-number { width: 4.6rem !important; }
 }
 @media print { /* the last frame and the plots print; what was never loaded prints its picture or words */
-  .lk-bar, .lk-load { display: none !important; }
+  .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function o(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(i),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var n=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),c={};function a(e){return c[e]??=new Promise((t,r)=>{let l=document.createElement("script");l.src=e,l.addEventListener("load",t),l.addEventListener("error",()=>r(new Error(`${e} is missing`))),document.head.append(l)})}async function p(e,t){let r=new URL(t,document.baseURI).href;return await a(r),globalThis.labkitRuns[t.replace(/^.*\//,"").replace(/\.js$/,"")]}var b=globalThis.labkitLoad=async()=>(await Promise.all([a(`${n}viewer.js`),a(`${n}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let t=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await b(),l=document.createElement("div");e.insertBefore(l,e.querySelector("figcaption")),r(l,t,p),l.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function f(e){let t=document.createElement("button");t.type="button",t.className="lk-load",t.textContent="Tap to load the interactive view",t.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(t,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,o();let e=new IntersectionObserver(t=>{for(let{isIntersecting:r,target:l}of t)r&&(e.unobserve(l),s(l))},{rootMargin:"400px"});for(let t of document.querySelectorAll(".lk-embed"))m.matches?f(t):e.observe(t)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function o(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(i),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var n=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function a(e){return p[e]??=new Promise((t,r)=>{let l=document.createElement("script");l.src=e,l.addEventListener("load",t),l.addEventListener("error",()=>r(new Error(`${e} is missing`))),document.head.append(l)})}async function c(e,t){let r=new URL(t,document.baseURI).href;return await a(r),globalThis.labkitRuns[t.replace(/^.*\//,"").replace(/\.js$/,"")]}var b=globalThis.labkitLoad=async()=>(await Promise.all([a(`${n}viewer.js`),a(`${n}robot.js`)]),globalThis.labkitViewer);async function k(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let t=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await b(),l=document.createElement("div");e.insertBefore(l,e.querySelector("figcaption")),r(l,t,c),l.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function u(e){let t=document.createElement("button");t.type="button",t.className="lk-load",t.textContent="Tap to load the interactive view",t.addEventListener("click",()=>k(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(t,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,o();let e=new IntersectionObserver(t=>{for(let{isIntersecting:r,target:l}of t)r&&(e.unobserve(l),k(l))},{rootMargin:"400px"});for(let t of document.querySelectorAll(".lk-embed"))m.matches?u(t):e.observe(t)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

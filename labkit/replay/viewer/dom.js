@@ -27,7 +27,10 @@ export const unique = (stem) => `lk-${stem}-${++count}`;
 
 export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-/** A slider with a typed number beside it; `stops` holds the only values it can take. */
+/**
+ * A slider with a typed number beside it; `stops` holds the only values it can take.
+ * `oninput` gets the value, and what was typed if it was typed.
+ */
 export function dial({ label, unit = "", stops, min, max, step, value, digits = 3, oninput }) {
   const id = unique("dial");
   const nearest = (x) => stops.reduce((b, s, i) => (Math.abs(s - x) < Math.abs(stops[b] - x) ? i : b), 0);
@@ -47,7 +50,11 @@ export function dial({ label, unit = "", stops, min, max, step, value, digits = 
   };
   const changed = () => { set(get()); oninput?.(get()); };
   range.addEventListener("input", changed);
-  number.addEventListener("change", () => { set(Number.isFinite(number.valueAsNumber) ? number.valueAsNumber : get()); oninput?.(get()); });
+  number.addEventListener("change", () => {
+    const typed = Number.isFinite(number.valueAsNumber) ? number.valueAsNumber : get();
+    set(typed);
+    oninput?.(get(), typed);
+  });
   set(value ?? (stops ? stops[0] : min));
   const element = h("div", { class: "lk-dial" },
     h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, unit));

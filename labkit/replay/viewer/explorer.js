@@ -9,9 +9,14 @@ export class Explorer {
   /** index: {dials: [{name, label, unit, values}], runs: {"0-1-2": url or motion}, facts: {key: text}} */
   constructor(host, index, robot, load) {
     Object.assign(this, { host, index, robot, load });
-    this.controls = index.dials.map((d) => (isWords(d)
+    this.asked = index.dials.map(() => ""); // what was typed beside the grid, said with what is shown
+    this.controls = index.dials.map((d, i) => (isWords(d)
       ? choice({ label: d.label, values: d.values, value: d.value, onchange: () => this.change() })
-      : dial({ label: d.label, unit: d.unit, stops: d.values, value: d.value, digits: 4, oninput: () => this.change() })));
+      : dial({ label: d.label, unit: d.unit, stops: d.values, value: d.value, digits: 4, oninput: (value, typed = value) => {
+        this.asked[i] = Math.abs(typed - value) > 1e-9
+          ? `Recorded were ${d.label} ${d.values.join(", ")}: ${value} is nearest to ${typed}. ` : "";
+        this.change();
+      } })));
     this.note = h("p", { class: "lk-recorded", role: "status" });
     this.element = h("div", { class: "lk-demo lk-explorer", role: "group", "aria-label": index.title },
       h("div", { class: "lk-dials" }, this.controls.map((c) => c.element)), this.note);
@@ -41,7 +46,7 @@ export class Explorer {
       return typeof values[k] === "string" ? values[k] : `${label} ${values[k]}${unit ? ` ${unit}` : ""}`;
     }).join(", ");
     const exact = key === wanted.join("-") ? "" : "This point was not recorded; shown is the nearest that was. ";
-    this.note.replaceChildren(h("span", { class: "lk-badge" }, "recorded"), `${exact}${words}. ${this.index.facts?.[key] ?? ""}`);
+    this.note.replaceChildren(h("span", { class: "lk-badge" }, "recorded"), ` ${this.asked.join("")}${exact}${words}. ${this.index.facts?.[key] ?? ""}`);
     this.host.dataset.run = key;
     if (this.player) this.player.show(motion);
     else {

@@ -2,7 +2,7 @@
 import { Body } from "./body.js";
 import { ARM, frames, posture, tip } from "./kinematics.js";
 import { axes, board, dispose, line } from "./marks.js";
-import { DASHES, Plot } from "./plots.js";
+import { DASHES, letters, Plot } from "./plots.js";
 import { at, read } from "./recording.js";
 import { Stage } from "./stage.js";
 import { VIEWS } from "./rig.js";
@@ -87,8 +87,10 @@ export class Player {
     if (this.stage.works) this.dress();
     this.explain();
     this.plots.forEach((p) => p.dispose());
-    this.plots = this.curves().map((c) => new Plot({
-      ...c, x: motion.time, scrub: (t) => { this.play(false); this.seek(t); } }));
+    const curves = this.curves();
+    const beside = Math.max(0, ...curves.map(({ series }) => letters(series)));
+    this.plots = curves.map((c) => new Plot({
+      ...c, beside, x: motion.time, scrub: (t) => { this.play(false); this.seek(t); } }));
     this.plotbox.replaceChildren(...this.plots.map((p) => p.element));
     this.seek(Math.min(Math.max(this.time ?? motion.start, motion.start), motion.end));
     if (!this.stage.works) this.host.dataset.ready = "1";

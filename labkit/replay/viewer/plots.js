@@ -14,6 +14,9 @@ export function ticks(low, high, wanted = 4) {
   return found;
 }
 
+/** Of the longest name beside the lines; one line alone carries none. */
+export const letters = (series) => (series.length < 2 ? 0 : Math.max(...series.map((s) => s.name.length)));
+
 export class Plot {
   /**
    * @param title  what is plotted, with its unit
@@ -22,9 +25,10 @@ export class Plot {
    * @param scrub  called with an abscissa when the reader drags over the plot
    * @param zero   whether the axis starts at zero
    * @param least  the least that the axis spans, however little the values do
+   * @param beside letters to leave room for on the right, so that plots share one time axis
    */
-  constructor({ title, series, x, xName = "time [s]", scrub, zero = false, least = 1e-12 }) {
-    Object.assign(this, { title, series, x, xName, zero, least, now: x[0] });
+  constructor({ title, series, x, xName = "time [s]", scrub, zero = false, least = 1e-12, beside = 0 }) {
+    Object.assign(this, { title, series, x, xName, zero, least, beside, now: x[0] });
     const id = unique("plot");
     this.art = svg("svg", { class: "lk-plot", role: "img", "aria-labelledby": id, focusable: "false" });
     this.element = h("div", { class: "lk-plotbox" }, h("p", { class: "lk-plottitle", id }, title), this.art);
@@ -48,8 +52,8 @@ export class Plot {
   draw() {
     const width = this.element.clientWidth;
     if (!width) return;
-    const longest = Math.max(...this.series.map((s) => s.name.length));
-    const right = this.series.length < 2 ? 12 : Math.min(24 + 6.6 * longest, 0.34 * width);
+    const longest = Math.max(this.beside, letters(this.series));
+    const right = longest ? Math.min(24 + 6.6 * longest, 0.34 * width) : 12;
     const wide = this.wide = Math.max(60, width - LEFT - right);
     const tall = HEIGHT - TOP - BOTTOM;
     let low = this.zero ? 0 : Infinity, high = -Infinity;
