@@ -117,7 +117,10 @@ def inlined(problem: Problem) -> str:
         LabkitError: The answer leans on something that cannot be copied.
     """
     function = inspect.unwrap(problem.answer)
-    tree = ast.parse(inspect.getsource(inspect.getmodule(function)))  # type: ignore[arg-type]
+    module = inspect.getmodule(function)
+    assert module is not None
+    source = inspect.getsource(module)
+    tree = ast.parse(source)
     defined = {name: node for node in tree.body for name in _defines(node)}
     wanted, parts = [function.__name__], []
     seen: set[str] = set()
@@ -133,7 +136,7 @@ def inlined(problem: Problem) -> str:
         wanted += [n.id for n in ast.walk(node) if isinstance(n, ast.Name)]
     ordered = sorted({id(node): node for node in parts}.values(), key=lambda node: node.lineno)
     imports = [ast.unparse(n) for n in ordered if isinstance(n, ast.Import | ast.ImportFrom)]
-    lines = inspect.getsource(inspect.getmodule(function)).splitlines()  # type: ignore[arg-type]
+    lines = source.splitlines()
     bodies = [
         textwrap.dedent("\n".join(lines[_first_line(n) - 1 : n.end_lineno]))
         for n in ordered
