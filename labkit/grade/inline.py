@@ -75,7 +75,7 @@ def _made_with(thing: Any) -> str:
 
 def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
     """Collect what a name means in a module, what that needs first; None for Python's own names."""
-    node = next((x for x in _tree(module).body if name in _defines(x)), None)
+    node = next((x for x in _tree(module).body if name in names_defined(x)), None)
     if node is None:
         return None
     home = _home(node, module)
@@ -89,7 +89,7 @@ def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
         return key
     inner = [x for x in ast.walk(node) if isinstance(x, ast.ImportFrom) and _home(x, module)]
     for used in dict.fromkeys(_used(node)):
-        place = next((x for x in inner if used in _defines(x)), None)
+        place = next((x for x in inner if used in names_defined(x)), None)
         source = (place and _home(place, module)) or module
         there = _called_there(place, used) if place else used
         whole = _whole(used, module)
@@ -124,7 +124,7 @@ def _called_there(node: ast.stmt, name: str) -> str:
 
 def _whole(name: str, module: ModuleType) -> ModuleType | None:
     """The module of the course that a module imports as a whole under this name."""
-    node = next((x for x in _tree(module).body if name in _defines(x)), None)
+    node = next((x for x in _tree(module).body if name in names_defined(x)), None)
     home = _home(node, module) if node is not None else None
     if node is None or home is None:
         return None
@@ -164,9 +164,12 @@ def _home(node: ast.stmt, module: ModuleType) -> ModuleType | None:
     return importlib.import_module(full)
 
 
-def _defines(node: ast.stmt) -> list[str]:
+def names_defined(node: ast.stmt) -> list[str]:
+    """The names that a statement of a module gives a meaning to."""
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         return [node.name]
+    if isinstance(node, ast.ImportFrom) and node.module == "__future__":
+        return []
     if isinstance(node, ast.Import | ast.ImportFrom):
         return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
     targets = node.targets if isinstance(node, ast.Assign) else []
