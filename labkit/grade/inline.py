@@ -6,7 +6,7 @@ import ast
 import copy
 import importlib
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import ModuleType
@@ -38,12 +38,10 @@ def inline(function: Callable[..., Any], name: str) -> str:
         function: A function, or an instance of a class with ``__call__``.
         name: What the text is to define.
     """
-    plain = inspect.isfunction(function)
-    thing = function if plain else type(function)
-    module = inspect.getmodule(thing)
-    assert module is not None
+    package = (function if inspect.isfunction(function) else type(function)).__module__
+    package = package.partition(".")[0]
     parts: dict[Key, _Part] = {}
-    wanted = _take(thing.__name__, module, parts)
+    _take_value(function, package, parts)
     heads, names = ["from __future__ import annotations"], {}
     for key, part in parts.items():
         if isinstance(part.node, ast.Import | ast.ImportFrom):
@@ -60,17 +58,42 @@ def inline(function: Callable[..., Any], name: str) -> str:
                 {pair: names[x] for pair, x in part.attributes.items()},
             ).visit(copy.deepcopy(part.node))
             bodies.append(ast.unparse(ast.fix_missing_locations(renamed)))
-    assert wanted is not None
-    made = names[wanted] if plain else f"{names[wanted]}({_made_with(function)})"
+    made = _written(function, package, names)
     last = f"def {name}(*args, **kwargs):\n    return {made}(*args, **kwargs)"
     return "\n\n".join(["\n".join(dict.fromkeys(heads)), *bodies, last])
 
 
-def _made_with(thing: Any) -> str:
-    """How to make an instance again: its attributes that are parameters of its class."""
-    known = vars(thing)
-    parameters = inspect.signature(type(thing)).parameters
-    return ", ".join(f"{name}={known[name]!r}" for name in parameters if name in known)
+def _definition(value: Any, package: str) -> Any:
+    """The function or class of a package that a value is, or is made from; else None."""
+    thing = value if inspect.isfunction(value) else type(value)
+    return thing if thing.__module__.partition(".")[0] == package else None
+
+
+def _made_with(value: Any) -> dict[str, Any]:
+    """What an instance was made with: its attributes that are parameters of its class."""
+    parameters = {} if inspect.isfunction(value) else inspect.signature(type(value)).parameters
+    return {name: vars(value)[name] for name in parameters if name in vars(value)}
+
+
+def _take_value(value: Any, package: str, parts: dict[Key, _Part]) -> None:
+    """Collect what it takes to write a value, and what it was made with."""
+    thing = _definition(value, package)
+    if thing is not None:
+        module = inspect.getmodule(thing)
+        assert module is not None
+        _take(thing.__name__, module, parts)
+        for inner in _made_with(value).values():
+            _take_value(inner, package, parts)
+
+
+def _written(value: Any, package: str, names: Mapping[Key, str]) -> str:
+    """A value as an expression."""
+    thing = _definition(value, package)
+    if thing is None:
+        return repr(value)
+    made = names[thing.__module__, thing.__name__]
+    inner = (f"{name}={_written(x, package, names)}" for name, x in _made_with(value).items())
+    return made if inspect.isfunction(value) else f"{made}({', '.join(inner)})"
 
 
 def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
