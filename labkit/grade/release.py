@@ -22,8 +22,9 @@ from ..check.notebook import FILE
 from ..check.question_codec import pack_hidden
 from ..errors import LabkitError
 from .course import Course
-from .notebook import Notebook, solution_notebook, source_notebook
+from .notebook import Notebook, source_notebook
 from .room import make_room
+from .solved import solution_notebook
 
 FORBIDDEN = ("BEGIN SOLUTION", "BEGIN HIDDEN", "from solutions", "import solutions")
 

@@ -10,8 +10,8 @@ from handmade import nbgrader
 
 from labkit.grade.course import Course
 from labkit.grade.engines import grade_with_nbgrader
-from labkit.grade.notebook import inlined
 from labkit.grade.release import release
+from labkit.grade.solved import inlined
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"

@@ -10,8 +10,9 @@ from courses import copied
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.course import Course
-from labkit.grade.notebook import brief, inlined, solution_notebook, source_notebook
+from labkit.grade.notebook import brief, source_notebook
 from labkit.grade.release import FORBIDDEN, release
+from labkit.grade.solved import inlined, solution_notebook
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
