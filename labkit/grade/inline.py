@@ -84,13 +84,17 @@ def _take_value(value: Any, package: str, parts: dict[Key, _Part]) -> None:
         _take(thing.__name__, module, parts)
         for inner in _made_with(value).values():
             _take_value(inner, package, parts)
+    elif inspect.isfunction(value):
+        home = value.__module__
+        parts[home, home] = _Part(ast.Import([ast.alias(home)]))
 
 
 def _written(value: Any, package: str, names: Mapping[Key, str]) -> str:
     """A value as an expression."""
     thing = _definition(value, package)
     if thing is None:
-        return repr(value)
+        home = value.__module__ if inspect.isfunction(value) else ""
+        return f"{names[home, home]}.{value.__name__}" if home else repr(value)
     made = names[thing.__module__, thing.__name__]
     inner = (f"{name}={_written(x, package, names)}" for name, x in _made_with(value).items())
     return made if inspect.isfunction(value) else f"{made}({', '.join(inner)})"
