@@ -9,13 +9,12 @@ export class Explorer {
   /** index: {dials: [{name, label, unit, values}], runs: {"0-1-2": url or motion}, facts: {key: text}} */
   constructor(host, index, robot, load) {
     Object.assign(this, { host, index, robot, load });
-    this.asked = index.dials.map(() => ""); // what was typed beside the grid, said with what is shown
-    this.controls = index.dials.map((d, i) => (isWords(d)
+    this.asked = ""; // what was just typed beside the grid, said with what is shown
+    this.controls = index.dials.map((d) => (isWords(d)
       ? choice({ label: d.label, values: d.values, value: d.value, onchange: () => this.change() })
       : dial({ label: d.label, unit: d.unit, stops: d.values, value: d.value, digits: 4, oninput: (value, typed = value) => {
-        this.asked[i] = Math.abs(typed - value) > 1e-9
-          ? `Recorded were ${d.label} ${d.values.join(", ")}: ${value} is nearest to ${typed}. ` : "";
-        this.change();
+        this.change(Math.abs(typed - value) > 1e-9
+          ? `Nothing was recorded at ${d.label} ${typed}; shown is the nearest, ${value}. ` : "");
       } })));
     this.note = h("p", { class: "lk-recorded", role: "status" });
     this.element = h("div", { class: "lk-demo lk-explorer", role: "group", "aria-label": index.title },
@@ -24,7 +23,8 @@ export class Explorer {
     this.change();
   }
 
-  change() { // sliders fire quickly: load when they rest
+  change(asked = "") { // sliders fire quickly: load when they rest
+    this.asked = asked;
     clearTimeout(this.due);
     this.due = setTimeout(() => this.show(), this.player ? 120 : 0);
   }
@@ -46,7 +46,7 @@ export class Explorer {
       return typeof values[k] === "string" ? values[k] : `${label} ${values[k]}${unit ? ` ${unit}` : ""}`;
     }).join(", ");
     const exact = key === wanted.join("-") ? "" : "This point was not recorded; shown is the nearest that was. ";
-    this.note.replaceChildren(h("span", { class: "lk-badge" }, "recorded"), ` ${this.asked.join("")}${exact}${words}. ${this.index.facts?.[key] ?? ""}`);
+    this.note.replaceChildren(h("span", { class: "lk-badge" }, "recorded"), ` ${this.asked}${exact}${words}. ${this.index.facts?.[key] ?? ""}`);
     this.host.dataset.run = key;
     if (this.player) this.player.show(motion);
     else {
