@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
+from labkit.replay import motion_html, motion_of
 from labkit.vision.detection import detect_tags, find_tag
+from solutions.gains import known
 from solutions.tag_scenes import circling_board
+from solutions.tag_task import followed, sequential, staged
 
-from .page import Question, address, figure, framed, holds, number, numbers, quiz
+from .page import Question, address, figure, framed, holds, number, numbers, poster, quiz
 
 SEED = 8
 FOCAL = 600.0
@@ -185,6 +190,36 @@ def predict() -> HTML:
         f"Position over three seconds: the last picture is a staircase that trails behind with "
         f"{rms['stale']:.2g} mm RMS error; the prediction follows with {rms['predicted']:.2g} mm.",
     )
+
+
+def following() -> HTML:
+    """The arm above a board that goes round, and as a ghost the arm that looks, then moves."""
+    logs, misses = {}, {}
+    for way, chase in (("predicts", followed(SEED)), ("looks, then moves", sequential(SEED))):
+        task = chase.task
+        law = known(lk.Model(task.side, lk.BAXTER), lk.BAXTER)["joint velocity"]
+        with lk.Arm(task.side, lk.BAXTER, SEED, q0=task.q0) as arm:
+            logs[way] = log = lk.run(arm, task.joints, law.controller, rate=law.rate)
+        misses[way] = chase.miss(log.t, lk.metrics.tip_poses(log)[:, :3, 3])
+    late = logs["predicts"].t >= 2.0
+    rms = {way: 1e3 * lk.metrics.rms(miss[late]) for way, miss in misses.items()}
+    holds(rms["predicts"] < 0.3 * rms["looks, then moves"], "prediction follows, looking lags")
+    numbers({"follow_rms": rms["predicts"], "lookups_rms": rms["looks, then moves"]}, ".2g")
+    log, ghost = logs["predicts"], {"looks, then moves": logs["looks, then moves"]}
+    with lk.World() as world:
+        board, _ = staged(world, SEED)
+        poses = np.array([board.pose_at(t) for t in log.t])
+    motion = replace(
+        motion_of(log, "Following a tag", label="predicts", ghosts=ghost, reference=False),
+        board_position=poses[:, :3, 3],
+        board_rotation=poses[:, :3, :3],
+        error=misses["predicts"],
+    )
+    caption = (
+        "The board goes round below the hand, a camera beside the table sees it. The error is the "
+        "distance of the tip from the place 20 cm above the true tag."
+    )
+    return HTML(motion_html(motion, caption=caption, poster=poster(log)))
 
 
 def check_yourself() -> HTML:
