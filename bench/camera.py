@@ -1,4 +1,4 @@
-"""What a picture and a detection cost: `python -m bench.camera`."""
+"""What a picture and a detection cost: `python -m bench camera`."""
 
 import time
 
@@ -49,7 +49,3 @@ def measure():
         + ", ".join(f"{name} {value:.1f}" for name, value in figures.items())
     )
     return figures
-
-
-if __name__ == "__main__":
-    measure()

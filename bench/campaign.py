@@ -18,7 +18,3 @@ def measure() -> dict[str, float]:
     if failed:
         raise RuntimeError(f"{len(failed)} of {len(rows)} runs failed, the first: {failed[0]}")
     return {"campaign_one_seed_s": round(seconds, 1)}
-
-
-if __name__ == "__main__":
-    print(measure())

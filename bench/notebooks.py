@@ -41,7 +41,3 @@ def measure():
         "notebook_s": max(seconds for seconds, _ in found.values()),
         "notebook_mb": max(megabytes for _, megabytes in found.values()),
     }
-
-
-if __name__ == "__main__":
-    print(measure())

@@ -71,7 +71,3 @@ def _best(browser, url, wanted, clock):
         times.append(tab.evaluate(clock))
         tab.close()
     return min(times)
-
-
-if __name__ == "__main__":
-    print(measure())

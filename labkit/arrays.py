@@ -140,15 +140,17 @@ def locked(a: Array) -> Array:
 
 
 def _converted(x: Any, shape: tuple[int, ...] | None, name: str) -> Array:
-    many = "" if shape is None else f"{'x'.join(map(str, shape)) or 'one'} "
+    many = (
+        "one real number"
+        if shape == ()
+        else f"{'' if shape is None else 'x'.join(map(str, shape)) + ' '}real numbers"
+    )
     try:
         a = np.asarray(x)
     except ValueError:
-        raise TypeMismatch(
-            f"{name} has rows of different lengths, expected {many}real numbers"
-        ) from None
+        raise TypeMismatch(f"{name} has rows of different lengths, expected {many}") from None
     if a.dtype.kind not in "fiub":
-        raise TypeMismatch(f"{name} is {shown(x)}, expected {many}real numbers")
+        raise TypeMismatch(f"{name} is {shown(x)}, expected {many}")
     return a.astype(np.float64)
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from . import __version__
 from .errors import LabkitError
+from .verbs import add_verb
 
 EXAMPLES = """examples:
   labkit submit-check 01_paths.ipynb    before handing in: is the notebook whole?
@@ -37,16 +38,17 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"labkit {__version__}")
     verbs = top.add_subparsers(dest="verb", required=True, metavar="VERB")
 
-    verb = verbs.add_parser("submit-check", help="before handing in: is the notebook whole?")
+    does = "before handing in: is the notebook whole?"
+    verb = add_verb(verbs, "submit-check", _submit_check, does, "01_paths.ipynb")
     verb.add_argument("notebook", type=Path, metavar="NOTEBOOK")
     verb.add_argument("--forum", action="store_true", help="print a block to copy into a forum")
-    verb.set_defaults(do=_submit_check)
 
-    verb = verbs.add_parser("merge", help="bring your work into a corrected release")
+    does = "bring your work into a corrected release"
+    example = "01_paths.ipynb new/01_paths.ipynb --to merged.ipynb"
+    verb = add_verb(verbs, "merge", _merge, does, example)
     verb.add_argument("mine", type=Path, metavar="MINE", help="the notebook you worked in")
     verb.add_argument("new", type=Path, metavar="NEW", help="the corrected one")
     verb.add_argument("--to", type=Path, required=True, metavar="FILE", help="where to write")
-    verb.set_defaults(do=_merge)
 
     if instructors:
         from .grade import verbs as verbs_grading
@@ -69,6 +71,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # whoever was reading has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
+    except OSError as error:  # a folder that is not there, a disk that is full
+        where = "" if error.filename is None else f"{error.filename}: "
+        print(f"labkit {args.verb}: {where}{error.strerror or error}", file=sys.stderr)
+        return 2
 
 
 def _submit_check(args: argparse.Namespace) -> int:

@@ -28,6 +28,8 @@ class ShapeError(LabkitError, ValueError):
 
 
 def _mend(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
+    if expected == ():
+        return "; one number is asked for, without brackets around it"
     if len(expected) != 1:
         return "; the transpose would fit" if actual == expected[::-1] else ""
     n = expected[0]

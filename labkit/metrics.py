@@ -15,7 +15,7 @@ from .arrays import Array
 from .errors import TypeMismatch
 from .log import Log
 from .model import Model
-from .motion import PoseSample
+from .motion import PoseSample, Sample
 
 
 def model_of(log: Log) -> Model:
@@ -29,9 +29,7 @@ def joint_error(log: Log) -> Array:
     Raises:
         TypeMismatch: The run followed poses.
     """
-    if isinstance(log.target, PoseSample) or log.target.position.shape[1] != log.q.shape[1]:
-        raise TypeMismatch("this run followed poses, not joint angles: ask for tip_error(log)")
-    return np.asarray(log.target.position - log.q)
+    return np.asarray(_joint_target(log, instead="tip_error").position - log.q)
 
 
 def joint_speed_error(log: Log) -> Array:
@@ -40,9 +38,14 @@ def joint_speed_error(log: Log) -> Array:
     Raises:
         TypeMismatch: The run followed poses.
     """
-    if isinstance(log.target, PoseSample) or log.target.velocity.shape[1] != log.dq.shape[1]:
-        raise TypeMismatch("this run followed poses, not joint angles: ask for velocity_error(log)")
-    return np.asarray(log.target.velocity - log.dq)
+    return np.asarray(_joint_target(log, instead="velocity_error").velocity - log.dq)
+
+
+def _joint_target(log: Log, *, instead: str) -> Sample:
+    target = log.target
+    if isinstance(target, PoseSample) or target.position.shape[1] != log.q.shape[1]:
+        raise TypeMismatch(f"this run followed poses, not joint angles: ask for {instead}(log)")
+    return target
 
 
 def tip_poses(log: Log, model: Model | None = None) -> Array:

@@ -101,10 +101,29 @@ class Trajectory:
         return self.scaling.duration
 
     def __call__(self, t: float) -> Any:
-        """The motion at time ``t`` [s], by the chain rule; of the path's kind of sample."""
-        s, ds, dds = self.scaling(t)
-        x, dx, ddx = at_s = self.path(s)
-        return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
+        """The motion at time ``t`` [s], by the chain rule; of the path's kind of sample.
+
+        Raises:
+            TypeMismatch: The scaling or the path gave something else than it should.
+        """
+        at_t = self.scaling(t)
+        try:
+            s, ds, dds = at_t
+        except (TypeError, ValueError):
+            raise TypeMismatch(
+                f"the scaling gave {shown(at_t)}, expected three numbers: s, ds/dt and d2s/dt2"
+            ) from None
+        at_s = self.path(s)
+        try:
+            x, dx, ddx = at_s
+            return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
+        except (TypeError, ValueError):
+            if isinstance(at_s, AnySample):
+                raise
+            raise TypeMismatch(
+                f"the path gave {shown(at_s)}, expected lk.Sample(position, velocity, "
+                "acceleration) with the derivatives by s, or an lk.PoseSample"
+            ) from None
 
 
 class Chain:

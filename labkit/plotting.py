@@ -221,7 +221,8 @@ def show(caption: str) -> None:
     figure = plt.gcf()
     if get_ipython() is not None:
         display(figure, metadata={"image/png": {"alt": caption}})
-    print(fill(caption, 79))  # the browser would break words
+    kept = caption.replace(" %", "\N{NO-BREAK SPACE}%")
+    print(fill(kept, 79))  # the browser would break words
     plt.close(figure)
 
 

@@ -130,13 +130,13 @@ def robot(side: str) -> Robot:
     )
 
 
-def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tuple[Any, ...]:  # noqa: E741
+def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tuple[Any, ...]:
     """Mass, centre and inertia about the centre, after a point mass at p joins the body."""
     total = m + extra
     centre = (m * c + extra * p) / total
     for mass, at in ((m, c), (extra, p)):
         d = at - centre
-        I = I + mass * ((d @ d) * np.eye(3) - np.outer(d, d))  # noqa: E741
+        I = I + mass * ((d @ d) * np.eye(3) - np.outer(d, d))
     return total, centre, I
 
 

@@ -70,10 +70,7 @@ class Wall:
         if length < 1e-9:
             raise OutOfRange("normal is zero; a wall faces some way")
         object.__setattr__(self, "normal", as_vector(normal / length, 3, "normal"))
-        object.__setattr__(self, "size", as_vector(self.size, 2, "size"))
-        for side in self.size:
-            as_number(side, "size", above=0.0)
-        _check_material(self)
+        _check_slab(self)
 
     @property
     def T_wf(self) -> Array:
@@ -114,10 +111,7 @@ class Table:
     def __post_init__(self) -> None:
         as_number(self.height, "height")
         object.__setattr__(self, "centre", as_vector(self.centre, 2, "centre"))
-        object.__setattr__(self, "size", as_vector(self.size, 2, "size"))
-        for side in self.size:
-            as_number(side, "size", above=0.0)
-        _check_material(self)
+        _check_slab(self)
 
     @property
     def T_wf(self) -> Array:
@@ -224,7 +218,11 @@ def _arm_of(world: World, side: Side | None) -> Pushable:
     raise UnknownName("arm in this world", str(side), known)
 
 
-def _check_material(thing: Any) -> None:
+def _check_slab(thing: Any) -> None:
+    """Size and material of a wall or a table top."""
+    object.__setattr__(thing, "size", as_vector(thing.size, 2, "size"))
+    for side in thing.size:
+        as_number(side, "size", above=0.0)
     as_number(thing.stiffness, "stiffness", above=0.0)
     as_number(thing.damping, "damping", least=0.0)
     as_number(thing.friction, "friction", least=0.0)

@@ -13,7 +13,7 @@ import hashlib
 import json
 import math
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
 from functools import cache
 from pathlib import Path
@@ -40,9 +40,10 @@ from labkit.study import tasks
 from labkit.study.campaign import Job, Meter, Row, cells, pick, table, work_through
 from labkit.study.recorded import keep_campaign
 from labkit.study.tasks import Task
+from labkit.verbs import whole
 
 from .claims import Verdict, verdicts
-from .gains import Tuned, five
+from .gains import Tuned, known
 from .joint_velocity import JointVelocityPD
 from .tag_task import Chase, followed, sequential
 
@@ -64,9 +65,9 @@ FIVE = (
 WAYS = (*FIVE, FEED_FORWARD, BASELINE)
 
 
-def grid(seeds: int) -> list[dict[str, Any]]:
+def grid(seeds: int, ways: Sequence[str] = WAYS) -> list[dict[str, Any]]:
     """The campaign's cells: 7 ways, every task, 2 plants, the seeds."""
-    return cells(way=WAYS, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
+    return cells(way=ways, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
 
 
 @cache
@@ -116,7 +117,7 @@ def _tuned(way: str, plant: Plant, side: Any) -> Tuned:
 
         return Tuned(baseline.PositionServer(), baseline.RATE, True)
     knows = Plant(name=plant.name, armature=plant.armature)  # the rotors, and no payload
-    return five(Model(side, knows), plant)[way]
+    return known(Model(side, knows), plant)[way]
 
 
 def joints(way: str, task: str, seed: int) -> Any:
@@ -233,10 +234,12 @@ TABLES = {
 }
 
 
-def tables(rows: list[Row], judged: list[Verdict]) -> str:
-    """The campaign in Markdown: a table for each number and plant, then the verdicts."""
+def tables(rows: list[Row]) -> str:
+    """The campaign in Markdown: a table for each number and plant."""
     seeds = len({row["seed"] for row in rows})
-    parts = [f"# Campaign, {seeds} seeds\n\nMean over the seeds [least, largest]."]
+    parts = [
+        f"# Campaign, {seeds} seed{'s' * (seeds > 1)}\n\nMean over the seeds [least, largest]."
+    ]
     for number, title in TABLES.items():
         for plant in dict.fromkeys(row["plant"] for row in rows):
             body = table(pick(rows, plant=plant), "way", "task", number)
@@ -244,9 +247,13 @@ def tables(rows: list[Row], judged: list[Verdict]) -> str:
     if chased := pick(rows, task="tag"):
         title = "Distance from where the tag really put the tip, RMS after two seconds [mm]"
         parts.append(f"## {title}\n\n{table(chased, 'way', 'plant', 'tag_rms_mm')}")
-    claims = "\n".join(f"- {v}" for v in judged) or "One seed judges no claim; take two or more."
-    parts.append(f"## What the report claimed\n\n{claims}")
     return "\n\n".join(parts) + "\n"
+
+
+def claims(judged: list[Verdict]) -> str:
+    """The verdicts in Markdown."""
+    said = "\n".join(f"- {v}" for v in judged) or "One seed judges no claim; take two or more."
+    return f"\n## What the report claimed\n\n{said}\n"
 
 
 def _without(row: Row, key: str) -> Row:
@@ -258,12 +265,15 @@ def main() -> None:
     from . import pictures
 
     parser = argparse.ArgumentParser(prog="python -m solutions.campaign", description=__doc__)
-    parser.add_argument("--seeds", type=int, default=3, help="how many seeds (3)")
-    parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
+    parser.add_argument("--seeds", type=whole(1), default=3, help="how many seeds (3)")
+    parser.add_argument("--jobs", type=whole(1), default=None, help="processes (one for each core)")
     parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
     parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
     parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
     parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
+    ways = [*known(Model("left")), FEED_FORWARD, BASELINE]
+    help_on_ways = "only this, and only print it; more than once for more: " + ", ".join(ways)
+    parser.add_argument("--way", action="append", choices=ways, metavar="WAY", help=help_on_ways)
     options = parser.parse_args()
     where = {"jobs": options.jobs, "dask": options.dask}
     began = time.monotonic()
@@ -271,6 +281,9 @@ def main() -> None:
     def done(job: Job, grid: list[Row], what: str) -> list[Row]:
         return work_through(job, grid, progress=Meter(what), **where)
 
+    if options.way:
+        print(tables(done(numbers, grid(options.seeds, options.way), "runs")))
+        return
     rows = done(numbers, grid(options.seeds), "runs")
     seconds = time.monotonic() - began
     gains = done(converge, gain_grid(options.seeds), "gains")
@@ -278,7 +291,7 @@ def main() -> None:
     judged = verdicts(rows, gains, noise) if options.seeds > 1 else []
     folder = options.out / "campaign"
     folder.mkdir(parents=True, exist_ok=True)
-    text = tables(rows, judged)
+    text = tables(rows) + claims(judged)
     (folder / "tables.md").write_text(text)
     drawn, shot = [], []
     if not options.no_pictures:  # on this machine, for they write files

@@ -79,6 +79,11 @@ def variants(model: Model, plant: Plant | None = None) -> dict[str, Tuned]:
     }
 
 
+def known(model: Model, plant: Plant | None = None) -> dict[str, Tuned]:
+    """All controllers that the campaign can run."""
+    return {**five(model, plant), **variants(model, plant)}
+
+
 def _slow(plant: Plant) -> bool:
     """Whether the arm's state comes late, seldom or noisy."""
     return bool(plant.state_rate or plant.state_delay or any(plant.velocity_noise))

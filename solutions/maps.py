@@ -15,6 +15,7 @@ from labkit import BAXTER, IDEAL, Arm, Model, Plant, metrics, run
 from labkit.study import tasks
 from labkit.study.campaign import Meter, cells, pick, work_through
 from labkit.study.maps import ErrorMap
+from labkit.verbs import whole
 
 from .joint_torque import ComputedTorque
 from .joint_velocity import JointVelocityPD
@@ -102,8 +103,8 @@ def make(controller: str, plant: str, seeds: int, jobs: int | None) -> ErrorMap:
 def main() -> None:
     """Write the maps and say what they show."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=2)
-    parser.add_argument("--jobs", type=int, default=None)
+    parser.add_argument("--seeds", type=whole(1), default=2)
+    parser.add_argument("--jobs", type=whole(1), default=None)
     options = parser.parse_args()
     FOLDER.mkdir(exist_ok=True)
     for controller in PLANES:

@@ -10,9 +10,9 @@ import matplotlib
 
 from labkit import plotting
 from labkit.study.campaign import cells
-from labkit.study.film import film
 
 from .campaign import FIVE, TASKS, joints, perform
+from .film import film
 from .tag_task import staged
 
 

@@ -16,6 +16,7 @@ from labkit.errors import Diverged
 from labkit.study import tasks
 from labkit.study.campaign import Meter, cells, pick, work_through
 from labkit.study.trials import LINE, Trials
+from labkit.verbs import whole
 
 from .joint_velocity import JointVelocityPD
 
@@ -76,7 +77,7 @@ def record(cases: list[str], jobs: int | None) -> Trials:
 def main() -> None:
     """Record and say what came out."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--jobs", type=int, default=None)
+    parser.add_argument("--jobs", type=whole(1), default=None)
     options = parser.parse_args()
     for path, cases in ((LINE, ["line"]), (HELD_OUT, [case for case in CASES if case != "line"])):
         trials = record(cases, options.jobs)

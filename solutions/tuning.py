@@ -10,9 +10,9 @@ from labkit import BAXTER, Arm, Hold, Plant, robot, run
 from labkit.arrays import Array
 from labkit.metrics import joint_error
 from labkit.study.analysis import ultimate_gain, velocity_joint_of
-from labkit.study.tuning import Trial, Tuning, report_procedure
 
 from .joint_velocity import JointVelocityPD
+from .report_procedure import Trial, Tuning, report_procedure
 
 OFF = 0.005
 """How far from its target the joint begins, in [rad]: no further, or speed and torque saturate."""

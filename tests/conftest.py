@@ -1,5 +1,6 @@
 """What the tests share: hypothesis that repeats itself, states drawn from a seed, a browser."""
 
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -70,29 +71,32 @@ def playwright():
         yield driver
 
 
+@contextmanager
+def browser(playwright, *flags):
+    """Debian's Chromium, closed at the end."""
+    assert Path(CHROMIUM).exists(), "Chromium is missing: apt-get install chromium"
+    chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=[*ARGUMENTS, *flags])
+    yield chromium
+    chromium.close()
+
+
 @pytest.fixture(scope="session")
 def chromium(playwright):
-    """Debian's Chromium, with WebGL in software."""
-    assert Path(CHROMIUM).exists(), "Chromium is missing: apt-get install chromium"
-    flags = [*ARGUMENTS, "--enable-unsafe-swiftshader"]
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
-    yield browser
-    browser.close()
+    """With WebGL in software."""
+    with browser(playwright, "--enable-unsafe-swiftshader") as chromium:
+        yield chromium
 
 
 @pytest.fixture(scope="session")
 def blind_chromium(playwright):
-    """The same without WebGL."""
-    flags = [*ARGUMENTS, "--disable-3d-apis"]
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
-    yield browser
-    browser.close()
+    """Without WebGL."""
+    with browser(playwright, "--disable-3d-apis") as chromium:
+        yield chromium
 
 
 @pytest.fixture(scope="session")
 def open_chromium(playwright):
-    """A Chromium in which axe-core may read the style sheets of a page from the disk."""
-    flags = [*ARGUMENTS, "--enable-unsafe-swiftshader", "--allow-file-access-from-files"]
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=flags)
-    yield browser
-    browser.close()
+    """One in which axe-core may read the style sheets of a page from the disk."""
+    flags = ("--enable-unsafe-swiftshader", "--allow-file-access-from-files")
+    with browser(playwright, *flags) as chromium:
+        yield chromium

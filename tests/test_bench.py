@@ -63,6 +63,26 @@ def test_one_that_fails_says_so_and_does_not_stop_the_others(monkeypatch, tmp_pa
     assert "RuntimeError: no browser" in capsys.readouterr().err
 
 
+def test_one_alone_is_printed_and_not_written(monkeypatch, tmp_path, capsys):
+    class One:
+        def measure():
+            """A figure."""
+            return {"a": 1.0}
+
+    class Other:
+        def measure():
+            """Another."""
+            return {"b": 2.0}
+
+    monkeypatch.setattr(bench, "MEASUREMENTS", (One, Other))
+    monkeypatch.setattr(bench, "OUT", tmp_path / "bench.json")
+    bench.main(["One"])
+    assert "Another" not in capsys.readouterr().out and not bench.OUT.exists()
+    with pytest.raises(SystemExit):
+        bench.main(["three"])
+    assert "no measurement three; there is" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("module", bench.MEASUREMENTS, ids=lambda m: m.__name__)
 def test_each_measurement_says_what_it_measures(module):
     assert module.measure.__doc__.splitlines()[0].endswith(".")

@@ -1,11 +1,17 @@
 """The command line: help with examples, and sentences with exit code 2 for wrong use."""
 
+import shlex
 import subprocess
 import sys
 
 import pytest
+from courses import ROOT
 
 from labkit import cli
+
+VERBS = cli.parser()._subparsers._group_actions[0].choices
+WARMUP = ROOT / "assignments/00_warmup/00_warmup.ipynb"
+PATHS = ROOT / "assignments/01_paths/01_paths.ipynb"
 
 
 def test_help_shows_examples(capsys):
@@ -25,6 +31,53 @@ def test_wrong_words_end_with_code_two(words, capsys):
         cli.main(words)
     assert end.value.code == 2
     assert "usage" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_each_verb_shows_an_example_that_can_be_typed(name, capsys):
+    """`labkit VERB --help` says what it does and ends with an example."""
+    with pytest.raises(SystemExit):
+        cli.main([name, "--help"])
+    out = capsys.readouterr().out
+    program, *words = shlex.split(out.strip().splitlines()[-1].removeprefix("example: "))
+    assert program == "labkit"
+    assert cli.parser().parse_args(words).verb == name
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["release", "--seed", "-1"], "-1 is no whole number from 0 up"),
+        (["grade", "01_paths", "--jobs", "0"], "0 is no whole number from 1 up"),
+        (["make-class", "01_paths", "--count", "-3"], "-3 is no whole number from 1 up"),
+        (["grade", "01_paths", "--shard", "5/2"], "5/2 is no part; write 1/4"),
+    ],
+)
+def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
+    with pytest.raises(SystemExit) as end:
+        cli.main(words)
+    assert end.value.code == 2
+    assert sentence in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["submit-check", "."], ".: Is a directory"),
+        (["merge", PATHS, PATHS, "--to", "nowhere/x.ipynb"], "nowhere/x.ipynb: No such file"),
+        (["merge", WARMUP, PATHS, "--to", "x.ipynb"], "releases of the same assignment?"),
+        (["forget", "--course", "nowhere"], "there is no "),
+        (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
+        (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
+        (["rehearse", "01_paths", "--to", WARMUP, "--course", ROOT], "File exists"),
+    ],
+)
+def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main([str(word) for word in words]) == 2
+    err = capsys.readouterr().err
+    assert err.startswith(f"labkit {words[0]}: ") and sentence in err and err.count("\n") == 1
+    assert not list(tmp_path.iterdir())
 
 
 def test_an_unknown_assignment_is_a_sentence(capsys):

@@ -23,7 +23,7 @@ from labkit import (
     Trapezoid,
     se3,
 )
-from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError
+from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError, TypeMismatch
 
 A, B, C = [0.6, 0.2, 0.1], [0.5, -0.2, 0.3], [0.4, 0.0, 0.0]
 PATHS = {"line": Line(A, B), "circle": Circle(A, C)}
@@ -70,6 +70,34 @@ def test_a_target_written_by_a_student_works_as_path_and_as_scaling():
 def chain():
     parts = [Trajectory(Line(A, B), Quintic(1.0)), Trajectory(Line(B, C), Trapezoid(0.5, 1, 2))]
     return Chain([*parts, Hold(C, 0.5)])
+
+
+@pytest.mark.parametrize(
+    ("path", "scaling", "words"),
+    [
+        (lambda s: np.zeros(3), Cubic(1.0), r"the path gave array.* expected lk\.Sample"),
+        (
+            lambda s: (s, 1.0, 0.0),
+            Cubic(1.0),
+            r"the path gave .* \(tuple\), expected lk\.Sample",
+        ),
+        (lambda s: None, Cubic(1.0), r"the path gave None"),
+        (
+            Line(A, B),
+            "half",
+            r"the scaling gave 0\.5 \(float\), expected three",
+        ),
+    ],
+)
+def test_what_is_no_sample_is_a_sentence(path, scaling, words):
+    class Half:
+        duration = 1.0
+
+        def __call__(self, t):
+            return 0.5
+
+    with pytest.raises(TypeMismatch, match=words):
+        Trajectory(path, Half() if scaling == "half" else scaling)(0.5)
 
 
 def test_a_chain_starts_each_part_when_the_one_before_has_ended():

@@ -2,13 +2,26 @@
 
 import re
 import subprocess
+from fnmatch import fnmatch
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
-PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
+PAGES = [
+    ROOT / name
+    for name in (
+        "README.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "book/architecture.md",
+        "solutions/README.md",
+        "labkit/grade/README.md",
+    )
+]
+each = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 
 
 def test_the_example_runs_and_tracks(capsys):
@@ -29,8 +42,29 @@ def test_every_verb_exists():
         assert named <= verbs, (page.name, named - verbs)
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+@each
 def test_links_lead_somewhere(page):
     """Every link to a file of the project leads to one."""
     for target in re.findall(r"\]\(([^)#:]+)\)", page.read_text()):
-        assert (ROOT / target).exists(), target
+        assert (page.parent / target).exists(), target
+
+
+@each
+def test_places_that_are_named_are_there(page):
+    """Every file and module of the project that a page names exists; `topic` stands for any."""
+    text = page.read_text().replace("NN_topic", "01_paths").replace("topic", "paths")
+    for place in re.findall(r"`((?:labkit|solutions|bench|tests|tools|book)/[\w./-]*)`", text):
+        assert (ROOT / place).exists() or place == "book/_build/html/index.html", place
+    for module in re.findall(r"python -m ((?:labkit|solutions|bench)[\w.]*)", text):
+        assert find_spec(module), module
+
+
+def test_every_module_of_the_grader_has_its_line():
+    """The table of the grader's page leaves none out."""
+    folder = ROOT / "labkit/grade"
+    table = re.findall(r"^\| (`.*?`) \|", (folder / "README.md").read_text(), re.MULTILINE)
+    named = [name.rstrip("/") for row in table for name in re.findall(r"`([\w*/]+)`", row)]
+    for path in [*folder.glob("[a-z]*.py"), folder / "inside"]:
+        assert any(fnmatch(path.stem, name) for name in named), path.stem
+    for name in named:
+        assert list(folder.glob(f"{name}.py")) or name == "inside", name

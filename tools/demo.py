@@ -5,6 +5,7 @@ It works in ``build/demo``, a course of its own, so nothing of yours is touched.
 
 from __future__ import annotations
 
+import argparse
 import shutil
 import subprocess
 import sys
@@ -19,6 +20,7 @@ LABKIT = str(Path(sys.executable).with_name("labkit"))
 
 def main() -> int:
     """Run the steps one after another; stop at the first that fails."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     began = time.monotonic()
     shutil.rmtree(DEMO, ignore_errors=True)
     DEMO.mkdir(parents=True)

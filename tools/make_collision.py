@@ -10,6 +10,7 @@ Run: python tools/make_collision.py
 
 from __future__ import annotations
 
+import argparse
 import json
 from itertools import combinations, pairwise
 from pathlib import Path
@@ -126,6 +127,7 @@ def arm(side: str, links: dict[str, Any], apart: set[frozenset[str]]) -> dict[st
 
 def main() -> None:
     """Write the file."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     links = {link.get("name"): shapes_of(link) for link in ElementTree.parse(URDF).iter("link")}
     links |= {link: stack(mesh) for link, mesh in STACKED.items()}
     links = {name: found for name, found in links.items() if found}

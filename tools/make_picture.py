@@ -5,6 +5,7 @@ Run: python tools/make_picture.py   (writes book/static/baxter.png)
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
 import cv2
@@ -23,6 +24,7 @@ PAPER, RED, GREY = (248, 247, 244), (178, 24, 43), (90, 90, 90)
 
 def main() -> None:
     """Run the line, photograph the arm near its end, and draw what the tip has drawn."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     world = lk.World(things=[lk.Table(height=0.015, centre=(0.85, 0.25), size=(0.7, 1.1))])
     with lk.Arm("left", world=world) as arm:
         arm.reset(arm.robot.ready)

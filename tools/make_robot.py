@@ -9,6 +9,7 @@ Run: python tools/make_robot.py   (about a minute; needs the dev extra)
 
 from __future__ import annotations
 
+import argparse
 import base64
 import json
 import shutil
@@ -56,6 +57,7 @@ class Visual:
 
 def main() -> None:
     """Write meshes, the table of pieces, the viewer's robot and the licence."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     urdf = str(BAXTER / "urdf/baxter.urdf")
     model = pin.buildModelFromUrdf(urdf)
     geometry = pin.buildGeomFromUrdf(

@@ -9,6 +9,7 @@ Run: python tools/make_urdf.py
 
 from __future__ import annotations
 
+import argparse
 import json
 import site
 from pathlib import Path
@@ -101,6 +102,7 @@ def arm(full: pin.Model, side: str) -> dict[str, Any]:
 
 def main() -> None:
     """Write the file."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     full = full_model()
     data = {"source": "example-robot-data 6.0.0, baxter_description/urdf/baxter.urdf (BSD-3)"}
     data |= {side: arm(full, side) for side in ("left", "right")}

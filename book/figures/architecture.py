@@ -22,7 +22,7 @@ LAYERS = (
     ("The loop, and what it did", ("log", "run", "controllers", "metrics", "energy", "impedance")),
     ("What looks, compares and draws", ("vision", "study", "baseline", "plotting")),
     ("What judges and shows", ("check", "replay", "interactive", "readiness", "notation")),
-    ("For instructors", ("grade", "cli")),
+    ("For instructors, and what one types", ("grade", "verbs", "cli")),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
 

@@ -22,9 +22,9 @@ from PIL import Image
 from labkit import Arm, Log, Plant, Table, World, metrics, plotting
 from labkit.replay import motion_html, motion_of
 from labkit.robot import Side
-from labkit.study.film import AT, EYE
 from labkit.vision.camera import Camera, looking_at
 from labkit.vision.intrinsics import Intrinsics
+from solutions.film import AT, EYE
 
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
 """Line colours in light mode; `book.css` has their sisters for dark mode, contrast above 4.5."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
 
 from ..arm import Arm
@@ -30,6 +31,7 @@ def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) ->
 
 def main() -> None:
     """Write the files and say what they hold."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
     FOLDER.mkdir(exist_ok=True)
     position, velocity = PositionServer(), VelocityServer()
     logs = {}

@@ -5,10 +5,12 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
+from .cases import Call, Choice, Loop, Tuned
 from .judge import AtMost, Close, Gains, Response, Within
 from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
-from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned, read_question
+from .question import Mistake, Question, Raised, Test
+from .question_codec import question_data, read_question
 
 __all__ = [
     "AtMost",
@@ -33,6 +35,7 @@ __all__ = [
     "fingerprint",
     "hint",
     "mark",
+    "question_data",
     "read_question",
     "use",
 ]

@@ -98,6 +98,12 @@ def look(path: Path) -> HandIn:
                     "last one counts"
                 )
         verdicts[question] = _verdict(cells, question)
+    stale = [name for name in questions if _changed_since(cells, name)]
+    if stale:
+        notes.append(
+            f"changed since it was checked: {', '.join(stale)}; the verdicts below are old, run "
+            "the notebook from the top and save it"
+        )
     unrun = [name for name, verdict in verdicts.items() if verdict.endswith("not run")]
     if unrun:
         notes.append(f"not run since it was opened: {', '.join(unrun)}; marking runs them again")
@@ -135,6 +141,16 @@ def defines(cell: Mapping[str, Any], name: str) -> bool:
     """Whether a code cell defines a function, a class or a value of that name."""
     pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
     return cell["cell_type"] == "code" and bool(re.search(pattern, cell["source"], re.MULTILINE))
+
+
+def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:
+    """Whether the cell that defines an answer was run after its check, or not at all."""
+    defined = [cell.get("execution_count") for cell in cells if defines(cell, question)]
+    checked = [
+        cell.get("execution_count") for cell in cells if f'check("{question}"' in cell["source"]
+    ]
+    ran = [count for count in checked if count]
+    return bool(ran) and any(not count or count > max(ran) for count in defined)
 
 
 def _verdict(cells: list[dict[str, Any]], question: str) -> str:

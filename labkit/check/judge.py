@@ -5,7 +5,7 @@ A judge is a frozen value, so that it travels with its question as data.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -37,9 +37,10 @@ class Close:
         return self._differ(answer, expected, "")
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers, right or wrong, are the same one."""
+        """Whether two answers, right or wrong, are the same one; 1.96 is 1.959964 here."""
+        alike = replace(self, rtol=max(self.rtol, 1e-4))
         try:
-            return self(answer, other) is None
+            return alike(answer, other) is None
         except (LabkitError, TypeError, ValueError):
             return False
 
@@ -59,7 +60,7 @@ class Close:
         if isinstance(expected, COMMANDS):
             kind = type(expected)
             if type(answer) is not kind:
-                return f"{_of(part)}it should be a {kind.__name__}, not {_shown(answer)}"
+                return f"{_of(part)}it should be a {kind.__name__}, not {_other(answer, kind)}"
             return self._differ(answer.value, expected.value, part)
         if isinstance(expected, dict):
             return self._differ_dict(answer, expected)
@@ -98,6 +99,8 @@ class Close:
     def _differ_numbers(self, answer: Any, expected: Any, part: str) -> str | None:
         b = np.asarray(expected, dtype=float)
         name = part or "the answer"
+        if isinstance(answer, COMMANDS):
+            return f"{_of(part)}plain numbers are asked for, not a {type(answer).__name__}"
         try:
             a = as_array(answer, b.shape, name)
         except LabkitError as error:
@@ -107,7 +110,7 @@ class Close:
         if not bad.any():
             return None
         if b.ndim == 0:
-            return f"{_of(part)}expected {_number(b)}, got {_number(a)}"
+            return f"{_of(part)}expected {_number(b)}, got {_number(a)}{_factor(a, b)}"
         at = np.unravel_index(int(np.argmax(np.where(bad, off, -1.0))), b.shape)
         index = str(int(at[0])) if b.ndim == 1 else str(tuple(map(int, at)))
         if b.size <= 9:
@@ -142,8 +145,14 @@ class Within:
         return min(float(abs(x - (a + b) / 2) / ((b - a) / 2)) for a, b in expected)
 
 
-_UNITS = {"_mm_s": " mm/s", "_mm": " mm", "_deg": " degrees"}
-"""What the end of a measure's name stands for."""
+_MEASURES = {
+    "max_mm": ("the largest error of the tip is", " mm"),
+    "rms_mm": ("the RMS error of the tip is", " mm"),
+    "max_deg": ("the largest tilt of the tip is", " degrees"),
+    "rms_velocity_mm_s": ("the RMS error of the tip's speed is", " mm/s"),
+    "worst_mm": ("the worst error is", " mm"),
+}
+"""Measures of a run in words, with their units."""
 
 
 @dataclass(frozen=True)
@@ -154,9 +163,10 @@ class AtMost:
         """None if all are, else the first that is not."""
         for name, limit in expected.items():
             if not answer[name] <= limit:
-                end = next((end for end in _UNITS if name.endswith(end)), "")
-                what, unit = name.removesuffix(end).replace("_", " "), _UNITS.get(end, "")
-                return f"{what} {answer[name]:.3g}{unit}, allowed {limit:.3g}{unit}"
+                what, unit = _MEASURES.get(name, (f"{name.replace('_', ' ')} is", ""))
+                x = answer[name]
+                much = f"{x:.3g}" if abs(x) < 1e3 else f"{x:.0f}"
+                return f"{what} {much}{unit}, allowed {limit:.3g}{unit}"
         return None
 
     def same(self, answer: dict[str, float], other: dict[str, float]) -> bool:
@@ -307,14 +317,29 @@ _FACTORS = {
 
 
 def _factor(a: Array, b: Array) -> str:
-    """What to say where the answer is the expected one times a telling factor."""
+    """What to say where the answer is the expected one times a telling factor.
+
+    A single number that is twice or half of what is expected may be so by chance.
+    """
     for factor, means in _FACTORS.items():
-        if b.any() and np.allclose(a, factor * b, rtol=1e-6, atol=1e-9 * np.abs(b).max()):
+        telling = b.ndim > 0 or factor not in (2.0, 0.5)
+        near = 1e-9 * np.abs(b).max()
+        if telling and b.any() and np.allclose(a, factor * b, rtol=1e-6, atol=near):
             return f"; {means}"
     return ""
 
 
+def _other(answer: Any, kind: type) -> str:
+    """What came instead of a command, and how to make one of it."""
+    if isinstance(answer, COMMANDS):
+        return f"a {type(answer).__name__}"
+    what = "plain numbers" if np.shape(answer) == (JOINTS,) else _shown(answer)
+    return f"{what}; give lk.{kind.__name__}(...) with the {JOINTS} numbers in it"
+
+
 def _shown(x: Any) -> str:
+    if isinstance(x, COMMANDS):
+        return f"a {type(x).__name__}"
     if isinstance(x, np.ndarray) and x.dtype.kind in "fiub":
         return in_brief(x)
     if isinstance(x, int | float | np.number) and not isinstance(x, bool):

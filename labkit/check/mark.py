@@ -12,8 +12,9 @@ from typing import Any
 
 from ..errors import Diverged, LabkitError
 from ..log import Log
+from .cases import Call, Case, Choice, Loop, Tuned
 from .judge import AtMost, Judge
-from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
+from .question import Mistake, Question, Raised, Test
 from .raised import told
 
 
@@ -244,7 +245,8 @@ def _try(
         answer = _answer(case, function)
         if not case.hidden:
             answers[id(case)] = answer
-        where = f"a hidden case ({test.also})" if case.hidden else case.shown(question.name)
+        hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
+        where = hidden if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
             outcome = Outcome.NOT_ATTEMPTED if answer.not_attempted else Outcome.ERROR
             says = f"{where} raised {answer.kind if case.hidden else answer.sentence}"

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+from ..errors import LabkitError
 from .handin import defines
 
 Cells = list[dict[str, Any]]
@@ -23,15 +24,22 @@ def merge(mine: Cells, new: Cells) -> Cells:
         The new release, in its order.  An answer is found by the function that it defines, else by
         the question that its cell was made for; a cell of the student's own follows the cell that
         it followed.
+
+    Raises:
+        LabkitError: None of the student's cells answers any of the release's questions.
     """
     merged = copy.deepcopy(new)
     home = _homes(new)
-    for cell in merged:
-        grading = cell["metadata"].get("nbgrader", {})
-        if grading.get("solution"):
-            answer = _answer(mine, grading["grade_id"])
-            if answer is not None and "raise NotImplementedError" not in answer:
-                cell["source"] = answer
+    asked = [cell for cell in merged if cell["metadata"].get("nbgrader", {}).get("solution")]
+    answers = [_answer(mine, _purpose(cell)) for cell in asked]
+    if asked and not any(answers):
+        raise LabkitError(
+            f"your notebook answers nothing that the new one asks ({_purpose(asked[0])}, ...); "
+            "are they two releases of the same assignment?"
+        )
+    for cell, answer in zip(asked, answers, strict=True):
+        if answer is not None and "raise NotImplementedError" not in answer:
+            cell["source"] = answer
     anchor = -1
     after: dict[int, Cells] = {}
     for cell in mine:

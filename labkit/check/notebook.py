@@ -12,12 +12,14 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ..errors import LabkitError, OutOfRange, UnknownName
+from ..errors import LabkitError, UnknownName
 from . import words
 from .calling import heard
 from .evidence import evidence
 from .mark import Outcome, Verdict, mark
-from .question import Question, read_question
+from .question import Question
+from .question_codec import read_question, with_hidden
+from .raised import line_of
 from .source import withheld_names
 
 FILE = "checks.json"
@@ -58,11 +60,32 @@ class Desk:
         return self.questions[name]
 
     def verdict(self, name: str, function: Callable[..., Any]) -> tuple[Verdict, str]:
-        """Try a function, and what it printed meanwhile."""
-        with heard() as out:
-            verdict = mark(self.question(name), function)
+        """Try a function, and what it printed meanwhile.
+
+        Raises:
+            KeyboardInterrupt: The student stopped it; says in which line.
+        """
+        try:
+            with heard() as out:
+                verdict = mark(self.question(name), function)
+        except KeyboardInterrupt as stop:
+            line = line_of(stop)
+            where = f" in the line `{line}`" if line else ""
+            raise KeyboardInterrupt(
+                f"{name} was stopped{where}; does every loop in it come to its end?"
+            ) from None
         self.seen[name] = (function, verdict)
         return verdict, out.text
+
+    def leaning(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
+        """Other answers that a function calls by name, and that were tried and are not right."""
+        called = getattr(getattr(function, "__code__", None), "co_names", ())
+        seen = {other: verdict for other, (_, verdict) in self.seen.items() if other != name}
+        return tuple(
+            other
+            for other in dict.fromkeys(called)
+            if other in seen and seen[other].outcome is not Outcome.RIGHT
+        )
 
 
 _desks: dict[Path, Desk] = {}
@@ -92,7 +115,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
     question = desk().question(name)
     verdict, printed = desk().verdict(name, function)
     used = tuple(withheld_names(function, question.withheld))
-    print(words.tell(question, verdict, printed, used))
+    print(words.tell(question, verdict, printed, used, desk().leaning(name, function)))
     if verdict.mistake is not None:
         _show_evidence(question, verdict)
     return float(verdict.earned)
@@ -100,20 +123,18 @@ def check(name: str, function: Callable[..., Any]) -> float:
 
 def also(name: str, packed: str) -> None:
     """Add hidden cases to a question; the teacher's copy of a notebook does so."""
-    desk().questions[name] = desk().question(name).with_hidden(packed)
+    desk().questions[name] = with_hidden(desk().question(name), packed)
 
 
 def hint(name: str, level: int = 1) -> None:
     """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
 
+    Beyond the last one it says so, and where else to ask.
+
     Raises:
-        OutOfRange: There is no such hint.
+        UnknownName: No such question.
     """
-    hints = desk().question(name).hints
-    if not 1 <= level <= len(hints):
-        raise OutOfRange(f"{name} has hints 1 to {len(hints)}, there is no hint {level}")
-    more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
-    print(words.wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}") + more)
+    print(words.hint(desk().question(name), level))
 
 
 def use(

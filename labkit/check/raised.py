@@ -42,13 +42,35 @@ def remedy(error: BaseException) -> str:
         return f"left of the @ are {a} columns, right of it {b} rows; these must be equal"
     if isinstance(error, TypeError) and "argument" in text and "()" in text:
         return "leave the names in the function's first line as they were given"
-    return ""
+    return next((way_out for words, way_out in _WAYS_OUT.items() if words in text), "")
+
+
+_WAYS_OUT = {
+    "does not have enough dimensions": "the @ wants arrays on both sides; for a number write *",
+    "operands could not be broadcast": "+, - and * go number by number, so sizes must be equal; "
+    "the product of matrices is @",
+    "broadcast input array from shape (3,1)": "a column, (3, 1), goes where a vector belongs; "
+    "use .ravel()",
+    "Singular matrix": "a matrix has an inverse only if its rank is its size; J is (6, 7), so "
+    "J @ J.T has one and J.T @ J has none",
+    "must be square": "only square matrices have an inverse",
+    "cannot unpack non-iterable NoneType": "is a return missing?",
+    "unsupported operand type(s) for -: 'list' and 'list'": "turn lists into arrays first, with "
+    "np.array or np.subtract",
+    "non-int of type 'TransferFunction'": "control.pade gives two lists, numerator and "
+    "denominator; control.tf makes a transfer function of them",
+    "argument 0 of type TransferFunction": "numpy cannot take the exponential of a transfer "
+    "function; control.pade comes close to a delay",
+    "missing required argument 'cameraMatrix'": "after the pixels it wants the camera's matrix and "
+    "None for the distortion",
+}
+"""What to do about it, by words of the message."""
 
 
 def explained(error: BaseException) -> str:
     """What the exception says, the line that raised it, and the remedy."""
     text = str(error)
-    if isinstance(error, ValueError) and "gufunc signature" in text:
+    if isinstance(error, ValueError) and "gufunc" in text:
         text = "sizes that do not fit"
     line, way_out = line_of(error), remedy(error)
     where = f"in the line `{line}`" if line else ""

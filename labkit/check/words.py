@@ -27,7 +27,11 @@ def head(verdict: Verdict) -> str:
 
 
 def tell(
-    question: Question, verdict: Verdict, printed: str = "", used: tuple[str, ...] = ()
+    question: Question,
+    verdict: Verdict,
+    printed: str = "",
+    used: tuple[str, ...] = (),
+    leans_on: tuple[str, ...] = (),
 ) -> str:
     """Everything that a student is told.
 
@@ -36,6 +40,7 @@ def tell(
         verdict: What came of it.
         printed: What the student's code wrote while it was tried.
         used: Withheld names that it uses.
+        leans_on: Other answers that it uses, and that are not right.
 
     Returns:
         Lines of text, the verdict first.
@@ -47,11 +52,16 @@ def tell(
         also = dict.fromkeys(test.also for test in question.tests if test.also)
         if also and not any(case.hidden for test in question.tests for case in test.cases):
             lines.append(f"  The teacher also tries: {'; '.join(also)}.")
+            unseen = [test.name for test in question.tests if not test.cases]
+            lines += [f"  Not tried here, and points hang on it: {name}." for name in unseen]
     else:
         lines += _results(question, verdict)
         if verdict.mistake is not None:
             lines.append(f"  This is a well-known one: {verdict.mistake.name}.")
             lines.append(f"  {verdict.mistake.says}")
+    if leans_on and verdict.outcome is not Outcome.RIGHT:
+        names = ", ".join(leans_on)
+        lines.append(f"  Note: it uses your {names}, which is not right yet; mend that first.")
     if used:
         names = ", ".join(used)
         lines.append(f"  Note: the question is to write this yourself, and your code uses {names}.")
@@ -59,6 +69,18 @@ def tell(
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         lines.append(f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees it.')
     return "\n".join(wrapped(line) for line in lines)
+
+
+def hint(question: Question, level: int) -> str:
+    """One hint, and how to get the next; or that there is none of that number."""
+    name, hints = question.name, question.hints
+    if level not in range(1, len(hints) + 1):
+        return wrapped(
+            f"{name} has {len(hints)} hints, and no hint {level}. If it does not work with all of "
+            "them, ask the teacher or a forum; labkit submit-check --forum says what to send."
+        )
+    more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
+    return wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}") + more
 
 
 def wrapped(line: str) -> str:
@@ -78,7 +100,7 @@ def _results(question: Question, verdict: Verdict) -> list[str]:
             continue
         where, why = _split(question, test, result.says)
         short = f"  [failed] {result.name}{gate}: {where}{why}"
-        if why in said and ", got " not in why:
+        if _again(why, said):
             lines.append(f"  [failed] {result.name}{gate}: the same")
         elif len(short) <= WIDTH:
             lines.append(short)
@@ -87,6 +109,15 @@ def _results(question: Question, verdict: Verdict) -> list[str]:
             lines += [f"      {part}" for part in _parts(f"{where}{why}", verdict.mistake is None)]
         said.add(why)
     return lines
+
+
+def _again(why: str, said: set[str]) -> bool:
+    """Whether that was told before; a run stops as the single calls did, in the arm's words."""
+    if why.startswith(" raised controller failed"):
+        kinds = {text.split(":")[0].removeprefix(" raised ") for text in said if " raised " in text}
+        return any(f": {kind}: " in why for kind in kinds)
+    none = why.startswith(" raised ControllerError: controller returned") and bool(said)
+    return none or (why in said and ", got " not in why)
 
 
 def _split(question: Question, test: Test, says: str) -> tuple[str, str]:

@@ -153,8 +153,12 @@ class Ask:
         """The answer to one call."""
         if self.lost >= MOST_LOST or self.seat.over or time.monotonic() > self.until:
             raise Failed("TimeoutError", "TimeoutError: too much time was spent already")
-        again = self._constant is not None and kwargs.keys() == self._constant.keys()
-        again = again and all(kwargs[key] is self._constant[key] for key in kwargs)  # type: ignore[index]
+        before = self._constant
+        again = (
+            before is not None
+            and kwargs.keys() == before.keys()
+            and all(x is before[key] for key, x in kwargs.items())
+        )
         try:
             if self.seat.open(self.question):
                 again = False

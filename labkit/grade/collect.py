@@ -71,7 +71,7 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         What was done with each file; of several of one student the last counts.
 
     Raises:
-        LabkitError: It is neither.
+        LabkitError: It is neither, or holds nothing.
     """
     if source.is_dir():
         found = list(_from_exchange(source, assignment))
@@ -81,6 +81,8 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         raise LabkitError(
             f"{source} is neither a folder nor a zip file; give the download as it is"
         )
+    if not found:
+        raise LabkitError(f"nothing in {source} was handed in for {assignment}")
     before = known(course, assignment)
     people = {one.known: one.student for one in found if one.known is not None}
     places = folders(people, before, people)

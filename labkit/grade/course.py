@@ -29,6 +29,8 @@ class Course:
             LabkitError: There is none.
         """
         start = (start or Path.cwd()).resolve()
+        if not start.exists():
+            raise LabkitError(f"there is no {start}; give the course's folder with --course")
         for folder in (start, *start.parents):
             if (folder / "nbgrader_config.py").exists():
                 return cls(folder)

@@ -6,7 +6,7 @@ import ast
 import copy
 import importlib
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from types import ModuleType
@@ -38,12 +38,10 @@ def inline(function: Callable[..., Any], name: str) -> str:
         function: A function, or an instance of a class with ``__call__``.
         name: What the text is to define.
     """
-    plain = inspect.isfunction(function)
-    thing = function if plain else type(function)
-    module = inspect.getmodule(thing)
-    assert module is not None
+    package = (function if inspect.isfunction(function) else type(function)).__module__
+    package = package.partition(".")[0]
     parts: dict[Key, _Part] = {}
-    wanted = _take(thing.__name__, module, parts)
+    _take_value(function, package, parts)
     heads, names = ["from __future__ import annotations"], {}
     for key, part in parts.items():
         if isinstance(part.node, ast.Import | ast.ImportFrom):
@@ -60,22 +58,51 @@ def inline(function: Callable[..., Any], name: str) -> str:
                 {pair: names[x] for pair, x in part.attributes.items()},
             ).visit(copy.deepcopy(part.node))
             bodies.append(ast.unparse(ast.fix_missing_locations(renamed)))
-    assert wanted is not None
-    made = names[wanted] if plain else f"{names[wanted]}({_made_with(function)})"
+    made = _written(function, package, names)
     last = f"def {name}(*args, **kwargs):\n    return {made}(*args, **kwargs)"
     return "\n\n".join(["\n".join(dict.fromkeys(heads)), *bodies, last])
 
 
-def _made_with(thing: Any) -> str:
-    """How to make an instance again: its attributes that are parameters of its class."""
-    known = vars(thing)
-    parameters = inspect.signature(type(thing)).parameters
-    return ", ".join(f"{name}={known[name]!r}" for name in parameters if name in known)
+def _definition(value: Any, package: str) -> Any:
+    """The function or class of a package that a value is, or is made from; else None."""
+    thing = value if inspect.isfunction(value) else type(value)
+    return thing if thing.__module__.partition(".")[0] == package else None
+
+
+def _made_with(value: Any) -> dict[str, Any]:
+    """What an instance was made with: its attributes that are parameters of its class."""
+    parameters = {} if inspect.isfunction(value) else inspect.signature(type(value)).parameters
+    return {name: vars(value)[name] for name in parameters if name in vars(value)}
+
+
+def _take_value(value: Any, package: str, parts: dict[Key, _Part]) -> None:
+    """Collect what it takes to write a value, and what it was made with."""
+    thing = _definition(value, package)
+    if thing is not None:
+        module = inspect.getmodule(thing)
+        assert module is not None
+        _take(thing.__name__, module, parts)
+        for inner in _made_with(value).values():
+            _take_value(inner, package, parts)
+    elif inspect.isfunction(value):
+        home = value.__module__
+        parts[home, home] = _Part(ast.Import([ast.alias(home)]))
+
+
+def _written(value: Any, package: str, names: Mapping[Key, str]) -> str:
+    """A value as an expression."""
+    thing = _definition(value, package)
+    if thing is None:
+        home = value.__module__ if inspect.isfunction(value) else ""
+        return f"{names[home, home]}.{value.__name__}" if home else repr(value)
+    made = names[thing.__module__, thing.__name__]
+    inner = (f"{name}={_written(x, package, names)}" for name, x in _made_with(value).items())
+    return made if inspect.isfunction(value) else f"{made}({', '.join(inner)})"
 
 
 def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
     """Collect what a name means in a module, what that needs first; None for Python's own names."""
-    node = next((x for x in _tree(module).body if name in _defines(x)), None)
+    node = next((x for x in _tree(module).body if name in names_defined(x)), None)
     if node is None:
         return None
     home = _home(node, module)
@@ -89,7 +116,7 @@ def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
         return key
     inner = [x for x in ast.walk(node) if isinstance(x, ast.ImportFrom) and _home(x, module)]
     for used in dict.fromkeys(_used(node)):
-        place = next((x for x in inner if used in _defines(x)), None)
+        place = next((x for x in inner if used in names_defined(x)), None)
         source = (place and _home(place, module)) or module
         there = _called_there(place, used) if place else used
         whole = _whole(used, module)
@@ -124,7 +151,7 @@ def _called_there(node: ast.stmt, name: str) -> str:
 
 def _whole(name: str, module: ModuleType) -> ModuleType | None:
     """The module of the course that a module imports as a whole under this name."""
-    node = next((x for x in _tree(module).body if name in _defines(x)), None)
+    node = next((x for x in _tree(module).body if name in names_defined(x)), None)
     home = _home(node, module) if node is not None else None
     if node is None or home is None:
         return None
@@ -164,9 +191,12 @@ def _home(node: ast.stmt, module: ModuleType) -> ModuleType | None:
     return importlib.import_module(full)
 
 
-def _defines(node: ast.stmt) -> list[str]:
+def names_defined(node: ast.stmt) -> list[str]:
+    """The names that a statement of a module gives a meaning to."""
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         return [node.name]
+    if isinstance(node, ast.ImportFrom) and node.module == "__future__":
+        return []
     if isinstance(node, ast.Import | ast.ImportFrom):
         return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
     targets = node.targets if isinstance(node, ast.Assign) else []

@@ -1,4 +1,4 @@
-"""Margins: how many sigmas lie between an answer and the tolerance, and answers kept for reuse.
+"""Margins: how many sigmas lie between an answer and the tolerance.
 
 Distances from what is expected are measured in tolerances: right answers lie below 1, a mistake
 lies above it wherever it is found out.  Over draws of the hidden cases, disturbed inputs, starts
@@ -9,84 +9,22 @@ decades.  Where nothing spreads there is no sigma.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from ..check import Call, Choice, Loop, Question, Tuned
-from ..check.codec import encode
+from ..check import Call, Loop, Question, Tuned
+from ..check.cases import Case
 from ..check.judge import AtMost
-from ..check.question import Case
 from .problem import Problem
+from .remembered import Remembered
 
 ROUNDING = 1e-3
 """Distances below this, in tolerances, are rounding, and count as this much."""
 HUGE = 1e12
 """Distances above this count as this much."""
-
-Memory = dict[Any, dict[str, float]]
-
-
-@dataclass(frozen=True, eq=False)
-class _Remembered(Loop):
-    """A run that is made once for each function and each start, however often it is asked for."""
-
-    memory: Memory = field(default_factory=dict)
-
-    def ask(self, function: Callable[..., Any]) -> Any:
-        """The measures of the run, for a log takes room; runs that raise are made again."""
-        key = (function, _run_key(self))
-        if key not in self.memory:
-            self.memory[key] = super().measured(super().ask(function))
-        return self.memory[key]
-
-    def measured(self, answer: Any) -> dict[str, float]:
-        """What `ask` gave."""
-        measures: dict[str, float] = answer
-        return measures
-
-
-@dataclass(frozen=True, eq=False)
-class _RememberedGains(Tuned):
-    """The same for a run with chosen gains."""
-
-    memory: Memory = field(default_factory=dict)
-
-    def ask(self, function: Callable[..., Any]) -> Any:
-        """The measures of the run, for a log takes room; runs that raise are made again."""
-        key = (function, json.dumps(encode(self.args)), _run_key(self.loop))
-        if key not in self.memory:
-            self.memory[key] = super().measured(super().ask(function))
-        return self.memory[key]
-
-    def measured(self, answer: Any) -> dict[str, float]:
-        """What `ask` gave."""
-        measures: dict[str, float] = answer
-        return measures
-
-
-def _run_key(loop: Loop) -> str:
-    return json.dumps({key: encode(x) for key, x in vars(loop).items() if key != "memory"})
-
-
-def remembering(questions: Sequence[Question]) -> list[Question]:
-    """The same questions, whose runs are made once for each function, however often asked for."""
-    memory: Memory = {}
-
-    def case(x: Case) -> Case:
-        if isinstance(x, Call | Choice):
-            return x
-        kind: Any = _Remembered if isinstance(x, Loop) else _RememberedGains
-        remembered: Case = kind(**vars(x), memory=memory)
-        return remembered
-
-    return [
-        replace(q, tests=tuple(replace(t, cases=tuple(map(case, t.cases))) for t in q.tests))
-        for q in questions
-    ]
 
 
 def least(
@@ -121,9 +59,9 @@ def _cases(questions: Sequence[Question], k: int) -> list[tuple[Question, Case]]
     return [(questions[0], c) for c in questions[0].tests[k].cases if not c.hidden] + hidden
 
 
-def _kind(case: Case) -> type:
+def _kind(case: Case | Remembered) -> type:
     """What sort of case it is, remembered or not."""
-    return next(kind for kind in (Call, Loop, Choice, Tuned) if isinstance(case, kind))
+    return type(case.run if isinstance(case, Remembered) else case)
 
 
 def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[float, str]]:
@@ -134,7 +72,7 @@ def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[f
     return [(sign * float(np.mean(logs)) / float(np.std(logs, ddof=1)), whose)]
 
 
-def _distance(question: Question, case: Case, function: Callable[..., Any]) -> float:
+def _distance(question: Question, case: Case | Remembered, function: Callable[..., Any]) -> float:
     """How far an answer is off, in tolerances; infinite where none came."""
     try:
         answer: Any = case.ask(function)
@@ -146,23 +84,22 @@ def _distance(question: Question, case: Case, function: Callable[..., Any]) -> f
 
 
 def _disturbed(
-    question: Question, case: Case, function: Callable[..., Any], problem: Problem
+    question: Question, case: Case | Remembered, function: Callable[..., Any], problem: Problem
 ) -> float:
     """The same with the input disturbed: rounded numbers, or another seed of the arm's noise."""
-    if isinstance(case, Loop):
-        return _distance(question, _another_noise(case), function)
-    if isinstance(case, Tuned):
-        return _distance(question, replace(case, loop=_another_noise(case.loop)), function)
-    if isinstance(case, Choice):
-        return _distance(question, case, function)
-    again = replace(case, args=tuple(map(_rounded, case.args)))
-    again = replace(again, expected=again.ask(problem.expected or problem.answer))
-    return _distance(question, again, function)
+    if isinstance(case, Remembered):
+        return _distance(question, replace(case, run=_another_noise(case.run)), function)
+    if isinstance(case, Call):
+        case = replace(case, args=tuple(map(_rounded, case.args)))
+        case = replace(case, expected=case.ask(problem.expected or problem.answer))
+    return _distance(question, case, function)
 
 
-def _another_noise(loop: Loop) -> Loop:
-    noisy = any(loop.plant.velocity_noise) or loop.plant.lost_ticks > 0.0
-    return replace(loop, seed=loop.seed + 1) if noisy else loop
+def _another_noise(run: Loop | Tuned) -> Loop | Tuned:
+    loop = run.loop if isinstance(run, Tuned) else run
+    if any(loop.plant.velocity_noise) or loop.plant.lost_ticks > 0.0:
+        loop = replace(loop, seed=loop.seed + 1)
+    return replace(run, loop=loop) if isinstance(run, Tuned) else loop
 
 
 def _rounded(x: Any) -> Any:

@@ -7,10 +7,6 @@ the check after it are written here, from the question.
 
 from __future__ import annotations
 
-import ast
-import copy
-import inspect
-import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -19,8 +15,9 @@ import jupytext
 import nbformat
 
 from ..check import Question
+from ..check.handin import defines
+from ..check.question_codec import pack_hidden
 from ..errors import LabkitError
-from .problem import Problem
 
 Notebook = Any
 KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
@@ -50,15 +47,16 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
             raise LabkitError(f"{path.name} asks {name!r}, which has no Problem")
         question = questions[name]
         asked.append(name)
+        _check_stub(path, name, cell)
         cells.append(_cell("markdown", brief(question), "brief", {}))
         cells.append(_cell("code", cell.source, "answer", _nbgrader(name, solution=True)))
-        check = f"from labkit.check import also\n\nalso({name!r}, {question.pack_hidden()!r})"
+        check = f"from labkit.check import also\n\nalso({name!r}, {pack_hidden(question)!r})"
         check = f"### BEGIN HIDDEN TESTS\n{check}\n### END HIDDEN TESTS\ncheck({name!r}, {name})"
         meta = _nbgrader(f"{name}-check", locked=True, grade=True, points=question.points)
         cells.append(_cell("code", check.replace("'", '"'), "check", meta))
-    if sorted(asked) != sorted(questions):
-        missing = sorted(set(questions) ^ set(asked)) or sorted(asked)
-        raise LabkitError(f"{path.name}: each problem needs just one stub; look at {missing}")
+    for name in questions:
+        if asked.count(name) != 1:
+            raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
     for number, cell in enumerate(cells):
         cell["id"] = f"{path.stem.replace('_', '-')}-{number:02d}"
     meta = {"kernelspec": KERNEL, "language_info": {"name": "python"}}
@@ -67,16 +65,15 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     )
 
 
-def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:
-    """The solved notebook: the answers' own source in place of the stubs, no hidden cases."""
-    notebook = copy.deepcopy(source)
-    for cell in notebook.cells:
-        kind, grade_id = cell.metadata.get("lab"), cell.metadata.get("nbgrader", {}).get("grade_id")
-        if kind == "answer":
-            cell.source = inlined(problems[grade_id])
-        elif kind == "check":
-            cell.source = cell.source.rpartition("### END HIDDEN TESTS\n")[2]
-    return notebook
+def _check_stub(path: Path, name: str, cell: Mapping[str, Any]) -> None:
+    marks = [line.strip() for line in cell["source"].splitlines() if "### " in line]
+    if marks != ["### BEGIN SOLUTION", "### END SOLUTION"]:
+        raise LabkitError(
+            f"{path.name}: the stub of {name} needs one region between a line ### BEGIN SOLUTION "
+            "and a line ### END SOLUTION"
+        )
+    if not defines(cell, name):
+        raise LabkitError(f"{path.name}: the stub of {name} defines no {name}")
 
 
 def brief(question: Question) -> str:
@@ -94,57 +91,6 @@ def brief(question: Question) -> str:
     if question.hints:
         lines.append(f'- Stuck? `hint("{question.name}", 1)`: free, and nobody is told.')
     return "\n".join(lines)
-
-
-def inlined(problem: Problem) -> str:
-    """The answer's source as a cell of its own, with the imports and helpers that it needs.
-
-    Raises:
-        LabkitError: The answer leans on something that cannot be copied.
-    """
-    function = inspect.unwrap(problem.answer)
-    tree = ast.parse(inspect.getsource(inspect.getmodule(function)))  # type: ignore[arg-type]
-    defined = {name: node for node in tree.body for name in _defines(node)}
-    wanted, parts = [function.__name__], []
-    seen: set[str] = set()
-    while wanted:
-        name = wanted.pop(0)
-        node = defined.get(name)
-        if name in seen or node is None:
-            continue
-        seen.add(name)
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("solutions"):
-            raise LabkitError(f"the answer of {problem.name} imports {node.module}: keep it whole")
-        parts.append(node)
-        wanted += [n.id for n in ast.walk(node) if isinstance(n, ast.Name)]
-    ordered = sorted({id(node): node for node in parts}.values(), key=lambda node: node.lineno)
-    imports = [ast.unparse(n) for n in ordered if isinstance(n, ast.Import | ast.ImportFrom)]
-    lines = inspect.getsource(inspect.getmodule(function)).splitlines()  # type: ignore[arg-type]
-    bodies = [
-        textwrap.dedent("\n".join(lines[_first_line(n) - 1 : n.end_lineno]))
-        for n in ordered
-        if not isinstance(n, ast.Import | ast.ImportFrom)
-    ]
-    return "\n\n\n".join(["\n".join(imports), *bodies] if imports else bodies)
-
-
-def _defines(node: ast.stmt) -> list[str]:
-    if isinstance(node, ast.FunctionDef | ast.ClassDef):
-        return [node.name]
-    if isinstance(node, ast.Import | ast.ImportFrom):
-        if isinstance(node, ast.ImportFrom) and node.module == "__future__":
-            return []
-        return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
-    if isinstance(node, ast.Assign):
-        return [t.id for t in node.targets if isinstance(t, ast.Name)]
-    if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
-        return [node.target.id]
-    return []
-
-
-def _first_line(node: Any) -> int:
-    decorators = [d.lineno for d in getattr(node, "decorator_list", ())]
-    return int(min([node.lineno, *decorators]))
 
 
 def _cell(kind: str, source: str, lab: str, nbgrader: dict[str, Any]) -> dict[str, Any]:

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..check import Call, Close, Mistake, Question, Test, fingerprint
+from ..check.cases import Case
 from ..check.judge import Judge
-from ..check.question import Case
 
 CLOSE = Close()
 

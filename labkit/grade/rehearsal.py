@@ -1,6 +1,4 @@
-"""A rehearsal: the whole term of one assignment, from the download to the marks, with a class that
-never was.
-"""  # noqa: D205
+"""A rehearsal: the term of one assignment, from the download to the marks, with a made-up class."""
 
 from __future__ import annotations
 

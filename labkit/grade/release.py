@@ -17,12 +17,14 @@ from typing import Any
 
 import nbformat
 
-from ..check import Question
+from ..check import Question, question_data
 from ..check.notebook import FILE
+from ..check.question_codec import pack_hidden
 from ..errors import LabkitError
 from .course import Course
-from .notebook import Notebook, solution_notebook, source_notebook
+from .notebook import Notebook, source_notebook
 from .room import make_room
+from .solved import solution_notebook
 
 FORBIDDEN = ("BEGIN SOLUTION", "BEGIN HIDDEN", "from solutions", "import solutions")
 
@@ -98,7 +100,7 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
 
 
 def _checks(name: str, questions: list[Question]) -> str:
-    data = {"assignment": name, "questions": [q.data() for q in questions]}
+    data = {"assignment": name, "questions": [question_data(q) for q in questions]}
     return json.dumps(data, ensure_ascii=False, separators=(",", ":")) + "\n"
 
 
@@ -124,7 +126,7 @@ def _write_bundle(
         "assignment": name,
         "seed": seed,
         "cells": manifest(source),
-        "questions": [q.data() for q in questions.values()],
+        "questions": [question_data(q) for q in questions.values()],
         **({"added": late} if late else {}),
     }
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), sort_keys=True)
@@ -156,7 +158,7 @@ def _verify(folder: Path, questions: Mapping[str, Question]) -> None:
     """Whatever nbgrader did: no answer and no hidden case may leave."""
     for path in folder.rglob("*"):
         text = path.read_text(encoding="utf-8") if path.is_file() else ""
-        for word in (*FORBIDDEN, *(q.pack_hidden() for q in questions.values())):
+        for word in (*FORBIDDEN, *(pack_hidden(q) for q in questions.values())):
             if word in text:
                 shutil.rmtree(folder)
                 raise LabkitError(f"{path.name} would have shown {word[:40]!r}; nothing released")

@@ -19,6 +19,7 @@ from ..errors import LabkitError, UnknownName
 from . import margins
 from .course import Course
 from .problem import Problem
+from .remembered import remembering
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question: its name, or "assignment/name" where two assignments ask it."""
@@ -138,7 +139,7 @@ def _row(
     mistakes: Sequence[Callable[..., Any]],
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
-    questions = margins.remembering([problem.question(seed + k) for k in range(DRAWS)])
+    questions = remembering([problem.question(seed + k) for k in range(DRAWS)])
     wrong = {w.name: w.function for w in problem.wrong}
     wrong |= {f"from outside: {_name(f)}": f for f in mistakes}
     right = {"the answer": problem.answer}
@@ -189,16 +190,23 @@ def functions_from(file: Path, table: str) -> Functions:
         table: The dict's name, "MISTAKES" or "VARIANTS".
 
     Raises:
-        LabkitError: There is no such file, or no such dict in it.
+        LabkitError: There is no such file, it does not run, or there is no such dict in it.
     """
     spec = importlib.util.spec_from_file_location("answers_from_outside", file)
     if spec is None or spec.loader is None or not file.exists():
         raise LabkitError(f"{file} is no Python file; give one with a dict {table}")
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise LabkitError(f"{file} does not run: {type(error).__name__}: {error}") from error
     found: Functions | None = getattr(module, table, None)
+    form = f"write {table} = {{question: [functions]}}"
     if not isinstance(found, dict):
-        raise LabkitError(f"{file} has no dict {table}; write {table} = {{question: [functions]}}")
+        raise LabkitError(f"{file} has no dict {table}; {form}")
+    for question, functions in found.items():
+        if not isinstance(functions, list | tuple) or not all(map(callable, functions)):
+            raise LabkitError(f"{table}[{question!r}] of {file} is no list of functions; {form}")
     return found
 
 

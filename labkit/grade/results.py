@@ -16,7 +16,8 @@ from typing import Any
 
 import labkit
 
-from ..check.question import Question, read_question
+from ..check.question import Question
+from ..check.question_codec import read_question
 from ..errors import LabkitError
 from .course import Course
 

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from ..check.cases import Tuned
 from ..check.evidence import evidence
 from ..check.mark import Ran, Verdict
-from ..check.question import Question, Tuned
+from ..check.question import Question
 from ..log import Log
 from ..replay import Motion, motion_of
 

@@ -43,13 +43,16 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
         The record: seed, date, and the hash of each bundle, which every result names.
 
     Raises:
-        LabkitError: The seed is the public one, or the last term's.
+        LabkitError: The seed is the public one, or the last term's; or a name is unknown.
     """
+    names = names or course.names()
+    for name in names:
+        course.notebook_source(name)
     if seed in (PUBLIC_SEED, seed_of(course)):
         raise LabkitError(f"seed {seed} was used before, so its cases may be known; take another")
     seed = secrets.randbelow(2**31) if seed is None else seed
     archive(course)
-    for name in names or course.names():
+    for name in names:
         release(course, name, seed)
     bundles = {
         path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]

@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
+from ..verbs import Verbs, add_verb, whole
 from .course import Course
-from .verbs_course import course_option
-
-Verbs = Any
+from .verbs_course import course_option, course_with
 
 
 def add(verbs: Verbs) -> None:
@@ -26,15 +25,11 @@ def add(verbs: Verbs) -> None:
 
 def add_grade(verbs: Verbs) -> None:
     """``labkit grade``."""
-    verb = verbs.add_parser(
-        "grade",
-        help="grade what was handed in",
-        description="Grade submissions, each in a sandbox of its own; what is graded already, and "
-        "has not changed, is not graded again.",
-    )
+    does = "grade what was handed in and is not graded yet, each in a sandbox of its own"
+    verb = add_verb(verbs, "grade", grade, does, "01_paths --student ada")
     verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
     verb.add_argument("--student", metavar="S", help="only this one")
-    verb.add_argument("--jobs", type=int, metavar="N", help="workers (default: one per core)")
+    verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
     verb.add_argument("--json", action="store_true", help="one JSON object per line, for programs")
     verb.add_argument(
         "--engine",
@@ -47,7 +42,11 @@ def add_grade(verbs: Verbs) -> None:
         "--dask", metavar="ADDRESS", help="of a Dask scheduler that shares the folder"
     )
     verb.add_argument(
-        "--shard", metavar="i/n", default="1/1", help="only the i-th of n parts of the class"
+        "--shard",
+        type=_shard,
+        metavar="i/n",
+        default="1/1",
+        help="only the i-th of n parts of the class",
     )
     verb.add_argument(
         "--unsafe-no-isolation",
@@ -55,29 +54,31 @@ def add_grade(verbs: Verbs) -> None:
         help="run students' code with your own rights, able to read and delete your files",
     )
     course_option(verb)
-    verb.set_defaults(do=grade)
 
 
 def add_make_class(verbs: Verbs) -> None:
     """``labkit make-class``."""
-    verb = verbs.add_parser("make-class", help="write a class that never was, to try things on")
+    does = "write a class that never was, to try things on"
+    verb = add_verb(verbs, "make-class", make_class, does, "01_paths --count 12")
     verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
-    verb.add_argument("--seed", type=int, default=2019, help="of the class (default: 2019)")
-    verb.add_argument("--count", type=int, default=40, help="how many students (default: 40)")
+    verb.add_argument("--seed", type=whole(0), default=2019, help="of the class (default: 2019)")
+    verb.add_argument("--count", type=whole(1), default=40, help="how many students (default: 40)")
     course_option(verb)
-    verb.set_defaults(do=make_class)
 
 
 def add_report_card(verbs: Verbs) -> None:
     """``labkit report-card``."""
-    verb = verbs.add_parser("report-card", help="how well the checks tell right from wrong")
+    does = "how well the checks tell right from wrong"
+    example = "01_paths --mistakes seen_in_class.py"
+    verb = add_verb(verbs, "report-card", report_card, does, example)
     verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
-    verb.add_argument("--seed", type=int, default=2019, help="of the first draw (default: 2019)")
+    verb.add_argument(
+        "--seed", type=whole(0), default=2019, help="of the first draw (default: 2019)"
+    )
     of = "a Python file with a dict {} = {{question: [functions]}}"
     verb.add_argument("--mistakes", type=Path, metavar="FILE", help=of.format("MISTAKES"))
     verb.add_argument("--variants", type=Path, metavar="FILE", help=of.format("VARIANTS"))
     course_option(verb)
-    verb.set_defaults(do=report_card)
 
 
 def report_card(args: argparse.Namespace) -> int:
@@ -108,8 +109,7 @@ def make_class(args: argparse.Namespace) -> int:
     from .synthetic import expected_file
     from .synthetic import make_class as make
 
-    here = Course.here(args.course)
-    here.notebook_source(args.name)
+    here = course_with(args)
     made = make(here, args.name, args.seed, args.count)
     print(f"{len(made)} submissions in {here.submitted}")
     print(f"what they deserve: {expected_file(here, args.name)}")
@@ -123,8 +123,7 @@ def grade(args: argparse.Namespace) -> int:
     from .results import Result, Results
     from .says import line
 
-    here = Course.here(args.course)
-    here.notebook_source(args.name)
+    here = course_with(args)
     who = in_part(here, args.name, args.student)
     if args.engine == "nbgrader":
         return _with_nbgrader(here, args, who)
@@ -132,7 +131,7 @@ def grade(args: argparse.Namespace) -> int:
         jobs=args.jobs or workers(),
         isolated=not args.unsafe_no_isolation,
         dask=args.dask,
-        shard=_shard(args.shard),
+        shard=args.shard,
         again=args.again,
     )
     graded: list[Result] = []
@@ -176,13 +175,14 @@ def in_part(here: Course, name: str, student: str | None) -> list[str]:
 
 def nobody(name: str, student: str | None) -> LabkitError:
     """What to say where nothing is graded yet."""
-    return LabkitError(f"{student or 'nobody'} is graded in {name}; type: labkit grade {name}")
+    who = f"{student} is not" if student else "nobody is"
+    return LabkitError(f"{who} graded in {name}; type: labkit grade {name}")
 
 
 def _shard(text: str) -> tuple[int, int]:
     first, _, last = text.partition("/")
     if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
-        raise LabkitError(f"--shard {text} is no part of anything; write 1/4, 2/4, 3/4 or 4/4")
+        raise argparse.ArgumentTypeError(f"{text} is no part; write 1/4, 2/4, 3/4 or 4/4")
     return int(first), int(last)
 
 
@@ -207,8 +207,7 @@ def _tell(sentences: Iterable[str], where: Any) -> None:
 
 def add_doctor(verbs: Verbs) -> None:
     """``labkit doctor``."""
-    verb = verbs.add_parser("doctor", help="what is missing on this machine, and how to get it")
-    verb.set_defaults(do=doctor)
+    add_verb(verbs, "doctor", doctor, "what is missing on this machine, and how to get it", "")
 
 
 def doctor(args: argparse.Namespace) -> int:

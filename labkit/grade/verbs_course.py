@@ -4,46 +4,54 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
 
+from ..verbs import Verbs, add_verb, whole
 from .course import Course
-
-Verbs = Any
 
 
 def course_option(verb: argparse.ArgumentParser) -> None:
     """The option that says which course."""
-    verb.add_argument("--course", type=Path, metavar="DIR", help="the course; found by default")
+    verb.add_argument("--course", type=Path, metavar="DIR", help="default: the one around you")
+
+
+def course_with(args: argparse.Namespace) -> Course:
+    """The course that is meant, which has the assignment that is meant.
+
+    Raises:
+        LabkitError: There is no such course, or no such assignment in it.
+    """
+    here = Course.here(args.course)
+    here.notebook_source(args.name)
+    return here
 
 
 def add(verbs: Verbs) -> None:
     """``release``, ``student-bundle``, ``new-term``, ``forget`` and ``export-course``."""
-    verb = verbs.add_parser("release", help="make the students' notebooks")
+    verb = add_verb(verbs, "release", release, "make the students' notebooks", "01_paths --seed 7")
     verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
-    verb.add_argument("--seed", type=int, help="of the hidden cases; the term's by default")
+    verb.add_argument("--seed", type=whole(0), help="of the hidden cases; the term's by default")
     course_option(verb)
-    verb.set_defaults(do=release)
 
-    verb = verbs.add_parser("student-bundle", help="a zip for students: labkit and notebooks")
+    does = "a zip for students: labkit and notebooks"
+    example = "00_warmup 01_paths --to week1.zip"
+    verb = add_verb(verbs, "student-bundle", student_bundle, does, example)
     verb.add_argument("names", nargs="*", metavar="NAME", help="all that are released by default")
     verb.add_argument("--to", type=Path, metavar="FILE", help="default: dist/baxter-lab.zip")
     course_option(verb)
-    verb.set_defaults(do=student_bundle)
 
-    verb = verbs.add_parser("new-term", help="archive the last term, release with a new seed")
+    does = "archive the last term, release with a new seed"
+    verb = add_verb(verbs, "new-term", new_term, does, "00_warmup 01_paths")
     verb.add_argument("names", nargs="*", metavar="NAME", help="all by default")
-    verb.add_argument("--seed", type=int, help="of the hidden cases; drawn by default")
+    verb.add_argument("--seed", type=whole(0), help="of the hidden cases; drawn by default")
     course_option(verb)
-    verb.set_defaults(do=new_term)
 
-    verb = verbs.add_parser("forget", help="delete archived terms, and the names with them")
-    course_option(verb)
-    verb.set_defaults(do=forget)
+    does = "delete archived terms, and the names with them"
+    course_option(add_verb(verbs, "forget", forget, does, ""))
 
-    verb = verbs.add_parser("export-course", help="a repository for students, and a private one")
+    does = "a repository for students, and a private one"
+    verb = add_verb(verbs, "export-course", export_course, does, "--to ../handout")
     verb.add_argument("--to", type=Path, required=True, metavar="DIR")
     course_option(verb)
-    verb.set_defaults(do=export_course)
 
 
 def release(args: argparse.Namespace) -> int:

@@ -5,21 +5,18 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
 
 from ..errors import LabkitError
-from .course import Course
+from ..verbs import Do, Verbs, add_verb, whole
 from .verbs import in_part, nobody
-from .verbs_course import course_option
-
-Verbs = Any
+from .verbs_course import course_option, course_with
 
 
 def add(verbs: Verbs) -> None:
     """All of them."""
-    verb = _verb(verbs, "feedback", feedback, "write a page for each student")
+    verb = _verb(verbs, "feedback", feedback, "write a page for each student", "--student ada")
     verb.add_argument("--student", metavar="S", help="only this one")
-    verb = _verb(verbs, "export", export, "marks as a table")
+    verb = _verb(verbs, "export", export, "marks as a table", "--to marks.csv")
     verb.add_argument(
         "--layout",
         choices=("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"),
@@ -30,29 +27,27 @@ def add(verbs: Verbs) -> None:
         "--column", metavar="NAME", help="the assignment as the platform calls it: 'Paths (4711)'"
     )
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
-    verb = _verb(verbs, "regrade", regrade, "grade again after a test or its points have changed")
+    does = "grade again after a test or its points have changed"
+    verb = _verb(verbs, "regrade", regrade, does, "--diff")
     verb.add_argument("--student", metavar="S", help="only this one")
     verb.add_argument("--diff", action="store_true", help="only say whose mark would move")
     verb.add_argument("--lower", action="store_true", help="let marks fall too")
-    verb.add_argument("--jobs", type=int, metavar="N", help="workers (default: one per core)")
-    verb = _verb(
-        verbs, "class-report", class_report, "what the class got right, and what it got wrong"
-    )
+    verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
+    does = "what the class got right, and what it got wrong"
+    verb = _verb(verbs, "class-report", class_report, does, "--names")
     verb.add_argument("--names", action="store_true", help="with names, for your eyes only")
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
     verb.add_argument(
         "--jplag", type=Path, metavar="DIR", help="also write answers for JPlag there"
     )
-    verb = _verb(
-        verbs, "collect", collect, "take downloads from Moodle, Canvas or nbgrader's exchange"
-    )
+    does = "take downloads from Moodle, Canvas or nbgrader's exchange"
+    verb = _verb(verbs, "collect", collect, does, "moodle.zip")
     verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
-    verb = _verb(
-        verbs, "rehearse", rehearse, "play a term through with a class that never was, in a folder"
-    )
-    verb.add_argument("--count", type=int, default=12, help="how many students (default: 12)")
+    does = "play a term through with a class that never was, in a folder"
+    verb = _verb(verbs, "rehearse", rehearse, does, "--to trial")
+    verb.add_argument("--count", type=whole(1), default=12, help="how many students (default: 12)")
     verb.add_argument("--to", type=Path, required=True, metavar="DIR", help="made if need be")
-    verb.add_argument("--jobs", type=int, metavar="N", help="workers (default: one per core)")
+    verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
 
 
 def feedback(args: argparse.Namespace) -> int:
@@ -61,7 +56,7 @@ def feedback(args: argparse.Namespace) -> int:
     from .gradebook import comments
     from .results import Results
 
-    here = Course.here(args.course)
+    here = course_with(args)
     results = [r for r in Results(here, args.name) if args.student in {None, r.student}]
     if not results:
         raise nobody(args.name, args.student)
@@ -76,7 +71,7 @@ def export(args: argparse.Namespace) -> int:
     """Write the table."""
     from .export import LAYOUTS, as_csv, left_out, rows
 
-    here = Course.here(args.course)
+    here = course_with(args)
     marks = list(rows(here, args.name))
     if not marks:
         raise nobody(args.name, None)
@@ -93,7 +88,7 @@ def regrade(args: argparse.Namespace) -> int:
     from .gradebook import record
     from .regrade import Move, accept, moves
 
-    here = Course.here(args.course)
+    here = course_with(args)
     who = in_part(here, args.name, args.student)
     found = list(moves(here, args.name, who, How(jobs=args.jobs or workers())))
     moved = [m for m in found if isinstance(m, Move)]
@@ -124,7 +119,7 @@ def class_report(args: argparse.Namespace) -> int:
     from .class_report import for_jplag, report
     from .results import Results
 
-    here = Course.here(args.course)
+    here = course_with(args)
     results = list(Results(here, args.name))
     if not results:
         raise nobody(args.name, None)
@@ -139,8 +134,7 @@ def collect(args: argparse.Namespace) -> int:
     """Take what lies there, and say what was done with it."""
     from .collect import collect as take
 
-    here = Course.here(args.course)
-    here.notebook_source(args.name)
+    here = course_with(args)
     for source in args.sources:
         for taken in take(here, args.name, source):
             print(taken, flush=True)
@@ -152,18 +146,17 @@ def rehearse(args: argparse.Namespace) -> int:
     from .batch import How, workers
     from .rehearsal import rehearse as play
 
-    here = Course.here(args.course)
-    here.notebook_source(args.name)
+    here = course_with(args)
     for sentence in play(here, args.name, args.to, args.count, How(jobs=args.jobs or workers())):
         print(sentence, flush=True)
     return 0
 
 
-def _verb(verbs: Verbs, name: str, do: Any, says: str) -> argparse.ArgumentParser:
-    verb: argparse.ArgumentParser = verbs.add_parser(name, help=says)
+def _verb(verbs: Verbs, name: str, do: Do, does: str, example: str = "") -> argparse.ArgumentParser:
+    """A verb on one assignment."""
+    verb = add_verb(verbs, name, do, does, f"01_paths {example}")
     verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
     course_option(verb)
-    verb.set_defaults(do=do)
     return verb
 
 

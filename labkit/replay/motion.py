@@ -9,9 +9,9 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array, as_array, locked
+from ..errors import OutOfRange, UnknownName
 
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 STEPS = {  # how fine each channel is kept
@@ -67,12 +67,12 @@ class Motion:
 
     def __post_init__(self) -> None:
         if self.side not in ("left", "right"):
-            raise ValueError(f"side is 'left' or 'right', not {self.side!r}.")
+            raise UnknownName("side", self.side, ("left", "right"))
         if self.error_unit not in ("m", "rad"):
-            raise ValueError(f"error_unit is 'm' or 'rad', not {self.error_unit!r}.")
+            raise UnknownName("unit of an error", self.error_unit, ("m", "rad"))
         n = np.shape(self.t)[0] if np.ndim(self.t) else 0
         if n < 2:
-            raise ValueError("A motion needs at least two times.")
+            raise OutOfRange(f"t has {n} times, and a motion needs at least two")
         shapes: dict[str, tuple[int, ...]] = {
             "t": (n,),
             "q": (n, 7),
@@ -87,11 +87,11 @@ class Motion:
         for name, shape in shapes.items():
             value = getattr(self, name)
             if value is not None:
-                object.__setattr__(self, name, _array(name, value, shape))
-        ghosts = {k: _array(f"ghost {k!r}", v, (n, 7)) for k, v in self.ghosts.items()}
+                object.__setattr__(self, name, _frozen(value, shape, name))
+        ghosts = {k: _frozen(v, (n, 7), f"ghost {k!r}") for k, v in self.ghosts.items()}
         object.__setattr__(self, "ghosts", ghosts)
         if not (np.diff(self.t) > 0).all():
-            raise ValueError("t increases from row to row.")
+            raise OutOfRange("t does not increase from row to row; is it in the log's order?")
 
     def data(self, rate: float = 25.0) -> dict[str, Any]:
         """The motion as the viewer reads it: resampled evenly, whole numbers, differences in time.
@@ -227,33 +227,19 @@ def unpack(channel: Mapping[str, Any]) -> Array:
     return np.asarray(whole.T * float(channel["step"]), dtype=np.float64)
 
 
-def _array(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    """A read-only float array of this shape, or a sentence."""
-    array = np.array(value, dtype=np.float64)
-    if array.shape != shape:
-        raise ValueError(f"{name} has shape {array.shape}; it should be {shape}.")
-    if not np.isfinite(array).all():
-        raise ValueError(f"{name} has values that are not finite.")
-    array.setflags(write=False)
-    return array
+def _frozen(value: Any, shape: tuple[int, ...], name: str) -> Array:
+    return locked(np.array(as_array(value, shape, name)))
 
 
 def _quaternions(R: Array | None) -> Array | None:
     """Rotations (N, 3, 3) to unit quaternions x y z w (N, 4) without jumps of sign."""
     if R is None:
         return None
-    # The largest eigenvector of this matrix is the quaternion; no case distinction.
-    K = np.empty((len(R), 4, 4))
-    K[:, :3, :3] = (
-        R + R.transpose(0, 2, 1) - np.trace(R, axis1=1, axis2=2)[:, None, None] * np.eye(3)
-    )
-    skew = np.stack([R[:, 2, 1] - R[:, 1, 2], R[:, 0, 2] - R[:, 2, 0], R[:, 1, 0] - R[:, 0, 1]], 1)
-    K[:, :3, 3] = K[:, 3, :3] = skew
-    K[:, 3, 3] = np.trace(R, axis1=1, axis2=2)
-    q = np.linalg.eigh(K)[1][:, :, 3]
+    from scipy.spatial.transform import Rotation  # a slow import, for who shows a motion
+
+    q = Rotation.from_matrix(R).as_quat()
     flips = np.where(np.sum(q[1:] * q[:-1], axis=1) < 0, -1.0, 1.0)
-    signs = np.concatenate([[1.0], np.cumprod(flips)])
-    return np.asarray(q * signs[:, None], dtype=np.float64)
+    return np.asarray(q * np.cumprod([1.0, *flips])[:, None], dtype=np.float64)
 
 
 def _lower(name: str) -> str:

@@ -14,6 +14,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from ..errors import OutOfRange, UnknownName
 from .motion import LIMIT, Motion
 
 VIEWER = Path(__file__).parents[1] / "data" / "viewer"
@@ -50,13 +51,13 @@ def motion_html(
         HTML without inline code.
 
     Raises:
-        ValueError: If the motion is too large for a page.
+        OutOfRange: The motion is too large for a page.
     """
     text = motion.to_json(rate)
     if len(text.encode()) > LIMIT:
-        raise ValueError(
-            f"The motion {motion.title!r} is {len(text.encode()) / 1000:.0f} kB, more than"
-            f" {LIMIT / 1000:.0f} kB: give fewer ghosts, a shorter run or a lower rate."
+        raise OutOfRange(
+            f"the motion {motion.title!r} is {len(text.encode()) / 1000:.0f} kB, more than"
+            f" {LIMIT / 1000:.0f} kB: give fewer ghosts, a shorter run or a lower rate"
         )
     return _figure(text, caption or motion.title, motion.alt, motion.description, poster, root)
 
@@ -131,7 +132,6 @@ def explorer_html(
     folder: str,
     *,
     caption: str = "",
-    poster: str | None = None,
     root: str | None = None,
 ) -> str:
     """The explorer as a figure; its runs are loaded one by one from `folder`.
@@ -140,7 +140,6 @@ def explorer_html(
         explorer: The grid.
         folder: Address, from the page, of the folder with `run_files`, ending in "/".
         caption: Text under it; the title if empty.
-        poster: See `motion_html`.
         root: See `motion_html`.
 
     Returns:
@@ -160,7 +159,7 @@ def explorer_html(
     names = ", ".join(d.label for d in explorer.dials)
     alt = f"{explorer.title}: {len(explorer.runs)} recorded runs to choose from by {names}."
     facts = " ".join(explorer.facts[k] for k in sorted(explorer.facts)[:3])
-    return _figure(_compact(data), caption or explorer.title, alt, f"{alt} {facts}", poster, root)
+    return _figure(_compact(data), caption or explorer.title, alt, f"{alt} {facts}", None, root)
 
 
 DEMOS = {
@@ -174,29 +173,36 @@ DEMOS = {
 
 
 def demo_html(
-    name: str,
-    *,
-    caption: str = "",
-    side: str = "left",
-    poster: str | None = None,
-    root: str | None = None,
+    name: str, *, caption: str = "", poster: str | None = None, root: str | None = None
 ) -> str:
     """One of the live demos: "scaling", "jacobian" or "rotation".
 
     Args:
         name: Which.
         caption: Text under it; a description if empty.
-        side: The arm of the Jacobian demo.
         poster: See `motion_html`.
         root: See `motion_html`.
 
     Returns:
         HTML without inline code.
+
+    Raises:
+        UnknownName: There is no such demo.
     """
-    words = DEMOS[name]
-    return _figure(
-        _compact({"kind": name, "side": side}), caption or words, words, words, poster, root
-    )
+    data = demo_data(name)
+    words = data["alt"]
+    return _figure(_compact(data), caption or words, words, words, poster, root)
+
+
+def demo_data(name: str) -> dict[str, str]:
+    """A live demo as the viewer reads it.
+
+    Raises:
+        UnknownName: There is no such demo.
+    """
+    if name not in DEMOS:
+        raise UnknownName("demo", name, DEMOS)
+    return {"kind": name, "alt": DEMOS[name]}
 
 
 def _figure(

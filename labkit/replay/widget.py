@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from .motion import Motion
-from .page import VIEWER
+from .page import VIEWER, demo_data
 
 
 def show(motion: Motion, rate: float = 25.0) -> Any:
@@ -23,11 +23,13 @@ def show(motion: Motion, rate: float = 25.0) -> Any:
     return _widget_class()(data=motion.to_json(rate))
 
 
-def demo(name: str, side: str = "left") -> Any:
-    """One of the live demos, "scaling", "jacobian" or "rotation", as a widget."""
-    return _widget_class()(
-        data=json.dumps({"kind": name, "side": side, "alt": f"Live demo: {name}"})
-    )
+def demo(name: str) -> Any:
+    """One of the live demos, "scaling", "jacobian" or "rotation", as a widget.
+
+    Raises:
+        UnknownName: There is no such demo.
+    """
+    return _widget_class()(data=json.dumps(demo_data(name)))
 
 
 @cache

@@ -156,7 +156,7 @@ def spread(values: Iterable[float]) -> tuple[float, float, float]:
     return float(x.mean()), float(x.min()), float(x.max())
 
 
-def table(rows: Sequence[Row], down: str, across: str, number: str, digits: int = 3) -> str:
+def table(rows: Sequence[Row], down: str, across: str, number: str) -> str:
     """A Markdown table: for each pair of names the mean over the rest, and the spread in brackets.
 
     A cell in which some run failed says how many of how many.
@@ -166,7 +166,6 @@ def table(rows: Sequence[Row], down: str, across: str, number: str, digits: int 
         down: The axis whose names head the lines.
         across: The axis whose names head the columns.
         number: Which number.
-        digits: How many significant digits.
 
     Raises:
         UnknownName: The rows have no such number or axis.
@@ -179,11 +178,11 @@ def table(rows: Sequence[Row], down: str, across: str, number: str, digits: int 
     lines = [f"| {down} | " + " | ".join(map(str, heads)) + " |", "|---" * (len(heads) + 1) + "|"]
     for name in dict.fromkeys(row[down] for row in rows):
         here = [pick(rows, **{down: name, across: head}) for head in heads]
-        lines.append(f"| {name} | " + " | ".join(_entry(r, number, digits) for r in here) + " |")
+        lines.append(f"| {name} | " + " | ".join(_entry(r, number) for r in here) + " |")
     return "\n".join(lines)
 
 
-def _entry(rows: list[Row], number: str, digits: int) -> str:
+def _entry(rows: list[Row], number: str) -> str:
     if not rows:
         return "–"
     failed = sum(row["failed"] is not None for row in rows)
@@ -192,5 +191,5 @@ def _entry(rows: list[Row], number: str, digits: int) -> str:
     never = sum(row[number] is None or not np.isfinite(row[number]) for row in rows)
     if never:
         return "never" if never == len(rows) else f"never in {never} of {len(rows)}"
-    mean, low, high = (float(f"{x:.{digits}g}") for x in spread(row[number] for row in rows))
+    mean, low, high = (float(f"{x:.3g}") for x in spread(row[number] for row in rows))
     return f"{mean:g}" if low == high else f"{mean:g} [{low:g}, {high:g}]"

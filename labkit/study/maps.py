@@ -53,7 +53,7 @@ class ErrorMap:
         lost = int(np.isnan(self.array()).sum())
         return (
             f"RMS error of {self.title} for Kp from {self.Kp[0]:g} to {self.Kp[-1]:g} "
-            f"{self.unit[0]} and Kd from {self.Kd[0]:g} to {self.Kd[-1]:g} {self.unit[1]}: "
+            f"[{self.unit[0]}] and Kd from {self.Kd[0]:g} to {self.Kd[-1]:g} [{self.unit[1]}]: "
             f"least {least:.3g} mm at Kp = {Kp:.3g}, Kd = {Kd:.3g}; largest "
             f"{np.nanmax(self.array()):.3g} mm; {lost} of {self.array().size} pairs lost the arm."
         )

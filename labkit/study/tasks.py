@@ -100,7 +100,6 @@ def smooth(paths: Iterable[Any], R_wt: Any, *, v_max: float = V_MAX, a_max: floa
 def line(
     goal: Any = (0.10, -0.15, 0.10),
     *,
-    side: Side = "left",
     v_max: float = V_MAX,
     a_max: float = A_MAX,
 ) -> Task:
@@ -108,62 +107,40 @@ def line(
 
     Args:
         goal: Where it ends, seen from the start, shape (3,) in [m].
-        side: Which arm.
         v_max: Largest speed, in [m/s].
         a_max: Largest acceleration, in [m/s^2].
     """
-    T_wt, p = _start(side)
+    p, R_wt = _start()
     path = Line(p, p + as_array(goal, (3,), "goal"))
-    return Task("line", smooth([path], T_wt[:3, :3], v_max=v_max, a_max=a_max), _q0(side), side)
+    return Task("line", smooth([path], R_wt, v_max=v_max, a_max=a_max), _q0())
 
 
-def circle(
-    centre: Any = (0.0, -0.10, 0.0),
-    *,
-    turns: float = 1.0,
-    side: Side = "left",
-    v_max: float = V_MAX,
-    a_max: float = A_MAX,
-) -> Task:
+def circle(centre: Any = (0.0, -0.10, 0.0)) -> Task:
     """A level circle (report, section 2.2).
 
     Args:
         centre: A point on its axis, seen from the start, shape (3,) in [m].
-        turns: How many times round.
-        side: Which arm.
-        v_max: Largest speed, in [m/s].
-        a_max: Largest acceleration along it, in [m/s^2].
     """
-    T_wt, p = _start(side)
-    path = Circle(p, p + as_array(centre, (3,), "centre"), turns)
-    return Task("circle", smooth([path], T_wt[:3, :3], v_max=v_max, a_max=a_max), _q0(side), side)
+    p, R_wt = _start()
+    return Task("circle", smooth([Circle(p, p + as_array(centre, (3,), "centre"))], R_wt), _q0())
 
 
-def square(
-    goals: Any = ((0.15, 0.0, 0.0), (0.15, -0.15, 0.0), (0.0, -0.15, 0.0)),
-    *,
-    side: Side = "left",
-    v_max: float = V_MAX,
-    a_max: float = A_MAX,
-) -> Task:
+def square(goals: Any = ((0.15, 0.0, 0.0), (0.15, -0.15, 0.0), (0.0, -0.15, 0.0))) -> Task:
     """The report's square: current, goal 0, goal 1, goal 2, current (section 2.3).
 
     Args:
         goals: The other corners, seen from the start, shape (k, 3) in [m].
-        side: Which arm.
-        v_max: Largest speed, in [m/s].
-        a_max: Largest acceleration, in [m/s^2].
     """
-    T_wt, p = _start(side)
+    p, R_wt = _start()
     corners = Polyline(np.array([p, *(p + as_vector(g, 3, "goal") for g in goals), p]))
-    chain = smooth(corners.lines, T_wt[:3, :3], v_max=v_max, a_max=a_max)
-    return Task("square", chain, _q0(side), side)
+    return Task("square", smooth(corners.lines, R_wt), _q0())
 
 
-def _start(side: Side) -> tuple[Array, Array]:
-    T_wt = ready_pose(side)
-    return T_wt, T_wt[:3, 3]
+def _start() -> tuple[Array, Array]:
+    """Place and orientation of the left tip where the tasks begin."""
+    T_wt = ready_pose()
+    return T_wt[:3, 3], T_wt[:3, :3]
 
 
-def _q0(side: Side) -> Array:
-    return locked(np.array(robot(side).ready))
+def _q0() -> Array:
+    return locked(np.array(robot("left").ready))

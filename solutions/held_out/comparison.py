@@ -24,11 +24,16 @@ not."""
 
 
 def drawn_log(random: Random, rows: int, error: Any, *, moving: bool) -> lk.Log:
-    """A short log whose tip misses its target by a given error, (3,) in [m]."""
+    """A short log whose tip misses its target by a given error, (3,) in [m].
+
+    An arm that moves is tilted as well, which is no error of position.
+    """
     q0 = MODEL.robot.ready
     q = q0 + (random.uniform(-0.2, 0.2, (rows, 7)) if moving else np.zeros((rows, 7)))
     T_wd = np.array([MODEL.pose(x) for x in q])
     T_wd[:, :3, 3] += error
+    if moving:
+        T_wd[:, :3, :3] @= lk.se3.rotation([0.1, -0.2, 0.05])
     t, zero = np.linspace(0.0, 0.005 * rows, rows), np.zeros((rows, 7))
     return lk.Log(
         t=t,
@@ -118,3 +123,11 @@ def tables(random: Random) -> Iterator[Call]:
                 [y + z for y, z in zip(b, noise, strict=True)],
             ]
         yield call(table)
+    yield call({f"claim {k}": _apart(random, t) for k, t in enumerate((-4.0, -2.6, 2.6, 4.0))})
+
+
+def _apart(random: Random, t: float) -> list[list[float]]:
+    """Two rows of five whose difference is t standard errors; 2.78 are needed to decide."""
+    seeds, noise = random.uniform(1.0, 9.0, 5), random.normal(0.0, 0.5, 5)
+    shift = t * noise.std(ddof=1) / np.sqrt(5.0) - noise.mean()
+    return [(seeds + noise + shift).tolist(), seeds.tolist()]

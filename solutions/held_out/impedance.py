@@ -9,7 +9,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.check import Call, Loop
-from labkit.check.question import Case
+from labkit.check.cases import Case
 from labkit.grade.problem import call
 
 Random = np.random.Generator

@@ -99,6 +99,9 @@ def blends_in_motion(random: Random) -> Iterator[Call]:
         a, b = _sample(random, 0.3, 0.5), _sample(random, 0.3, 0.0)
         for x in (0.0, *random.uniform(0.1, 0.9, 2), 1.0, 1.6):
             yield call(float(x * T), a, b, T)
+        turning = b._replace(acceleration=random.uniform(-0.5, 0.5, 3))
+        for x in (random.uniform(0.2, 0.9), 1.5):  # not 1: at the end itself both are right
+            yield call(float(x * T), a, turning, T)
 
 
 def believed(random: Random) -> tuple[Array, Array]:

@@ -24,9 +24,10 @@ def state(q: Any, dq: Any = REST) -> lk.State:
     return lk.State(0.0, np.array(q, dtype=float), np.array(dq, dtype=float))
 
 
-def sample(q: Any, dq: Any = REST) -> lk.Sample:
+def sample(q: Any, dq: Any = REST, ddq: Any = REST) -> lk.Sample:
     """A target of joint angles."""
-    return lk.Sample(np.array(q, dtype=float), np.array(dq, dtype=float), REST)
+    position, velocity, acceleration = (np.array(x, dtype=float) for x in (q, dq, ddq))
+    return lk.Sample(position, velocity, acceleration)
 
 
 def pose_sample(q: Any, shift: Any = (0, 0, 0), turn: Any = (0, 0, 0), twist: Any = None) -> Any:
@@ -61,7 +62,7 @@ def joint_targets(random: Random) -> Iterator[Call]:
     for _ in range(3):
         yield call(
             state(near(random), random.uniform(-0.5, 0.5, 7)),
-            sample(near(random), random.uniform(-0.5, 0.5, 7)),
+            sample(near(random), *random.uniform(-0.5, 0.5, (2, 7))),
             kp=random.uniform(1.0, 8.0, 7),
             kd=random.uniform(0.1, 0.8, 7),
         )
@@ -121,10 +122,11 @@ def pose_turns(random: Random) -> Iterator[Call]:
 
 
 def pose_moves(random: Random) -> Iterator[Call]:
-    """Other twists."""
-    for _ in range(2):
+    """Other twists, beside the target and turned against it."""
+    for most in (0.0, 0.3):
         q = near(random)
-        x = pose_sample(q, twist=random.uniform(-0.2, 0.2, 6))
+        off, turn = random.uniform(-0.1, 0.1, 3) * most, random.uniform(-most, most, 3)
+        x = pose_sample(q, off, turn, random.uniform(-0.2, 0.2, 6))
         yield call(state(q), x, MODEL, kp=3.0, damping=0.004)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from math import atan, pi, radians, sqrt
 from typing import Any
 
@@ -12,6 +13,7 @@ from scipy.optimize import brentq
 from scipy.stats import t as student
 
 import labkit as lk
+from labkit.arrays import Array
 
 from ..comparison import paired_difference
 
@@ -39,6 +41,69 @@ def mean_of_lengths(log: lk.Log, model: lk.Model) -> float:
         for q, T in zip(log.q, log.target.pose, strict=True)  # type: ignore[union-attr]
     ]
     return float(np.mean(e))
+
+
+def _errors(log: lk.Log, model: lk.Model) -> Array:
+    """The error of each row, shape (rows, 3) in [m]."""
+    poses = log.target.pose  # type: ignore[union-attr]
+    return np.array([T[:3, 3] - model.pose(q)[:3, 3] for q, T in zip(log.q, poses, strict=True)])
+
+
+def largest(log: lk.Log, model: lk.Model) -> float:
+    """The largest error."""
+    return float(np.linalg.norm(_errors(log, model), axis=1).max())
+
+
+def without_the_root(log: lk.Log, model: lk.Model) -> float:
+    """The mean square, in square metres."""
+    return float(np.mean(np.sum(_errors(log, model) ** 2, axis=1)))
+
+
+def in_millimetres(log: lk.Log, model: lk.Model) -> float:
+    """A thousand times too large."""
+    return 1e3 * float(np.sqrt(without_the_root(log, model)))
+
+
+def not_a_mean(log: lk.Log, model: lk.Model) -> float:
+    """The root of the sum: it grows with the length of the run."""
+    return float(np.linalg.norm(_errors(log, model)))
+
+
+def whole_poses(log: lk.Log, model: lk.Model) -> float:
+    """The poses subtracted whole: sixteen numbers, nine of them a rotation's."""
+    poses = log.target.pose  # type: ignore[union-attr]
+    e = [T - model.pose(q) for q, T in zip(log.q, poses, strict=True)]
+    return float(np.sqrt(np.mean(np.sum(np.square(e), axis=(1, 2)))))
+
+
+def one_row_late(log: lk.Log, model: lk.Model) -> float:
+    """The target of each row beside the tip of the row before."""
+    poses = log.target.pose  # type: ignore[union-attr]
+    e = [T[:3, 3] - model.pose(q)[:3, 3] for q, T in zip(log.q[:-1], poses[1:], strict=True)]
+    return float(np.sqrt(np.mean(np.sum(np.square(e), axis=1))))
+
+
+@dataclass(frozen=True)
+class LoopWithout:
+    """The loop with a factor left out or turned over.
+
+    Attributes:
+        kp: Power of the gain.
+        lag: Power of the lag.
+        delay: Factor of the delay; below 0 it is turned over.
+    """
+
+    kp: float = 1.0
+    lag: float = 1.0
+    delay: float = 1.0
+
+    def __call__(self, kp: float, lag: float, delay: float) -> Any:
+        """The transfer function."""
+        loop = control.tf([kp**self.kp], [1.0, 0.0]) * control.tf([1.0], [lag * self.lag, 1.0])
+        if not delay * self.delay:
+            return loop
+        late = control.tf(*control.pade(delay * abs(self.delay), 4))
+        return loop * late if self.delay > 0.0 else loop / late
 
 
 def no_integrator(kp: float, lag: float, delay: float) -> Any:
@@ -88,6 +153,42 @@ def lag_free_gain(lag: float, delay: float, margin_deg: float) -> float:
     return float(brentq(left, 1e-9, 1e4))
 
 
+@dataclass(frozen=True)
+class GainAt:
+    """The right frequency, and another gain there.
+
+    Attributes:
+        power: Of the right gain: -1 is the loop's gain itself.
+        lag: Power of the lag's share.
+        integrator: Power of the integrator's share.
+    """
+
+    power: float = 1.0
+    lag: float = 1.0
+    integrator: float = 1.0
+
+    def __call__(self, lag: float, delay: float, margin_deg: float) -> float:
+        """The gain."""
+        w = lag_free_gain(lag, delay, margin_deg)
+        gain = w**self.integrator * sqrt(1.0 + (lag * w) ** 2) ** self.lag
+        return float(gain**self.power)
+
+
+def phase_mixed(lag: float, delay: float, margin_deg: float) -> float:
+    """The delay's phase in radians among degrees."""
+
+    def left(w: float) -> float:
+        return float(90.0 - np.degrees(atan(lag * w)) - delay * w - margin_deg)
+
+    w = brentq(left, 1e-9, 1e6)
+    return float(w * sqrt(1.0 + (lag * w) ** 2))
+
+
+def in_hertz(lag: float, delay: float, margin_deg: float) -> float:
+    """Divided by 2 pi."""
+    return float(_kp(lag, delay, radians(margin_deg)) / (2.0 * pi))
+
+
 def best_on_the_training_path(runner: Callable[..., float]) -> tuple[float, float]:
     """Searches a grid with one seed and takes the winner, at the edge of the cliff."""
     tried = {
@@ -121,6 +222,72 @@ def normal_quantile(errors_a: Sequence[float], errors_b: Sequence[float]) -> tup
     """1.96, as if five seeds were many."""
     d = np.asarray(errors_a, dtype=float) - np.asarray(errors_b, dtype=float)
     return float(d.mean()), float(1.96 * d.std(ddof=1) / np.sqrt(len(d)))
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A paired interval with something else in it.
+
+    Attributes:
+        quantile: Of Student's t.
+        given: What is taken off n, in the deviation's denominator.
+        freedom: What is taken off n, for Student's t.
+        sign: Of the difference.
+        share: Of the half width.
+    """
+
+    quantile: float = 0.975
+    given: int = 1
+    freedom: int = 1
+    sign: float = 1.0
+    share: float = 1.0
+
+    def __call__(self, errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+        """Mean and half width."""
+        d = self.sign * np.subtract(errors_a, errors_b)
+        t = student.ppf(self.quantile, len(d) - self.freedom)
+        width = t * d.std(ddof=self.given) / np.sqrt(len(d))
+        return float(d.mean()), float(self.share * width)
+
+
+def ends_of_the_interval(
+    errors_a: Sequence[float], errors_b: Sequence[float]
+) -> tuple[float, float]:
+    """Its two ends instead of middle and half width."""
+    mean, half = paired_difference(errors_a, errors_b)
+    return mean - half, mean + half
+
+
+def without_students_t(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+    """The standard error alone."""
+    d = np.subtract(errors_a, errors_b)
+    return float(d.mean()), float(d.std(ddof=1) / np.sqrt(len(d)))
+
+
+def plain_deviation(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+    """The standard deviation alone."""
+    d = np.subtract(errors_a, errors_b)
+    return float(d.mean()), float(d.std(ddof=1))
+
+
+@dataclass(frozen=True)
+class VerdictsBy:
+    """Verdicts by an interval that is not the right one.
+
+    Attributes:
+        interval: Mean and half width, of two rows.
+    """
+
+    interval: Callable[..., tuple[float, float]]
+
+    def __call__(self, table: Mapping[str, Any]) -> dict[str, str]:
+        """The verdicts."""
+        found = {}
+        for claim, rows in table.items():
+            mean, half = self.interval(*rows)
+            sure = "holds" if mean > 0 else "does not hold"
+            found[claim] = sure if abs(mean) > half else "undecided"
+        return found
 
 
 def always_decided(table: Mapping[str, Any]) -> dict[str, str]:

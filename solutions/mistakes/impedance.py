@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -49,6 +50,56 @@ def force_not_acceleration(
 ) -> float:
     """Gives a force where an acceleration is asked."""
     return m * right.msd(state, target, force, m=m, b=b, k=k)
+
+
+@dataclass(frozen=True)
+class OneMass:
+    """The mass with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        spring: Of the spring.
+        damper: Of the damper.
+        force: Of the hand's force.
+        feed: Of the target's acceleration.
+        per_mass: Of the target's acceleration, divided by the mass.
+        follows: Of all that is the target's.
+        power: Of the mass that divides.
+        swapped: Whether spring and damper are.
+    """
+
+    spring: float = 1.0
+    damper: float = 1.0
+    force: float = 1.0
+    feed: float = 1.0
+    per_mass: float = 0.0
+    follows: float = 1.0
+    power: float = 1.0
+    swapped: bool = False
+
+    def __call__(
+        self, state: Any, target: Any, force: float, *, m: float, b: float, k: float
+    ) -> float:
+        """The acceleration."""
+        (x, dx), (x_d, dx_d, ddx_d) = state, (self.follows * part for part in target)
+        b, k = (k, b) if self.swapped else (b, k)
+        pull = self.spring * k * (x_d - x) + self.damper * b * (dx_d - dx)
+        total = self.force * force + pull + self.per_mass * ddx_d
+        return float(self.feed * ddx_d + total / m**self.power)
+
+
+def inverse_of_the_wrong(M: Any, J: Any) -> Any:
+    """The inverse of J M J^T."""
+    return np.linalg.inv(J @ M @ J.T)
+
+
+def each_axis_alone(M: Any, J: Any) -> Any:
+    """The right matrix without what is beside its diagonal."""
+    return np.diag(np.diag(right.operational_inertia(M, J)))
+
+
+def numbers_turned_over(M: Any, J: Any) -> Any:
+    """1 divided by each number of the mobility."""
+    return 1.0 / (J @ np.linalg.inv(M) @ J.T)
 
 
 def j_m_jt(M: Any, J: Any) -> Any:
@@ -175,6 +226,118 @@ def brakes_the_motion(
     tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
     pull = damping * np.asarray(target.twist)
     return lk.JointTorque(tau.value - model.tip_jacobian(state.q).T @ pull)
+
+
+@dataclass(frozen=True)
+class TipLaw:
+    """The impedance with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the error.
+        turn: Of the error of orientation.
+        de: Of the error of the twist.
+        feed: Of the target's acceleration.
+        drift: Of the acceleration that comes by itself.
+        coriolis: Of C.
+        weight: Of g.
+        power: Of the tip's inertia.
+        swapped: Whether stiffness and damping are.
+        pinv: Whether the pseudo-inverse takes the place of the transpose.
+        body: Whether the Jacobian is the tool's.
+        tool: Whether the error of orientation is in the tool's axes; 2 is that of position too.
+        elbow: Of a damper in the null space.
+    """
+
+    e: float = 1.0
+    turn: float = 1.0
+    de: float = 1.0
+    feed: float = 1.0
+    drift: float = 1.0
+    coriolis: float = 1.0
+    weight: float = 1.0
+    power: int = 1
+    swapped: bool = False
+    pinv: bool = False
+    body: bool = False
+    tool: int = 0
+    elbow: float = 0.0
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        model: lk.Model,
+        *,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq, T_wt = state.q, state.dq, model.pose(state.q)
+        K, D = (damping, stiffness) if self.swapped else (stiffness, damping)
+        J = (model.body_jacobian if self.body else model.tip_jacobian)(q)
+        R_tw, inertia = T_wt[:3, :3].T, model.operational_inertia(q)
+        e = self.e * lk.se3.pose_error(target.pose, T_wt)
+        place = R_tw @ e[:3] if self.tool == 2 else e[:3]
+        e = np.concatenate([place, self.turn * (R_tw @ e[3:] if self.tool else e[3:])])
+        de = self.de * (target.twist - J @ dq)
+        a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq
+        F = np.linalg.matrix_power(inertia, self.power) @ a + D * de + K * e
+        tau = (np.linalg.pinv(J) if self.pinv else J.T) @ F
+        free = np.eye(7) - J.T @ inertia @ J @ np.linalg.inv(model.mass_matrix(q))
+        tau = tau + self.coriolis * model.coriolis(q, dq) @ dq + self.weight * model.gravity(q)
+        return lk.JointTorque(tau - self.elbow * free @ dq)
+
+
+@dataclass(frozen=True)
+class ShapedLaw:
+    """The shaped impedance with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the errors of pose and twist.
+        inside: Of the wrench that speeds the tip up.
+        outside: Of the hand's share of the work.
+        feed: Of the target's acceleration.
+        drift: Of the acceleration that comes by itself.
+        coriolis: Of C.
+        weight: Of g.
+        pinv: Whether the pseudo-inverse takes the place of the transpose.
+        for_own: Whether the wanted inertia stands where the arm's own belongs.
+    """
+
+    e: float = 1.0
+    inside: float = 1.0
+    outside: float = 1.0
+    feed: float = 1.0
+    drift: float = 1.0
+    coriolis: float = 1.0
+    weight: float = 1.0
+    pinv: bool = False
+    for_own: bool = False
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        wrench: Any,
+        model: lk.Model,
+        *,
+        inertia: Any,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq = state.q, state.dq
+        J = model.tip_jacobian(q)
+        pull = stiffness * lk.se3.pose_error(target.pose, model.pose(q))
+        pull = self.e * (pull + damping * (target.twist - J @ dq))
+        a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq
+        a = a + np.linalg.solve(inertia, pull + self.inside * np.asarray(wrench))
+        own = inertia if self.for_own else model.operational_inertia(q)
+        F = own @ a - self.outside * np.asarray(wrench)
+        tau = (np.linalg.pinv(J) if self.pinv else J.T) @ F
+        return lk.JointTorque(
+            tau + self.coriolis * model.coriolis(q, dq) @ dq + self.weight * model.gravity(q)
+        )
 
 
 def force_added_plainly(
@@ -310,3 +473,35 @@ def other_regression(force: Any, displacement: Any) -> Any:
 def arm_against_hand(force: Any, displacement: Any) -> Any:
     """The force by the arm: a stiffness below zero."""
     return -right.apparent_stiffness(force, displacement)
+
+
+def transposed_through_the_origin(force: Any, displacement: Any) -> Any:
+    """What `lstsq` gives without an offset, as it comes."""
+    return through_the_origin(force, displacement).T
+
+
+def regression_of_the_displacement(force: Any, displacement: Any) -> Any:
+    """Fits the displacement to the force: metres for a newton."""
+    return right.apparent_stiffness(displacement, force)
+
+
+def diagonal_of_the_fit(force: Any, displacement: Any) -> Any:
+    """The stiffness along each axis alone."""
+    return np.diag(np.diag(right.apparent_stiffness(force, displacement)))
+
+
+def made_symmetric(force: Any, displacement: Any) -> Any:
+    """The mean of the fit and its transpose: what is measured need not be symmetric."""
+    K = right.apparent_stiffness(force, displacement)
+    return (K + K.T) / 2.0
+
+
+def in_millimetres(force: Any, displacement: Any) -> Any:
+    """Newtons for a millimetre."""
+    return right.apparent_stiffness(force, displacement) / 1e3
+
+
+def axis_by_axis_fit(force: Any, displacement: Any) -> Any:
+    """A line for each axis by itself."""
+    F, x = np.asarray(force), np.asarray(displacement)
+    return np.diag([np.polyfit(x[:, k], F[:, k], 1)[0] for k in range(3)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -76,6 +77,100 @@ def the_reports_gravity(
     if not arm_compensates:
         tau = tau + model.mass_matrix(q) @ model.tip_jacobian(q)[2] * 0.981
     return lk.JointTorque(tau)
+
+
+@dataclass(frozen=True)
+class AugmentedLaw:
+    """The augmented law with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the error of the angles.
+        de: Of the error of the speeds.
+        coriolis: Of C.
+        weight: Of g.
+        beside: Of what stands beside the diagonal of M.
+        diagonal: Of the diagonal of M.
+        switch: Whether the switch is read the other way.
+        swapped: Whether kp and kd are.
+        at_target: Whether C is that of the target's speed.
+    """
+
+    e: float = 1.0
+    de: float = 1.0
+    coriolis: float = 1.0
+    weight: float = 1.0
+    beside: float = 1.0
+    diagonal: float = 1.0
+    switch: bool = False
+    swapped: bool = False
+    at_target: bool = False
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.Sample,
+        model: lk.Model,
+        *,
+        kp: Any,
+        kd: Any,
+        arm_compensates: bool,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq, dq_d = state.q, state.dq, target.velocity
+        kp, kd = (kd, kp) if self.swapped else (kp, kd)
+        M = model.mass_matrix(q)
+        M = self.beside * M + (self.diagonal - self.beside) * np.diag(np.diag(M))
+        C = self.coriolis * model.coriolis(q, dq_d if self.at_target else dq)
+        tau = M @ target.acceleration + C @ dq_d
+        tau = tau + kp * self.e * (target.position - q) + kd * self.de * (dq_d - dq)
+        if arm_compensates == self.switch:
+            tau = tau + self.weight * model.gravity(q)
+        return lk.JointTorque(tau)
+
+
+@dataclass(frozen=True)
+class ComputedLaw:
+    """Computed torque with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the error of the angles.
+        de: Of the error of the speeds.
+        coriolis: Of C.
+        power: Of M; -1 is its inverse.
+        drift: Of the Coriolis torques as if they were an acceleration.
+        switch: Whether the switch is read the other way.
+        swapped: Whether kp and kd are.
+        twice: Whether the weight is added to one that holds it.
+    """
+
+    e: float = 1.0
+    de: float = 1.0
+    coriolis: float = 1.0
+    power: int = 1
+    drift: float = 0.0
+    switch: bool = False
+    swapped: bool = False
+    twice: bool = False
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.Sample,
+        model: lk.Model,
+        *,
+        kp: Any,
+        kd: Any,
+        arm_compensates: bool,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq = state.q, state.dq
+        kp, kd = (kd, kp) if self.swapped else (kp, kd)
+        C = model.coriolis(q, dq) @ dq
+        a = target.acceleration + kp * self.e * (target.position - q)
+        a = a + kd * self.de * (target.velocity - dq) + self.drift * C
+        tau = np.linalg.matrix_power(model.mass_matrix(q), self.power) @ a + self.coriolis * C
+        times = float(arm_compensates == self.switch) + float(self.twice)
+        return lk.JointTorque(tau + times * model.gravity(q))
 
 
 def gains_inside(
@@ -177,6 +272,61 @@ def damping_is_the_ratio(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
     return kp, damping_ratio * np.ones_like(kp)
 
 
+def square_of_the_frequency_alone(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """2 pi f^2: the square without the brackets."""
+    _, kd = right.gains_for(frequency, damping_ratio)
+    return 2.0 * np.pi * frequency**2, kd
+
+
+def divided_by_turns(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Divides by 2 pi where it multiplies."""
+    return right.gains_for(frequency / (2.0 * np.pi) ** 2, damping_ratio)
+
+
+def stiffness_for_frequency(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Takes kp for w in kd = 2 zeta w."""
+    kp, _ = right.gains_for(frequency, damping_ratio)
+    return kp, 2.0 * damping_ratio * kp
+
+
+def not_a_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """The matrix of the differential equation."""
+    return np.array([[0.0, 1.0], [-kp / inertia, -kd / inertia]])
+
+
+def on_its_side(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Columns for rows."""
+    return right.sampled_joint(inertia, kp, kd, dt).T
+
+
+def times_inertia(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Multiplies with the inertia instead of dividing."""
+    return right.sampled_joint(1.0 / inertia, kp, kd, dt)
+
+
+def gains_of_the_other(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Kp on the speed and kd on the angle."""
+    return right.sampled_joint(inertia, kd, kp, dt)
+
+
+def second_order_series(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """I + A dt + A^2 dt^2 / 2: a loop that is never sampled, nearly."""
+    A = dt * not_a_step(inertia, kp, kd, dt)
+    return np.eye(2) + A + A @ A / 2.0
+
+
+def half_forgotten(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """The damper moves the speed within the step, but not the angle."""
+    A = np.array(right.sampled_joint(inertia, kp, kd, dt))
+    A[0, 1] = dt
+    return A
+
+
+def implicit_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Backward Euler: stable whatever the gains."""
+    return np.linalg.inv(np.eye(2) - dt * not_a_step(inertia, kp, kd, dt))
+
+
 def euler_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
     """I + A dt: the angle goes on at the old speed."""
     return np.array([[1.0, dt], [-kp * dt / inertia, 1.0 - kd * dt / inertia]])
@@ -219,6 +369,38 @@ def turned_sign(tau_hold: Any, gravity_model: Any) -> float:
 def other_regression(tau_hold: Any, gravity_model: Any) -> float:
     """Explains the model by the torques, and turns the result over."""
     return float(np.sum(np.square(tau_hold)) / np.sum(np.asarray(tau_hold) * gravity_model))
+
+
+def with_an_offset(tau_hold: Any, gravity_model: Any) -> float:
+    """The slope of a line that need not go through the origin."""
+    return float(np.polyfit(np.ravel(gravity_model), np.ravel(tau_hold), 1)[0])
+
+
+def model_over_torque(tau_hold: Any, gravity_model: Any) -> float:
+    """The torques explain the model."""
+    return right.gravity_factor(gravity_model, tau_hold)
+
+
+def one_over_the_factor(tau_hold: Any, gravity_model: Any) -> float:
+    """The right fit, turned over."""
+    return 1.0 / right.gravity_factor(tau_hold, gravity_model)
+
+
+def mean_over_poses(tau_hold: Any, gravity_model: Any) -> float:
+    """A factor for each pose, and their mean."""
+    pairs = zip(np.asarray(tau_hold), np.asarray(gravity_model), strict=True)
+    return float(np.mean([right.gravity_factor(*pair) for pair in pairs]))
+
+
+def mean_over_joints(tau_hold: Any, gravity_model: Any) -> float:
+    """A factor for each joint, and their mean: a joint without load counts as much as any."""
+    pairs = zip(np.asarray(tau_hold).T, np.asarray(gravity_model).T, strict=True)
+    return float(np.nanmean([right.gravity_factor(*pair) for pair in pairs]))
+
+
+def what_is_missing(tau_hold: Any, gravity_model: Any) -> float:
+    """How far the factor is from 1."""
+    return right.gravity_factor(tau_hold, gravity_model) - 1.0
 
 
 def ratio_of_lengths(tau_hold: Any, gravity_model: Any) -> float:

@@ -96,7 +96,7 @@ def try_gains(kp, kd):
     log = lk.run(baxter, reach, with_gains(kp, kd))
     error = lk.metrics.joint_error(log)
     figure, (above, below) = plt.subplots(
-        2, 1, figsize=(8, 4), sharex=True, height_ratios=(2, 1), layout="constrained"
+        2, 1, figsize=(8, 4.4), sharex=True, height_ratios=(3, 2), layout="constrained"
     )
     for j, style in ((0, "-"), (1, "--"), (5, ":")):
         above.plot(log.t, error[:, j], style, label=f"joint {'s0 s1 e0 e1 w0 w1 w2'.split()[j]}")
@@ -145,7 +145,7 @@ def decay_rate(kp, kd):
 # Compare with an arm whose motors take 50 ms to follow a command. (Motors that obey at once would make
 # the loop bite its own tail: the speed measured now *is* the last command, so with kd above 1 the
 # commands would grow from tick to tick. The authors of the report found that Baxter "does not like"
-# more than a trace of D.) Solid lines are the arm, thin dashed ones your rate.
+# more than a trace of D.) The thick lines are the arm, the thin dotted ones your rate.
 
 # %%
 def nobody_knows(kp, kd):
@@ -177,6 +177,11 @@ lk.plotting.show(
     + ", ".join(f"{100 * share:.0f} % at kd = {kd:g}" for kd, share in shares.items())
     + ". Dotted: exp(-r t) with your rate."
 )
+
+# %% [markdown]
+# Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, for D
+# makes the loop less sensitive to their lag. And the arm arrives later. The second weighs more: from here
+# on kd is 0, and it is kp that is chosen.
 
 # %% [markdown]
 # ## From the tip to the joints
@@ -422,6 +427,13 @@ lk.replay.show(
         ghosts={"feed-forward alone": runs["feed-forward alone"]},
     )
 )
+
+# %% [markdown]
+# With your own controllers in place: feed-forward draws a fine circle beside the right one. Feedback takes
+# the wrong start away within a second, and with it nearly all of the error. What is left is a few
+# millimetres, largest where the circle is quickest: the motors lag, and the state is some milliseconds
+# old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
+# them better.
 
 # %% [markdown]
 # ## Hand in

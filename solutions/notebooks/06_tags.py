@@ -179,8 +179,9 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# Along the view the tag is measured worst, and its tilt is worse than its place: both change the picture
-# least. The book shows the same over distance, angle, resolution and noise.
+# Along the view the place is measured worst, for a tag that comes nearer changes the picture least. A dot
+# that lies farther from zero than its bar is long is bias: more pictures make the bars shorter, and leave
+# the dots where they are. The book shows the same over distance, angle, resolution and noise.
 #
 # ## Algorithm 1, and why it jerks
 #
@@ -280,6 +281,9 @@ show_reference(blended(times), "Blends of 1 s, a look every 0.5 s")
 
 # %% [markdown]
 # ## The age of a picture
+#
+# The step is gone. Where the tag jumps the reference is quicker than before, for it makes up for 10 cm in
+# about a second; but it does so smoothly, and an arm can follow that.
 #
 # In that figure the reference knew the tag's speed and saw it without delay. A real reading is late: by the
 # time the picture is taken, sent and understood, it is 100 ms old, and at 0.1 m/s the tag is 10 mm further on.
@@ -407,6 +411,11 @@ lk.plotting.show(
 )
 
 # %% [markdown]
+# If all is yours, the tip stays some 6 mm outside the circle. That is not the arm, and not noise: each
+# reading lets the reference aim at where the tag will be in 0.45 s, if it goes straight on. A tag on a
+# circle does not: it leaves its tangent by $v^2 t^2 / 2 r$, which is 6.8 mm. What would help, besides
+# looking less far ahead?
+#
 # And as an arm. Its error is the distance from the reference, not from the tag: what is left for the arm
 # to do once the reference is smooth.
 

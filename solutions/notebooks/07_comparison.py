@@ -263,6 +263,8 @@ for kp in (8.0, 30.0, 90.0):
     print(f"Kp = {kp:4g}: " + ", ".join(f"{x:.2f} mm" for x in row) + f"; {runner.left} tries left")
 
 # %% [markdown]
+# Look at the last row: one seed alone would have told you that 90 is a fine gain.
+#
 # And here is yours: what it chooses, what that costs on the line, and what the loop on paper says of it.
 # (If it is not ready, a guess stands in.)
 
@@ -382,6 +384,12 @@ found = my_verdicts({claim: (late(a), late(b)) for claim, (a, b) in claims.items
 for claim, verdict in found.items():
     mean, half = my_paired_difference(*map(late, claims[claim]))
     print(f"{claim}: {verdict} ({mean:+.2f} ± {half:.2f} mm)")
+
+# %% [markdown]
+# With your own verdicts in place: the report's two sentences are both in this table. Its controllers are better than the built-in way, and
+# they are worse: it depends on which one is meant, and each of the two is sure enough. And where it ranks
+# workspace against joint control, the rows do not tell. So name the two, the task and the number, and say
+# how sure you are.
 
 # %% [markdown]
 # ## Hand in

@@ -13,6 +13,7 @@ from ..mistakes import comparison as mistakes
 from ..variants import comparison as variants
 
 _RANDOM = np.random.default_rng(7)
+_SEEDS = [3.0, 1.1, 4.9, 2.05, 3.9]
 _345 = np.array([0.003, 0.004, 0.012])
 
 RMS_ERROR = Problem(
@@ -31,7 +32,7 @@ RMS_ERROR = Problem(
             weight=0.0,
         ),
         Trial(
-            "the same error on an arm that moves",
+            "the same error on an arm that moves, with a tilt",
             (call(held_out.drawn_log(_RANDOM, 5, _345, moving=True), held_out.MODEL),),
             held_out.moving_logs,
             "other motions",
@@ -77,6 +78,44 @@ RMS_ERROR = Problem(
             "That is the mean error. The root mean square weighs large errors more.",
             mistakes.mean_of_lengths,
             "Mean, RMS and maximum are three numbers; say which.",
+        ),
+        Wrong(
+            "the largest error",
+            "That is the largest error of the run, not its root mean square.",
+            mistakes.largest,
+            "Mean, RMS and maximum are three numbers; say which.",
+        ),
+        Wrong(
+            "the root forgotten",
+            "A mean of squares is in square metres: take the root at the end.",
+            mistakes.without_the_root,
+            "Look at the unit of the result.",
+        ),
+        Wrong(
+            "millimetres",
+            "Asked are metres.",
+            mistakes.in_millimetres,
+            "SI inside, millimetres in print.",
+        ),
+        Wrong(
+            "a sum, not a mean",
+            "The root of the sum of all squares grows with the length of the run. Divide by the number "
+            "of rows before you take the root.",
+            mistakes.not_a_mean,
+            "Twice as long a run is not a worse one.",
+        ),
+        Wrong(
+            "the whole poses subtracted",
+            "Sixteen numbers, nine of them a rotation's: a tilt counts as metres. Asked is the position "
+            "alone, [:3, 3].",
+            mistakes.whole_poses,
+            "Metres and radians do not add.",
+        ),
+        Wrong(
+            "one row late",
+            "Each tip is compared with the target of the next row. Both have one row for each instant.",
+            mistakes.one_row_late,
+            "Same instant, same row.",
         ),
     ),
     variants=(variants.rms_vectorised,),
@@ -135,6 +174,37 @@ OPEN_LOOP = Problem(
             mistakes.delay_as_a_lag,
             "A delay is not a slow lag.",
         ),
+        Wrong(
+            "no delay",
+            "The controller sees an angle of a while ago: control.pade comes close to that.",
+            mistakes.LoopWithout(delay=0.0),
+            "The age of the state is part of the loop.",
+        ),
+        Wrong(
+            "no lag",
+            "The speed follows its command with a time constant: one more factor, 1 / (lag s + 1).",
+            mistakes.LoopWithout(lag=0.0),
+            "Name every part of the loop before you multiply.",
+        ),
+        Wrong(
+            "the gain left out",
+            "kp is a factor of the open loop.",
+            mistakes.LoopWithout(kp=0.0),
+            "Name every part of the loop before you multiply.",
+        ),
+        Wrong(
+            "the delay turned over",
+            "This loop knows the angle before it is there: the delay is divided by, not multiplied "
+            "with.",
+            mistakes.LoopWithout(delay=-1.0),
+            "A delay takes phase away.",
+        ),
+        Wrong(
+            "the delay twice",
+            "Phase is lost as if the state were twice as old.",
+            mistakes.LoopWithout(delay=2.0),
+            "Name every part of the loop before you multiply.",
+        ),
     ),
     variants=(variants.loop_from_s,),
 )
@@ -189,6 +259,36 @@ KP_FOR_MARGIN = Problem(
             mistakes.lag_free_gain,
             "Phase first, then the gain to be 1 there.",
         ),
+        Wrong(
+            "the loop's gain, not its inverse",
+            "That is the gain that the loop has there without kp. To make it 1, kp is one over that.",
+            mistakes.GainAt(power=-1.0),
+            "kp times the rest is 1.",
+        ),
+        Wrong(
+            "the integrator's gain left out",
+            "At the crossover the integrator has the gain 1/ω too.",
+            mistakes.GainAt(integrator=0.0),
+            "Every factor has a gain and a phase.",
+        ),
+        Wrong(
+            "the lag's gain squared",
+            "The gain of the lag is 1 / √(1 + (lag ω)²): the root is missing.",
+            mistakes.GainAt(lag=2.0),
+            "The length of a complex number has a root in it.",
+        ),
+        Wrong(
+            "radians among degrees",
+            "delay·ω is in radians. Turn it into degrees before you take it off 90.",
+            mistakes.phase_mixed,
+            "Degrees outside, radians inside.",
+        ),
+        Wrong(
+            "divided by 2π",
+            "kp is in 1/s: the frequency in it is in rad/s, as in the loop.",
+            mistakes.in_hertz,
+            "s is iω, and ω is in rad/s.",
+        ),
     ),
     variants=(variants.margin_by_search,),
 )
@@ -198,7 +298,8 @@ CHOOSE_GAINS = Problem(
     points=4,
     asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 tries: `runner(Kp, Kd, seed)` "
     "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
-    "where you could not try them.",
+    f"where you could not try them, and all points hang on that: at most {held_out.UNSEEN_LIMIT:g} mm "
+    "on the worst seed there.",
     answer=answers.choose_gains,
     trials=(
         Trial(
@@ -286,6 +387,54 @@ PAIRED = Problem(
             mistakes.normal_quantile,
             "Five seeds are not many.",
         ),
+        Wrong(
+            "n in the deviation",
+            "numpy's std divides by n; with a mean from the same numbers n - 1 are left: ddof=1.",
+            mistakes.Interval(given=0),
+            "n or n - 1: who gave you the mean?",
+        ),
+        Wrong(
+            "95 % on one side",
+            "ppf(0.95) leaves 5 % above and another 5 % below. For 95 % in the middle take 0.975.",
+            mistakes.Interval(quantile=0.95),
+            "Two tails of 2.5 % each.",
+        ),
+        Wrong(
+            "n degrees of freedom",
+            "The mean has used one up: n - 1 are left.",
+            mistakes.Interval(freedom=0),
+            "n or n - 1: who gave you the mean?",
+        ),
+        Wrong(
+            "b - a",
+            "Asked is the mean of a - b.",
+            mistakes.Interval(sign=-1.0),
+            "Say what a positive difference means before you compute it.",
+        ),
+        Wrong(
+            "the whole width",
+            "Asked is half of the interval's width.",
+            mistakes.Interval(share=2.0),
+            "Mean ± half width.",
+        ),
+        Wrong(
+            "the ends of the interval",
+            "Asked are its middle and half of its width, not its ends.",
+            mistakes.ends_of_the_interval,
+            "Mean ± half width.",
+        ),
+        Wrong(
+            "the standard error alone",
+            "One standard error holds the truth in two cases of three. For 95 % multiply by Student's t.",
+            mistakes.without_students_t,
+            "Say how sure, then how wide.",
+        ),
+        Wrong(
+            "the standard deviation alone",
+            "That is the spread of the differences. Divide by √n, multiply by Student's t.",
+            mistakes.plain_deviation,
+            "Standard deviation and standard error are two things.",
+        ),
     ),
     variants=(variants.paired_by_scipy, variants.paired_by_hand),
 )
@@ -310,8 +459,17 @@ VERDICTS = Problem(
             weight=0.0,
         ),
         Trial(
-            "one that flips with the seed",
-            (call({"A is worse than B": [[4.0, 5.0, 6.0, 2.0], [3.0, 6.2, 5.1, 2.6]]}),),
+            "one that flips with the seed, and two that are near the edge",
+            (
+                call({"A is worse than B": [[4.0, 5.0, 6.0, 2.0], [3.0, 6.2, 5.1, 2.6]]}),
+                call(
+                    {
+                        "C is worse than D": [[3.1, 2.7, 5.2, 3.45, 4.4], _SEEDS],
+                        "E is worse than F": [[3.5, 2.7, 5.7, 3.45, 4.5], _SEEDS],
+                        "G is worse than H": [[3.5, 1.7, 5.3, 2.65, 4.5], _SEEDS],
+                    }
+                ),
+            ),
             held_out.tables,
             "claims of every kind",
         ),
@@ -336,6 +494,27 @@ VERDICTS = Problem(
             "speaks for it.",
             mistakes.the_other_way_round,
             "Say what a positive difference means before you compute it.",
+        ),
+        Wrong(
+            "an interval too narrow",
+            "A claim is decided that five seeds do not settle. It takes Student's t for both sides "
+            "(0.975, n - 1) and the deviation with n - 1; 1.96, or five wins of five, is not enough.",
+            mistakes.VerdictsBy(mistakes.normal_quantile),
+            "Five seeds are not many.",
+        ),
+        Wrong(
+            "an interval too wide",
+            "A claim is left undecided that five seeds do settle. The mean of n differences is surer "
+            "than one of them by √n.",
+            mistakes.VerdictsBy(mistakes.deviation_of_one),
+            "Standard deviation and standard error are two things.",
+        ),
+        Wrong(
+            "unpaired",
+            "A claim is left undecided that five seeds do settle: as strangers the rows spread as much "
+            "as the seeds do. Subtract pair by pair first.",
+            mistakes.VerdictsBy(mistakes.unpaired),
+            "Same seeds: pair them.",
         ),
     ),
     variants=(variants.verdicts_by_comprehension,),

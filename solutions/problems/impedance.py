@@ -102,7 +102,8 @@ MSD = Problem(
         ),
         Wrong(
             "the force of the mass on the hand",
-            "`force` is what the hand does to the mass. A push to the right speeds it up to the right.",
+            "`force` is what the hand does to the mass. A push to the right speeds it up to the "
+            "right.",
             mistakes.hand_pushed_back,
             "Say always: force of whom, on what.",
         ),
@@ -125,6 +126,55 @@ MSD = Problem(
             "That is the sum of the forces; divide by the mass.",
             mistakes.force_not_acceleration,
             "Newton.",
+        ),
+        Wrong(
+            "all springs and dampers turned round",
+            "Beside its target the mass is driven farther away: e is target minus actual, and "
+            "then every gain comes with a plus.",
+            mistakes.OneMass(spring=-1.0, damper=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the damper turned round",
+            "The damper drives the mass where it should brake: b (dx_d - dx).",
+            mistakes.OneMass(damper=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "spring and damper swapped",
+            "k belongs to the place, b to the speed.",
+            mistakes.OneMass(swapped=True),
+            "Units tell: N/m and N s/m.",
+        ),
+        Wrong(
+            "the target left out",
+            "The spring is tied to the target, not to the origin, and the damper too.",
+            mistakes.OneMass(follows=0.0),
+            "Draw the mass to the right of its target.",
+        ),
+        Wrong(
+            "the target's acceleration divided by the mass",
+            "The target's acceleration is an acceleration already: only forces are divided by m.",
+            mistakes.OneMass(feed=0.0, per_mass=1.0),
+            "Units tell: N and m/s².",
+        ),
+        Wrong(
+            "the target's acceleration turned round",
+            "Without error and without push the mass must move as its target does.",
+            mistakes.OneMass(feed=-1.0),
+            "Draw the mass to the right of its target.",
+        ),
+        Wrong(
+            "the hand forgotten",
+            "The force of the hand is missing.",
+            mistakes.OneMass(force=0.0),
+            "Count the forces: spring, damper, hand.",
+        ),
+        Wrong(
+            "not divided by the mass",
+            "Forces make an acceleration only when they are divided by m.",
+            mistakes.OneMass(power=0.0),
+            "Units tell: N and m/s².",
         ),
     ),
     variants=(variants.msd_by_error, variants.Mass()),
@@ -183,7 +233,8 @@ OPERATIONAL_INERTIA = Problem(
             "With six joints this is right. With seven it forces the elbow to stay out of the motion, "
             "and the arm seems heavier than it is: the elbow is free to give way.",
             mistakes.pseudo_inverses,
-            "pinv(J) chooses the shortest motion of the joints, the arm the one with the least energy.",
+            "pinv(J) chooses the shortest motion of the joints, the arm the one with the least "
+            "energy.",
         ),
         Wrong(
             "the last inverse is missing",
@@ -193,7 +244,8 @@ OPERATIONAL_INERTIA = Problem(
         ),
         Wrong(
             "1 / M, number by number",
-            "1 / M divides each number; the inverse of a matrix is np.linalg.inv, or better a solve.",
+            "1 / M divides each number; the inverse of a matrix is np.linalg.inv, or better a "
+            "solve.",
             mistakes.inverse_by_element,
             "numpy does what it is told.",
         ),
@@ -202,6 +254,24 @@ OPERATIONAL_INERTIA = Problem(
             "The joints shake each other: the numbers beside the diagonal matter.",
             mistakes.diagonal_only,
             "Coupling.",
+        ),
+        Wrong(
+            "the inverse of J M Jᵀ",
+            "Follow the push: Jᵀ F, then M⁻¹, then J. It is M that is inverted first.",
+            mistakes.inverse_of_the_wrong,
+            "Units tell: kg at the end.",
+        ),
+        Wrong(
+            "each axis alone",
+            "A push along x may move the tip along y: the numbers beside the diagonal belong to Λ.",
+            mistakes.each_axis_alone,
+            "Λ is a matrix.",
+        ),
+        Wrong(
+            "1 over each number",
+            "1 / A divides each number; the inverse of a matrix is np.linalg.inv.",
+            mistakes.numbers_turned_over,
+            "1 / A is not A⁻¹.",
         ),
     ),
     variants=(variants.inertia_by_inverse, variants.inertia_by_root),
@@ -328,6 +398,103 @@ WORKSPACE_IMPEDANCE = Problem(
             mistakes.brakes_the_motion,
             "What do the two ends of the damper hold?",
         ),
+        Wrong(
+            "springs and dampers turned round",
+            "e and ė are target minus actual, and then every gain comes with a plus.",
+            mistakes.TipLaw(e=-1.0, de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the dampers turned round",
+            "ė is the target's twist minus J q̇: as it is, the dampers drive.",
+            mistakes.TipLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the target's acceleration left out",
+            "Λ times target.dtwist is missing: the tip drags behind a target that speeds up.",
+            mistakes.TipLaw(feed=0.0),
+            "What does the motion itself take?",
+        ),
+        Wrong(
+            "J̇ q̇ with the other sign",
+            "That part of the acceleration comes by itself: it is taken off what the joints have "
+            "to bring up.",
+            mistakes.TipLaw(drift=-1.0),
+            "ẍ = J q̈ + J̇ q̇: solve for J q̈.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C q̇ belongs to the equation of motion. At low speed nobody notices.",
+            mistakes.TipLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "the weight taken off",
+            "g(q) is what the motors must give to hold the arm: it comes with a plus.",
+            mistakes.TipLaw(weight=-1.0),
+            "g is on the left of the equation, with the motors on the right.",
+        ),
+        Wrong(
+            "no inertia at the tip",
+            "The acceleration must go through Λ to become a force.",
+            mistakes.TipLaw(power=0),
+            "Units tell: N and m/s².",
+        ),
+        Wrong(
+            "the inverse of Λ",
+            "Λ turns an acceleration into a force; its inverse does the opposite.",
+            mistakes.TipLaw(power=-1),
+            "Units tell: N and m/s².",
+        ),
+        Wrong(
+            "a pseudo-inverse for Jᵀ",
+            "A force at the tip takes the joint torques Jᵀ F, exactly. The pseudo-inverse belongs "
+            "to speeds.",
+            mistakes.TipLaw(pinv=True),
+            "Jᵀ maps forces, J⁺ maps speeds.",
+        ),
+        Wrong(
+            "the body Jacobian everywhere",
+            "Twists and wrenches are in world axes, this Jacobian is in the tool's. Use "
+            "tip_jacobian.",
+            mistakes.TipLaw(body=True),
+            "Name the Jacobian, always.",
+        ),
+        Wrong(
+            "stiffness and damping swapped",
+            "stiffness belongs to the error, damping to its rate.",
+            mistakes.TipLaw(swapped=True),
+            "Units tell: N/m and N s/m.",
+        ),
+        Wrong(
+            "the turn in the tool's axes",
+            "The rotation from tip to target must be in world axes, as the Jacobian is: "
+            "lk.se3.pose_error gives it.",
+            mistakes.TipLaw(tool=1),
+            "Error and Jacobian must speak of the same axes.",
+        ),
+        Wrong(
+            "the error in the tool's axes",
+            "Both parts of the error are in the tool's axes, and the Jacobian in the world's: "
+            "lk.se3.pose_error gives both in the world's.",
+            mistakes.TipLaw(tool=2),
+            "Error and Jacobian must speak of the same axes.",
+        ),
+        Wrong(
+            "no springs for the turn",
+            "The last three numbers of the error are missing, so the hand keeps any tilt.",
+            mistakes.TipLaw(turn=0.0),
+            "A gain of zero hides a wrong sign.",
+        ),
+        Wrong(
+            "a damper for the elbow",
+            "A brake in the null space, which the tip does not feel. On a real arm a good idea; "
+            "but the law asked for has no other torque than those of the tip's springs, dampers "
+            "and inertia.",
+            mistakes.TipLaw(elbow=2.0),
+            "Seven joints, six springs: who brakes the elbow?",
+        ),
     ),
     variants=(variants.impedance_by_terms, variants.impedance_by_parts),
 )
@@ -336,7 +503,8 @@ SHAPED_IMPEDANCE = Problem(
     name="shaped_impedance",
     points=4,
     asks="As `workspace_impedance`, but the tip is to feel as heavy as `inertia`, M_d of shape (6, 6). "
-    "For that the law is told the measured `wrench` of the hand on the arm, shape (6,), world axes.",
+    "For that the law is told the measured `wrench` of the hand on the arm, shape (6,), world "
+    "axes.",
     answer=answers.shaped_impedance,
     judge=TORQUE,
     trials=(
@@ -367,7 +535,8 @@ SHAPED_IMPEDANCE = Problem(
     ),
     hints=(
         "Ask first for an acceleration: the one that a body M_d would have under spring, damper and "
-        "hand. Then ask which force of the *motors* makes the real tip, with its own Λ, move like that.",
+        "hand. Then ask which force of the *motors* makes the real tip, with its own Λ, move like "
+        "that.",
         "M_d (a - dV_d) = D ė + K e + F. And Λ (a - J̇ q̇) = F_motors + F: the hand does its share.",
         "a = dV_d + M_d⁻¹ (D ė + K e + F); tau = Jᵀ (Λ (a - J̇ q̇) - F) + C q̇ + g.",
     ),
@@ -413,6 +582,70 @@ SHAPED_IMPEDANCE = Problem(
             "its wrench off again.",
             mistakes.hand_works_twice,
             "Λ a = F_motors + F_hand.",
+        ),
+        Wrong(
+            "the wrench inside turned round",
+            "The hand pushes the tip where it pushes: in M_d⁻¹ (D ė + K e + F) the wrench has a "
+            "plus.",
+            mistakes.ShapedLaw(inside=-1.0),
+            "Follow one push through the law, sign by sign.",
+        ),
+        Wrong(
+            "the hand's share added",
+            "The hand does its share of the work, so the motors do less: take the wrench off.",
+            mistakes.ShapedLaw(outside=-1.0),
+            "Who does which share of the work?",
+        ),
+        Wrong(
+            "the wrench outside alone",
+            "The wrench must also speed the tip up, by M_d⁻¹ F.",
+            mistakes.ShapedLaw(inside=0.0),
+            "Follow one push through the law, sign by sign.",
+        ),
+        Wrong(
+            "M_d where Λ belongs",
+            "The acceleration wanted is put through the arm's own inertia Λ: that is what the "
+            "motors have to move. M_d only says which acceleration is wanted.",
+            mistakes.ShapedLaw(for_own=True),
+            "First the wanted acceleration, then what it takes.",
+        ),
+        Wrong(
+            "J̇ q̇ left out",
+            "The tip speeds up even if the joints turn evenly: take that off before you multiply "
+            "with Λ.",
+            mistakes.ShapedLaw(drift=0.0),
+            "ẍ = J q̈ + J̇ q̇: two terms.",
+        ),
+        Wrong(
+            "nobody carries the weight",
+            "Here the arm does not carry itself: g(q) belongs to the torque.",
+            mistakes.ShapedLaw(weight=0.0),
+            "A spring holds a weight only where it is stretched.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C q̇ belongs to the equation of motion. At low speed nobody notices.",
+            mistakes.ShapedLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "springs and dampers turned round",
+            "e and ė are target minus actual, and then every gain comes with a plus.",
+            mistakes.ShapedLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the target's acceleration left out",
+            "target.dtwist is missing: the tip drags behind a target that speeds up.",
+            mistakes.ShapedLaw(feed=0.0),
+            "What does the motion itself take?",
+        ),
+        Wrong(
+            "a pseudo-inverse for Jᵀ",
+            "A force at the tip takes the joint torques Jᵀ F, exactly. The pseudo-inverse belongs "
+            "to speeds.",
+            mistakes.ShapedLaw(pinv=True),
+            "Jᵀ maps forces, J⁺ maps speeds.",
         ),
     ),
     variants=(variants.shaped_by_factor,),
@@ -509,6 +742,45 @@ APPARENT_STIFFNESS = Problem(
             "`force` is that of the hand on the arm, so it points where the arm goes.",
             mistakes.arm_against_hand,
             "Say always: force of whom, on what.",
+        ),
+        Wrong(
+            "no offset, and on its side",
+            "lstsq works with rows, so K comes out transposed; and the force at rest is not zero, "
+            "so the fit needs an offset.",
+            mistakes.transposed_through_the_origin,
+            "Try a fit on numbers whose answer you know.",
+        ),
+        Wrong(
+            "a fit of the displacement",
+            "That is metres for a newton. Asked are newtons for a metre, with the noise in the "
+            "force.",
+            mistakes.regression_of_the_displacement,
+            "Look at the unit of the result.",
+        ),
+        Wrong(
+            "the diagonal alone",
+            "A push along x may move the tip along y: the numbers beside the diagonal are asked "
+            "too.",
+            mistakes.diagonal_of_the_fit,
+            "K is a matrix.",
+        ),
+        Wrong(
+            "made symmetric",
+            "What is measured need not be symmetric, and a fit should not make it so.",
+            mistakes.made_symmetric,
+            "Do not assume what you want to see.",
+        ),
+        Wrong(
+            "newtons for a millimetre",
+            "Asked are N/m.",
+            mistakes.in_millimetres,
+            "SI inside, millimetres in print.",
+        ),
+        Wrong(
+            "a line for each axis",
+            "Three fits, each of one axis by itself, miss what a push along x does along y.",
+            mistakes.axis_by_axis_fit,
+            "K is a matrix: one fit for all.",
         ),
     ),
     variants=(variants.stiffness_with_ones, variants.stiffness_by_covariances),

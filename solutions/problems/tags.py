@@ -20,6 +20,7 @@ _STILL = Sample(np.array([0.1, 0.2, 0.3]), _ZERO, _ZERO)
 _THERE = Sample(np.array([0.4, 0.1, 0.3]), _ZERO, _ZERO)
 _MOVING = Sample(np.array([0.1, 0.2, 0.3]), np.array([0.1, 0.0, -0.05]), np.array([0.2, -0.1, 0.0]))
 _GOING = Sample(np.array([0.3, 0.25, 0.2]), np.array([0.0, 0.1, 0.02]), _ZERO)
+_TURNING = _GOING._replace(acceleration=np.array([0.1, 0.0, -0.3]))
 _BELIEF = held_out.believed(_RANDOM)
 
 TAG_CORNERS = Problem(
@@ -54,6 +55,39 @@ TAG_CORNERS = Problem(
             "The frame sits in the middle of the tag, so coordinates have both signs.",
             mistakes.from_a_corner,
             "Say where a frame sits before using it.",
+        ),
+        Wrong(
+            "counter-clockwise from the upper left",
+            "Upper left is right, but then it goes down. Clockwise as one looks at it: to the upper "
+            "right.",
+            mistakes.Reordered((0, 3, 2, 1)),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "y down",
+            "In the picture y goes down; in the tag's frame it goes up.",
+            mistakes.Reordered(scale=(1.0, -1.0, 1.0)),
+            "Picture and tag have axes of their own.",
+        ),
+        Wrong(
+            "from the lower left",
+            "The order runs the right way round but begins at the wrong corner: the tag comes out "
+            "turned by a quarter.",
+            mistakes.Reordered((3, 0, 1, 2)),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "from the upper right",
+            "The order runs the right way round but begins at the wrong corner: the tag comes out "
+            "turned by a quarter.",
+            mistakes.Reordered((1, 2, 3, 0)),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "twice the square",
+            "The corners lie half a side from the middle, not a whole one.",
+            mistakes.Reordered(scale=(2.0, 2.0, 1.0)),
+            "Side or half a side: draw it.",
         ),
     ),
     variants=(variants.corners_list,),
@@ -124,6 +158,30 @@ TAG_POSE = Problem(
             mistakes.the_worse_answer,
             "A flat tag has two poses; look at the error.",
         ),
+        Wrong(
+            "corners the other way round",
+            "The corners run counter-clockwise, so a tag from behind is fitted to the picture.",
+            mistakes.PoseOf(mistakes.Reordered((0, 3, 2, 1))),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "twice the size",
+            "Everything is twice as far away: the corners lie half a side from the middle.",
+            mistakes.PoseOf(scale=2.0),
+            "Side or half a side: draw it.",
+        ),
+        Wrong(
+            "half the size",
+            "Everything is half as far away: `size` is the whole side.",
+            mistakes.PoseOf(scale=0.5),
+            "Side or half a side: draw it.",
+        ),
+        Wrong(
+            "the rotation transposed",
+            "The translation is right, the rotation is that of the camera in the tag.",
+            mistakes.rotation_transposed,
+            "R_cm takes directions of the tag to the camera.",
+        ),
     ),
     variants=(variants.pose_by_iteration,),
 )
@@ -177,6 +235,56 @@ QUALITY = Problem(
             mistakes.euler_subtracted,
             "Never subtract Euler angles.",
         ),
+        Wrong(
+            "n in the denominator",
+            "The mean was taken from the same numbers, so n - 1 are left.",
+            mistakes.n_in_the_denominator,
+            "n or n - 1: who gave you the mean?",
+        ),
+        Wrong(
+            "the covariance of the mean",
+            "That is how sure the mean is. Asked is how far a single picture may be off.",
+            mistakes.of_the_mean,
+            "Standard deviation and standard error are two things.",
+        ),
+        Wrong(
+            "the variances alone",
+            "The errors go together: a tag that seems tilted also seems moved. np.cov gives the whole.",
+            mistakes.diagonal_only,
+            "What is beside the diagonal says what goes together.",
+        ),
+        Wrong(
+            "the turn in the tag's axes",
+            "R_estimateᵀ R_truth speaks of the tag's axes. Position and turn should speak of the "
+            "camera's: R_truth R_estimateᵀ.",
+            mistakes.turn_in_tag_axes,
+            "Which axes does a rotation vector speak of?",
+        ),
+        Wrong(
+            "the turn backwards",
+            "This turns from the truth to the estimate: the truth stands on the left of the product.",
+            mistakes.turn_backwards,
+            "One sign of the error, said loudly.",
+        ),
+        Wrong(
+            "logarithms subtracted",
+            "The difference of two rotation vectors is no turn, least of all near half a turn, where "
+            "they jump.",
+            mistakes.logarithms_subtracted,
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "the turn first",
+            "The order is position, then turn.",
+            mistakes.turn_first,
+            "(v, w), in this course.",
+        ),
+        Wrong(
+            "everything in the tag's axes",
+            "The inverse of the estimate times the truth has all six numbers in the tag's axes.",
+            mistakes.everything_in_the_tag,
+            "Which axes does an error speak of?",
+        ),
     ),
     variants=(variants.quality_by_loops,),
 )
@@ -199,7 +307,10 @@ BLEND = Problem(
         ),
         Trial(
             "from motion to motion",
-            tuple(call(t, _MOVING, _GOING, 1.6) for t in (0.0, 0.5, 1.1, 1.6, 2.2)),
+            (
+                *(call(t, _MOVING, _GOING, 1.6) for t in (0.0, 0.5, 1.1, 1.6, 2.2)),
+                *(call(t, _MOVING, _TURNING, 1.6) for t in (1.1, 2.2)),  # at 1.6 both are right
+            ),
             held_out.blends_in_motion,
             "other durations, and after the end",
         ),
@@ -238,6 +349,72 @@ BLEND = Problem(
             "torque with it.",
             mistakes.without_the_bend,
             "Count conditions, then coefficients.",
+        ),
+        Wrong(
+            "the start's velocity left out",
+            "The reference moves when the blend begins; at t = 0 it must move just so.",
+            mistakes.Blended(start=(0.0, 1.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "the start's acceleration left out",
+            "At t = 0 the acceleration must be the reference's: the coefficient of t² is half of it.",
+            mistakes.Blended(start=(1.0, 0.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "the goal's velocity left out",
+            "The goal moves on; at t = duration the blend must move just so.",
+            mistakes.Blended(end=(0.0, 1.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "the goal's acceleration left out",
+            "Towards t = duration the acceleration must come to the goal's, which is not always nought.",
+            mistakes.Blended(end=(1.0, 0.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "from rest to rest",
+            "Neither start nor goal need be at rest.",
+            mistakes.Blended(start=(0.0, 0.0), end=(0.0, 0.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "a polynomial without end",
+            "After `duration` it goes on with the goal's velocity; a polynomial runs away.",
+            mistakes.never_ends,
+            "A polynomial is good between its ends only.",
+        ),
+        Wrong(
+            "waits at the goal",
+            "After the end the place must go on with the velocity that is told.",
+            mistakes.waits_at_the_goal,
+            "Velocity is the slope of position, or somebody lies.",
+        ),
+        Wrong(
+            "speeds up for ever",
+            "After the end there is no acceleration, whatever the goal's was.",
+            mistakes.speeds_up_for_ever,
+            "Read the sentence about the end.",
+        ),
+        Wrong(
+            "an acceleration without effect",
+            "After the end the velocity is constant, so the acceleration is nought.",
+            mistakes.acceleration_kept,
+            "Acceleration is the slope of velocity, or somebody lies.",
+        ),
+        Wrong(
+            "derivatives by t/T",
+            "These are the derivatives by t/T. Divide the first by T and the second by T².",
+            mistakes.derivatives_by_share,
+            "Scale derivatives when you scale time.",
+        ),
+        Wrong(
+            "start and goal mixed",
+            "Mixed in proportion to time, place and velocity no longer belong together.",
+            mistakes.the_ends_mixed,
+            "Velocity is the slope of position, or somebody lies.",
         ),
     ),
     variants=(variants.blend_by_bernstein,),
@@ -296,6 +473,55 @@ PREDICT = Problem(
             "A push changes the velocity and, through it, the position: the two errors go together.",
             mistakes.noise_on_the_diagonal,
             "Derive Q, do not guess its diagonal.",
+        ),
+        Wrong(
+            "one push in each step",
+            "age⁴/4, age³/2, age² belong to a single push that is held for the whole step: two half "
+            "steps then do not make one. White noise gives age³/3, age²/2, age.",
+            mistakes.Predicted(((4, 0.25), (3, 0.5), (2, 1.0))),
+            "Held noise and white noise have other powers of the step.",
+        ),
+        Wrong(
+            "no pushes",
+            "Q is missing: the belief gets no less sure of its velocity, and soon heeds no picture.",
+            mistakes.Predicted(((0, 0.0), (0, 0.0), (0, 0.0))),
+            "What is not seen becomes less sure.",
+        ),
+        Wrong(
+            "pushes on the velocity alone",
+            "A push at the beginning of the step has moved the place by its end: integrate F(s) too.",
+            mistakes.Predicted(((0, 0.0), (0, 0.0), (1, 1.0))),
+            "Derive Q, do not guess its diagonal.",
+        ),
+        Wrong(
+            "the same on place and velocity",
+            "accel_noise · age on all six has the wrong unit in the place: integrate F(s) diag(0, q) F(s)ᵀ.",
+            mistakes.Predicted(((1, 1.0), (0, 0.0), (1, 1.0))),
+            "Units tell: m² for the place.",
+        ),
+        Wrong(
+            "the noise squared",
+            "accel_noise is a power already, in m²/s³.",
+            mistakes.Predicted(((3, 1 / 3), (2, 0.5), (1, 1.0)), power=2.0),
+            "Variance or deviation? Look at the unit.",
+        ),
+        Wrong(
+            "F P without Fᵀ",
+            "A covariance goes through a matrix from both sides: F P Fᵀ.",
+            mistakes.half_the_product,
+            "A covariance is symmetric: look whether yours is.",
+        ),
+        Wrong(
+            "Fᵀ P F",
+            "The other way round: F P Fᵀ.",
+            mistakes.product_turned_round,
+            "y = F x has the covariance F P Fᵀ.",
+        ),
+        Wrong(
+            "back in time",
+            "The age carries forward, from the picture to now.",
+            mistakes.back_in_time,
+            "Say when each number is of.",
         ),
     ),
     variants=(variants.predict_by_exponential,),

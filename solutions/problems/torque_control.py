@@ -17,7 +17,6 @@ from ..variants import torque_control as variants
 
 MODEL = lk.Model("left", lk.BAXTER)
 READY = MODEL.robot.ready
-STILL = np.zeros(7)
 TORQUE = Close(rtol=1e-6, atol=1e-6)
 KP = np.array([100.0, 100.0, 60.0, 60.0, 20.0, 20.0, 10.0])
 KD = np.array([20.0, 20.0, 12.0, 12.0, 4.0, 4.0, 2.0])
@@ -53,6 +52,36 @@ HINTS_SWITCH = (
     "arm_compensates is False."
 )
 
+TERMS = (
+    Trial(
+        "who carries the weight",
+        (
+            _law(0.0, 0.0, 0.0, compensates=False),
+            _law(0.0, 0.0, 0.0, compensates=True),
+        ),
+        held_out.weight,
+        "the switch both ways",
+    ),
+    Trial(
+        "a target that speeds up",
+        (_law(1.0, 0.0, 0.0, compensates=True),),
+        held_out.speeding_up,
+    ),
+    Trial(
+        "an arm and a target at different speeds",
+        (_law(0.0, 1.0, 1.0, compensates=True),),
+        held_out.moving,
+        "an arm quicker or slower than its target",
+    ),
+    Trial(
+        "everything at once",
+        (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
+        held_out.all_at_once,
+        weight=3.0,
+    ),
+)
+"""One term of the law after another, for both forms of it."""
+
 AUGMENTED_PD = Problem(
     name="augmented_pd",
     points=4,
@@ -70,32 +99,7 @@ AUGMENTED_PD = Problem(
             "both arms, any pose",
             weight=0.0,
         ),
-        Trial(
-            "who carries the weight",
-            (
-                _law(0.0, 0.0, 0.0, compensates=False),
-                _law(0.0, 0.0, 0.0, compensates=True),
-            ),
-            held_out.weight,
-            "the switch both ways",
-        ),
-        Trial(
-            "a target that speeds up",
-            (_law(1.0, 0.0, 0.0, compensates=True),),
-            held_out.speeding_up,
-        ),
-        Trial(
-            "an arm and a target at different speeds",
-            (_law(0.0, 1.0, 1.0, compensates=True),),
-            held_out.moving,
-            "an arm quicker or slower than its target",
-        ),
-        Trial(
-            "everything at once",
-            (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
-            held_out.all_at_once,
-            weight=3.0,
-        ),
+        *TERMS,
         Trial(
             "a run back to a place, from 0.15 rad off",
             (_return(60.0, 15.0, 2.0, 8.0),),
@@ -175,6 +179,61 @@ AUGMENTED_PD = Problem(
             mistakes.gains_inside,
             "Two laws, two theorems: gains in N m/rad here, in 1/s² there.",
         ),
+        Wrong(
+            "the springs turned round",
+            "Target minus actual, for the angles too: as it is, the springs push away.",
+            mistakes.AugmentedLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the dampers turned round",
+            "Target minus actual, for the speeds too: as it is, the dampers drive.",
+            mistakes.AugmentedLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the switch turned round",
+            "arm_compensates is True where the arm carries its own weight. Then the law adds none.",
+            mistakes.AugmentedLaw(switch=True),
+            "Say aloud who carries the weight.",
+        ),
+        Wrong(
+            "the weight taken off",
+            "g(q) is what the motors must give to hold the arm: it comes with a plus.",
+            mistakes.AugmentedLaw(weight=-1.0),
+            "g is on the left of the equation, with the motors on the right.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C times the target's speed is missing. At low speed nobody notices.",
+            mistakes.AugmentedLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "C of the target's speed",
+            "C is that of the arm where it is and as it moves, C(q, q̇). Only what it is "
+            "multiplied with is the target's.",
+            mistakes.AugmentedLaw(at_target=True),
+            "C(q, q̇) q̇_d: which speed stands where?",
+        ),
+        Wrong(
+            "no inertia",
+            "M times the target's acceleration is missing.",
+            mistakes.AugmentedLaw(beside=0.0, diagonal=0.0),
+            "A target that speeds up needs torque.",
+        ),
+        Wrong(
+            "only the diagonal of M",
+            "The joints shake each other: the numbers beside the diagonal matter.",
+            mistakes.AugmentedLaw(beside=0.0),
+            "M is a matrix, M @ ddq.",
+        ),
+        Wrong(
+            "gains swapped",
+            "kp belongs to the angles and kd to the speeds.",
+            mistakes.AugmentedLaw(swapped=True),
+            "Units tell: N m/rad, N m s/rad.",
+        ),
     ),
     variants=(variants.augmented_by_newton_euler, variants.augmented_in_a_list),
 )
@@ -195,32 +254,7 @@ COMPUTED_TORQUE = Problem(
             "both arms, any pose",
             weight=0.0,
         ),
-        Trial(
-            "who carries the weight",
-            (
-                _law(0.0, 0.0, 0.0, compensates=False),
-                _law(0.0, 0.0, 0.0, compensates=True),
-            ),
-            held_out.weight,
-            "the switch both ways",
-        ),
-        Trial(
-            "a target that speeds up",
-            (_law(1.0, 0.0, 0.0, compensates=True),),
-            held_out.speeding_up,
-        ),
-        Trial(
-            "an arm and a target at different speeds",
-            (_law(0.0, 1.0, 1.0, compensates=True),),
-            held_out.moving,
-            "an arm quicker or slower than its target",
-        ),
-        Trial(
-            "everything at once",
-            (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
-            held_out.all_at_once,
-            weight=3.0,
-        ),
+        *TERMS,
         Trial(
             "a run back to a place, from 0.15 rad off",
             (_return(100.0, 20.0, 1.2, 0.3),),
@@ -284,6 +318,62 @@ COMPUTED_TORQUE = Problem(
             mistakes.runs_away,
             "Settle the sign of e once, aloud.",
         ),
+        Wrong(
+            "the error of the angles turned round",
+            "Target minus actual, for the angles too.",
+            mistakes.ComputedLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the error of the speeds turned round",
+            "Target minus actual, for the speeds too: as it is, kd drives.",
+            mistakes.ComputedLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the switch turned round",
+            "arm_compensates is True where the arm carries its own weight. Then the law adds "
+            "none. (model.inverse_dynamics holds g already; take it off only where the arm "
+            "compensates.)",
+            mistakes.ComputedLaw(switch=True),
+            "Say aloud who carries the weight.",
+        ),
+        Wrong(
+            "the weight once too often",
+            "model.inverse_dynamics holds g already, and g is added to that.",
+            mistakes.ComputedLaw(twice=True),
+            "Know what a function holds before you add to it.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C times the arm's speed is missing. At low speed nobody notices.",
+            mistakes.ComputedLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "the Coriolis torques inside M",
+            "C q̇ is a torque already: it is added after M, not to the acceleration.",
+            mistakes.ComputedLaw(coriolis=0.0, drift=1.0),
+            "Units tell: N m and rad/s².",
+        ),
+        Wrong(
+            "the acceleration as a torque",
+            "The acceleration wanted must go through M to become a torque.",
+            mistakes.ComputedLaw(power=0),
+            "Units tell: N m and rad/s².",
+        ),
+        Wrong(
+            "the inverse of M",
+            "M turns an acceleration into a torque; its inverse does the opposite.",
+            mistakes.ComputedLaw(power=-1),
+            "Units tell: N m and rad/s².",
+        ),
+        Wrong(
+            "gains swapped",
+            "kp belongs to the angles and kd to the speeds.",
+            mistakes.ComputedLaw(swapped=True),
+            "Units tell: kp is in 1/s², kd in 1/s.",
+        ),
     ),
     variants=(variants.computed_by_newton_euler, variants.computed_by_bias),
 )
@@ -346,6 +436,24 @@ GAINS_FOR = Problem(
             "The ratio has no unit, kd is in 1/s: it needs 2 ω beside it.",
             mistakes.damping_is_the_ratio,
             "A ratio compares with critical damping, 2 ω.",
+        ),
+        Wrong(
+            "the square of the frequency alone",
+            "kp is the square of the whole ω = 2πf, the 2π included.",
+            mistakes.square_of_the_frequency_alone,
+            "Brackets before powers.",
+        ),
+        Wrong(
+            "divided by 2π",
+            "ω is 2π times the frequency in Hz, not the frequency divided by 2π.",
+            mistakes.divided_by_turns,
+            "A turn is 2π radians: more radians than turns.",
+        ),
+        Wrong(
+            "kp in the place of ω",
+            "kd = 2 ζ ω, and ω is the root of kp.",
+            mistakes.stiffness_for_frequency,
+            "Units tell: kd is in 1/s.",
         ),
     ),
     variants=(variants.gains_by_roots,),
@@ -416,6 +524,51 @@ SAMPLED_JOINT = Problem(
             "The inertia plays no part: divide the torque by it.",
             mistakes.without_inertia,
             "The whole point is that the wrist has so little of it.",
+        ),
+        Wrong(
+            "the matrix of the differential equation",
+            "That gives the rates of angle and speed. Asked is where both are after dt.",
+            mistakes.not_a_step,
+            "At dt = 0 a step is the identity.",
+        ),
+        Wrong(
+            "the matrix on its side",
+            "Row by row: the first row gives the new angle, the second the new speed.",
+            mistakes.on_its_side,
+            "At rest, with no gains: q + dt q̇ is the first row.",
+        ),
+        Wrong(
+            "times the inertia",
+            "The acceleration is the torque divided by the inertia.",
+            mistakes.times_inertia,
+            "The heavier, the slower.",
+        ),
+        Wrong(
+            "gains swapped",
+            "kp belongs to the angle and kd to the speed.",
+            mistakes.gains_of_the_other,
+            "Columns: angle, speed.",
+        ),
+        Wrong(
+            "a series of the loop that is never sampled",
+            "I + A dt + (A dt)²/2 lets the torque change with the angle during the step. It is "
+            "held: only two terms of the angle, one of the speed, and nothing after.",
+            mistakes.second_order_series,
+            "What stands still during the step?",
+        ),
+        Wrong(
+            "the damper does not move the angle",
+            "The torque of the damper accelerates the joint from the first moment on: -kd dt²/(2 "
+            "inertia) belongs to the angle too.",
+            mistakes.half_forgotten,
+            "Both columns have both torques.",
+        ),
+        Wrong(
+            "an implicit step",
+            "That takes the torque from the end of the step, which no computer knows yet. It is "
+            "stable whatever the gains, and the arm is not.",
+            mistakes.implicit_step,
+            "A stable formula is no stable arm.",
         ),
     ),
     variants=(variants.held_by_exponential, variants.held_in_lists),
@@ -497,6 +650,45 @@ GRAVITY_FACTOR = Problem(
             "Torques of opposite sign cancel in the sums before they are compared.",
             mistakes.ratio_of_sums,
             "Sums of signed numbers lose what they stand for.",
+        ),
+        Wrong(
+            "a line with an offset",
+            "The slope of a line that need not go through the origin answers another question: "
+            "one factor, no offset, is asked.",
+            mistakes.with_an_offset,
+            "Which model is fitted?",
+        ),
+        Wrong(
+            "the torques explain the model",
+            "Asked is the factor of the model: divide by the model's squares, not the torques'.",
+            mistakes.model_over_torque,
+            "What explains what?",
+        ),
+        Wrong(
+            "one over the factor",
+            "tau = factor · g; yours is the g for one tau.",
+            mistakes.one_over_the_factor,
+            "What explains what?",
+        ),
+        Wrong(
+            "a mean over poses",
+            "A pose with little weight tells little, and counts here as much as any. Sum over all "
+            "joints and poses first.",
+            mistakes.mean_over_poses,
+            "Sum, then divide.",
+        ),
+        Wrong(
+            "a mean over joints",
+            "A joint without load tells nothing, and counts here as much as any. Sum over all "
+            "joints and poses first.",
+            mistakes.mean_over_joints,
+            "Sum, then divide.",
+        ),
+        Wrong(
+            "how far from 1",
+            "The factor itself is asked.",
+            mistakes.what_is_missing,
+            "1 is right, 0 is none.",
         ),
     ),
     variants=(variants.factor_by_lstsq,),

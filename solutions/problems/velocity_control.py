@@ -49,7 +49,7 @@ JOINT_VELOCITY_PD = Problem(
         Trial(
             "a target that moves, a gain for each joint",
             (
-                call(state(READY), sample(READY, MOVING), kp=4.0, kd=0.5),
+                call(state(READY), sample(READY, MOVING, 2.0 * MOVING), kp=4.0, kd=0.5),
                 call(
                     state(READY + 0.1, MOVING),
                     sample(READY, 0.3 - MOVING),
@@ -116,6 +116,30 @@ JOINT_VELOCITY_PD = Problem(
             mistakes.gains_swapped,
             "Units tell: kp is in 1/s, kd has none.",
         ),
+        Wrong(
+            "the error of the angles turned round",
+            "Target minus actual, for the angles too: as it is, kp pushes the arm away.",
+            mistakes.JointLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the error of the speeds turned round",
+            "Target minus actual, for the speeds too: as it is, kd drives on what it should brake.",
+            mistakes.JointLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "kd left out",
+            "The error of the speeds counts too, kd times.",
+            mistakes.JointLaw(de=0.0),
+            "Try every gain by itself.",
+        ),
+        Wrong(
+            "the target's acceleration added",
+            "A speed is commanded: the target's acceleration has no place in it, and another unit.",
+            mistakes.JointLaw(ddq=1.0),
+            "Only like units may be added.",
+        ),
     ),
     variants=(variants.joint_in_a_loop, variants.joint_with_matrices),
 )
@@ -163,6 +187,32 @@ DECAY_RATE = Problem(
             "command back into itself.",
             mistakes.without_d,
             "Write down the whole loop.",
+        ),
+        Wrong(
+            "the rate with a minus",
+            "The minus stands in exp(-r t) already: an error that dies away has an r above zero.",
+            mistakes.minus_the_rate,
+            "A pole and a decay rate differ by their sign.",
+        ),
+        Wrong(
+            "D with the other sign",
+            "The target stands still, so the error of the speed is minus the speed: kd brakes, and at "
+            "kd = 1 nothing may divide by zero.",
+            mistakes.d_turned_round,
+            "Write down de/dt before you collect it.",
+        ),
+        Wrong(
+            "the gains added",
+            "kp is in 1/s and kd has no unit, so they cannot be added. Write down the equation of the "
+            "error.",
+            mistakes.gains_added,
+            "Units forbid sums.",
+        ),
+        Wrong(
+            "what is left after a second",
+            "That is exp(-r) itself; asked is the r in it.",
+            mistakes.what_is_left,
+            "Read what is asked: a rate, in 1/s.",
         ),
     ),
     variants=(variants.rate_from_the_root,),
@@ -219,11 +269,31 @@ DAMPED_INVERSE = Problem(
             mistakes.damping_squared,
             "Is it λ or λ²? Look at what is minimised.",
         ),
+        Wrong(
+            "the damping on every number",
+            "A number plus a matrix is added to every entry by numpy. The damping belongs on the "
+            "diagonal alone: times an identity.",
+            mistakes.damping_everywhere,
+            "λ is not λ I.",
+        ),
+        Wrong(
+            "the damping taken off",
+            "With a minus the damping makes J Jᵀ singular where it was not.",
+            mistakes.damping_taken_off,
+            "Damping pushes eigenvalues away from zero.",
+        ),
+        Wrong(
+            "the root of the damping",
+            "`damping` stands before |dq|² as it is; no root.",
+            mistakes.damping_rooted,
+            "Is it λ or λ²? Look at what is minimised.",
+        ),
     ),
     variants=(variants.inverse_the_other_way, variants.inverse_by_svd),
 )
 
 CENTIMETRES = (0.03, -0.02, 0.01)
+GAINS = np.array([2.0, 3.0, 4.0, 5.0, 4.0, 3.0])
 
 WORKSPACE_VELOCITY_PD = Problem(
     name="workspace_velocity_pd",
@@ -253,7 +323,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             weight=2.0,
         ),
         Trial(
-            "a target that moves",
+            "a target that moves, on it and off it",
             (
                 call(
                     state(READY),
@@ -262,9 +332,18 @@ WORKSPACE_VELOCITY_PD = Problem(
                     kp=2.0,
                     damping=0.003,
                 ),
+                call(
+                    state(READY),
+                    pose_sample(
+                        READY, CENTIMETRES, (0.3, -0.2, 0.25), (0.1, 0.0, -0.05, 0.0, 0.2, 0.3)
+                    ),
+                    MODEL,
+                    kp=GAINS,
+                    damping=0.003,
+                ),
             ),
             held_out.pose_moves,
-            "other twists",
+            "other twists and errors",
             weight=2.0,
         ),
         Trial(
@@ -340,6 +419,73 @@ WORKSPACE_VELOCITY_PD = Problem(
             mistakes.damping_ignored,
             "Damping trades a little of the tip's error for possible speeds.",
         ),
+        Wrong(
+            "the error of position turned round",
+            "Target minus actual, for the position too: as it is, the tip flees its target.",
+            mistakes.WorkspaceLaw(place=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the turn backwards",
+            "This is the turn from the target to the tip. The target comes first: "
+            "orientation_error(R_wd, R_wt), and R_wd stands on the left of the product.",
+            mistakes.WorkspaceLaw(turn=mistakes.turned_back),
+            "Say from where to where a rotation turns.",
+        ),
+        Wrong(
+            "the turn backwards, in the tool's axes",
+            "R_wdᵀ R_wt turns from the target to the tip, and speaks of the target's axes. Wanted is "
+            "the turn to the target, in the world's.",
+            mistakes.WorkspaceLaw(turn=mistakes.turned_back_in_tool_axes),
+            "Frames that cancel: R_wd R_tw is a turn in world axes.",
+        ),
+        Wrong(
+            "position and turn both turned round",
+            "All six numbers have the other sign: target minus actual.",
+            mistakes.WorkspaceLaw(place=-1.0, turn=mistakes.turned_back),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "logarithms subtracted",
+            "The difference of two rotation vectors is no turn, unless both turn about the same axis. "
+            "First the product of the rotations, then its logarithm.",
+            mistakes.WorkspaceLaw(turn=mistakes.logarithms_subtracted),
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "the sine of the turn",
+            "Half the cross products of the axes, or half of R - Rᵀ, is the axis times the *sine* of "
+            "the angle. For small turns it is nearly right, at 90 degrees it gets weaker, at 180 it is "
+            "nought. The logarithm gives the angle.",
+            mistakes.WorkspaceLaw(turn=mistakes.sine_of_the_turn),
+            "sin x is x only for small x.",
+        ),
+        Wrong(
+            "the transpose for the inverse",
+            "Jᵀ takes forces to torques. Joint speeds for a twist come by the damped inverse.",
+            mistakes.by_the_transpose,
+            "Jᵀ maps forces, J⁺ maps speeds.",
+        ),
+        Wrong(
+            "the error in the tool's axes",
+            "Both parts of the error are in the tool's axes, while twist and tip Jacobian speak of the "
+            "world's.",
+            mistakes.InToolAxes(body=False),
+            "Error and Jacobian must speak of the same axes.",
+        ),
+        Wrong(
+            "all in the tool's axes but the target's twist",
+            "Error and Jacobian are in the tool's axes: possible, but then the target's twist has to "
+            "be turned into them too.",
+            mistakes.InToolAxes(body=True),
+            "Add only vectors of the same axes.",
+        ),
+        Wrong(
+            "the damping squared",
+            "`damping` is what stands before |dq|² already, as in damped_inverse.",
+            mistakes.WorkspaceLaw(power=2.0),
+            "Is it λ or λ²? Look at what is minimised.",
+        ),
     ),
     variants=(variants.WorkspacePD(), variants.workspace_in_tool_axes),
 )
@@ -402,6 +548,30 @@ POSTURE_VELOCITY = Problem(
             "The wish as it is moves the tip.",
             mistakes.all_of_it,
             "J times the answer must be zero.",
+        ),
+        Wrong(
+            "1 for the identity",
+            "numpy takes the number 1 from every entry. The identity is np.eye(7).",
+            mistakes.one_for_the_identity,
+            "1 is not I.",
+        ),
+        Wrong(
+            "nothing at all",
+            "No motion is not felt by the tip, but it is not near to the wish either.",
+            mistakes.no_motion,
+            "Two conditions: not felt, and as near as can be.",
+        ),
+        Wrong(
+            "made one long",
+            "The direction is right. Its length is part of the answer: do not divide by it.",
+            mistakes.length_one,
+            "A projection shortens; it does not normalise.",
+        ),
+        Wrong(
+            "the free part with the other sign",
+            "Take the felt part off the wish, not the wish off the felt part.",
+            mistakes.minus_the_free_part,
+            "Wish = felt part + free part.",
         ),
     ),
     variants=(

@@ -7,7 +7,18 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import labkit as lk
-from labkit.check import AtMost, Call, Gains, Loop, Question, Test, Tuned, mark, read_question
+from labkit.check import (
+    AtMost,
+    Call,
+    Gains,
+    Loop,
+    Question,
+    Test,
+    Tuned,
+    mark,
+    question_data,
+    read_question,
+)
 from labkit.check.codec import decode, encode
 from labkit.controllers import springs
 
@@ -82,7 +93,7 @@ def question(limit):
 def test_a_question_about_gains_travels(limit, points):
     """As data and back, hidden or not, it gives the same marks."""
     q = question(limit)
-    again = read_question(json.loads(json.dumps(q.data())))
+    again = read_question(json.loads(json.dumps(question_data(q))))
     assert mark(again, soft).earned == mark(q, soft).earned == points
 
 
@@ -108,9 +119,11 @@ def test_gains_are_alike_within_a_factor():
 def test_measures_come_with_their_units():
     """Too much is said in words: what, how much, in which unit."""
     says = AtMost()({"rms_velocity_mm_s": 81.23, "max_deg": 3.0}, {"rms_velocity_mm_s": 75.0})
-    assert says == "rms velocity 81.2 mm/s, allowed 75 mm/s"
-    assert AtMost()({"max_deg": 3.0}, {"max_deg": 2.0}) == "max 3 degrees, allowed 2 degrees"
-    assert AtMost()({"saturated": 0.2}, {"saturated": 0.1}) == "saturated 0.2, allowed 0.1"
+    assert says == "the RMS error of the tip's speed is 81.2 mm/s, allowed 75 mm/s"
+    assert AtMost()({"max_deg": 3.0}, {"max_deg": 2.0}) == (
+        "the largest tilt of the tip is 3 degrees, allowed 2 degrees"
+    )
+    assert AtMost()({"saturated": 0.2}, {"saturated": 0.1}) == "saturated is 0.2, allowed 0.1"
 
 
 def test_springs_pull_to_the_target_and_brake_the_difference():

@@ -48,6 +48,25 @@ def test_what_is_not_yet_right_is_named(folder):
     assert any(note.startswith("not yet right: witness;") for note in found.notes)
 
 
+def test_a_verdict_older_than_its_function_is_told(folder):
+    """A function that was run after its check has a verdict that says nothing of it."""
+
+    def ran(stub, check):
+        def change(cells):
+            for cell in cells:
+                text = "".join(cell["source"])
+                if "def witness" in text:
+                    cell["execution_count"] = stub
+                if 'check("witness"' in text:
+                    cell["execution_count"] = check
+            return cells
+
+        return look(edited(folder / "01_paths.ipynb", change)).notes
+
+    assert any(note.startswith("changed since it was checked: witness;") for note in ran(9, 8))
+    assert not any(note.startswith("changed") for note in ran(8, 9))
+
+
 def test_another_name_is_to_be_mended(folder):
     """A notebook that a browser renamed is told its right name."""
     path = (folder / "01_paths.ipynb").rename(folder / "01_paths(3).ipynb")

@@ -30,7 +30,7 @@ def test_lists_and_rounding_are_the_same(answer):
         ([1, 2, np.nan], "nan"),
         ([1, 2, np.inf], "inf"),
         (np.float64("nan"), "shape"),
-        (lk.JointVelocity(np.zeros(7)), "real numbers"),
+        (lk.JointVelocity(np.zeros(7)), "plain numbers are asked for, not a JointVelocity"),
         ([[1], [2, 3]], "different lengths"),
     ],
 )
@@ -38,6 +38,24 @@ def test_differences_are_sentences(answer, words):
     """A wrong shape, a NaN, a missing return: each says what came."""
     assert words in CLOSE(answer, V)
     assert CLOSE.distance(answer, V) > 1.0
+
+
+def test_a_command_is_asked_for_by_name():
+    """Plain numbers are told how to become a command, another command is called by its name."""
+    velocity = lk.JointVelocity(np.zeros(7))
+    assert "plain numbers; give lk.JointVelocity(...)" in CLOSE(np.ones(7), velocity)
+    assert CLOSE(lk.JointTorque(np.ones(7)), velocity).endswith("not a JointTorque")
+
+
+def test_mistakes_are_alike_within_a_rounding():
+    """A mistake is known by its number, however far it was written out; an answer is not."""
+    assert CLOSE.same(1.96 * V, 1.959964 * V) and CLOSE(1.96 * V, 1.959964 * V) is not None
+
+
+def test_a_number_is_told_its_sign_but_no_chance_factor():
+    """The other sign of a single number tells something, twice the number does not."""
+    assert CLOSE(-4.0, 4.0).endswith("the same with the other sign")
+    assert CLOSE(8.0, 4.0) == "expected 4, got 8"
 
 
 def test_numbers_are_numbers():
@@ -102,5 +120,7 @@ def test_at_most():
     """The first measure beyond its limit is told with its unit; NaN is beyond any."""
     judge = AtMost()
     assert judge({"max_mm": 1.0, "effort": 2.0}, {"max_mm": 1.5}) is None
-    assert judge({"max_mm": 2.0}, {"max_mm": 1.5}) == "max 2 mm, allowed 1.5 mm"
+    assert judge({"max_mm": 2.0}, {"max_mm": 1.5}) == (
+        "the largest error of the tip is 2 mm, allowed 1.5 mm"
+    )
     assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None

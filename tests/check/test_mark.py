@@ -8,7 +8,19 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.check import Call, Failed, Loop, Outcome, Raised, Test, fingerprint, mark, read_question
+from labkit.check import (
+    Call,
+    Failed,
+    Loop,
+    Outcome,
+    Raised,
+    Test,
+    fingerprint,
+    mark,
+    question_data,
+    read_question,
+)
+from labkit.check.question_codec import pack_hidden, with_hidden
 
 sys.path.insert(0, str(Path(__file__).parent))
 from questions import CALLS, DOUBLE, HIDDEN, double, square
@@ -82,16 +94,16 @@ def test_hidden_cases_decide_and_are_not_told():
 def test_packing_hidden_cases():
     """Hidden cases leave with `public`, travel packed, and come back."""
     question = replace(DOUBLE, tests=(Test("more", (CALLS[2], HIDDEN), 1.0, "any number"),))
-    again = question.public().with_hidden(question.pack_hidden())
+    again = with_hidden(question.public(), pack_hidden(question))
     assert [case.args for case in again.tests[0].cases] == [(-1.0,), (7.5,)]
     assert [case.hidden for case in again.tests[0].cases] == [False, True]
-    assert again.with_hidden(question.pack_hidden()).data() == again.data()
+    assert question_data(with_hidden(again, pack_hidden(question))) == question_data(again)
 
 
 def test_a_question_is_data():
     """Written and read again, a question marks the same."""
-    again = read_question(DOUBLE.data())
-    assert again.data() == DOUBLE.data()
+    again = read_question(question_data(DOUBLE))
+    assert question_data(again) == question_data(DOUBLE)
     assert mark(again, square).mistake.name == "squared"
 
 

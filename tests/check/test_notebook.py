@@ -13,8 +13,9 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
-from labkit.check import Test, also, check, hint, notebook, use
-from labkit.errors import LabkitError, OutOfRange, UnknownName
+from labkit.check import Test, also, check, hint, notebook, question_data, use
+from labkit.check.question_codec import pack_hidden
+from labkit.errors import LabkitError, UnknownName
 
 
 def stub(x):
@@ -24,7 +25,8 @@ def stub(x):
 @pytest.fixture(autouse=True)
 def desk(tmp_path, monkeypatch):
     """A folder with questions in it."""
-    data = {"assignment": "sample", "questions": [DOUBLE.data()]}
+    questions = [question_data(DOUBLE), question_data(replace(DOUBLE, name="again"))]
+    data = {"assignment": "sample", "questions": questions}
     (tmp_path / notebook.FILE).write_text(json.dumps(data))
     monkeypatch.chdir(tmp_path)
     notebook._desks.clear()
@@ -67,6 +69,28 @@ def test_streams_work_again_afterwards(capfd):
     assert capfd.readouterr() == ("here\n", "there\n")
 
 
+def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
+    """Where a function calls another answer that is not right, that one is to be mended first."""
+    answers = {"square": square}
+    exec("def double(x):\n    return square(x)\ndef again(x):\n    return double(x)", answers)
+    check("double", answers["double"])
+    assert "it uses your" not in capsys.readouterr().out
+    check("again", answers["again"])
+    assert "it uses your double, which is not right yet" in capsys.readouterr().out
+
+
+def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
+    """Who interrupts a check hears in which line it was, and the streams work again."""
+
+    def endless(x):
+        raise KeyboardInterrupt  # what the button does, wherever the loop is
+
+    with pytest.raises(KeyboardInterrupt, match="double was stopped in the line `raise Keyboard"):
+        check("double", endless)
+    print("heard again")
+    assert capfd.readouterr().out == "heard again\n"
+
+
 def test_hints_lead_on(capsys):
     """Three hints, each naming the next; there is no fourth and no zeroth."""
     for level in (1, 2, 3):
@@ -75,8 +99,8 @@ def test_hints_lead_on(capsys):
         assert DOUBLE.hints[level - 1] in said
         assert (f'hint("double", {level + 1})' in said) == (level < 3)
     for level in (0, 4, -1):
-        with pytest.raises(OutOfRange, match="hints 1 to 3"):
-            hint("double", level)
+        hint("double", level)
+        assert f"double has 3 hints, and no hint {level}." in capsys.readouterr().out
 
 
 def test_use_takes_yours_only_if_right(capsys):
@@ -108,7 +132,7 @@ def test_also_adds_hidden_cases(capsys):
     """The teacher's copy has more cases, and adding them twice changes nothing."""
     question = replace(DOUBLE, tests=(Test("negative", (CALLS[2], HIDDEN), 1.0, "any number"),))
     for _ in range(2):
-        also("double", question.pack_hidden())
+        also("double", pack_hidden(question))
         assert check("double", {2.0: 4.0, 3.0: 6.0, -1.0: -2.0}.get) == 3.0
     assert "a hidden case (any number)" in capsys.readouterr().out
 

@@ -22,6 +22,9 @@ def writes():
         (lambda: STATE - STATE, "compute with the arrays in it"),
         (writes, "make a new array"),
         (lambda: np.eye(4) @ np.zeros(3), "left of the @ are 4 columns, right of it 3 rows"),
+        (lambda: 2.0 @ np.zeros(3), "for a number write *"),
+        (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "the product of matrices is @"),
+        (lambda: np.linalg.inv(np.zeros((6, 7))), "only square matrices"),
         (lambda: writes(1), "leave the names in the function's first line"),
     ],
 )

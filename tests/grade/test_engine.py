@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from handmade import QUICK, add, cell_of, put, raw
 
-from labkit.check import Call, Loop, mark, read_question
+from labkit.check import Call, Loop, mark, question_data, read_question
 from labkit.check.judge import Close
 from labkit.check.question import Question, Test
 from labkit.grade.checker import grade
@@ -237,14 +237,14 @@ def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
     for share, points in ((1.0, 4.0), (0.999, 0.0)):
         tight = Loop(**(vars(loop) | {"expected": {measure: limits[measure] * share}}))
         asked = Question("follow", 4.0, "Follow.", Close(), (Test("it follows", (tight,)),))
-        data = bundle.data | {"questions": [asked.data()], "cells": [
+        data = bundle.data | {"questions": [question_data(asked)], "cells": [
             {"id": "x", "type": "code", "kind": "answer", "grade_id": "follow", "source": ""}]}  # fmt: skip
         notebook = {"nbformat": 4, "cells": [{"cell_type": "code", "id": "x", "source": source}]}
         result = grade(raw(notebook), "ada", Bundle(data), sandbox, QUICK)
         assert result.score == points, result.questions
         assert result.questions[0]["runs"] == [], "a hidden run is not for his eyes"
     tests = (Test("it follows", (replace(tight, hidden=False),)),)
-    shown = Bundle(data | {"questions": [replace(question, tests=tests).data()]})
+    shown = Bundle(data | {"questions": [question_data(replace(question, tests=tests))]})
     seen = [grade(raw(notebook), "ada", shown, sandbox, QUICK) for _ in range(2)]
     (run,) = seen[0].questions[0]["runs"]
     assert run["measures"][measure] == pytest.approx(here[measure], rel=1e-5)

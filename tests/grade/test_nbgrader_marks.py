@@ -5,12 +5,13 @@ from pathlib import Path
 
 import nbformat
 import pytest
+from courses import copied
 from handmade import nbgrader
 
 from labkit.grade.course import Course
 from labkit.grade.engines import grade_with_nbgrader
-from labkit.grade.notebook import inlined
 from labkit.grade.release import release
+from labkit.grade.solved import inlined
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
@@ -19,10 +20,7 @@ NAME = "00_warmup"
 @pytest.fixture(scope="module")
 def course(tmp_path_factory):
     """The course elsewhere, with three submissions: solved, untouched, and half of it."""
-    root = tmp_path_factory.mktemp("course")
-    shutil.copytree(COURSE.root / "solutions", root / "solutions")
-    shutil.copy(COURSE.root / "nbgrader_config.py", root)
-    course = Course(root)
+    course = copied(tmp_path_factory.mktemp("course"))
     release(course, NAME, 3)
     problems = {problem.name: problem for problem in course.problems(NAME)}
     for student, known in (

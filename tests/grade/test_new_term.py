@@ -1,12 +1,13 @@
 """A term begins, ends and is forgotten; a course is exported."""
 
 import json
-import shutil
 from pathlib import Path
 
 import pytest
+from courses import copied
 
 from labkit import LabkitError
+from labkit.errors import UnknownName
 from labkit.grade import term
 from labkit.grade.course import Course
 from labkit.grade.release import FORBIDDEN
@@ -18,9 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture
 def course(tmp_path):
     """A course of its own, with nothing released yet."""
-    shutil.copytree(ROOT / "solutions", tmp_path / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", tmp_path)
-    return Course(tmp_path)
+    return copied(tmp_path)
 
 
 def test_a_term_has_a_seed_of_its_own_and_a_record(course):
@@ -46,6 +45,14 @@ def test_a_known_seed_is_refused(course, seed):
     """The public seed makes no secret, and the sentence says so."""
     with pytest.raises(LabkitError, match="may be known; take another"):
         term.new_term(course, seed)
+
+
+def test_a_name_that_is_unknown_is_told_before_anything_is_archived(course):
+    """The last term's submissions are where they were."""
+    course.submitted.mkdir()
+    with pytest.raises(UnknownName, match="99_dance"):
+        term.new_term(course, None, ("01_paths", "99_dance"))
+    assert course.submitted.exists() and not course.release.exists()
 
 
 def test_the_students_repository_holds_no_answer(tmp_path):

@@ -1,17 +1,18 @@
 """Making notebooks from sources: what is fed in, what comes out, what is refused."""
 
 import json
-import shutil
 from pathlib import Path
 
 import nbformat
 import pytest
+from courses import copied
 
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.course import Course
-from labkit.grade.notebook import brief, inlined, solution_notebook, source_notebook
+from labkit.grade.notebook import brief, source_notebook
 from labkit.grade.release import FORBIDDEN, release
+from labkit.grade.solved import inlined, solution_notebook
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
@@ -55,9 +56,17 @@ def test_stubs_and_questions_must_match(tmp_path):
     with pytest.raises(LabkitError, match="'double', which has no Problem"):
         source_notebook(text, {})
     one = QUESTIONS["joint_error"]
-    with pytest.raises(LabkitError, match="joint_error"):
-        text.write_text("# %%\nx = 1\n")
-        source_notebook(text, {"joint_error": one})
+    region = "    ### BEGIN SOLUTION\n    return 1\n    ### END SOLUTION\n\n"
+    stub = f'# %% question="joint_error"\ndef joint_error(x):\n{region}'
+    for source, sentence in (
+        ("# %%\nx = 1\n", "has 0 stubs of joint_error"),
+        (stub + stub, "has 2 stubs of joint_error"),
+        (stub.replace("def joint_error", "def error"), "defines no joint_error"),
+        (stub.replace("    ### END SOLUTION\n", ""), "needs one region"),
+    ):
+        text.write_text(source)
+        with pytest.raises(LabkitError, match=sentence):
+            source_notebook(text, {"joint_error": one})
 
 
 @pytest.mark.parametrize("name", COURSE.names())
@@ -77,11 +86,9 @@ def test_solutions_are_whole(name):
 @pytest.mark.slow
 def test_an_answer_that_leaks_stops_the_release(tmp_path):
     """If an answer stands outside its solution region, nothing is released."""
-    shutil.copytree(COURSE.root / "solutions", tmp_path / "solutions")
-    shutil.copy(COURSE.root / "nbgrader_config.py", tmp_path)
+    course = copied(tmp_path)
     path = tmp_path / "solutions" / "notebooks" / f"{NAME}.py"
     path.write_text(path.read_text() + "\n# %%\nfrom solutions.warmup import joint_error\n")
-    course = Course(tmp_path)
     with pytest.raises(LabkitError, match="nothing released"):
         release(course, NAME, 1)
     assert not (course.release / NAME).exists()

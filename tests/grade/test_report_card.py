@@ -64,5 +64,11 @@ def test_what_cannot_be_read_is_a_sentence(tmp_path):
     (tmp_path / "empty.py").write_text("x = 1\n")
     with pytest.raises(LabkitError, match="no dict VARIANTS"):
         functions_from(tmp_path / "empty.py", "VARIANTS")
+    (tmp_path / "cut.py").write_text("MISTAKES = {")
+    with pytest.raises(LabkitError, match="does not run: SyntaxError"):
+        functions_from(tmp_path / "cut.py", "MISTAKES")
+    (tmp_path / "number.py").write_text("MISTAKES = {'joint_error': [1]}")
+    with pytest.raises(LabkitError, match="is no list of functions"):
+        functions_from(tmp_path / "number.py", "MISTAKES")
     with pytest.raises(UnknownName):
         make(COURSE, ["00_warmup"], 5, {"treble": [abs]})

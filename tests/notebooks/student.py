@@ -15,7 +15,7 @@ import nbformat
 import labkit
 from labkit.check import notebook as desk
 from labkit.grade.course import Course
-from labkit.grade.notebook import inlined
+from labkit.grade.solved import inlined
 
 matplotlib.use("Agg")
 COURSE = Course.here(Path(__file__))

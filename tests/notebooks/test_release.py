@@ -5,13 +5,14 @@ import inspect
 import json
 import math
 import re
-import shutil
 from pathlib import Path
 
 import nbformat
 import numpy as np
 import pytest
+from courses import copied
 
+from labkit.check import question_data
 from labkit.grade.course import Course
 from labkit.grade.notebook import source_notebook
 from labkit.grade.release import FORBIDDEN, release
@@ -26,10 +27,7 @@ each = pytest.mark.parametrize("name", NAMES)
 @pytest.fixture(scope="module")
 def elsewhere(tmp_path_factory):
     """The same course in another folder, released anew with hidden cases of another seed."""
-    root = tmp_path_factory.mktemp("course")
-    shutil.copytree(COURSE.root / "solutions", root / "solutions")
-    shutil.copy(COURSE.root / "nbgrader_config.py", root)
-    course = Course(root)
+    course = copied(tmp_path_factory.mktemp("course"))
     for name in NAMES:
         release(course, name, OTHER_SEED)
     return course
@@ -84,10 +82,10 @@ def test_no_hidden_case_leaves(name):
     text = files(name)["checks.json"].read_text(encoding="utf-8")
     long = re.compile(r"\d\.\d{12,}(?![\de])")
     problems = COURSE.problems(name)
-    public = json.dumps([problem.question(2019).public().data() for problem in problems])
+    public = json.dumps([question_data(problem.question(2019).public()) for problem in problems])
     known = np.array([*map(float, long.findall(public)), np.inf])  # but for the last digits
     for problem in problems:
-        for test in problem.question(2019).data()["tests"]:
+        for test in question_data(problem.question(2019))["tests"]:
             for case in test["cases"]:
                 if case["hidden"]:
                     numbers = set(long.findall(json.dumps(case)))

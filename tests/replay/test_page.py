@@ -6,6 +6,7 @@ from html.parser import HTMLParser
 import pytest
 from samples import swing
 
+from labkit.errors import OutOfRange, UnknownName
 from labkit.replay import (
     Dial,
     Explorer,
@@ -55,7 +56,7 @@ def test_titles_cannot_break_out():
 
 
 def test_too_large_a_motion_is_refused():
-    with pytest.raises(ValueError, match="lower rate"):
+    with pytest.raises(OutOfRange, match="lower rate"):
         motion_html(swing(60.0, ghosts=4))
 
 
@@ -83,6 +84,12 @@ def test_demos_describe_themselves(name):
     page = Reader(demo_html(name))
     assert json.loads(page.data)["kind"] == name
     assert json.loads(demo(name).data)["kind"] == name
+
+
+@pytest.mark.parametrize("make", [demo, demo_html])
+def test_an_unknown_demo_is_a_sentence(make):
+    with pytest.raises(UnknownName, match="'jacobian'"):
+        make("jacobean")
 
 
 def test_the_widget_sends_the_files_when_asked_and_keeps_them_out_of_its_state():

@@ -9,7 +9,7 @@ import labkit as lk
 from labkit import plotting
 from labkit.study import analysis
 from labkit.study.analysis import Joint, Loop, torque_joint, velocity_joint, velocity_joint_of
-from labkit.study.tuning import decay_ratio
+from solutions.report_procedure import decay_ratio
 from solutions.tuning import trial_on
 
 INTEGRATOR = Joint((1.0,), (1.0, 0.0), delay=0.05)

@@ -183,6 +183,16 @@ def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsy
     assert campaign.Meter("x")(1, 2) is None
 
 
+def test_a_controller_alone_is_printed_and_not_written(tmp_path, monkeypatch, capsys):
+    """Any that `gains` knows, not only the seven of the report."""
+    monkeypatch.setattr(report, "TASKS", ("line",))
+    words = ["--way", "augmented PD", "--seeds", "1", "--jobs", "1", "--out", str(tmp_path)]
+    monkeypatch.setattr("sys.argv", ["campaign", *words])
+    report.main()
+    assert "| augmented PD |" in capsys.readouterr().out
+    assert not list(tmp_path.iterdir())
+
+
 def test_the_rows_kept_for_notebooks_are_those_of_the_campaign(rows):
     kept = recorded.campaign()
     assert len(kept) == len(report.grid(5))

@@ -1,12 +1,14 @@
 """Gains on held-out cases."""
 
 import labkit as lk
-from labkit.study import campaign, scoring, tasks
+from labkit.study import campaign, tasks
+from solutions import scoring
+from solutions.gains import Tuned
 from solutions.joint_velocity import JointVelocityPD
 
 
 def test_a_controller_is_scored_on_every_case_and_seed_with_its_spread():
-    rows = scoring.score(JointVelocityPD(5.0), cases=scoring.CASES[::2], seeds=(0, 1))
+    rows = scoring.score(Tuned(JointVelocityPD(5.0), 200.0, True), scoring.CASES[::2], seeds=(0, 1))
     assert [(r["case"], r["seed"]) for r in rows] == [
         (case, seed) for case in ("as tuned", "twice as fast") for seed in (0, 1)
     ]
@@ -20,5 +22,5 @@ def test_a_controller_that_loses_the_arm_is_a_row_with_a_sentence():
         return lk.JointTorque(100.0 * (state.q - target.position))
 
     ideal = scoring.Case("ideal", tasks.line, lk.IDEAL)
-    (row,) = scoring.score(wrong_sign, cases=(ideal,), seeds=(0,))
+    (row,) = scoring.score(Tuned(wrong_sign, 200.0, True), (ideal,), seeds=(0,))
     assert "wrong_sign lost the arm at t = " in row["failed"]

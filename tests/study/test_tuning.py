@@ -5,7 +5,7 @@ import pytest
 
 import labkit as lk
 from labkit.study.analysis import Joint, ultimate_gain
-from labkit.study.tuning import decay_ratio, report_procedure
+from solutions.report_procedure import decay_ratio, report_procedure
 
 DT, DELAY, LAG = 0.001, 0.02, 0.03
 

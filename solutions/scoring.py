@@ -1,4 +1,4 @@
-"""Are gains good, or only good on the path they were tuned on?  One controller on held-out cases.
+"""Are gains good, or only good where they were tuned?  A table: ``python -m solutions.scoring``.
 
 The case "as tuned" is the usual line; each other case changes one thing: the path, the speed, what
 the arm carries.  All start off the path and on Baxter's plant, once for each seed.
@@ -10,14 +10,14 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 
-from ..arm import Arm
-from ..errors import Diverged
-from ..metrics import summary
-from ..plant import BAXTER, Plant
-from ..run import Controller, run
-from . import tasks
-from .campaign import Row
-from .tasks import Task
+from labkit import BAXTER, Arm, Model, Plant, run
+from labkit.errors import Diverged
+from labkit.metrics import summary
+from labkit.study import tasks
+from labkit.study.campaign import Row, table
+from labkit.study.tasks import Task
+
+from .gains import Tuned, five
 
 
 @dataclass(frozen=True)
@@ -48,19 +48,12 @@ CASES = (
 
 
 def score(
-    controller: Controller,
-    *,
-    follows: str = "joints",
-    rate: float = 200.0,
-    cases: Iterable[Case] = CASES,
-    seeds: Iterable[int] = range(3),
+    tuned: Tuned, cases: Iterable[Case] = CASES, seeds: Iterable[int] = range(3)
 ) -> list[Row]:
     """Try a controller, gains and all, on every case and seed.
 
     Args:
-        controller: Any controller that keeps no memory between runs.
-        follows: Whether its target gives "joints" or "poses".
-        rate: How often it is asked, in [Hz].
+        tuned: The controller; it keeps no memory between runs.
         cases: What to try it on.
         seeds: Of the start, the noise and the late ticks.
 
@@ -71,12 +64,12 @@ def score(
     rows: list[Row] = []
     for case in cases:
         task = case.task()
-        target = task.joints if follows == "joints" else task.target
+        target = task.joints if tuned.joints else task.target
         for seed in seeds:
             with Arm(task.side, case.plant, seed, q0=task.start(seed)) as arm:
                 cell = {"case": case.name, "seed": seed}
                 try:
-                    s = summary(run(arm, target, controller, rate=rate))
+                    s = summary(run(arm, target, tuned.controller, rate=tuned.rate))
                 except Diverged as error:
                     rows.append({**cell, "failed": str(error)})
                     continue
@@ -88,3 +81,15 @@ def score(
 @cache
 def _task(make: Callable[[], Task]) -> Task:
     return make()
+
+
+def main() -> None:
+    """The five controllers with the gains of the campaign, on every case."""
+    ways = five(Model("left"), BAXTER)
+    rows = [{"way": way, **row} for way, tuned in ways.items() for row in score(tuned)]
+    print("RMS position error [mm], the start included\n")
+    print(table(rows, "way", "case", "rms_mm"))
+
+
+if __name__ == "__main__":
+    main()

@@ -12,16 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from .. import metrics
-from ..arm import Arm
-from ..arrays import Array, as_number
-from ..errors import OutOfRange
-from ..log import Log
-from ..scene import Table
-from ..vision.camera import Camera, looking_at
-from ..vision.intrinsics import Intrinsics
-from ..vision.tags import Picture
-from ..world import World
+from labkit import Arm, Camera, Intrinsics, Log, Table, World, looking_at, metrics
+from labkit.arrays import Array, as_number
+from labkit.errors import OutOfRange
+from labkit.vision.tags import Picture
 
 EYE, AT = (1.7, 1.15, 0.7), (0.45, 0.2, 0.2)
 """Where the camera stands and what it looks at, world axes, in [m]."""
