@@ -43,7 +43,8 @@ def test_the_dials_are_moved_by_keyboard_and_say_recorded(visit):
     typed.fill("12")
     typed.press("Enter")
     page.wait_for_function(
-        "document.querySelector('.lk-recorded').textContent.includes('at Kp 12; shown is the nearest, 8')"
+        "text => document.querySelector('.lk-recorded').textContent.includes(text)",
+        arg="at Kp 12; shown is the nearest, 8",
     )
     page.get_by_label("Task", exact=True).select_option("circle")
     page.wait_for_function("document.querySelector('.lk-recorded').textContent.includes('circle')")
