@@ -132,6 +132,7 @@ def explorer_html(
     folder: str,
     *,
     caption: str = "",
+    poster: str | None = None,
     root: str | None = None,
 ) -> str:
     """The explorer as a figure; its runs are loaded one by one from `folder`.
@@ -140,6 +141,7 @@ def explorer_html(
         explorer: The grid.
         folder: Address, from the page, of the folder with `run_files`, ending in "/".
         caption: Text under it; the title if empty.
+        poster: See `motion_html`.
         root: See `motion_html`.
 
     Returns:
@@ -159,7 +161,7 @@ def explorer_html(
     names = ", ".join(d.label for d in explorer.dials)
     alt = f"{explorer.title}: {len(explorer.runs)} recorded runs to choose from by {names}."
     facts = " ".join(explorer.facts[k] for k in sorted(explorer.facts)[:3])
-    return _figure(_compact(data), caption or explorer.title, alt, f"{alt} {facts}", None, root)
+    return _figure(_compact(data), caption or explorer.title, alt, f"{alt} {facts}", poster, root)
 
 
 DEMOS = {
