@@ -13,7 +13,7 @@ from labkit.replay import motion_html, motion_of
 from labkit.vision.detection import detect_tags, find_tag
 from solutions.gains import known
 from solutions.tag_scenes import circling_board
-from solutions.tag_task import followed, sequential, staged
+from solutions.tag_task import OFFSET, followed, sequential, staged
 
 from .page import Question, address, figure, framed, holds, number, numbers, poster, quiz
 
@@ -209,10 +209,13 @@ def following() -> HTML:
     with lk.World() as world:
         board, _ = staged(world, SEED)
         poses = np.array([board.pose_at(t) for t in log.t])
+    goal = poses[:, :3, 3] + OFFSET
     motion = replace(
         motion_of(log, "Following a tag", label="predicts", ghosts=ghost, reference=False),
         board_position=poses[:, :3, 3],
         board_rotation=poses[:, :3, :3],
+        target_position=goal,
+        path=goal[:: len(goal) // 120],
         error=misses["predicts"],
     )
     caption = (
