@@ -158,7 +158,7 @@ def test_every_claim_of_the_report_gets_a_verdict_from_rows():
     found = {v.claim: v.outcome for v in verdicts(rows, gains, noise)}
     assert found["joint velocity tracks better than workspace velocity"] is Outcome.HELD
     assert found["MoveIt tracks better than joint torque"] is Outcome.DID_NOT_HOLD
-    assert found["four times the gain converges faster on the baxter arm"] is Outcome.HELD
+    assert found["four times the gain converges faster on the realistic arm"] is Outcome.HELD
     assert found["noise limits Kd: through the noise, Kd = 1 makes the arm shake"] is Outcome.HELD
     assert len(found) == 12
 
