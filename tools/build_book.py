@@ -194,6 +194,9 @@ def build(*, answers: bool) -> int:
             if re.search(r"WARNING:|ERROR|Error|Exception|ConclusionFails", line):
                 print(f"  {line}", file=sys.stderr)
         return process.returncode
+    for path in (BOOK / "static").rglob("*"):  # Sphinx leaves these where no page has changed
+        if path.is_file():
+            _copy(path, HTML / "_static" / path.relative_to(BOOK / "static"))
     stamp.write_text(json.dumps(state))
     return 0
 

@@ -89,6 +89,12 @@ def test_the_zip_is_small_and_holds_the_book(book):
 
 
 @pytest.mark.slow
+def test_static_files_are_as_they_stand_in_the_sources(book):
+    """A changed style reaches the book though no page has changed."""
+    for name in ("book.css", "favicon.svg"):
+        assert (book / "_static" / name).read_bytes() == (ROOT / "book/static" / name).read_bytes()
+
+
 def test_downloads_are_the_released_notebooks(book):
     for path in (ROOT / "assignments").glob("*/*.ipynb"):
         handed_out = book / "_static/notebooks" / path.name
