@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import excerpts
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
 
@@ -22,14 +23,17 @@ def settings(app: Sphinx, config: Any) -> None:
     config.hide_solutions = os.environ.get("LAB_BOOK_ANSWERS") != "1"
 
 
-def without_thebe(
+def without_unused(
     app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any
 ) -> None:
-    """Jupyter Book loads Thebe's starter even where no kernel is offered; it fails without one."""
+    """Jupyter Book loads Thebe's starter even where no kernel is offered; it fails without one.
+
+    The theme's marks of what was searched for break formulas; `search.js` has its own.
+    """
     context["script_files"] = [
         s
         for s in context["script_files"]
-        if "thebe" not in f"{getattr(s, 'filename', '')}"
+        if not re.search("thebe|sphinx_highlight", f"{getattr(s, 'filename', '')}")
         and "THEBE_JS_URL" not in str(getattr(s, "attributes", {}).get("body", ""))
     ]
     context["css_files"] = [
@@ -48,6 +52,7 @@ def repair(app: Sphinx, problem: Exception | None) -> None:
     """Mend every finished page that was written in this build."""
     if problem or app.builder.format != "html":
         return
+    texts = {}
     notebooks = [p.stem for p in Path(app.outdir).glob("generated/notebooks/*.html")]
     for path in sorted(Path(app.outdir).rglob("*.html")):
         if "_static" in path.parts:
@@ -55,12 +60,17 @@ def repair(app: Sphinx, problem: Exception | None) -> None:
         text = path.read_text(encoding="utf-8")
         if "<!-- mended -->" in text:
             continue
-        path.write_text(mended(text, notebooks), encoding="utf-8")
+        page = BeautifulSoup(text, "html.parser")
+        name = path.relative_to(app.outdir).with_suffix("").as_posix()
+        if name in app.env.found_docs:
+            texts[name] = excerpts.parts_of(page)
+        mend(page, notebooks)
+        path.write_text(f"{page}\n<!-- mended -->\n", encoding="utf-8")
+    excerpts.update(Path(app.outdir), texts)
 
 
-def mended(text: str, notebooks: Sequence[str] = ()) -> str:
-    """One page with names, roles and landmarks that assistive technology needs."""
-    page = BeautifulSoup(text, "html.parser")
+def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
+    """Give one page the names, roles and landmarks that assistive technology needs."""
     _exercises(page, notebooks)
     for rule in (
         _names,
@@ -70,9 +80,9 @@ def mended(text: str, notebooks: Sequence[str] = ()) -> str:
         _scrollers,
         _hidden_inputs,
         _repeated_ids,
+        _search_tools,
     ):
         rule(page)
-    return f"{page}\n<!-- mended -->\n"
 
 
 def _exercises(page: BeautifulSoup, notebooks: Sequence[str]) -> None:
@@ -159,9 +169,17 @@ def _repeated_ids(page: BeautifulSoup) -> None:
         del box["id"]
 
 
+def _search_tools(page: BeautifulSoup) -> None:
+    """The theme loads the search's index on every page; only the one that searches needs it."""
+    if not page.select_one("#search-results"):
+        for script in page.select('script[src*="search"], script[src*="language_data"]'):
+            if "search.js" not in script["src"]:
+                script.decompose()
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register with Sphinx."""
     app.connect("config-inited", settings, priority=100)
-    app.connect("html-page-context", without_thebe, priority=900)
+    app.connect("html-page-context", without_unused, priority=900)
     app.connect("build-finished", repair, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 HTML = ROOT / "book/_build/html"
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "book")]
+sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "book"), str(ROOT / "book/_ext")]
 BUILD = [sys.executable, str(ROOT / "tools/build_book.py")]
 
 

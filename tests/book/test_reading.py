@@ -1,4 +1,4 @@
-"""A reader's hands on the book: keyboard, search, quiz, theme, reduced motion, no WebGL."""
+"""A reader's hands on the book: keyboard, quiz, theme, reduced motion, no WebGL."""
 
 import json
 import re
@@ -66,13 +66,6 @@ def test_the_quiz_answers(visit):
         assert told.startswith("✓ Right." if k == right else "✗ Not yet.")
         if "\\(" not in said[k]:
             assert said[k] in told
-
-
-def test_search_finds_from_the_disk(visit):
-    page = visit("search.html")
-    page.goto(page.url.split("?")[0] + "?q=trapezoid")
-    page.wait_for_selector("#search-results li")
-    assert "Paths and time scaling" in page.inner_text("#search-results")
 
 
 def test_answers_are_hidden_unless_asked_for(book):

@@ -1,0 +1,120 @@
+"""The plain text of every page in one script, from which the search shows what stands around a hit.
+
+The theme would fetch each page that it found, which a browser forbids to a page from the disk.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from bs4 import BeautifulSoup, NavigableString, Tag
+
+NAME = "searchtexts.js"
+OPENING = "window.labTexts = "
+Part = tuple[str, str, str]
+"""An id of the page, the heading or name that has it, and the text up to the next one."""
+HEADINGS = ["h1", "h2", "h3", "h4"]
+UNREAD = ", ".join([
+    "script, style, svg, button, details, video, .headerlink, .lab-quiz, .lk-embed, div.math",
+    *HEADINGS,
+])  # fmt: skip
+BLOCKS = {"p", "li", "dt", "dd", "tr", "td", "th", "div", "pre", "section", "figcaption", "caption"}
+SIGNS = {"lVert": "‖", "rVert": "‖", "times": "×", "cdot": "·", "le": "≤", "ge": "≥", "pm": "±",
+         "int": "∫", "sum": "Σ", "to": "→", "in": "∈", "approx": "≈", "partial": "∂", "sqrt": "√",
+         "star": "*", "lambda": "λ", "Lambda": "Λ", "bar": "\N{COMBINING MACRON}",
+         "dot": "\N{COMBINING DOT ABOVE}", "ddot": "\N{COMBINING DIAERESIS}",
+         "hat": "\N{COMBINING CIRCUMFLEX ACCENT}"}  # fmt: skip
+
+
+def update(folder: Path, written: Mapping[str, list[Part]]) -> None:
+    """Write the texts of the built book.
+
+    Args:
+        folder: Of the built book.
+        written: Of the pages written in this build, by name; the others keep what they had.
+    """
+    texts = {n: parts for n, parts in kept(folder).items() if (folder / f"{n}.html").exists()}
+    texts |= written
+    told = json.dumps(dict(sorted(texts.items())), ensure_ascii=False, separators=(",", ":"))
+    (folder / NAME).write_text(f"{OPENING}{told};\n", encoding="utf-8")
+
+
+def kept(folder: Path) -> dict[str, list[Part]]:
+    """What the last build wrote, if there was one."""
+    path = folder / NAME
+    if not path.exists():
+        return {}
+    told: dict[str, list[Part]] = json.loads(path.read_text("utf-8")[len(OPENING) : -2])
+    return told
+
+
+def parts_of(page: BeautifulSoup) -> list[Part]:
+    """A page cut at its headings and at the names that it defines."""
+    article = page.select_one("article.bd-article")
+    if article is None:
+        return []
+    parts = [("", "", list[str]())]
+    unread = {id(element) for element in article.select(UNREAD)}
+    for piece in _pieces(article, unread):
+        if isinstance(piece, Tag):
+            parts.append((str(piece["id"]), _title(piece), []))
+        else:
+            parts[-1][-1].append(piece)
+    found = ((place, title, " ".join("".join(words).split())) for place, title, words in parts)
+    return [part for part in found if part[-1]]
+
+
+def _pieces(element: Tag, unread: set[int]) -> Iterator[Tag | str]:
+    """Text in its order, and each element at which a part begins."""
+    if id(element) in unread:
+        return
+    if element.get("id") and (element.name == "dt" or _heading(element)):
+        yield element
+    if "math" in element.get_attribute_list("class"):
+        yield spoken(element.get_text())
+        return
+    for child in element.children:
+        if isinstance(child, Tag):
+            yield from _pieces(child, unread)
+        elif type(child) is NavigableString:
+            yield str(child)
+    if element.name in BLOCKS:
+        yield " "
+
+
+def _heading(element: Tag) -> Tag | None:
+    """The heading that a section begins with; exercises are sections without one."""
+    found = element.find(HEADINGS, recursive=False) if element.name == "section" else None
+    return found if isinstance(found, Tag) else None
+
+
+def _title(element: Tag) -> str:
+    named = _heading(element) or element.select_one(".descname") or element
+    return named.get_text().rstrip("#").strip()
+
+
+def spoken(formula: str) -> str:
+    """A formula of a sentence in plain letters, as far as they go: `\\dot q_d` becomes q̇_d."""
+    text = re.sub(r"^\\\(|\\\)$|\\[,;!]|\\(left|right|mathrm|text|operatorname)\b", "", formula)
+    text = re.sub(r"\\[dt]?frac\s*(\{[^{}]*\}|\w)\s*(\{[^{}]*\}|\w)", r"\1/\2", text)
+    text = re.sub(r"\\(d?dot|hat|bar)\s*(\{\w\}|\\[a-z]+|\w)", _accented, text)
+    text = re.sub(r"[{}]", "", re.sub(r"\\([A-Za-z]+)\s*", _sign, text))
+    return unicodedata.normalize("NFC", text)
+
+
+def _accented(letter: re.Match[str]) -> str:
+    return letter[2].strip("{}") + SIGNS[letter[1]]
+
+
+def _sign(command: re.Match[str]) -> str:
+    """A TeX command as a letter or a sign; an unknown one as its name."""
+    name = command[1]
+    kind = "CAPITAL" if name[0].isupper() else "SMALL"
+    try:
+        return SIGNS.get(name) or unicodedata.lookup(f"GREEK {kind} LETTER {name}")
+    except KeyError:
+        return name
