@@ -58,6 +58,28 @@ def test_a_page_is_quiet_accessible_and_fits(visit, open_chromium, name):
     assert violations(page) == [], "dark"
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_drawing_is_enlarged_on_a_phone(visit, open_chromium, scheme):
+    """To letters of reading size, in a box that the keyboard moves; closing puts it back."""
+    page = visit("chapters/torque.html", browser=open_chromium, phone=True, color_scheme=scheme)
+    figure = page.locator(".lab-figure").first
+    before = figure.bounding_box()["height"]
+    figure.get_by_role("button", name="Enlarge").click()
+    dialog = page.get_by_role("dialog")
+    assert abs(figure.bounding_box()["height"] - before) < 1, "the text behind does not move"
+    size = "svg => svg.getBoundingClientRect().width / svg.viewBox.baseVal.width * 11.5"
+    assert dialog.locator("svg").evaluate(size) >= 14
+    assert violations(page) == []
+    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    page.keyboard.press("Tab")
+    page.keyboard.press("ArrowRight")
+    page.wait_for_function("document.querySelector('.lab-sheet').scrollLeft > 0")
+    page.keyboard.press("Escape")
+    assert dialog.count() == 0
+    assert figure.locator("> svg").count() == 1
+    assert page.evaluate("document.activeElement.textContent") == "Enlarge"
+
+
 def html_files(book):
     return [p for p in book.rglob("*.html") if "_static" not in p.parts]
 

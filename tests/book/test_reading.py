@@ -119,6 +119,28 @@ def test_words_and_numbers_in_tables_stay_whole_on_a_phone(visit):
     assert set(heights) == {1}
 
 
+def test_a_wide_formula_is_moved_by_keyboard(visit):
+    """It begins at the left, and fades at the right until its end has been brought in."""
+    page = visit("chapters/torque.html", phone=True)
+    page.evaluate("MathJax.startup.promise")
+    page.wait_for_selector("div.math mjx-container")
+    fade = "d => getComputedStyle(d).getPropertyValue('--more')"
+    box = "d.querySelector('mjx-container').getBoundingClientRect()"
+    begins = f"d => {box}.left - d.getBoundingClientRect().left"
+    ends = f"d => {box}.right - innerWidth"
+    wide = [box for box in page.locator("div.math").all() if box.evaluate(ends) > 0]
+    assert len(wide) > 2
+    for box in wide:
+        assert box.evaluate(begins) >= 0
+        assert box.evaluate(fade) == "40px"
+        box.focus()
+        page.keyboard.press("ArrowRight")
+        page.wait_for_function("document.activeElement.scrollLeft > 0")
+        box.evaluate("d => { d.blur(); d.scrollLeft = d.scrollWidth; }")
+        page.wait_for_function(f"d => ({fade})(d) === '0px'", arg=box.element_handle())
+        assert box.evaluate(ends) <= 0
+
+
 def test_a_phone_loads_the_arm_on_tap(visit):
     page = visit("index.html", phone=True)
     page.wait_for_timeout(300)
