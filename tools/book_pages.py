@@ -56,7 +56,7 @@ def page_keys() -> dict[str, str]:
             continue
         modules = [f"{a}.{b}" if a == "figures" else a for a, b in used]
         parts = [key_of(module) for module in modules]
-        if "figures.comparison" in modules:
+        if {"figures.comparison", "figures.gallery"} & set(modules):
             parts.append(hashlib.sha256(CAMPAIGN.read_bytes()).hexdigest()[:16])
             parts += sorted(p.name for p in (ROOT / "build/campaign").glob("*.mp4"))
         keys[name] = " ".join(parts)

@@ -1,0 +1,203 @@
+"""The galleries: every way through one task, one run each, on scales that can be compared."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import cache
+from html import escape
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit import metrics
+from labkit.plotting import AXES, STYLES
+from labkit.replay.motion import JOINTS
+from solutions import campaign
+from solutions.campaign import BASELINE, FIVE
+
+from .comparison import run_of
+from .page import figure, holds, replay, table
+
+FILMS = Path(__file__).parents[2] / "build/campaign.json"
+SHOWN = (*FIVE, BASELINE)
+LATE = 1.0
+"""From when on errors are counted, in [s]: before, every way comes from beside the path."""
+
+
+def all_ways(task: str) -> HTML:
+    """The errors of every way in one drawing."""
+    _, ax = plt.subplots(figsize=(6.2, 3.8))
+    for k, way in enumerate(SHOWN):
+        log = run_of(way, task)
+        thin = slice(None, None, max(1, len(log) // 300))
+        ax.plot(log.t[thin], _off(log)[thin], f"C{k}{STYLES[k % 4]}", label=way)
+    ax.set(xlabel="time [s]", ylabel="error of the tip [mm]", yscale="log")
+    ax.set_ylim(bottom=max(ax.get_ylim()[0], 0.02))
+    ax.legend(fontsize="small", ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0))
+    told = "; ".join(f"{way} {_numbers(way, task)[0]:.2g} mm" for way in SHOWN)
+    return figure(
+        f"How far the tip is from its target, six ways, on the {task}; the scale is logarithmic.",
+        f"Curves of the error over time. RMS after the first second: {told}.",
+    )
+
+
+def all_numbers(task: str) -> HTML:
+    """The same runs in numbers; each name leads to its run."""
+    rows = [
+        (f'<a href="#{_place(way)}">{way}</a>', *map(_told, _numbers(way, task))) for way in SHOWN
+    ]
+    if task == "tag":
+        found = {way: _numbers(way, task) for way in SHOWN}
+        holds(found[BASELINE][0] < 1.0, "the baseline obeys to a millimetre")
+        holds(found[BASELINE][-1] > 2.0 * max(found[way][-1] for way in FIVE), "and misses the tag")
+    head = [
+        "Way",
+        "RMS [mm]",
+        "largest [mm]",
+        "at the end [mm]",
+        "turn, RMS [°]",
+        "torque, RMS [N m]",
+    ]
+    head += ["from the tag, RMS [mm]"] if task == "tag" else []
+    return table(head, rows, f"The {task}, realistic arm, seed 0; errors after the first second")
+
+
+def _told(x: float) -> str:
+    return f"{x:.3g}" if x >= 1e-3 else "&lt; 0.001"
+
+
+def beside(task: str) -> HTML:
+    """Three ways through one task, in 3-D."""
+    first, *others = ("joint velocity", "joint torque", "workspace impedance")
+    return replay(
+        run_of(first, task),
+        f"The {task}, three ways",
+        f"Joint velocity PD; see-through: {' and '.join(others)}.",
+        label=first,
+        ghosts={way: run_of(way, task) for way in others},
+    )
+
+
+def film(task: str) -> HTML:
+    """The film of a task, where `make campaign` has left one."""
+    told = json.loads(FILMS.read_text())["films"] if FILMS.exists() else []
+    row = next((row for row in told if row["task"] == task), None)
+    if row is None:
+        return HTML("")
+    name = f"../_static/films/{row['file']}"
+    return HTML(
+        f'<figure class="lab-figure"><video class="lab-svg" controls preload="none" '
+        f'poster="../_static/films/{row["poster"]}" src="{name}" aria-label="{escape(row["alt"])}">'
+        f"</video><figcaption>Joint velocity control, seed 0; without sound."
+        f"<details><summary>Description in words</summary><p>{escape(row['alt'])}</p></details>"
+        "</figcaption></figure>"
+    )
+
+
+def everything(way: str, task: str) -> HTML:
+    """One run in six panels, thinned for the page; scales are the same for all ways."""
+    log = run_of(way, task)
+    thin = slice(None, None, max(1, len(log) // 300))
+    _, axes = plt.subplots(6, 1, figsize=(6.2, 10.6), sharex=True)
+    for ax, (label, values, target), limits in zip(
+        axes, _panels(way, task), _limits(task), strict=True
+    ):
+        names = AXES if values.shape[1] == 3 else JOINTS
+        for k, name in enumerate(names):
+            if target is not None:
+                ax.plot(
+                    log.t[thin],
+                    target[thin, k],
+                    "#999999",
+                    linewidth=4,
+                    label="" if k else "target",
+                )
+            ax.plot(log.t[thin], values[thin, k], f"C{k}{STYLES[k % 4]}", label=name,
+                    linewidth=1.8 if names is AXES else 1.2)  # fmt: skip
+        ax.set(ylabel=label, ylim=limits)
+        ax.legend(fontsize="small", ncols=7, loc="lower right", bbox_to_anchor=(1.0, 1.0),
+                  borderaxespad=0.0, handlelength=1.6, columnspacing=0.8)  # fmt: skip
+    axes[-1].set_xlabel("time [s]")
+    found = metrics.summary(log, _model())
+    e, off, torque = (_panels(way, task)[k][1] for k in (2, 4, 5))
+    drawn = figure(
+        f"{way.capitalize()} on the {task}, realistic arm.",
+        f"{way.capitalize()} on the {task}: {found}.",
+        f"Six panels over {found.duration:.3g} s: position and speed of the tip over its target, "
+        "its position error along x, y and z, its orientation error, the error of each joint and "
+        f"the torque of each motor. {found}. The largest joint error is "
+        f"{np.abs(off).max():.2g} degrees, the largest torque {np.abs(torque).max():.3g} N m, the "
+        f"last error {np.linalg.norm(e[-1]):.2g} mm.",
+    )
+    links = " · ".join(_elsewhere(way, task))
+    return HTML(
+        f'<p>{way.capitalize()} on {links}; <a href="#all-ways">all ways</a></p>{drawn.data}'
+    )
+
+
+def _elsewhere(way: str, task: str) -> Iterator[str]:
+    """The same way on every task."""
+    for other in campaign.TASKS:
+        link = f'<a href="{other}.html#{_place(way)}">the {other}</a>'
+        yield f"<strong>the {other}</strong>" if other == task else link
+
+
+def _place(way: str) -> str:
+    return way.replace(" ", "-")
+
+
+@cache
+def _model() -> lk.Model:
+    return lk.Model("left", lk.BAXTER)
+
+
+def _off(log: lk.Log) -> np.ndarray:
+    """How far the tip is from its target, shape (N,), in [mm]."""
+    return 1e3 * np.linalg.norm(metrics.tip_error(log, _model())[:, :3], axis=1)
+
+
+def _numbers(way: str, task: str) -> tuple[float, ...]:
+    """One row of the table."""
+    log = run_of(way, task)
+    told = campaign.measured(log, campaign.joints(way, task, 0))
+    names = ("late_rms_mm", "late_max_mm", "end_mm", "late_rms_deg", "effort")
+    found = tuple(told[name] for name in names)
+    if task != "tag":
+        return found
+    late = log.t >= LATE
+    tips = metrics.tip_poses(log, _model())[late, :3, 3]
+    return *found, 1e3 * metrics.rms(campaign.chase(way, 0).miss(log.t[late], tips))
+
+
+@cache
+def _panels(way: str, task: str) -> list[tuple[str, np.ndarray, np.ndarray | None]]:
+    """The six panels: a label, values of shape (N, k), and their target if it is drawn."""
+    log, model = run_of(way, task), _model()
+    e = metrics.tip_error(log, model)
+    p, d = metrics.tip_poses(log, model)[:, :3, 3], metrics.target_poses(log, model)[:, :3, 3]
+    v, w = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
+    wanted = campaign.joints(way, task, 0)
+    off = np.array([wanted(t).position for t in log.t]) - log.q
+    return [
+        ("tip [m]", p, d),
+        ("tip speed [m/s]", v[:, :3], w[:, :3]),
+        ("error [mm]", 1e3 * e[:, :3], None),
+        ("turn error [°]", np.degrees(e[:, 3:]), None),
+        ("joint error [°]", np.degrees(off), None),
+        ("torque [N m]", log.tau, None),
+    ]
+
+
+@cache
+def _limits(task: str) -> list[tuple[float, float]]:
+    """Limits of the panels that hold every way."""
+    found = []
+    for panels in zip(*(_panels(way, task) for way in SHOWN), strict=True):
+        values = np.concatenate([panel[1].ravel() for panel in panels])
+        edge = 0.05 * np.ptp(values)
+        found.append((float(values.min() - edge), float(values.max() + edge)))
+    return found

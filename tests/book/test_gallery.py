@@ -1,0 +1,29 @@
+"""The galleries: runs to compare, at the same place on every page, on the same scales."""
+
+import pytest
+from bs4 import BeautifulSoup
+from figures import gallery
+
+from solutions.campaign import TASKS
+
+
+def test_the_scales_of_a_page_hold_every_way():
+    for way in gallery.SHOWN:
+        for (_, values, _), (low, high) in zip(
+            gallery._panels(way, "line"), gallery._limits("line"), strict=True
+        ):
+            assert low < values.min()
+            assert values.max() < high
+
+
+@pytest.mark.slow
+def test_every_run_leads_to_the_same_way_on_the_other_tasks_and_to_all_ways(book):
+    for task in TASKS:
+        page = BeautifulSoup((book / f"gallery/{task}.html").read_text(), "html.parser")
+        for way in gallery.SHOWN:
+            place = way.replace(" ", "-")
+            links = {a["href"] for a in page.select_one(f"section#{place}").select("p a")}
+            others = {f"{other}.html#{place}" for other in TASKS if other != task}
+            assert links == others | {"#all-ways"}
+        names = [a["href"] for a in page.select("section#all-ways table a")]
+        assert names == [f"#{way.replace(' ', '-')}" for way in gallery.SHOWN]
