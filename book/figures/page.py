@@ -151,11 +151,25 @@ def picture(side: Side, plant: Plant, q: np.ndarray) -> str:
         return address(Camera(world, looking_at(EYE, AT), lens, samples=1).image())
 
 
+def still() -> str:
+    """The current figure as a data address, on white: an image does not follow the theme."""
+    data = io.BytesIO()
+    with mpl.rc_context({"svg.hashsalt": "still"}):
+        plt.gcf().savefig(data, format="svg", facecolor="white", transparent=False,
+                          metadata={"Date": None, "Creator": None})  # fmt: skip
+    plt.close()
+    return _address("svg+xml", data)
+
+
 def address(picture: Any) -> str:
     """A picture as a data address, so that it travels in the page."""
     data = io.BytesIO()
     Image.fromarray(np.asarray(picture)).save(data, "JPEG", quality=72, optimize=True)
-    return f"data:image/jpeg;base64,{base64.b64encode(data.getvalue()).decode()}"
+    return _address("jpeg", data)
+
+
+def _address(kind: str, data: io.BytesIO) -> str:
+    return f"data:image/{kind};base64,{base64.b64encode(data.getvalue()).decode()}"
 
 
 def tracking(log: Log, caption: str) -> HTML:

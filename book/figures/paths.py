@@ -21,6 +21,7 @@ from .page import (
     numbers,
     quiz,
     replay,
+    still,
     table,
     tracking,
 )
@@ -83,10 +84,15 @@ def scalings() -> HTML:
 
 
 def scaling_demo() -> HTML:
-    """The live demo of the four scalings."""
-    return HTML(
-        demo_html("scaling", caption="Live: choose a length and a duration, and compare the peaks.")
-    )
+    """The live demo of the four scalings; on paper, the speeds with which it opens."""
+    length, t = 0.4, np.linspace(0.0, 2.0, 81)
+    _, ax = plt.subplots(figsize=(5.0, 2.6))
+    for k, (name, s) in enumerate(_scalings()):
+        ax.plot(t, [length * s(x)[1] for x in t], f"C{k}{plotting.STYLES[k]}", label=name)
+    ax.set(xlabel="time [s]", ylabel="speed [m/s]", title=f"{length:g} m in {t[-1]:g} s")
+    ax.legend(fontsize="small")
+    caption = "Live: choose a length and a duration, and compare the peaks."
+    return HTML(demo_html("scaling", caption=caption, poster=still()))
 
 
 def peak_table() -> HTML:

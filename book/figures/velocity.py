@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 
 import control
@@ -17,7 +18,7 @@ from solutions.joint_velocity import JointVelocityPD
 from solutions.workspace_velocity import WorkspaceVelocityPD
 
 from .gains import explorer as recorded
-from .page import Question, figure, holds, number, numbers, picture, quiz, replay, tracking
+from .page import Question, figure, holds, number, numbers, picture, quiz, replay, still, tracking
 
 SEED = 3
 OFFSET = 0.1
@@ -101,9 +102,21 @@ def phase_margin(kp: float) -> float:
 
 
 def rotation_demo() -> HTML:
-    """The live demo of orientation errors."""
+    """The live demo of orientation errors; on paper, those with which it opens."""
+    target, actual = (_from_rpy(angles) for angles in ((0.2, 1.3, 0.1), (-2.6, 1.4, -2.7)))
+    errors = {
+        "logarithm": lk.se3.orientation_error(target, actual),
+        "Euler angles subtracted": _rpy(target) - _rpy(actual),
+    }
+    _, ax = plt.subplots(figsize=(5.0, 2.6))
+    for k, (name, e) in enumerate(errors.items()):
+        ax.bar(np.arange(3) + 0.4 * k, e, 0.38, label=f"{name}: length {np.linalg.norm(e):.3f}",
+               hatch="/" * k, edgecolor="#ffffff")  # fmt: skip
+    ax.set_xticks(np.arange(3) + 0.2, ["x, roll", "y, pitch", "z, yaw"])
+    ax.set(ylabel="error [rad]")
+    ax.legend(fontsize="small", loc="lower left", bbox_to_anchor=(0.0, 1.0))
     caption = "Live: two orientations, and two ideas of the error between them."
-    return HTML(demo_html("rotation", caption=caption))
+    return HTML(demo_html("rotation", caption=caption, poster=still()))
 
 
 def euler() -> HTML:
@@ -141,6 +154,12 @@ def euler() -> HTML:
         f"Orientation error over three seconds: with the logarithm it falls from 5 to {right:.2g} "
         f"degrees; with subtracted Euler angles it ends at {wrong:.2g} degrees.",
     )
+
+
+def _from_rpy(angles: Sequence[float]) -> np.ndarray:
+    """The orientation with this roll, pitch and yaw."""
+    x, y, z = (lk.se3.rotation_about(e, a) for e, a in zip(np.eye(3), angles, strict=True))
+    return z @ y @ x
 
 
 def _rpy(R: np.ndarray) -> np.ndarray:
