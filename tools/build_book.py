@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import base64
+import hashlib
 import json
 import os
 import re
@@ -165,7 +166,7 @@ def record() -> None:
 def build(*, answers: bool) -> int:
     """Run Jupyter Book; a warning or an exception in a cell is an error."""
     keys = page_keys()
-    stamp, state = BOOK / "_build/built.json", {"keys": keys, "answers": answers}
+    stamp, state = BOOK / "_build/built.json", {"keys": keys, "answers": answers, "by": _builder()}
     fresh = not stamp.exists() or json.loads(stamp.read_text()) != state
     stamp.unlink(missing_ok=True)
     cache = CACHE / "pages"
@@ -199,6 +200,12 @@ def build(*, answers: bool) -> int:
             _copy(path, HTML / "_static" / path.relative_to(BOOK / "static"))
     stamp.write_text(json.dumps(state))
     return 0
+
+
+def _builder() -> str:
+    """A hash of the book's own extension, which Sphinx does not watch."""
+    files = sorted((BOOK / "_ext").glob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
 
 
 def _shown(lines: Iterator[str]) -> Iterator[str]:

@@ -23,6 +23,34 @@ def settings(app: Sphinx, config: Any) -> None:
     config.hide_solutions = os.environ.get("LAB_BOOK_ANSWERS") != "1"
 
 
+def told_already(
+    app: Sphinx, what: str, name: str, member: Any, skip: bool, options: Any
+) -> bool | None:
+    """Fields of a named tuple: the class describes them, Python's own words say nothing."""
+    return True if str(member.__doc__).startswith("Alias for field number") else None
+
+
+COLON = "\N{RATIO}"
+
+
+def hide_colon(app: Sphinx, what: str, name: str, it: Any, options: Any, lines: list[str]) -> None:
+    """A sentence with a colon is a sentence: napoleon would take what stands before for a type."""
+    if what in ("attribute", "data", "property") and lines:
+        lines[0] = lines[0].replace(": ", f"{COLON} ")
+
+
+def show_colon(app: Sphinx, what: str, name: str, it: Any, options: Any, lines: list[str]) -> None:
+    """The colon again, after napoleon."""
+    lines[:] = [line.replace(f"{COLON} ", ": ") for line in lines]
+
+
+def without_filler(
+    app: Sphinx, what: str, name: str, it: Any, options: Any, signature: str, returned: str
+) -> tuple[str, str] | None:
+    """What a protocol takes stands in its `__call__`; Python's own signature says nothing."""
+    return ("", returned) if signature == "(*args, **kwargs)" else None
+
+
 def without_unused(
     app: Sphinx, page: str, template: str, context: dict[str, Any], tree: Any
 ) -> None:
@@ -180,6 +208,10 @@ def _search_tools(page: BeautifulSoup) -> None:
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register with Sphinx."""
     app.connect("config-inited", settings, priority=100)
+    app.connect("autodoc-skip-member", told_already)
+    app.connect("autodoc-process-docstring", hide_colon, priority=400)
+    app.connect("autodoc-process-docstring", show_colon, priority=600)
+    app.connect("autodoc-process-signature", without_filler)
     app.connect("html-page-context", without_unused, priority=900)
     app.connect("build-finished", repair, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -11,6 +11,7 @@ import book_pages
 import pytest
 import yaml
 from book_pages import ROOT
+from bs4 import BeautifulSoup
 from figures import architecture
 from figures.page import ConclusionFails, Question, holds, quiz
 
@@ -93,6 +94,16 @@ def test_static_files_are_as_they_stand_in_the_sources(book):
     """A changed style reaches the book though no page has changed."""
     for name in ("book.css", "favicon.svg"):
         assert (book / "_static" / name).read_bytes() == (ROOT / "book/static" / name).read_bytes()
+
+
+@pytest.mark.slow
+def test_the_reference_says_what_the_docstrings_say(book):
+    """Nothing of Python's own filler, and no sentence taken for a type."""
+    told = "".join(p.read_text() for p in (book / "reference").glob("*.html"))
+    assert "Alias for field number" not in told
+    assert ">Type<" not in told
+    assert "(*args, **kwargs)" not in BeautifulSoup(told, "html.parser").get_text()
+    assert "follows: any function of time" in told
 
 
 def test_downloads_are_the_released_notebooks(book):
