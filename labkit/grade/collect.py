@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 import shutil
 import zipfile
+import zlib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -28,7 +29,10 @@ _MOODLE = re.compile(
 _CANVAS = re.compile(
     r"^(?P<name>[^/_]+)_(?P<late>LATE_)?(?P<id>\d+)_(?P<number>\d+)_(?P<file>[^/]+)$"
 )
-_EXCHANGE = re.compile(r"^(?P<name>[^+/]+)\+(?P<assignment>[^+/]+)\+(?P<when>[^+/]+?)(\+[^/]*)?$")
+_EXCHANGE = re.compile(
+    r"^(?P<name>[^.+/][^+/]*)\+(?P<assignment>[^+/]+)\+(?P<when>[^+/]+?)(\+[^/]*)?$"
+)
+_REPEATED = re.compile(r" ?[(-](\d+)\)?\.ipynb$")
 
 
 @dataclass(frozen=True)
@@ -68,11 +72,14 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
 
     Yields:
-        What was done with each file; of several of one student the last counts.
+        What was done with each file; of several of one student the last counts, of several that he
+        handed in together the one that is called as the assignment.
 
     Raises:
-        LabkitError: It is neither, or holds nothing.
+        LabkitError: It is neither, it is damaged, or it holds nothing.
     """
+    if not source.exists():
+        raise LabkitError(f"there is no {source}")
     if source.is_dir():
         found = list(_from_exchange(source, assignment))
     elif zipfile.is_zipfile(source):
@@ -85,7 +92,7 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         raise LabkitError(f"nothing in {source} was handed in for {assignment}")
     before = known(course, assignment)
     people = {one.known: one.student for one in found if one.known is not None}
-    places = folders(people, before, people)
+    places = folders(people, before)
     for name, count in Counter(people.values()).items():
         if count > 1:
             yield Taken("", name, f"{count} students are called so; told apart by their number")
@@ -100,10 +107,12 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         else:
             by_student.setdefault(one.student, []).append(one)
     for student, files in sorted(by_student.items()):
-        files.sort(key=lambda one: (one.when, _number(one.file)))
-        for one in files[:-1]:
-            yield Taken(student, one.file, "not taken; a later one is there")
-        yield _put(course, assignment, files[-1])
+        files.sort(key=lambda one: (one.when, _called(one.file, assignment), _number(one.file)))
+        *others, counts = files
+        for one in others:
+            which = "a later one" if one.file == counts.file else counts.file
+            yield Taken(student, one.file, f"not taken; {which} counts")
+        yield _put(course, assignment, counts)
 
 
 def _put(course: Course, assignment: str, one: _Found) -> Taken:
@@ -124,6 +133,13 @@ def _put(course: Course, assignment: str, one: _Found) -> Taken:
 
 
 def _from_zip(path: Path) -> Iterator[_Found]:
+    try:
+        yield from _read_zip(path)
+    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError) as error:
+        raise LabkitError(f"{path} is damaged or locked: {error}; download it again") from None
+
+
+def _read_zip(path: Path) -> Iterator[_Found]:
     most = Limits().notebook * 2**20
     with zipfile.ZipFile(path) as archive:
         for entry in archive.infolist():
@@ -156,7 +172,7 @@ def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
             if path.is_symlink() or path.stat().st_size > Limits().notebook * 2**20:
                 yield _Found("", path.name, b"")
                 continue
-            yield _Found(_slug(match["name"]), path.name, path.read_bytes(), _time(match["when"]))
+            yield _Found(match["name"], path.name, path.read_bytes(), _time(match["when"]))
 
 
 def _time(text: str) -> str:
@@ -176,5 +192,10 @@ def _slug(name: str) -> str:
 
 def _number(name: str) -> int:
     """The number that a browser or platform put on a repeated file: notebook(3), notebook-3."""
-    match = re.search(r"[(-](\d+)\)?\.ipynb$", name)
+    match = _REPEATED.search(name)
     return int(match[1]) if match else 0
+
+
+def _called(name: str, assignment: str) -> bool:
+    """Whether a file is called as the assignment, whatever number it has."""
+    return _REPEATED.sub(".ipynb", name) == f"{assignment}.ipynb"

@@ -207,10 +207,42 @@ def test_collect_from_downloads(course, tmp_path):
     assert (course.submitted / "carl" / NAME / "timestamp.txt").read_text().startswith("2026-03-01")
     assert [x for x in said if "late" in x and "hopper" in x]
     assert [x for x in said if "no student can be told" in x]
-    assert [x for x in said if "a later one is there" in x]
+    assert [x for x in said if "notebook.ipynb: not taken; notebook(3).ipynb counts" in x]
     assert [str(x) for x in collect(course, NAME, moodle) if "there already" in str(x)]
     with pytest.raises(LabkitError, match="neither a folder nor a zip"):
         list(collect(course, NAME, Path(__file__)))
+    with pytest.raises(LabkitError, match="there is no"):
+        list(collect(course, NAME, tmp_path / "none.zip"))
+
+
+def test_collect_takes_the_notebook_that_is_called_as_the_assignment(course, tmp_path):
+    """A sketch beside it is not taken for it; what came later is, whatever its number."""
+    file = "Ada_101_assignsubmission_file/{}.ipynb"
+    names = [f"{NAME}", f"{NAME}(2)", "zz-sketch-9", "zz"]
+    zipped = download(tmp_path / "a.zip", [file.format(name) for name in names])
+    said = [str(x) for x in collect(course, NAME, zipped)]
+    taken = course.submitted / "Ada" / NAME / f"{NAME}.ipynb"
+    assert taken.read_text() == file.format(f"{NAME}(2)")
+    assert f"Ada: zz.ipynb: not taken; {NAME}(2).ipynb counts" in said
+
+
+def test_collect_keeps_the_names_of_the_exchange(course, tmp_path):
+    """The exchange hands back under the name that it took; none can lead out of the folder."""
+    for who in ("ada.l@uni.org", "..", ".hidden"):
+        folder = tmp_path / "in" / f"{who}+{NAME}+2026-03-01 10:00:00 UTC"
+        folder.mkdir(parents=True)
+        (folder / f"{NAME}.ipynb").write_text(who)
+    assert [x.student for x in collect(course, NAME, tmp_path / "in")] == ["ada.l@uni.org"]
+    assert [path.name for path in course.submitted.iterdir()] == ["ada.l@uni.org"]
+
+
+def test_a_damaged_download_is_a_sentence(course, tmp_path):
+    """A zip with a broken file in it says so, and nothing of it is taken."""
+    path = download(tmp_path / "a.zip", ["Ada_1_assignsubmission_file/n.ipynb"])
+    path.write_bytes(path.read_bytes().replace(b"n.ipynbAda", b"n.ipynbBda"))
+    with pytest.raises(LabkitError, match="damaged or locked"):
+        list(collect(course, NAME, path))
+    assert not course.submitted.exists()
 
 
 def download(path, names):
