@@ -39,14 +39,11 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
         What was done, a sentence each, with its time.
 
     Raises:
-        LabkitError: A mark is not what the submission deserves.
+        LabkitError: The folder holds something else, or a mark is not what the submission deserves.
     """
     stage = Course(to.resolve())
     clock = _Clock()
-    if not (stage.root / "nbgrader_config.py").exists():
-        stage.root.mkdir(parents=True, exist_ok=True)
-        (stage.root / "solutions").symlink_to(course.root / "solutions")
-        shutil.copy(course.root / "nbgrader_config.py", stage.root)
+    _set_up(stage, course)
     download = stage.root / f"{name}-{count}-moodle.zip"
     if not download.exists():
         yield clock.says(str(release(stage, name, PUBLIC_SEED)))
@@ -78,6 +75,21 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
     if wrong:
         raise LabkitError(f"{len(wrong)} marks are not what was deserved: {'; '.join(wrong[:3])}")
     yield clock.says("every mark is what was deserved")
+
+
+def _set_up(stage: Course, course: Course) -> None:
+    """A course that borrows its sources; in a true one this class would take the true one's place.
+
+    Raises:
+        LabkitError: Something else lies there.
+    """
+    sources = stage.root / "solutions"
+    if not sources.is_symlink():
+        if stage.root.exists() and any(stage.root.iterdir()):
+            raise LabkitError(f"{stage.root} is no rehearsal's; give a folder that is new or empty")
+        stage.root.mkdir(parents=True, exist_ok=True)
+        sources.symlink_to(course.root / "solutions")
+    shutil.copy(course.root / "nbgrader_config.py", stage.root)
 
 
 class _Clock:
