@@ -13,6 +13,7 @@ from ..errors import LabkitError
 from . import lms
 from .course import Course
 from .release import release
+from .results import write
 
 PUBLIC_SEED = 2019
 """The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
@@ -52,16 +53,20 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
         raise LabkitError(f"seed {seed} was used before, so its cases may be known; take another")
     seed = secrets.randbelow(2**31) if seed is None else seed
     archive(course)
+    record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": {}}
+    _keep(course, record)  # first, so that a release that fails is made again with this seed
     for name in names:
         release(course, name, seed)
-    bundles = {
+    record["bundles"] = {
         path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
         for path in sorted(course.bundle.glob("*.json"))
     }
-    record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": bundles}
-    _private(course).mkdir(exist_ok=True)
-    (_private(course) / "term.json").write_text(json.dumps(record, indent=1) + "\n")
+    _keep(course, record)
     return record
+
+
+def _keep(course: Course, record: dict[str, Any]) -> None:
+    write(_private(course) / "term.json", json.dumps(record, indent=1) + "\n")
 
 
 def archive(course: Course) -> Path | None:

@@ -55,6 +55,18 @@ def test_a_name_that_is_unknown_is_told_before_anything_is_archived(course):
     assert course.submitted.exists() and not course.release.exists()
 
 
+def test_a_release_that_fails_leaves_the_new_seed(course, monkeypatch):
+    """What is mended and released again has the term's own seed, not the public one."""
+
+    def fails(*args):
+        raise LabkitError("nbgrader could not make it")
+
+    monkeypatch.setattr(term, "release", fails)
+    with pytest.raises(LabkitError, match="could not make it"):
+        term.new_term(course, 41)
+    assert term.seed_of(course) == 41
+
+
 def test_the_students_repository_holds_no_answer(tmp_path):
     """The export for students has the notebooks and labkit, and nothing of the solutions."""
     student, private = export_course(Course(ROOT), tmp_path / "out")
