@@ -18,7 +18,7 @@ from .written import in_release_form, release_source, save, with_verdicts
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str]:
-    """Write results into the gradebook, all of them or none, and a notebook for each.
+    """Write results into the gradebook, the scores of all or of none, and a notebook for each.
 
     Args:
         course: The course.
@@ -31,12 +31,15 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
     source, notes = release_source(course, assignment), []
     with open_gradebook(course) as (book, api):
         late = _late_rule(api)
-        for result in results:
+        submissions = []
+        for result in results:  # first: with each of these nbgrader commits what was done before
             when, note = timestamp(course, result)
             notes += [f"{result.student}: {note}"] if note else []
             book.update_or_create_student(result.student)
             known = {} if when is None else {"timestamp": when}
-            submission = book.update_or_create_submission(assignment, result.student, **known)
+            made = book.update_or_create_submission(assignment, result.student, **known)
+            submissions.append((made, result))
+        for submission, result in submissions:
             notes += _write_scores(submission, result)
             submission.late_submission_penalty = None
             for notebook in submission.notebooks:

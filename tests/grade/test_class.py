@@ -9,12 +9,14 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from handmade import QUICK, ROOT
 
 from labkit.cli import main
+from labkit.grade import gradebook
 from labkit.grade.batch import Graded, How, common_failures, grade_class, in_shard
 from labkit.grade.engines import grade_with_nbgrader, students
 from labkit.grade.gradebook import open_gradebook, record
@@ -204,6 +206,23 @@ def test_manual_grades_and_comments_survive(part):
         assert (grade.manual_score, grade.auto_score, grade.extra_credit) == (1.5, 4.0, 0.5)
         assert book.find_comment("circle", NAME, NAME, who.student).manual_comment == "see me"
         assert book.find_submission(NAME, who.student).score == 20 - 4 + 1.5 + 0.5
+
+
+def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
+    """A disk that is full in the middle leaves every score of before."""
+    done = [one.result for one in grade_all(part, jobs=2)]
+    record(part, NAME, [replace(result, questions=()) for result in done])
+    rooms = iter([True, True, False])
+
+    def save(*args):
+        if not next(rooms):
+            raise OSError("no room")
+
+    monkeypatch.setattr(gradebook, "save", save)
+    with pytest.raises(OSError, match="no room"):
+        record(part, NAME, done)
+    with open_gradebook(part) as (book, _):
+        assert {s.score for s in book.assignment_submissions(NAME)} == {0.0}
 
 
 def test_late_rules_and_timestamps(part):
