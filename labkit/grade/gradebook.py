@@ -12,8 +12,9 @@ from contextlib import contextmanager
 from datetime import datetime
 from typing import Any
 
+from ..errors import LabkitError
 from .course import Course
-from .results import Result
+from .results import Bundle, Result
 from .written import in_release_form, release_source, save, with_verdicts
 
 
@@ -27,9 +28,18 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
 
     Returns:
         What a person should look at, a sentence each.
+
+    Raises:
+        LabkitError: The gradebook does not know the assignment.
     """
     source, notes = release_source(course, assignment), []
     with open_gradebook(course) as (book, api):
+        if assignment not in {known.name for known in book.assignments}:
+            seed = Bundle.of(course, assignment).data["seed"]
+            raise LabkitError(
+                f"the gradebook does not know {assignment}, as if it were a new one; type: "
+                f"labkit release {assignment} --seed {seed}"
+            )
         late = _late_rule(api)
         submissions = []
         for result in results:  # first: with each of these nbgrader commits what was done before

@@ -58,7 +58,7 @@ def moves(
             yield Move(now.get(result.student), result)
 
 
-def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: bool) -> list[Move]:
+def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: bool) -> list[Result]:
     """Let new results count; the old ones are kept beside them.
 
     Args:
@@ -68,12 +68,10 @@ def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: boo
         lower: Whether marks may fall; otherwise those keep their old result.
 
     Returns:
-        What was left as it was.
+        Those that count now.
     """
-    results, left = Results(course, assignment), []
-    for move in moved:
-        if move.by < 0 and move.before is not None and not lower:
-            left.append(move)
-        else:
-            results.keep(move.after)
-    return left
+    results = Results(course, assignment)
+    accepted = [move.after for move in moved if lower or move.by >= 0]
+    for result in accepted:
+        results.keep(result)
+    return accepted

@@ -189,15 +189,17 @@ def _shard(text: str) -> tuple[int, int]:
 def _with_nbgrader(here: Course, args: argparse.Namespace, who: list[str]) -> int:
     from .engines import grade_with_nbgrader
 
+    failed = False
     for number, student in enumerate(who, start=1):
         mark = grade_with_nbgrader(here, args.name, student)
+        failed |= mark.score is None
         if args.json:
             print(json.dumps(vars(mark)), flush=True)
             continue
         got = "not graded" if mark.score is None else f"{mark.score:g} of {mark.points:g}"
         says = f"; {mark.says}" if mark.says else ""
         print(f"[{number}/{len(who)}] {student}: {got}{says}", flush=True)
-    return 0
+    return 1 if failed else 0
 
 
 def _tell(sentences: Iterable[str], where: Any) -> None:

@@ -92,6 +92,7 @@ def regrade(args: argparse.Namespace) -> int:
     who = in_part(here, args.name, args.student)
     found = list(moves(here, args.name, who, How(jobs=args.jobs or workers())))
     moved = [m for m in found if isinstance(m, Move)]
+    failed = [error for error in found if isinstance(error, LabkitError)]
     for move in sorted(moved, key=lambda m: m.by):
         if move.by or move.before is None:
             print(move)
@@ -101,17 +102,16 @@ def regrade(args: argparse.Namespace) -> int:
     if before:
         full = ", ".join(f"{points:g}" for points in sorted(before))
         print(f"full marks were {full} and are {moved[0].after.points:g} now")
-    for error in found:
-        if isinstance(error, LabkitError):
-            print(f"not graded: {error}", file=sys.stderr)
-    if args.diff:
-        return 0
-    left = accept(here, args.name, moved, lower=args.lower)
-    if left:
-        print(f"{len(left)} marks would fall and stay as they are; --lower lets them")
-    for sentence in record(here, args.name, [m.after for m in moved if m not in left]):
-        print(sentence)
-    return 0
+    for error in failed:
+        print(f"not graded: {error}", file=sys.stderr)
+    if not args.diff:
+        accepted = accept(here, args.name, moved, lower=args.lower)
+        if len(accepted) < len(moved):
+            left = len(moved) - len(accepted)
+            print(f"{left} marks would fall and stay as they are; --lower lets them")
+        for sentence in record(here, args.name, accepted):
+            print(sentence)
+    return 1 if failed else 0
 
 
 def class_report(args: argparse.Namespace) -> int:

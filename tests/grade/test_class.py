@@ -208,6 +208,29 @@ def test_manual_grades_and_comments_survive(part):
         assert book.find_submission(NAME, who.student).score == 20 - 4 + 1.5 + 0.5
 
 
+def test_a_gradebook_that_is_new_is_told_what_was_released(part, capsys):
+    """Where gradebook.db was deleted, a sentence says how it learns of the assignment again."""
+    (part.root / "gradebook.db").unlink()
+    who = students(part, NAME)[0]
+    arguments = ["--student", who, "--course", str(part.root)]
+    assert main(["grade", NAME, *arguments]) == 2
+    assert f"labkit release {NAME} --seed 7" in capsys.readouterr().err
+    assert main(["release", NAME, "--seed", "7", *arguments[2:]]) == 0
+    assert main(["grade", NAME, *arguments]) == 0
+    assert "as before" in capsys.readouterr().out
+
+
+def test_an_interrupt_is_a_line(part, capsys, monkeypatch):
+    """Who stops the command reads that it stopped, and nothing of Python's."""
+
+    def stopped(*args, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("labkit.grade.batch.grade_class", stopped)
+    assert main(["grade", NAME, "--course", str(part.root)]) == 130
+    assert capsys.readouterr().err == "labkit grade: stopped\n"
+
+
 def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
     """A disk that is full in the middle leaves every score of before."""
     done = [one.result for one in grade_all(part, jobs=2)]
