@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..check import mark, read_question
+from ..check import mark
 from ..check.question import Question
 from ..errors import LabkitError
 from . import synthetic_kinds
@@ -124,13 +124,12 @@ def make_class(course: Course, assignment: str, seed: int, count: int = 40) -> d
     Returns:
         By student: kind, points of each question, score; also in ``build/class/``.
     """
-    from .release import stub_notebook
-
     random = np.random.default_rng(seed)
     bundle = Bundle.of(course, assignment)
     problems = {problem.name: problem for problem in course.problems(assignment)}
-    questions = {q["name"]: read_question(q) for q in bundle.data["questions"]}
-    blank = json.loads(json.dumps(stub_notebook(course, assignment)))["cells"]
+    questions = {question.name: question for question in bundle.questions}
+    released = course.release / assignment / f"{assignment}.ipynb"
+    blank = json.loads(released.read_text(encoding="utf-8"))["cells"]
     kinds = [*synthetic_kinds.KINDS.items()][:count]
     kinds += [(f"person {k}", Draft.anyhow) for k in range(count - len(kinds))]
     order = random.permutation(count)

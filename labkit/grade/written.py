@@ -12,10 +12,9 @@ from typing import Any
 import nbformat
 
 from .course import Course
+from .notebook import Notebook, without_hidden
 from .results import Result, write
 from .says import question_lines
-
-Notebook = Any
 
 
 def in_release_form(source: Notebook, result: Result) -> Notebook:
@@ -51,7 +50,7 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
         if not cell.metadata.get("nbgrader", {}).get("grade"):
             continue
         name = grade_id.removesuffix("-check")
-        cell.source = cell.source.rpartition("### END HIDDEN TESTS\n")[2]
+        cell.source = without_hidden(cell.source)
         question = verdicts.get(name)
         text = "\n".join(question_lines(question)) if question else result.rejected
         earned = question["earned"] if question else 0.0

@@ -172,6 +172,21 @@ def test_a_question_goes_unless_somebody_marked_it(marked):
     assert marks(course)["ada"][f"{LATER}-check"] == 2.0
 
 
+def test_a_release_that_is_refused_leaves_the_gradebook_alone(marked, monkeypatch):
+    """Where an answer cannot be copied, no row is added and no automatic mark is taken away."""
+    course, become = marked
+    before = marks(course)
+
+    def refused(*args):
+        raise LabkitError("keep it whole")
+
+    become(True)
+    monkeypatch.setattr("labkit.grade.release.solution_notebook", refused)
+    with pytest.raises(LabkitError, match="keep it whole"):
+        release(course, NAME, SEED)
+    assert marks(course) == before
+
+
 def test_a_question_without_points_is_reported_as_void(marked):
     """A voided question is in the report, without a mean."""
     course, _ = marked
