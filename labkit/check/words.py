@@ -10,18 +10,19 @@ from .question import Question, Test
 WIDTH = 79
 """Of a line, in characters."""
 
-_HEADS = {
+HEADS = {
     Outcome.NOT_ATTEMPTED: "not attempted yet",
     Outcome.ERROR: "it stopped with an error",
     Outcome.WRONG: "not yet right",
     Outcome.RIGHT: "right",
 }
+"""What each outcome is called."""
 
 
 def head(verdict: Verdict) -> str:
     """The verdict in a line."""
     return (
-        f"{verdict.name}: {_HEADS[verdict.outcome]}. "
+        f"{verdict.name}: {HEADS[verdict.outcome]}. "
         f"{verdict.earned:g} of {verdict.points:g} points."
     )
 

@@ -71,6 +71,10 @@ class Result:
             data[name] = tuple(data[name])
         return cls(**data)
 
+    def __str__(self) -> str:
+        came = f"{self.score:g} of {self.points:g}"
+        return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
+
     @property
     def verdict(self) -> dict[str, Any]:
         """Everything that must come out the same wherever it is graded."""

@@ -6,6 +6,7 @@ import argparse
 import json
 import sys
 from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -121,7 +122,6 @@ def grade(args: argparse.Namespace) -> int:
     from .batch import How, common_failures, grade_class, workers
     from .gradebook import record
     from .results import Result, Results
-    from .says import line
 
     here = course_with(args)
     who = in_part(here, args.name, args.student)
@@ -143,10 +143,10 @@ def grade(args: argparse.Namespace) -> int:
             continue
         graded.append(one.result)
         if args.json:
-            print(json.dumps(json.loads(one.result.text())), flush=True)
+            print(json.dumps(asdict(one.result)), flush=True)
         else:
             says = f" ({one.says})" if one.says else ""
-            print(f"[{number}/{len(who)}] {line(one.result)}{says}", flush=True)
+            print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
     if failed and not graded:
         raise failed[0]
     say = sys.stderr if args.json else sys.stdout
