@@ -10,6 +10,9 @@ from pathlib import Path
 from ..errors import LabkitError, UnknownName
 from .problem import Problem
 
+PUBLIC_SEED = 2019
+"""The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
+
 
 @dataclass(frozen=True)
 class Course:

@@ -12,7 +12,7 @@ from ..errors import LabkitError
 from .batch import Graded, How, common_failures, grade_class
 from .class_report import report
 from .collect import collect
-from .course import Course
+from .course import PUBLIC_SEED, Course
 from .engines import students
 from .export import LAYOUTS, as_csv, rows
 from .feedback import write_feedback
@@ -20,7 +20,6 @@ from .gradebook import comments, record
 from .release import release
 from .results import Results, write
 from .synthetic import differences, make_class
-from .term import PUBLIC_SEED
 
 LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 

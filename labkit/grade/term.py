@@ -11,12 +11,9 @@ from typing import Any
 
 from ..errors import LabkitError
 from . import lms
-from .course import Course
+from .course import PUBLIC_SEED, Course
 from .release import release
 from .results import write
-
-PUBLIC_SEED = 2019
-"""The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
 
 NAMED = ("submitted", "autograded", "feedback", "results", "gradebook.db", lms.FILE)
 """Where students' names stand; all of it is ignored by git."""

@@ -12,23 +12,14 @@ from typing import Any
 
 from ..errors import LabkitError
 from ..verbs import Verbs, add_verb, whole
-from .course import Course
-from .verbs_course import course_option, course_with
+from .course import PUBLIC_SEED, Course
+from .verbs_course import assignment_verb, course_option, course_with
 
 
 def add(verbs: Verbs) -> None:
-    """All of them."""
-    add_grade(verbs)
-    add_make_class(verbs)
-    add_report_card(verbs)
-    add_doctor(verbs)
-
-
-def add_grade(verbs: Verbs) -> None:
-    """``labkit grade``."""
+    """``grade``, ``make-class``, ``report-card`` and ``doctor``."""
     does = "grade what was handed in and is not graded yet, each in a sandbox of its own"
-    verb = add_verb(verbs, "grade", grade, does, "01_paths --student ada")
-    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    verb = assignment_verb(verbs, "grade", grade, does, "--student ada")
     verb.add_argument("--student", metavar="S", help="only this one")
     verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
     verb.add_argument("--json", action="store_true", help="one JSON object per line, for programs")
@@ -54,32 +45,28 @@ def add_grade(verbs: Verbs) -> None:
         action="store_true",
         help="run students' code with your own rights, able to read and delete your files",
     )
-    course_option(verb)
 
-
-def add_make_class(verbs: Verbs) -> None:
-    """``labkit make-class``."""
     does = "write a class that never was, to try things on"
-    verb = add_verb(verbs, "make-class", make_class, does, "01_paths --count 12")
-    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
-    verb.add_argument("--seed", type=whole(0), default=2019, help="of the class (default: 2019)")
+    verb = assignment_verb(verbs, "make-class", make_class, does, "--count 12")
+    _seed(verb, "of the class")
     verb.add_argument("--count", type=whole(1), default=40, help="how many students (default: 40)")
-    course_option(verb)
 
-
-def add_report_card(verbs: Verbs) -> None:
-    """``labkit report-card``."""
     does = "how well the checks tell right from wrong"
     example = "01_paths --mistakes seen_in_class.py"
     verb = add_verb(verbs, "report-card", report_card, does, example)
     verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
-    verb.add_argument(
-        "--seed", type=whole(0), default=2019, help="of the first draw (default: 2019)"
-    )
+    _seed(verb, "of the first draw")
     of = "a Python file with a dict {} = {{question: [functions]}}"
     verb.add_argument("--mistakes", type=Path, metavar="FILE", help=of.format("MISTAKES"))
     verb.add_argument("--variants", type=Path, metavar="FILE", help=of.format("VARIANTS"))
     course_option(verb)
+
+    add_verb(verbs, "doctor", doctor, "what is missing on this machine, and how to get it", "")
+
+
+def _seed(verb: argparse.ArgumentParser, of: str) -> None:
+    says = f"{of} (default: {PUBLIC_SEED})"
+    verb.add_argument("--seed", type=whole(0), default=PUBLIC_SEED, help=says)
 
 
 def report_card(args: argparse.Namespace) -> int:
@@ -205,11 +192,6 @@ def _with_nbgrader(here: Course, args: argparse.Namespace, who: list[str]) -> in
 def _tell(sentences: Iterable[str], where: Any) -> None:
     for sentence in sentences:
         print(sentence, file=where, flush=True)
-
-
-def add_doctor(verbs: Verbs) -> None:
-    """``labkit doctor``."""
-    add_verb(verbs, "doctor", doctor, "what is missing on this machine, and how to get it", "")
 
 
 def doctor(args: argparse.Namespace) -> int:

@@ -5,13 +5,23 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..verbs import Verbs, add_verb, whole
+from ..verbs import Do, Verbs, add_verb, whole
 from .course import Course
 
 
 def course_option(verb: argparse.ArgumentParser) -> None:
     """The option that says which course."""
     verb.add_argument("--course", type=Path, metavar="DIR", help="default: the one around you")
+
+
+def assignment_verb(
+    verbs: Verbs, name: str, do: Do, does: str, example: str = ""
+) -> argparse.ArgumentParser:
+    """A verb on one assignment of a course."""
+    verb = add_verb(verbs, name, do, does, f"01_paths {example}")
+    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    course_option(verb)
+    return verb
 
 
 def course_with(args: argparse.Namespace) -> Course:

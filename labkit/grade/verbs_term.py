@@ -7,16 +7,18 @@ import sys
 from pathlib import Path
 
 from ..errors import LabkitError
-from ..verbs import Do, Verbs, add_verb, whole
+from ..verbs import Verbs, whole
 from .verbs import in_part, nobody
-from .verbs_course import course_option, course_with
+from .verbs_course import assignment_verb, course_with
 
 
 def add(verbs: Verbs) -> None:
-    """All of them."""
-    verb = _verb(verbs, "feedback", feedback, "write a page for each student", "--student ada")
+    """``feedback``, ``export``, ``regrade``, ``class-report``, ``collect`` and ``rehearse``."""
+    verb = assignment_verb(
+        verbs, "feedback", feedback, "write a page for each student", "--student ada"
+    )
     verb.add_argument("--student", metavar="S", help="only this one")
-    verb = _verb(verbs, "export", export, "marks as a table", "--to marks.csv")
+    verb = assignment_verb(verbs, "export", export, "marks as a table", "--to marks.csv")
     verb.add_argument(
         "--layout",
         choices=("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"),
@@ -28,23 +30,23 @@ def add(verbs: Verbs) -> None:
     )
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
     does = "grade again after a test or its points have changed"
-    verb = _verb(verbs, "regrade", regrade, does, "--diff")
+    verb = assignment_verb(verbs, "regrade", regrade, does, "--diff")
     verb.add_argument("--student", metavar="S", help="only this one")
     verb.add_argument("--diff", action="store_true", help="only say whose mark would move")
     verb.add_argument("--lower", action="store_true", help="let marks fall too")
     verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
     does = "what the class got right, and what it got wrong"
-    verb = _verb(verbs, "class-report", class_report, does, "--names")
+    verb = assignment_verb(verbs, "class-report", class_report, does, "--names")
     verb.add_argument("--names", action="store_true", help="with names, for your eyes only")
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
     verb.add_argument(
         "--jplag", type=Path, metavar="DIR", help="also write answers for JPlag there"
     )
     does = "take downloads from Moodle, Canvas or nbgrader's exchange"
-    verb = _verb(verbs, "collect", collect, does, "moodle.zip")
+    verb = assignment_verb(verbs, "collect", collect, does, "moodle.zip")
     verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
     does = "play a term through with a class that never was, in a folder"
-    verb = _verb(verbs, "rehearse", rehearse, does, "--to trial")
+    verb = assignment_verb(verbs, "rehearse", rehearse, does, "--to trial")
     verb.add_argument("--count", type=whole(1), default=12, help="how many students (default: 12)")
     verb.add_argument("--to", type=Path, required=True, metavar="DIR", help="made if need be")
     verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
@@ -150,14 +152,6 @@ def rehearse(args: argparse.Namespace) -> int:
     for sentence in play(here, args.name, args.to, args.count, How(jobs=args.jobs or workers())):
         print(sentence, flush=True)
     return 0
-
-
-def _verb(verbs: Verbs, name: str, do: Do, does: str, example: str = "") -> argparse.ArgumentParser:
-    """A verb on one assignment."""
-    verb = add_verb(verbs, name, do, does, f"01_paths {example}")
-    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
-    course_option(verb)
-    return verb
 
 
 def _out(text: str, where: Path | None) -> None:

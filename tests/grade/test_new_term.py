@@ -9,7 +9,7 @@ from courses import copied
 from labkit import LabkitError
 from labkit.errors import UnknownName
 from labkit.grade import term
-from labkit.grade.course import Course
+from labkit.grade.course import PUBLIC_SEED, Course
 from labkit.grade.release import FORBIDDEN
 from labkit.grade.repositories import export_course
 
@@ -26,7 +26,7 @@ def test_a_term_has_a_seed_of_its_own_and_a_record(course):
     """A new term draws a seed that is not the public one, and keeps each bundle's hash."""
     record = term.new_term(course, None, ("01_paths",))
     bundle = json.loads((course.bundle / "01_paths.json").read_text())
-    assert record["seed"] == bundle["seed"] == term.seed_of(course) != term.PUBLIC_SEED
+    assert record["seed"] == bundle["seed"] == term.seed_of(course) != PUBLIC_SEED
     assert record["bundles"] == {"01_paths": bundle["hash"]}
 
 
@@ -40,7 +40,7 @@ def test_the_next_term_archives_the_names_and_forgets_them(course):
     assert not folder.exists()
 
 
-@pytest.mark.parametrize("seed", [term.PUBLIC_SEED])
+@pytest.mark.parametrize("seed", [PUBLIC_SEED])
 def test_a_known_seed_is_refused(course, seed):
     """The public seed makes no secret, and the sentence says so."""
     with pytest.raises(LabkitError, match="may be known; take another"):
