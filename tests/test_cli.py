@@ -69,7 +69,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["forget", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
-        (["rehearse", "01_paths", "--to", WARMUP, "--course", ROOT], "File exists"),
+        (["rehearse", "01_paths", "--to", WARMUP, "--course", ROOT], "Not a directory"),
     ],
 )
 def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):
