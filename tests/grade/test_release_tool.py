@@ -94,6 +94,14 @@ def test_an_answer_that_leaks_stops_the_release(tmp_path):
     assert not (course.release / NAME).exists()
 
 
+def test_a_notebook_without_problems_is_a_sentence(tmp_path):
+    """A source that somebody has begun says which file is still to be written."""
+    course = copied(tmp_path)
+    (tmp_path / "solutions/notebooks/08_dance.py").write_text("# %%\n")
+    with pytest.raises(LabkitError, match=r"write solutions/problems/dance\.py with PROBLEMS"):
+        course.problems("08_dance")
+
+
 def test_mistakes_of_the_caller_are_one_sentence(capsys):
     """An unknown assignment, a folder without a course: exit code 2 and a way out."""
     assert main(["release", "09_nothing", "--course", str(COURSE.root)]) == 2
