@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable
 from importlib import import_module
-from inspect import isbuiltin, isclass, isfunction
+from inspect import isclass, isfunction
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -44,6 +44,8 @@ def withhold(names: Iterable[str], question: str, student: dict[str, Any]) -> No
 
 
 def _stop(owner: Any, key: str, target: Any, says: str, student: dict[str, Any]) -> None:
+    if not callable(target):
+        raise AssertionError(key)
     if isclass(target):
         try:
             made = target.__init__
@@ -59,8 +61,6 @@ def _stop(owner: Any, key: str, target: Any, says: str, student: dict[str, Any])
     for name, value in list(student.items()):
         if value is target:
             student[name] = guard
-    if not (isclass(target) or isbuiltin(target) or callable(target)):
-        raise AssertionError(key)
 
 
 def _stop_in_place(function: FunctionType, says: str) -> None:
