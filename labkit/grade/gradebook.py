@@ -14,6 +14,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .course import Course
+from .engines import nbgrader_api
 from .results import Bundle, Result
 from .written import in_release_form, release_source, save, with_verdicts
 
@@ -33,14 +34,14 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
         LabkitError: The gradebook does not know the assignment.
     """
     source, notes = release_source(course, assignment), []
-    with open_gradebook(course) as (book, api):
+    late = _late_rule(course)
+    with open_gradebook(course) as book:
         if assignment not in {known.name for known in book.assignments}:
             seed = Bundle.of(course, assignment).data["seed"]
             raise LabkitError(
                 f"the gradebook does not know {assignment}, as if it were a new one; type: "
                 f"labkit release {assignment} --seed {seed}"
             )
-        late = _late_rule(api)
         submissions = []
         for result in results:  # first: with each of these nbgrader commits what was done before
             when, note = timestamp(course, result)
@@ -65,7 +66,7 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
 def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
     """What was written by hand: by student, then by question."""
     found: dict[str, dict[str, str]] = {}
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         for submission in book.assignment_submissions(assignment):
             said = {c.name: c.manual_comment for n in submission.notebooks for c in n.comments}
             found[str(submission.student.id)] = {k: v for k, v in said.items() if v}
@@ -73,17 +74,11 @@ def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
 
 
 @contextmanager
-def open_gradebook(course: Course) -> Iterator[tuple[Any, Any]]:
-    """The gradebook as nbgrader sees it, and nbgrader's interface.
-
-    Whatever is wrong, nothing is written by halves.
-    """
-    from .engines import nbgrader_api
-
-    api = nbgrader_api(course, quiet=logging.CRITICAL)
-    with quiet_database(), api.gradebook as book:
+def open_gradebook(course: Course) -> Iterator[Any]:
+    """The gradebook as nbgrader sees it; whatever is wrong, nothing is written by halves."""
+    with quiet_database(), nbgrader_api(course).gradebook as book:
         try:
-            yield book, api
+            yield book
         except BaseException:
             book.db.rollback()
             raise
@@ -130,13 +125,14 @@ def _write_scores(submission: Any, result: Result) -> Iterator[str]:
             grade.auto_score = score
 
 
-def _late_rule(api: Any) -> Any:
+def _late_rule(course: Course) -> Any:
     """The course's own rule for late work, from nbgrader's settings."""
     from nbgrader.plugins import LateSubmissionPlugin
     from traitlets.utils.importstring import import_item
 
-    chosen = api.config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
-    plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=api.config)
+    config = nbgrader_api(course).config
+    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
+    plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
     plugin.log.setLevel(logging.CRITICAL)
 
     def late(student: str, notebook: Any, submission: Any) -> float | None:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import logging
 import shutil
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -140,7 +139,7 @@ def _generate(course: Course, name: str) -> None:
     from .engines import nbgrader_api, reason
 
     shutil.rmtree(course.release / name, ignore_errors=True)
-    api = nbgrader_api(course, quiet=logging.CRITICAL)
+    api = nbgrader_api(course)
     result = api.generate_assignment(name, force=True, create=True)
     if not result["success"]:
         raise LabkitError(

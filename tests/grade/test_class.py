@@ -56,7 +56,7 @@ def test_synthetic_class_gets_what_it_deserves(course):
     assert len(done) == 40
     assert not list(differences(course, NAME))
     record(course, NAME, [one.result for one in done])
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
     assert scores == {one.result.student: one.result.score for one in done}
 
@@ -195,13 +195,13 @@ def test_manual_grades_and_comments_survive(part):
     done = [one.result for one in grade_all(part, jobs=2)]
     record(part, NAME, done)
     who = next(r for r in done if r.score == r.points)
-    with open_gradebook(part) as (book, _):
+    with open_gradebook(part) as book:
         grade = book.find_grade("circle-check", NAME, NAME, who.student)
         grade.manual_score, grade.extra_credit = 1.5, 0.5
         book.find_comment("circle", NAME, NAME, who.student).manual_comment = "see me"
         book.db.commit()
     record(part, NAME, done)
-    with open_gradebook(part) as (book, _):
+    with open_gradebook(part) as book:
         grade = book.find_grade("circle-check", NAME, NAME, who.student)
         assert (grade.manual_score, grade.auto_score, grade.extra_credit) == (1.5, 4.0, 0.5)
         assert book.find_comment("circle", NAME, NAME, who.student).manual_comment == "see me"
@@ -244,7 +244,7 @@ def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
     monkeypatch.setattr(gradebook, "save", save)
     with pytest.raises(OSError, match="no room"):
         record(part, NAME, done)
-    with open_gradebook(part) as (book, _):
+    with open_gradebook(part) as book:
         assert {s.score for s in book.assignment_submissions(NAME)} == {0.0}
 
 
@@ -256,7 +256,7 @@ def test_late_rules_and_timestamps(part):
     (part.submitted / odd / NAME / "timestamp.txt").write_text("yesterday or so")
     notes = record(part, NAME, done)
     assert [note for note in notes if odd in note and "no time" in note]
-    with open_gradebook(part) as (book, _):
+    with open_gradebook(part) as book:
         assert book.find_submission(NAME, early).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
 
