@@ -1,5 +1,6 @@
 """Before handing in: what a look at the file tells."""
 
+import copy
 import json
 import shutil
 from pathlib import Path
@@ -141,6 +142,19 @@ def test_merging_after_a_question_was_added(folder):
     assert [merged[k] for k in kept] == [
         c for c in new if not c["source"].startswith("def witness")
     ]
+
+
+def test_merging_keeps_an_answer_whatever_stands_around_it(folder):
+    """The stub's line left below an answer, or an empty stub further down, takes nothing away."""
+    new = read_cells(folder / "01_paths.ipynb")
+    mine = copy.deepcopy(new)
+    (cell,) = (c for c in mine if "def witness" in c["source"])
+    stub = copy.deepcopy(cell) | {"id": "pasted"}
+    cell["source"] = cell["source"].replace("    raise", "    return 2.0\n    raise")
+    for place in (mine, [*mine, stub]):
+        assert cell["source"] in [c["source"] for c in merge(place, new)]
+    cell["source"] = "def witness(theta, duration):\n    return (1.0"
+    assert cell["source"] in [c["source"] for c in merge(mine, new)], "though Python cannot read it"
 
 
 def test_merging_an_untouched_notebook_gives_the_new_release(folder):
