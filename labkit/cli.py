@@ -24,6 +24,8 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    how well the checks tell right from wrong
 """
+FOR_INSTRUCTORS = ("nbgrader", "jupytext")
+"""Packages that a student's environment does without."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -67,6 +69,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         return int(args.do(args))
     except LabkitError as error:
         print(f"labkit {args.verb}: {error}", file=sys.stderr)
+        return 2
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package not in FOR_INSTRUCTORS:
+            raise
+        mend = "type: pip install 'labkit[instructor]'"
+        print(f"labkit {args.verb}: {package} is missing; {mend}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print(f"labkit {args.verb}: stopped", file=sys.stderr)

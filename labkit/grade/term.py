@@ -24,9 +24,21 @@ def _private(course: Course) -> Path:
 
 
 def seed_of(course: Course) -> int:
-    """The course's own seed, or the public one if no term was begun."""
+    """The course's own seed, or the public one if no term was begun.
+
+    Raises:
+        LabkitError: The term's record cannot be read.
+    """
     file = _private(course) / "term.json"
-    return int(json.loads(file.read_text())["seed"]) if file.exists() else PUBLIC_SEED
+    if not file.exists():
+        return PUBLIC_SEED
+    try:
+        return int(json.loads(file.read_text(encoding="utf-8"))["seed"])
+    except (ValueError, KeyError, TypeError):
+        raise LabkitError(
+            f"{file} is damaged and holds no seed; restore it, or write the term's as "
+            '{"seed": 123}'
+        ) from None
 
 
 def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:

@@ -67,6 +67,16 @@ def test_a_release_that_fails_leaves_the_new_seed(course, monkeypatch):
     assert term.seed_of(course) == 41
 
 
+@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"seed": "secret"}'])
+def test_a_damaged_record_is_a_sentence(course, text):
+    """Nothing is released with the public seed because the term's own cannot be read."""
+    file = course.root / "course_private" / "term.json"
+    file.parent.mkdir()
+    file.write_text(text)
+    with pytest.raises(LabkitError, match="holds no seed; restore it"):
+        term.seed_of(course)
+
+
 def test_the_students_repository_holds_no_answer(tmp_path):
     """The export for students has the notebooks and labkit, and nothing of the solutions."""
     student, private = export_course(Course(ROOT), tmp_path / "out")

@@ -1,6 +1,7 @@
 """Making notebooks from sources: what is fed in, what comes out, what is refused."""
 
 import json
+import sys
 from pathlib import Path
 
 import nbformat
@@ -100,6 +101,18 @@ def test_a_notebook_without_problems_is_a_sentence(tmp_path):
     (tmp_path / "solutions/notebooks/08_dance.py").write_text("# %%\n")
     with pytest.raises(LabkitError, match=r"write solutions/problems/dance\.py with PROBLEMS"):
         course.problems("08_dance")
+
+
+@pytest.mark.parametrize("package", ["nbgrader", "jupytext"])
+def test_a_students_environment_is_told_what_an_instructors_has(
+    package, tmp_path, monkeypatch, capsys
+):
+    """Where a package of the instructor's is missing, the line that brings it is said."""
+    course = copied(tmp_path)
+    monkeypatch.setitem(sys.modules, package, None)
+    assert main(["release", NAME, "--course", str(course.root)]) == 2
+    said = f"labkit release: {package} is missing; type: pip install 'labkit[instructor]'\n"
+    assert capsys.readouterr().err == said
 
 
 def test_mistakes_of_the_caller_are_one_sentence(capsys):
