@@ -19,6 +19,7 @@ from labkit.cli import main
 from labkit.grade import gradebook
 from labkit.grade.batch import Graded, How, common_failures, grade_class, in_shard
 from labkit.grade.engines import grade_with_nbgrader, students
+from labkit.grade.export import rows
 from labkit.grade.gradebook import open_gradebook, record
 from labkit.grade.results import Results
 from labkit.grade.synthetic import differences, make_class
@@ -250,15 +251,22 @@ def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
 
 def test_late_rules_and_timestamps(part):
     """Times come from the collector's file; an unreadable one is said, and costs nothing."""
-    done = [one.result for one in grade_all(part, jobs=2)]
-    early, odd = done[0].student, done[1].student
-    (part.submitted / early / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
+    done = sorted((one.result for one in grade_all(part, jobs=2)), key=lambda r: -r.score)
+    late, odd = done[0].student, done[1].student
+    (part.submitted / late / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
     (part.submitted / odd / NAME / "timestamp.txt").write_text("yesterday or so")
+    with (part.root / "nbgrader_config.py").open("a") as file:
+        file.write('c.LateSubmissionPlugin.penalty_method = "zero"\n')
+    with open_gradebook(part) as book:
+        book.update_or_create_assignment(NAME, duedate="2029-01-01 10:00:00 UTC")
     notes = record(part, NAME, done)
     assert [note for note in notes if odd in note and "no time" in note]
     with open_gradebook(part) as book:
-        assert book.find_submission(NAME, early).timestamp.year == 2030
+        assert book.find_submission(NAME, late).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
+    marks = {row.student: (row.raw, row.score) for row in rows(part, NAME)}
+    assert marks[late] == (20.0, 0.0)
+    assert all(raw == score for student, (raw, score) in marks.items() if student != late)
 
 
 def test_command(part, capsys):
