@@ -41,6 +41,19 @@ def seed_of(course: Course) -> int:
         ) from None
 
 
+def seed_for(course: Course, assignment: str) -> int:
+    """The seed of an assignment that is released without one.
+
+    It is the term's.  Where no term was begun, it is that of the last release, so that a
+    correction leaves hidden cases as they are; and the public one where that is the first.
+    """
+    seed = seed_of(course)
+    bundle = course.bundle / f"{assignment}.json"
+    if seed == PUBLIC_SEED and bundle.exists():
+        seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
+    return seed
+
+
 def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
     """Begin a term: archive the last one's, release with a new seed, keep a record.
 

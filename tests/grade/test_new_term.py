@@ -7,11 +7,13 @@ import pytest
 from courses import copied
 
 from labkit import LabkitError
+from labkit.cli import main
 from labkit.errors import UnknownName
 from labkit.grade import term
 from labkit.grade.course import PUBLIC_SEED, Course
 from labkit.grade.release import FORBIDDEN
 from labkit.grade.repositories import export_course
+from labkit.grade.results import Bundle
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -28,6 +30,17 @@ def test_a_term_has_a_seed_of_its_own_and_a_record(course):
     bundle = json.loads((course.bundle / "01_paths.json").read_text())
     assert record["seed"] == bundle["seed"] == term.seed_of(course) != PUBLIC_SEED
     assert record["bundles"] == {"01_paths": bundle["hash"]}
+
+
+def test_a_correction_keeps_the_seed(course):
+    """Released again without a seed, an assignment has the hidden cases that it had."""
+    arguments = ["release", "01_paths", "--course", str(course.root)]
+    for more, seed in (([], PUBLIC_SEED), (["--seed", "41"], 41), ([], 41)):
+        assert main([*arguments, *more]) == 0
+        assert Bundle.of(course, "01_paths").data["seed"] == seed
+    assert term.seed_for(course, "02_model") == PUBLIC_SEED
+    term.new_term(course, 43, ("02_model",))
+    assert term.seed_for(course, "01_paths") == 43, "not the last term's, which was seen"
 
 
 def test_the_next_term_archives_the_names_and_forgets_them(course):
