@@ -40,8 +40,8 @@ class Taken:
     """One file, and what was done with it.
 
     Attributes:
-        student: Whose, as the folder is called.
-        file: Its name in the download.
+        student: Whose, as the folder is called; empty if nobody's.
+        file: Its name in the download; empty if it is of none in particular.
         says: What was done.
     """
 
@@ -50,7 +50,7 @@ class Taken:
     says: str
 
     def __str__(self) -> str:
-        return f"{self.student or '(nobody)'}: {self.file}: {self.says}"
+        return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
     places = folders(people, before)
     for name, count in Counter(people.values()).items():
         if count > 1:
-            yield Taken("", name, f"{count} students are called so; told apart by their number")
+            yield Taken(name, "", f"{count} students are called so; told apart by their number")
     remember(course, assignment, {folder: one for one, folder in places.items()})
     by_student: dict[str, list[_Found]] = {}
     for one in found:

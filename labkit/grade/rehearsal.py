@@ -50,7 +50,9 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
         size = download.stat().st_size / 1e6
         yield clock.says(f"{count} hand in; their download has {size:.1f} MB")
     taken = list(collect(stage, name, download))
-    yield clock.says(f"collected: {sum('taken' in t.says for t in taken)} of {len(taken)} are new")
+    yield clock.says(
+        f"collected: {sum(t.says.startswith('taken') for t in taken)} of {len(taken)} are new"
+    )
     who = students(stage, name)
     graded = [one for one in grade_class(stage, name, who, how) if isinstance(one, Graded)]
     new = sum(one.says != "as before" for one in graded)

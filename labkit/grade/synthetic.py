@@ -72,12 +72,6 @@ class Draft:
         for name, problem in self.problems.items():
             self.answer_with(name, problem.answer)
 
-    def mistaken(self, number: int) -> None:
-        """Answer everything wrong, each in the n-th of its ways."""
-        for name, problem in self.problems.items():
-            wrong = problem.wrong
-            self.answer_with(name, wrong[number % len(wrong)].function if wrong else problem.answer)
-
     def anyhow(self) -> None:
         """Answer as people do: most right, some otherwise right, some wrong, some not at all."""
         for name, problem in self.problems.items():
@@ -92,8 +86,8 @@ class Draft:
                 choices = problem.variants
             self.answer_with(name, choices[int(self.random.integers(len(choices)))])
 
-    def add(self, source: str, at: int | None = None) -> None:
-        """Add a code cell, at the end by default."""
+    def add(self, source: str) -> None:
+        """Add a code cell near the start."""
         cell: dict[str, Any] = {
             "cell_type": "code",
             "id": f"own{len(self.cells):05d}",
@@ -102,7 +96,7 @@ class Draft:
             "outputs": [],
             "execution_count": None,
         }
-        self.cells.insert(len(self.cells) if at is None else at, cell)
+        self.cells.insert(2, cell)
 
     def bytes(self) -> bytes:
         """The file."""

@@ -261,7 +261,7 @@ def test_collect_tells_people_of_one_name_apart(course, tmp_path):
     other = [file.format("Kim", 1, "/"), file.format("Kim", 2, "/")]
     for number, names in enumerate((first, later, other)):
         said = [str(x) for x in collect(course, NAME, download(tmp_path / f"{number}.zip", names))]
-    assert any("2 students are called so" in x for x in said)
+    assert "Kim: 2 students are called so; told apart by their number" in said
     folders = {path.name for path in course.submitted.iterdir()}
     assert folders == {"Li-Wei", "Li-Wei-9", "Bob", "Kim-1", "Kim-2"}
     assert known(course, NAME)["Li-Wei-9"] == Known("moodle", "9", "Li Wei")
