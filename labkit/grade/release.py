@@ -21,6 +21,7 @@ from ..check.notebook import FILE
 from ..check.question_codec import pack_hidden
 from ..errors import LabkitError
 from .course import Course
+from .inside.withheld import find
 from .notebook import Notebook, source_notebook, without_hidden
 from .room import make_room
 from .solved import solution_notebook
@@ -66,11 +67,15 @@ def release(course: Course, name: str, seed: int) -> Released:
 
     Raises:
         UnknownName: No such assignment.
-        LabkitError: nbgrader refused, an answer would have leaked, or marks given by hand would
-            have been lost.
+        LabkitError: nbgrader refused, an answer would have leaked, a question withholds what there
+            is not, or marks given by hand would have been lost.
     """
     problems = {problem.name: problem for problem in course.problems(name)}
     questions = {key: problem.question(seed) for key, problem in problems.items()}
+    for question in questions.values():
+        for withheld in question.withheld:
+            if find(withheld)[1] is None:
+                raise LabkitError(f"{question.name} withholds {withheld}, which does not exist")
     source = source_notebook(course.notebook_source(name), questions)
     solved = solution_notebook(source, problems)
     public = _checks(name, [q.public() for q in questions.values()])

@@ -1,7 +1,7 @@
 """Making notebooks from sources: what is fed in, what comes out, what is refused."""
 
 import json
-import sys
+from dataclasses import replace
 from pathlib import Path
 
 import nbformat
@@ -103,15 +103,26 @@ def test_a_notebook_without_problems_is_a_sentence(tmp_path):
         course.problems("08_dance")
 
 
-@pytest.mark.parametrize("package", ["nbgrader", "jupytext"])
-def test_a_students_environment_is_told_what_an_instructors_has(
-    package, tmp_path, monkeypatch, capsys
-):
-    """Where a package of the instructor's is missing, the line that brings it is said."""
+def test_a_withheld_name_must_exist(tmp_path, monkeypatch):
+    """A name that is misspelt would withhold nothing; so nothing is released."""
     course = copied(tmp_path)
-    monkeypatch.setitem(sys.modules, package, None)
-    assert main(["release", NAME, "--course", str(course.root)]) == 2
-    said = f"labkit release: {package} is missing; type: pip install 'labkit[instructor]'\n"
+    (first, *others) = PROBLEMS.values()
+    problems = (replace(first, withheld=("labkit.Circel",)), *others)
+    monkeypatch.setattr(Course, "problems", lambda self, name: problems)
+    with pytest.raises(LabkitError, match=r"withholds labkit\.Circel, which does not exist"):
+        release(course, NAME, 1)
+    assert not course.build.exists()
+
+
+def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, capsys):
+    """Where a package of the instructor's is missing, the line that brings it is said."""
+
+    def missing(*args):
+        raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
+
+    monkeypatch.setattr("labkit.grade.release.release", missing)
+    assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
+    said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
     assert capsys.readouterr().err == said
 
 

@@ -29,7 +29,7 @@ def withhold(names: Iterable[str], question: str, student: dict[str, Any]) -> No
         student: The student's globals, where a reference may lie already.
     """
     for name in names:
-        owner, target = _find(name)
+        owner, target = find(name)
         if target is None:
             continue
         says = f"the question asks you to write {question} yourself; {name} may not be used here"
@@ -90,7 +90,7 @@ def _guarded(function: Callable[..., Any], says: str) -> Callable[..., Any]:
     return guard
 
 
-def _find(name: str) -> tuple[Any, Any]:
+def find(name: str) -> tuple[Any, Any]:
     """What holds a dotted name, and the thing itself; None where there is no such thing."""
     parts = name.split(".")
     for cut in range(len(parts), 0, -1):
