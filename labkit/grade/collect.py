@@ -13,15 +13,17 @@ import shutil
 import zipfile
 import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from ..errors import LabkitError
 from .course import Course
 from .limits import Limits
 from .lms import Known, folders, known, remember
+from .submission import check_size, read_file
 
 _MOODLE = re.compile(
     r"^(?P<name>[^/]+)_(?P<id>\d+)_assignsubmission_file(?:_?/|_)(?:[^/]+/)*(?P<file>[^/]+)$"
@@ -57,7 +59,7 @@ class Taken:
 class _Found:
     student: str
     file: str
-    data: bytes
+    read: Callable[[], bytes]  # late, as a class's files need not fit into memory together
     when: str = ""
     late: bool = False
     known: Known | None = None
@@ -81,13 +83,24 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
     if not source.exists():
         raise LabkitError(f"there is no {source}")
     if source.is_dir():
-        found = list(_from_exchange(source, assignment))
-    elif zipfile.is_zipfile(source):
-        found = list(_from_zip(source))
-    else:
+        yield from _take(course, assignment, source, list(_from_exchange(source, assignment)))
+    elif not zipfile.is_zipfile(source):
         raise LabkitError(
             f"{source} is neither a folder nor a zip file; give the download as it is"
         )
+    else:
+        try:
+            with zipfile.ZipFile(source) as archive:
+                yield from _take(course, assignment, source, list(_from_zip(archive)))
+        except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError) as error:
+            raise LabkitError(
+                f"{source} is damaged or locked: {error}; download it again"
+            ) from None
+
+
+def _take(
+    course: Course, assignment: str, source: Path, found: Sequence[_Found]
+) -> Iterator[Taken]:
     if not found:
         raise LabkitError(f"nothing in {source} was handed in for {assignment}")
     before = known(course, assignment)
@@ -118,13 +131,16 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
 def _put(course: Course, assignment: str, one: _Found) -> Taken:
     folder = course.submitted / one.student / assignment
     path = folder / f"{assignment}.ipynb"
-    same = path.is_file() and path.read_bytes() == one.data
-    if same:
+    try:
+        data = one.read()
+    except LabkitError as error:
+        return Taken(one.student, one.file, f"not taken; {error}")
+    if path.is_file() and path.read_bytes() == data:
         return Taken(one.student, one.file, "there already")
     again = folder.exists()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    path.write_bytes(one.data)
+    path.write_bytes(data)
     if one.when:
         (folder / "timestamp.txt").write_text(one.when, encoding="utf-8")
     says = "taken, in place of an earlier one" if again else "taken"
@@ -132,33 +148,25 @@ def _put(course: Course, assignment: str, one: _Found) -> Taken:
     return Taken(one.student, one.file, says + (", late" if one.late else ""))
 
 
-def _from_zip(path: Path) -> Iterator[_Found]:
-    try:
-        yield from _read_zip(path)
-    except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError) as error:
-        raise LabkitError(f"{path} is damaged or locked: {error}; download it again") from None
+def _from_zip(archive: zipfile.ZipFile) -> Iterator[_Found]:
+    for entry in archive.infolist():
+        if entry.is_dir():
+            continue
+        read = partial(_read, archive, entry)
+        moodle = _MOODLE.match(entry.filename)
+        match = moodle or _CANVAS.match(entry.filename)
+        if match is None:
+            yield _Found("", entry.filename[-80:], read)
+            continue
+        parts = match.groupdict()
+        who = Known("moodle" if moodle else "canvas", parts["id"], parts["name"])
+        late = bool(parts.get("late"))
+        yield _Found(_slug(who.name), parts["file"], read, late=late, known=who)
 
 
-def _read_zip(path: Path) -> Iterator[_Found]:
-    most = Limits().notebook * 2**20
-    with zipfile.ZipFile(path) as archive:
-        for entry in archive.infolist():
-            if entry.is_dir():
-                continue
-            moodle = _MOODLE.match(entry.filename)
-            match = moodle or _CANVAS.match(entry.filename)
-            if match is None:
-                yield _Found("", entry.filename[-80:], b"")
-                continue
-            if entry.file_size > most:
-                yield _Found("", f"{entry.filename[-80:]} ({entry.file_size / 2**20:.0f} MB)", b"")
-                continue
-            with archive.open(entry) as file:
-                data = file.read(most)
-            parts = match.groupdict()
-            who = Known("moodle" if moodle else "canvas", parts["id"], parts["name"])
-            late = bool(parts.get("late"))
-            yield _Found(_slug(who.name), parts["file"], data, late=late, known=who)
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+    check_size(entry.file_size, Limits().notebook)
+    return archive.read(entry)
 
 
 def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
@@ -169,10 +177,8 @@ def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
         if match["assignment"] != assignment:
             continue
         for path in sorted(inside.glob("*.ipynb")):
-            if path.is_symlink() or path.stat().st_size > Limits().notebook * 2**20:
-                yield _Found("", path.name, b"")
-                continue
-            yield _Found(match["name"], path.name, path.read_bytes(), _time(match["when"]))
+            read = partial(read_file, path, Limits().notebook)
+            yield _Found(match["name"], path.name, read, _time(match["when"]))
 
 
 def _time(text: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import zipfile
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -22,6 +23,7 @@ from labkit.grade.engines import students
 from labkit.grade.export import LAYOUTS, Row, as_csv, left_out, rows
 from labkit.grade.feedback import page
 from labkit.grade.gradebook import record
+from labkit.grade.limits import Limits
 from labkit.grade.lms import FILE, Known, known
 from labkit.grade.regrade import accept, moves
 from labkit.grade.results import Results
@@ -235,6 +237,26 @@ def test_collect_keeps_the_names_of_the_exchange(course, tmp_path):
         (folder / f"{NAME}.ipynb").write_text(who)
     assert [x.student for x in collect(course, NAME, tmp_path / "in")] == ["ada.l@uni.org"]
     assert [path.name for path in course.submitted.iterdir()] == ["ada.l@uni.org"]
+
+
+def test_collect_waits_for_nothing_and_follows_nobody(course, tmp_path, monkeypatch):
+    """A pipe, a link or a huge file in a download costs its own student, in words."""
+    monkeypatch.setattr("labkit.grade.collect.Limits", lambda: Limits(notebook=1))
+    for who in ("ada", "bob", "carl"):
+        (tmp_path / "in" / f"{who}+{NAME}+2026-03-01 10:00:00 UTC").mkdir(parents=True)
+    pipe, link, huge = (path / f"{NAME}.ipynb" for path in sorted((tmp_path / "in").iterdir()))
+    os.mkfifo(pipe)
+    link.symlink_to("/etc/passwd")
+    huge.write_bytes(b" " * 2**21)
+    said = [str(x) for x in collect(course, NAME, tmp_path / "in")]
+    words = ("is not a file", "is a link or cannot be opened", "has 2 MB, the limit is 1 MB")
+    assert [word in x for word, x in zip(words, said, strict=True)] == [True] * 3
+    path = tmp_path / "big.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("Ada_1_assignsubmission_file/n.ipynb", b" " * 2**21)
+    (one,) = collect(course, NAME, path)
+    assert str(one) == "Ada: n.ipynb: not taken; the file has 2 MB, the limit is 1 MB"
+    assert not course.submitted.exists()
 
 
 def test_a_damaged_download_is_a_sentence(course, tmp_path):
