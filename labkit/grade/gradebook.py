@@ -5,6 +5,7 @@ Manual grades and comments stay; formgrader finds a notebook to open for every s
 
 from __future__ import annotations
 
+import fcntl
 import logging
 import warnings
 from collections.abc import Iterable, Iterator
@@ -75,8 +76,17 @@ def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
 
 @contextmanager
 def open_gradebook(course: Course) -> Iterator[Any]:
-    """The gradebook as nbgrader sees it; whatever is wrong, nothing is written by halves."""
-    with quiet_database(), nbgrader_api(course).gradebook as book:
+    """The gradebook as nbgrader sees it; whatever is wrong, nothing is written by halves.
+
+    A second one, in another terminal, waits until the first is closed.
+    """
+    course.build.mkdir(parents=True, exist_ok=True)
+    with (
+        open(course.build / ".gradebook", "w") as writer,
+        quiet_database(),
+        nbgrader_api(course).gradebook as book,
+    ):
+        fcntl.flock(writer, fcntl.LOCK_EX)
         try:
             yield book
         except BaseException:

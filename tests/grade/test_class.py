@@ -249,6 +249,17 @@ def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
         assert {s.score for s in book.assignment_submissions(NAME)} == {0.0}
 
 
+def test_the_gradebook_has_one_writer(part):
+    """Who grades another assignment in another terminal waits, and fails at nothing."""
+    second = threading.Thread(target=record, args=(part, NAME, []))
+    with open_gradebook(part):
+        second.start()
+        second.join(2.0)
+        assert second.is_alive()
+    second.join(20.0)
+    assert not second.is_alive()
+
+
 def test_late_rules_and_timestamps(part):
     """Times come from the collector's file; an unreadable one is said, and costs nothing."""
     done = sorted((one.result for one in grade_all(part, jobs=2)), key=lambda r: -r.score)
