@@ -151,7 +151,7 @@ def test_killed_run(part):
 
 
 def test_results_outlive_a_crash_while_writing(part):
-    """A half-written result is no result, and is made again."""
+    """A half-written result is no result, and is made again; what could be read of it is kept."""
     grade_all(part, jobs=2)
     results = Results(part, NAME)
     who = students(part, NAME)[0]
@@ -160,6 +160,7 @@ def test_results_outlive_a_crash_while_writing(part):
     assert results.get(who) is None
     grade_all(part)
     assert results.get(who) is not None
+    assert text[: len(text) // 2] in [x.read_text() for x in (results.folder / "old").iterdir()]
 
 
 @pytest.mark.slow
