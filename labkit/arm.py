@@ -84,9 +84,7 @@ class Arm:
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
         # The arm knows its own weight, not what it carries.
-        self._own = (
-            Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
-        )
+        self._own = Model(side, replace(plant, payload=0.0))
         self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
         self._reports = Reports(plant, self.world.dt, self._random)
         self._sensors = TorqueSensors(self._own, plant, self.world.dt)

@@ -1,5 +1,9 @@
 """The arm: holds, obeys, keeps its limits, and says what it will not do."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -214,3 +218,14 @@ def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
 def test_there_are_two_arms(side):
     with pytest.raises(UnknownName, match="there is 'left', 'right'"):
         lk.Arm(side)
+
+
+def test_it_leaves_no_file_that_somebody_could_take_away(tmp_path):
+    """A cleaner of temporary folders, or the end of a forked process, harms no later arm."""
+    program = (
+        "import labkit, os, tempfile; arm = labkit.Arm(); print(os.listdir(tempfile.gettempdir()))"
+    )
+    words = [sys.executable, "-W", "error", "-c", program]
+    env = os.environ | {"TMPDIR": str(tmp_path)}
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=env)
+    assert (done.stdout.strip(), done.stderr) == ("[]", "")
