@@ -21,7 +21,7 @@ from .commands import (
     State,
     still,
 )
-from .errors import Closed, ControllerError
+from .errors import Closed, ControllerError, LabkitError, TypeMismatch
 from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
@@ -70,15 +70,22 @@ class Arm:
 
         Raises:
             UnknownName: Baxter has no such arm.
+            TypeMismatch: Plant, seed or world is something else.
             Closed: The world is closed.
+            LabkitError: The world has this arm already.
             JointLimitExceeded: q0 is outside the joints' range.
         """
         self.robot: Robot = robot(side)
         self.plant = plant
         self.model = Model(side, plant)
         self.world = World() if world is None else world
-        self.check_open()
-        self._random = np.random.default_rng(seed)
+        self._check_place()
+        try:
+            self._random = np.random.default_rng(seed)
+        except (TypeError, ValueError):
+            raise TypeMismatch(
+                f"seed is {shown(seed)}, expected a whole number from 0 up"
+            ) from None
         self._client = self.world.client
         self._body = load(self._client, side, plant)
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
@@ -93,6 +100,17 @@ class Arm:
         self.reset(q0)
         self.world.add(self)
         self.world.arms.append(self)
+
+    def _check_place(self) -> None:
+        if not isinstance(self.world, World):
+            raise TypeMismatch(f"world is {shown(self.world)}, expected an lk.World")
+        self.check_open()
+        side = self.robot.side
+        if side in [arm.robot.side for arm in self.world.arms]:
+            raise LabkitError(
+                f"this world has a {side} arm already, and two would stand in one place; use that "
+                "one, or make a new World too"
+            )
 
     # What a controller may use
 

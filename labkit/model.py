@@ -15,7 +15,8 @@ import numpy as np
 import pinocchio as pin
 
 from . import se3
-from .arrays import Array, as_array
+from .arrays import Array, as_array, shown
+from .errors import TypeMismatch
 from .kinematics import Kinematics
 from .plant import IDEAL, Plant
 from .robot import Side, robot
@@ -59,7 +60,12 @@ class Model(Kinematics):
 
         Raises:
             UnknownName: Baxter has no such arm.
+            TypeMismatch: The plant is none.
         """
+        if not isinstance(plant, Plant):
+            raise TypeMismatch(
+                f"plant is {shown(plant)}, expected lk.IDEAL, lk.BAXTER or an lk.Plant(...)"
+            )
         super().__init__(robot(side), robot(side).urdf(plant))
         self.plant = plant
 
