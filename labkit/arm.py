@@ -98,7 +98,7 @@ class Arm:
         self._effort, self._speed = self.robot.effort.tolist(), self.robot.speed.tolist()
         self._stiction, self._laden = list(plant.stiction), plant.payload > 0.0
         self.reset(q0)
-        self.world.add(self)
+        self.world.add(self._act)
         self.world.arms.append(self)
 
     def _check_place(self) -> None:
@@ -238,7 +238,7 @@ class Arm:
 
     # The machinery, once per physics step
 
-    def act(self) -> None:
+    def _act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
         steps = self.world._steps
         if steps > self._deadline:

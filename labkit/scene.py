@@ -150,7 +150,13 @@ class Push:
 
     def put_into(self, world: World) -> Actor:
         """Wait for the window."""
-        return _Pushing(self, world)
+        half = 0.5 * world.dt
+
+        def act() -> None:
+            if self.start - half < world.t < self.start + self.duration - half:
+                _arm_of(world, self.side).push(self.force, self.moment)
+
+        return act
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,42 +186,25 @@ class Spring:
 
     def put_into(self, world: World) -> Actor:
         """Hook it on."""
-        return _Pulling(self, world)
 
+        def act() -> None:
+            arm = _arm_of(world, self.side)
+            _, q, dq, *_ = arm.truth()
+            p, v = arm.model.pose(q)[:3, 3], arm.model.tip_jacobian(q)[:3] @ dq
+            arm.push(self.force(p, v), np.zeros(3))
 
-@dataclass(frozen=True)
-class _Pushing:
-    push: Push
-    world: World
-
-    def act(self) -> None:
-        """Push, if it is time."""
-        push, half = self.push, 0.5 * self.world.dt
-        if push.start - half < self.world.t < push.start + push.duration - half:
-            _arm_of(self.world, push.side).push(push.force, push.moment)
-
-
-@dataclass(frozen=True)
-class _Pulling:
-    spring: Spring
-    world: World
-
-    def act(self) -> None:
-        """Pull on the tip."""
-        arm = _arm_of(self.world, self.spring.side)
-        _, q, dq, *_ = arm.truth()
-        p, v = arm.model.pose(q)[:3, 3], arm.model.tip_jacobian(q)[:3] @ dq
-        arm.push(self.spring.force(p, v), np.zeros(3))
+        return act
 
 
 def _arm_of(world: World, side: Side | None) -> Pushable:
     arms = [arm for arm in world.arms if side in (None, arm.robot.side)]
     if len(arms) == 1:
         return arms[0]
-    known = [arm.robot.side for arm in world.arms]
     if arms:
-        raise OutOfRange(f"this world has {len(known)} arms: give side={known[0]!r} or the other")
-    raise UnknownName("arm in this world", str(side), known)
+        raise OutOfRange("this world has two arms: give side='left' or side='right'")
+    if not world.arms:
+        raise OutOfRange("this world has no arm to push: lk.Arm(world=world) puts one into it")
+    raise UnknownName("arm in this world", str(side), [arm.robot.side for arm in world.arms])
 
 
 def _check_slab(thing: Any) -> None:
