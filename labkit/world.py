@@ -152,7 +152,7 @@ def whole_steps(rate: float, dt: float, name: str) -> int:
     if rate == 0.0:
         return 0
     steps = 1.0 / (rate * dt)
-    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
+    if steps < 0.999 or abs(steps - round(steps)) > 1e-5 * steps:  # as exact as it is shown
         raise OutOfRange(
             f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
             f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"

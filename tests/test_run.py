@@ -367,6 +367,14 @@ def test_impossible_rates_and_durations_are_refused(ideal, given, words):
         lk.run(ideal, still(ideal), follow, **given)
 
 
+@pytest.mark.parametrize("steps", [3, 7, 9, 11])
+def test_the_rate_that_the_sentence_proposes_is_accepted(ideal, steps):
+    with pytest.raises(OutOfRange) as caught:
+        lk.run(ideal, still(ideal), follow, rate=1000.0 / (steps + 0.1))
+    proposed = float(str(caught.value).split()[-2])
+    assert lk.run(ideal, still(ideal), follow, rate=proposed).t[1] == pytest.approx(1e-3 * steps)
+
+
 def test_a_target_without_duration_needs_one(ideal):
     with pytest.raises(OutOfRange, match=r"how long.*give duration="):
         lk.run(ideal, lambda t: None, follow)
