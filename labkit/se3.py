@@ -135,9 +135,10 @@ def pose_error(T_wd: Any, T_wt: Any) -> Array:
     Returns:
         Position error [m] and `orientation_error` [rad], shape (6,).
     """
+    T_wd, T_wt = as_array(T_wd, (4, 4), "T_wd"), as_array(T_wt, (4, 4), "T_wt")
     e = np.empty(6)
     e[:3] = T_wd[:3, 3] - T_wt[:3, 3]
-    e[3:] = orientation_error(T_wd[:3, :3], T_wt[:3, :3])
+    e[3:] = rotation_log(T_wd[:3, :3] @ T_wt[:3, :3].T)
     return e
 
 

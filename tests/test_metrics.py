@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import labkit as lk
 from labkit import metrics, se3
-from labkit.errors import TypeMismatch
+from labkit.errors import OutOfRange, TypeMismatch
 
 errors = arrays(np.float64, (8, 3), elements=st.floats(-1.0, 1.0))
 
@@ -62,6 +62,24 @@ def test_the_velocity_error_of_a_still_pose_is_the_tips_own_speed(pose_log):
 def test_a_run_after_poses_has_no_joint_error(pose_log):
     with pytest.raises(TypeMismatch, match=r"followed poses.*tip_error"):
         metrics.joint_error(pose_log)
+
+
+def test_a_run_after_points_is_told_how_to_make_poses_of_them(ideal):
+    """No orientation was asked for, so the tip has no error of it."""
+    p = ideal.model.pose(ideal.robot.neutral)[:3, 3]
+    log = lk.run(ideal, lk.Hold(p, 0.1), lambda s, x: lk.JointVelocity(np.zeros(7)))
+    for ask in (metrics.joint_error, metrics.tip_error, metrics.velocity_error, metrics.summary):
+        with pytest.raises(TypeMismatch, match=r"points of 3 numbers.*PosePath"):
+            ask(log)
+
+
+def test_since_keeps_the_rows_from_a_time_on(joint_log):
+    rest = metrics.since(joint_log, 0.75)
+    assert (rest.t[0], rest.t[-1]) == (0.75, 1.0)
+    assert_allclose(rest.target.position, joint_log.target.position[750:])
+    assert_allclose(rest.measured.q, joint_log.measured.q[750:])
+    with pytest.raises(OutOfRange, match="t is 2 s, and this run ends at 1 s"):
+        metrics.since(joint_log, 2.0)
 
 
 def test_a_log_knows_its_model(joint_log):
