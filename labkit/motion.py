@@ -87,8 +87,7 @@ class Trajectory:
     scaling: TimeScaling
 
     def __post_init__(self) -> None:
-        if not callable(self.path):
-            raise TypeMismatch(f"path is {shown(self.path)}; a path is a function of s")
+        _check_path(self.path)
         if not callable(self.scaling) or not hasattr(self.scaling, "duration"):
             raise TypeMismatch(
                 f"scaling is {shown(self.scaling)}; a time scaling is a function of t that has a "
@@ -114,16 +113,23 @@ class Trajectory:
                 f"the scaling gave {shown(at_t)}, expected three numbers: s, ds/dt and d2s/dt2"
             ) from None
         at_s = self.path(s)
-        try:
-            x, dx, ddx = at_s
-            return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
-        except (TypeError, ValueError):
-            if isinstance(at_s, AnySample):
-                raise
+        if not isinstance(at_s, AnySample):
             raise TypeMismatch(
                 f"the path gave {shown(at_s)}, expected lk.Sample(position, velocity, "
                 "acceleration) with the derivatives by s, or an lk.PoseSample"
-            ) from None
+            )
+        x, dx, ddx = map(np.asarray, at_s)
+        return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
+
+
+def _check_path(path: Any) -> None:
+    if not callable(path):
+        raise TypeMismatch(f"path is {shown(path)}; a path is a function of s")
+    if hasattr(path, "duration"):
+        raise TypeMismatch(
+            f"path is {shown(path)}, which has a duration: a function of t.  A path is a function "
+            "of s from 0 to 1: Trajectory(path, scaling), Trajectory(PosePath(path, R_wt), scaling)"
+        )
 
 
 class Chain:
@@ -176,6 +182,7 @@ class PosePath:
     R_goal: Array | None = None
 
     def __post_init__(self) -> None:
+        _check_path(self.path)
         for name in ("R_wt", "R_goal"):
             R = getattr(self, name)
             if R is not None or name == "R_wt":
@@ -208,13 +215,13 @@ class Hold:
     def __init__(self, place: Any, duration: float) -> None:
         """Hold joint angles (n,) [rad], a point (3,) [m] or a pose (4, 4)."""
         self.duration = as_number(duration, "duration", least=0.0)
-        x = as_numbers(place, "place")
+        x = locked(as_numbers(place, "place"))
+        still = locked(np.zeros(6 if x.ndim == 2 else x.size))
+        self._sample: AnySample
         if x.shape == (4, 4):
-            T = locked(se3.as_pose(x, "place"))
-            self._sample: AnySample = PoseSample(T, locked(np.zeros(6)), locked(np.zeros(6)))
+            self._sample = PoseSample(se3.as_pose(x, "place"), still, still)
         else:
-            x = locked(as_array(x, (x.size,), "place"))
-            self._sample = Sample(x, locked(np.zeros(x.size)), locked(np.zeros(x.size)))
+            self._sample = Sample(as_array(x, (x.size,), "place"), still, still)
 
     def __call__(self, t: float) -> Any:
         """The same sample, whatever the time."""

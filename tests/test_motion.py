@@ -67,6 +67,13 @@ def test_a_target_written_by_a_student_works_as_path_and_as_scaling():
     assert_slopes(Trajectory(parabola, Ramp()), 0.7)
 
 
+def test_a_path_may_give_lists():
+    listed = Trajectory(lambda s: Sample([s, 1], [1, 0], [0, 0]), Cubic(2.0))
+    of_arrays = Trajectory(Line([0.0, 1.0], [1.0, 1.0]), Cubic(2.0))
+    for a, b in zip(listed(0.7), of_arrays(0.7), strict=True):
+        assert_allclose(a, b)
+
+
 def chain():
     parts = [Trajectory(Line(A, B), Quintic(1.0)), Trajectory(Line(B, C), Trapezoid(0.5, 1, 2))]
     return Chain([*parts, Hold(C, 0.5)])
@@ -205,7 +212,11 @@ skewed = np.diag([1.0, 1.0, 1.1])
         (lambda: Chain([Line(A, B)]), LabkitError, "Line.*no duration"),
         (lambda: Trajectory(Line(A, B), 2.0), LabkitError, "scaling is 2.0"),
         (lambda: Trajectory(A, Cubic(1.0)), LabkitError, "path is"),
-        (lambda: Trajectory(Cubic(1.0), Line(A, B)), LabkitError, "scaling is .*Line"),
+        (lambda: Trajectory(Cubic(1.0), Line(A, B)), LabkitError, "path is Cubic.*a function of t"),
+        (lambda: Trajectory(Line(A, B), Line(A, B)), LabkitError, "scaling is .*Line"),
+        (lambda: Trajectory(chain(), Cubic(1.0)), LabkitError, "path is .*Chain.*a function of t"),
+        (lambda: PosePath(chain(), np.eye(3)), LabkitError, r"Trajectory\(PosePath"),
+        (lambda: PosePath(A, np.eye(3)), LabkitError, "path is .*a function of s"),
     ],
 )
 def test_a_motion_that_cannot_be_is_refused_in_a_sentence(call, error, words):
