@@ -60,6 +60,12 @@ def as_vector(x: Any, n: int, name: str) -> Array:
     return locked(np.array(as_array(x, (n,), name)))
 
 
+def lock_vectors(owner: Any, n: int, *names: str) -> None:
+    """Make fields of a frozen dataclass what `as_vector` makes of them: ``n`` numbers each."""
+    for name in names:
+        object.__setattr__(owner, name, as_vector(getattr(owner, name), n, name))
+
+
 def as_numbers(x: Any, name: str) -> Array:
     """Read ``x`` as finite floats of whatever shape it has; a copy.
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_number, as_vector
+from .arrays import Array, as_number, lock_vectors, locked
 from .errors import OutOfRange, UnknownName
 from .quiet import quiet
 from .robot import Side
@@ -52,7 +52,7 @@ class Wall:
         stiffness: Of the wall alone, in [N/m]; see `contact_stiffness`.
         damping: Of the wall alone, in [N s/m].
         friction: Coefficient of dry friction; 0 keeps the force along the normal.
-        colour: Red, green, blue, opacity, from 0 to 1.
+        colour: Red, green, blue and opacity, from 0 to 1.
     """
 
     point: Any
@@ -61,15 +61,14 @@ class Wall:
     stiffness: float = 5_000.0
     damping: float = 100.0
     friction: float = 0.0
-    colour: tuple[float, float, float, float] = (0.75, 0.75, 0.8, 1.0)
+    colour: Any = (0.75, 0.75, 0.8, 1.0)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "point", as_vector(self.point, 3, "point"))
-        normal = as_vector(self.normal, 3, "normal")
-        length = float(np.linalg.norm(normal))
+        lock_vectors(self, 3, "point", "normal")
+        length = float(np.linalg.norm(self.normal))
         if length < 1e-9:
             raise OutOfRange("normal is zero; a wall faces some way")
-        object.__setattr__(self, "normal", as_vector(normal / length, 3, "normal"))
+        object.__setattr__(self, "normal", locked(self.normal / length))
         _check_slab(self)
 
     @property
@@ -97,7 +96,7 @@ class Table:
         stiffness: Of the table alone, in [N/m]; see `contact_stiffness`.
         damping: Of the table alone, in [N s/m].
         friction: Coefficient of dry friction.
-        colour: Red, green, blue, opacity, from 0 to 1.
+        colour: Red, green, blue and opacity, from 0 to 1.
     """
 
     height: float = -0.25
@@ -106,11 +105,11 @@ class Table:
     stiffness: float = 20_000.0
     damping: float = 200.0
     friction: float = 0.4
-    colour: tuple[float, float, float, float] = (0.72, 0.56, 0.38, 1.0)
+    colour: Any = (0.72, 0.56, 0.38, 1.0)
 
     def __post_init__(self) -> None:
         as_number(self.height, "height")
-        object.__setattr__(self, "centre", as_vector(self.centre, 2, "centre"))
+        lock_vectors(self, 2, "centre")
         _check_slab(self)
 
     @property
@@ -142,8 +141,7 @@ class Push:
     side: Side | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "force", as_vector(self.force, 3, "force"))
-        object.__setattr__(self, "moment", as_vector(self.moment, 3, "moment"))
+        lock_vectors(self, 3, "force", "moment")
         as_number(self.start, "start")
         if not self.duration > 0.0:
             raise OutOfRange(f"duration is {self.duration}, it must be greater than 0")
@@ -176,7 +174,7 @@ class Spring:
     side: Side | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "anchor", as_vector(self.anchor, 3, "anchor"))
+        lock_vectors(self, 3, "anchor")
         as_number(self.stiffness, "stiffness", least=0.0)
         as_number(self.damping, "damping", least=0.0)
 
@@ -209,7 +207,8 @@ def _arm_of(world: World, side: Side | None) -> Pushable:
 
 def _check_slab(thing: Any) -> None:
     """Size and material of a wall or a table top."""
-    object.__setattr__(thing, "size", as_vector(thing.size, 2, "size"))
+    lock_vectors(thing, 2, "size")
+    lock_vectors(thing, 4, "colour")
     for side in thing.size:
         as_number(side, "size", above=0.0)
     as_number(thing.stiffness, "stiffness", above=0.0)
@@ -226,7 +225,7 @@ def _build_box(world: World, T_wf: Array, thing: Any) -> None:
     look = bullet.createVisualShape(
         bullet.GEOM_BOX,
         halfExtents=half,
-        rgbaColor=list(thing.colour),
+        rgbaColor=thing.colour.tolist(),
         physicsClientId=world.client,
     )
     body = bullet.createMultiBody(

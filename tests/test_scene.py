@@ -162,6 +162,7 @@ def test_things_are_put_where_they_say():
         (lambda: lk.Wall((0, 0), (0, 0, 1)), ShapeError),
         (lambda: lk.Wall((0, 0, 0), (0, 0, 1), stiffness=-1.0), OutOfRange),
         (lambda: lk.Table(size=(0.0, 1.0)), OutOfRange),
+        (lambda: lk.Table(colour="red"), TypeMismatch),
         (lambda: lk.Spring((0, 0, 0), stiffness=-5.0), OutOfRange),
         (lambda: lk.Push((1.0, 0.0)), ShapeError),
         (lambda: lk.Push((1.0, 0.0, 0.0), duration=0.0), OutOfRange),
