@@ -14,6 +14,7 @@ from .body import load
 from .commands import (
     COMMANDS,
     JOINTS,
+    NOTHING,
     Command,
     JointPosition,
     JointTorque,
@@ -26,7 +27,7 @@ from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
 from .robot import Robot, Side, robot
-from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
+from .sensors import Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
 with quiet():
@@ -142,7 +143,8 @@ class Arm:
         elif kind is JointPosition:
             wanted = allowed = self.model.within_limits(command.value, "JointPosition")
         else:
-            raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
+            names = ", ".join(kind.__name__ for kind in COMMANDS)
+            raise ControllerError(f"{shown(command)} is no command; give one of {names}")
         self._wanted, self.saturated = allowed, allowed is not wanted
         if kind is not self._kind:
             self._enter(kind)
@@ -224,7 +226,8 @@ class Arm:
         """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
         if not self.plant.lost_ticks:
             return [False] * ticks
-        return [bool(x < self.plant.lost_ticks) for x in self._random.random(ticks)]
+        late: list[bool] = (self._random.random(ticks) < self.plant.lost_ticks).tolist()
+        return late
 
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once.
@@ -376,7 +379,3 @@ def _cut(x: Array, limit: list[float]) -> Array:
     if all(map(le, map(abs, x.tolist()), limit)):  # NumPy is slow with seven numbers
         return x
     return np.clip(x, np.negative(limit), limit)
-
-
-def _names() -> str:
-    return ", ".join(kind.__name__ for kind in COMMANDS)
