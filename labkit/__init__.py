@@ -68,6 +68,10 @@ def __getattr__(name: str) -> Any:
     return value
 
 
+def __dir__() -> list[str]:
+    return [*globals(), *_LATER]
+
+
 __all__ = [
     "BAXTER",
     "IDEAL",

@@ -129,6 +129,11 @@ def test_a_public_name_means_the_same_whichever_module_was_loaded_first():
     assert python(f"import labkit, {modules}; print(({kind})())") == alone
 
 
+def test_completion_offers_what_is_not_loaded_yet():
+    """What a notebook shows after ``lk.`` and Tab."""
+    assert python("import labkit; print(*set(labkit.__all__) - set(dir(labkit)))").split() == []
+
+
 def test_importing_labkit_loads_no_drawing_nor_notebook_package():
     loaded = python("import sys, labkit; print(*sys.modules)").split()
     heavy = {"matplotlib", "IPython", "anywidget", "ipywidgets", "cv2", "scipy", "control",
