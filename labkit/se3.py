@@ -92,22 +92,6 @@ def rotation_log(R: Any) -> Array:
     return axis * theta
 
 
-def rotation_about(axis: Any, angle: float) -> Array:
-    """The rotation by ``angle`` [rad] about ``axis``, shape (3,), of any length but zero.
-
-    Returns:
-        Shape (3, 3).
-
-    Raises:
-        OutOfRange: The axis has no length.
-    """
-    axis = as_array(axis, (3,), "axis")
-    length = sqrt(axis @ axis)
-    if length < 1e-12:
-        raise OutOfRange("axis is zero; a rotation needs a direction to turn about")
-    return rotation(axis * (angle / length))
-
-
 def orientation_error(R_wd: Any, R_wt: Any) -> Array:
     r"""The turn, in world axes, that takes the actual orientation to the desired one.
 
@@ -224,10 +208,7 @@ def adjoint(T_ab: Any) -> Array:
 
 def angle_between(R_a: Any, R_b: Any) -> float:
     """The angle of the turn from one orientation to the other, in [rad], from 0 to pi."""
-    R = as_array(R_a, (3, 3), "R_a").T @ as_array(R_b, (3, 3), "R_b")
-    s = float(np.linalg.norm(vee(R)))
-    c = 0.5 * float(np.trace(R) - 1.0)
-    return atan2(s, c)
+    return float(np.linalg.norm(orientation_error(R_a, R_b)))
 
 
 def quaternion(R: Any) -> Array:

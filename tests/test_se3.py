@@ -57,16 +57,6 @@ def test_half_a_turn_gives_back_the_same_rotation(axis):
     assert_allclose(se3.rotation(phi), R, atol=1e-9)
 
 
-@given(unit, st.floats(-10.0, 10.0))
-def test_rotation_about_takes_an_axis_of_any_length(axis, angle):
-    assert_allclose(se3.rotation_about(3.0 * axis, angle), se3.rotation(axis * angle), atol=1e-13)
-
-
-def test_an_axis_without_length_is_refused():
-    with pytest.raises(OutOfRange, match="axis is zero"):
-        se3.rotation_about([0, 0, 0], 1.0)
-
-
 @given(twists)
 def test_exp_is_the_matrix_exponential_and_log_undoes_it(V):
     T, V_hat = se3.exp(V), np.zeros((4, 4))
