@@ -206,7 +206,8 @@ class Kinematics:
         e = self.pose_error(T_wt, q)
         if e @ e < 1e-18:
             return q
-        raise Unreachable(f"the pose {_place(T_wt)} {self._why(T_wt, q, e)}")
+        place = ", ".join(f"{x:.3f}" for x in T_wt[:3, 3])
+        raise Unreachable(f"the pose at ({place}) m {self._why(T_wt, q, e)}")
 
     def pose_error(self, T_wd: Any, q: Any) -> Array:
         """Target minus actual: how far the tip at ``q`` is from a pose.
@@ -237,7 +238,7 @@ class Kinematics:
 
         Raises:
             Unreachable: A pose along the way cannot be reached; names s, the pose and the reason.
-            TypeMismatch: It is none of these.
+            TypeMismatch: It is none of these, as a target that has joint angles already.
 
         Warns:
             LabkitWarning: A joint would exceed its speed limit, or the path comes near a
@@ -253,15 +254,20 @@ class Kinematics:
         return self._joint_trajectory(target, q0, q0, samples)
 
     def _joint_trajectory(self, target: Any, q: Array, posture: Array, samples: int) -> Any:
-        if isinstance(target, Hold):
-            T_wt = self._posed(target(0.0), posture)
-            return Hold(self.inverse_kinematics(T_wt, q, posture=posture), target.duration)
-        if not isinstance(target, Trajectory):
+        if not isinstance(target, Trajectory | Hold):
             raise TypeMismatch(
                 f"joint_trajectory takes a Trajectory, Chain or Hold, not {type(target).__name__}"
             )
-        if isinstance(target.path(0.0), Sample):
-            R_wt = self.pose(posture)[:3, :3]
+        start, R_wt = target(0.0), self.pose(posture)[:3, :3]
+        if isinstance(start, Sample) and start.position.size != 3:
+            raise TypeMismatch(
+                f"joint_trajectory takes poses or points of the tip, not {start.position.size} "
+                "numbers; what is a target of joint angles can be followed as it is"
+            )
+        if isinstance(target, Hold):
+            T_wt = start.pose if isinstance(start, PoseSample) else se3.pose(R_wt, start.position)
+            return Hold(self.inverse_kinematics(T_wt, q, posture=posture), target.duration)
+        if isinstance(start, Sample):
             target = Trajectory(PosePath(target.path, R_wt), target.scaling)
         grid = np.linspace(0.0, 1.0, samples)
         angles = np.empty((samples, _N))
@@ -282,19 +288,16 @@ class Kinematics:
         warn_of_speed(joints, self.robot)
         return joints
 
-    def _posed(self, sample: Sample | PoseSample, q0: Array) -> Array:
-        if isinstance(sample, PoseSample):
-            return sample.pose
-        return se3.pose(self.pose(q0)[:3, :3], sample.position)
-
     def _why(self, T_wt: Array, q: Array, e: Array) -> str:
         """Why a search ended at q with error e: too far, a joint at its limit, or just stuck."""
         off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
             f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
         )
-        shoulder, reach = self._reach()
-        wrist = T_wt[:3, 3] - T_wt[:3, :3] @ (0.0, 0.0, self._wrist_to_tip())
-        distance = float(np.linalg.norm(wrist - shoulder))
+        stretched = self.pose(np.zeros(_N))
+        shoulder, wrist = (self._data.oMi[i].translation for i in (2, 6))
+        reach = np.linalg.norm(wrist - shoulder)
+        hand = stretched[:3, :3].T @ (stretched[:3, 3] - wrist)  # from the wrist to the tip
+        distance = np.linalg.norm(T_wt[:3, 3] - T_wt[:3, :3] @ hand - shoulder)
         if distance > reach:
             return (
                 f"cannot be reached: it puts the wrist {distance:.3f} m from the shoulder and the "
@@ -308,20 +311,3 @@ class Kinematics:
                 f"{q[i]:.4g} rad {off}; change the orientation, or start from another q0"
             )
         return f"was not found from this q0 {off}; start from another q0"
-
-    def _reach(self) -> tuple[Array, float]:
-        """The shoulder's place in the world, and the longest span from it to the wrist's centre."""
-        at_zero = [self._origins(np.zeros(_N))[i] for i in (1, 5)]
-        return at_zero[0], float(np.linalg.norm(at_zero[1] - at_zero[0]))
-
-    def _wrist_to_tip(self) -> float:
-        last = np.array(self.robot.bodies[6]["T_parent"])[:3, 3]
-        return float(np.linalg.norm(last) + self.robot.T_hand_tip[2, 3])
-
-    def _origins(self, q: Array) -> list[Array]:
-        pin.forwardKinematics(self._pin, self._data, q)
-        return [np.array(T.translation) for T in list(self._data.oMi)[1:]]
-
-
-def _place(T: Array) -> str:
-    return f"at ({', '.join(f'{x:.3f}' for x in T[:3, 3])}) m"

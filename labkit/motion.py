@@ -139,7 +139,7 @@ class Chain:
     in position and velocity.
 
     Attributes:
-        parts: The trajectories, in order.
+        parts: The trajectories, in order; those of a chain among them one by one.
         starts: When each begins, in [s].
     """
 
@@ -150,12 +150,13 @@ class Chain:
             OutOfRange: There is none.
             TypeMismatch: One has no duration.
         """
-        self.parts = tuple(parts)
-        if not self.parts:
-            raise OutOfRange("a Chain needs at least one trajectory")
-        for part in self.parts:
+        self.parts: tuple[Any, ...] = ()
+        for part in parts:
             if not hasattr(part, "duration"):
                 raise TypeMismatch(f"a part of the Chain is {shown(part)}, which has no duration")
+            self.parts += part.parts if isinstance(part, Chain) else (part,)
+        if not self.parts:
+            raise OutOfRange("a Chain needs at least one trajectory")
         *self.starts, self.duration = accumulate((p.duration for p in self.parts), initial=0.0)
 
     def __call__(self, t: float) -> Any:
