@@ -49,14 +49,10 @@ class PoseSample(NamedTuple):
 
 
 AnySample = Sample | PoseSample
-S_co = TypeVar("S_co", bound=AnySample, covariant=True)
 
-
-class Path(Protocol[S_co]):
-    """A curve in s, from 0 to 1."""
-
-    def __call__(self, s: float) -> S_co:
-        """Value and derivatives with respect to s."""
+_S = TypeVar("_S", bound=AnySample)
+Path = Callable[[float], _S]
+"""A curve in s, from 0 to 1: its value and derivatives with respect to s."""
 
 
 class TimeScaling(Protocol):
