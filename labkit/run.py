@@ -9,7 +9,7 @@ import numpy as np
 
 from .arm import Arm
 from .arrays import as_array, as_number, shown
-from .commands import COMMANDS, Command, State
+from .commands import COMMANDS, JOINTS, Command, State
 from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .log import Log, Recorder
 from .motion import AnySample, PoseSample, Sample, Target
@@ -102,7 +102,7 @@ def run(
     except Exception as error:
         samples.blame(t)
         raise ControllerError(
-            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error)}"
+            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest)}"
         ) from error
     finally:
         if world.client >= 0:
@@ -189,16 +189,20 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _what(error: Exception) -> str:
-    """What a controller's error says; of a sample of the other kind, what it is."""
+def _what(error: Exception, sample: AnySample) -> str:
+    """What a controller's error says; of a sample that is none of joint angles, what it is."""
     if isinstance(error, LabkitError):
         return str(error)
-    what = f"{type(error).__name__}: {error}"
+    what, makes = f"{type(error).__name__}: {error}", "model.joint_trajectory(target, q0) makes"
     if isinstance(error, AttributeError) and isinstance(error.obj, Sample | PoseSample):
         has = ", ".join(error.obj._fields)
         what = f"it asked the target's sample for its {error.name}, and that has only {has}"
         if isinstance(error.obj, PoseSample):
-            what += "; model.joint_trajectory(target, q0) makes joint angles of poses"
+            what += f"; {makes} joint angles of poses"
+    elif isinstance(error, ValueError) and isinstance(sample, Sample):
+        n = sample.position.size
+        if n != JOINTS:
+            what += f"; the target gives {n} numbers, {makes} joint angles of points"
     return what
 
 
