@@ -42,11 +42,8 @@ def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
         _, axes = plt.subplots(2, 1, figsize=(8, 5.2), sharex=True, layout="constrained")
     above, below = axes
     T_wt, T_wd = metrics.tip_poses(log, model), metrics.target_poses(log, model)
-    for k, (name, style) in enumerate(zip(AXES, STYLES, strict=False)):
-        above.plot(log.t, T_wd[:, k, 3], "0.6", linewidth=4, label="target" if k == 0 else None)
-        above.plot(log.t, T_wt[:, k, 3], f"C{k}{style}", label=f"{name} of the tip")
-    above.set_ylabel("position [m]")
-    above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    _against(above, log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
+    _legend_beside(above)
     e = metrics.tip_error(log, model)
     below.plot(log.t, 1e3 * np.linalg.norm(e[:, :3], axis=1), "C3-", label="position [mm]")
     below.plot(
@@ -54,7 +51,7 @@ def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
     )
     below.set_ylabel("error")
     below.set_xlabel("time [s]")
-    below.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    _legend_beside(below)
     above.set_title(f"{log.controller} on the {log.plant.name} arm", loc="left", fontsize="medium")
     return axes
 
@@ -107,20 +104,12 @@ def everything(
     left, middle, right = (columns[k].subgridspec(n, 1) for k, n in enumerate((4, 7, 7)))
     e = metrics.tip_error(log, model)
     tip = [figure.add_subplot(left[k]) for k in range(4)]
-    _against(
-        tip[0],
-        log,
-        metrics.tip_poses(log, model)[:, :3, 3],
-        metrics.target_poses(log, model)[:, :3, 3],
-        "tip position [m]",
-    )
-    _against(
-        tip[1],
-        log,
-        metrics.tip_velocities(log, model),
-        metrics.target_velocities(log, model),
-        "tip velocity [m/s]",
-    )
+    T_wt, T_wd = metrics.tip_poses(log, model), metrics.target_poses(log, model)
+    _against(tip[0], log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
+    v_wt, v_wd = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
+    _against(tip[1], log, v_wt, v_wd, "tip velocity [m/s]")
+    for ax in tip[:2]:
+        _legend_above(ax)
     for ax, error, label in (
         (tip[2], 1e3 * e[:, :3], "position error [mm]"),
         (tip[3], np.degrees(e[:, 3:]), "orientation error [deg]"),
@@ -155,15 +144,19 @@ def everything(
 
 
 def _against(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
-    for k, (name, style) in enumerate(zip(AXES, STYLES, strict=False)):
+    for k, name in enumerate(AXES):
         ax.plot(log.t, target[:, k], "0.6", linewidth=4, label="target" if k == 0 else None)
-        ax.plot(log.t, actual[:, k], f"C{k}{style}", label=name)
+        ax.plot(log.t, actual[:, k], f"C{k}{STYLES[k]}", label=name)
     ax.set_ylabel(label)
-    _legend_above(ax)
+
+
+def _legend_beside(ax: Any) -> None:
+    """Outside, where no curve can run through it."""
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
 def _legend_above(ax: Any) -> None:
-    """Outside, where no curve can run through it."""
+    """Outside, where there is no room beside."""
     ax.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
@@ -247,7 +240,7 @@ def answers(call: str, expected: Any, given: Any) -> Any:
     ax.set_xlabel("number in the answer")
     ax.set_xticks(index[:: max(1, len(index) // 14)])
     ax.set_title(call, loc="left", fontsize="small", family="monospace")
-    ax.legend(frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    _legend_beside(ax)
     return figure
 
 
