@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_number
+from .arrays import Array, as_array, as_number, as_numbers
 from .errors import OutOfRange, TypeMismatch
 from .log import Log
 from .model import Model
@@ -94,9 +94,11 @@ def rms(error: Any) -> float:
 
     Returns:
         ``sqrt(mean(|e|^2))``, in the error's unit.
+
+    Raises:
+        OutOfRange: There is no instant.
     """
-    e = np.asarray(error, dtype=float)
-    return float(np.sqrt(np.mean(np.sum(e.reshape(len(e), -1) ** 2, axis=1))))
+    return float(np.sqrt(np.mean(np.sum(_rows(error) ** 2, axis=1))))
 
 
 def settling_time(t: Any, error: Any, tolerance: float) -> float:
@@ -109,12 +111,24 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
 
     Returns:
         In [s] since the first row; infinite if it is still outside at the end.
+
+    Raises:
+        OutOfRange: There is no instant.
+        ShapeError: Times and errors are not as many.
     """
-    e = np.asarray(error, dtype=float)
-    outside = np.flatnonzero(np.linalg.norm(e.reshape(len(e), -1), axis=1) > tolerance)
+    e = _rows(error)
+    t = as_array(t, (len(e),), "t")
+    outside = np.flatnonzero(np.linalg.norm(e, axis=1) > tolerance)
     if not outside.size:
         return 0.0
     return float("inf") if outside[-1] == len(e) - 1 else float(t[outside[-1] + 1] - t[0])
+
+
+def _rows(error: Any) -> Array:
+    e = as_numbers(error, "error")
+    if e.size == 0:
+        raise OutOfRange("error is empty; it needs a row for each instant")
+    return e.reshape(len(np.atleast_1d(e)), -1)
 
 
 SETTLED = 5e-3

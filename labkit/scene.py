@@ -81,7 +81,7 @@ class Wall:
 
     def put_into(self, world: World) -> None:
         """Build it."""
-        _build_box(world, self.T_wf, self)
+        _build_box(world, self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +119,7 @@ class Table:
 
     def put_into(self, world: World) -> None:
         """Build it."""
-        _build_box(world, self.T_wf, self)
+        _build_box(world, self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,8 +216,9 @@ def _check_slab(thing: Any) -> None:
     as_number(thing.friction, "friction", least=0.0)
 
 
-def _build_box(world: World, T_wf: Array, thing: Any) -> None:
-    """A fixed box whose upper face is the frame's xy plane."""
+def _build_box(world: World, thing: Wall | Table) -> None:
+    """A fixed box whose upper face is the thing's."""
+    T_wf = thing.T_wf
     half = [*(0.5 * thing.size).tolist(), 0.5 * FACE]
     shape = bullet.createCollisionShape(
         bullet.GEOM_BOX, halfExtents=half, physicsClientId=world.client
