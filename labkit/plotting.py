@@ -12,15 +12,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from IPython.core.getipython import get_ipython
 from IPython.display import display
-from matplotlib import colors
 from matplotlib.figure import Figure
 
 from . import metrics
 from .log import Log
 from .model import Model
 from .motion import PoseSample
-from .study.analysis import Loop
-from .study.maps import ErrorMap
 
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
@@ -167,44 +164,6 @@ def _legend_above(ax: Any) -> None:
     )
 
 
-def error_map(found: ErrorMap, point: tuple[float, float] | None = None, *, ax: Any = None) -> Any:
-    """RMS error over the plane of gains, dark where it is small, with the least marked.
-
-    Args:
-        found: The map.
-        point: Gains (Kp, Kd) of your own to mark; None marks none.
-        ax: Axes to draw on; None makes a figure.
-
-    Returns:
-        The axes.
-    """
-    if ax is None:
-        _, ax = plt.subplots(figsize=(7, 4.5), layout="constrained")
-    rows, columns = np.arange(len(found.Kp)), np.arange(len(found.Kd))
-    picture = ax.pcolormesh(
-        columns, rows, found.array(), norm=colors.LogNorm(), cmap="viridis", edgecolors="none"
-    )
-    bar = ax.figure.colorbar(picture, ax=ax, label="RMS error of the tip [mm]")
-    ticks = [x for x in (0.5, 1, 2, 5, 10, 20, 50, 100, 200) if bar.vmin <= x <= bar.vmax]
-    bar.set_ticks(ticks, labels=[f"{x:g}" for x in ticks])
-    bar.ax.minorticks_off()
-    ax.set_facecolor("0.75")  # where the arm was lost
-    ax.set_xticks(columns, [f"{x:.4g}" for x in found.Kd])
-    ax.set_yticks(rows, [f"{x:.4g}" for x in found.Kp])
-    ax.set_xlabel(f"Kd [{found.unit[1]}]")
-    ax.set_ylabel(f"Kp [{found.unit[0]}]")
-    ax.set_title(found.title, loc="left", fontsize="medium")
-    Kp, Kd, least = found.best
-    ax.plot(found.Kd.index(Kd), found.Kp.index(Kp), "w*", markersize=14, label=f"{least:.3g} mm")
-    if point is not None:
-        x, y = np.interp(point[1], found.Kd, columns), np.interp(point[0], found.Kp, rows)
-        ax.plot(x, y, "rX", markersize=12, markeredgecolor="w", label="yours")
-    if np.isnan(found.array()).any():
-        ax.plot([], [], "s", color="0.75", markersize=10, label="arm lost")
-    ax.legend(loc="upper left", fontsize="small", facecolor="0.45", labelcolor="w", framealpha=0.9)
-    return ax
-
-
 def show(caption: str) -> None:
     """Show the current figure with a caption, which is its alternative text too.
 
@@ -242,54 +201,6 @@ def answers(call: str, expected: Any, given: Any) -> Any:
     ax.set_title(call, loc="left", fontsize="small", family="monospace")
     _legend_beside(ax)
     return figure
-
-
-def loop(found: Loop, *, axes: Any = None) -> Any:
-    """A joint's loop three ways: gain and phase over frequency, poles, and a step.
-
-    Args:
-        found: The loop.
-        axes: Four axes to draw on; None makes a figure.
-
-    Returns:
-        The four axes: gain, phase, root locus, step response.
-    """
-    if axes is None:
-        _, axes = plt.subplots(2, 2, figsize=(10, 6.5), layout="constrained")
-        axes = axes[:, 0].tolist() + axes[:, 1].tolist()
-    gain, phase, locus, step = axes
-    margins = found.margins()
-    omega = np.geomspace(0.01, 20.0, 600) * margins.crossover
-    L = (found.Kp + 1j * omega * found.Kd) * found.joint.response(omega)
-    gain.loglog(omega, np.abs(L))
-    gain.axhline(1.0, color="0.7", linewidth=0.8)
-    gain.set_ylabel("gain of the loop")
-    gain.set_title(str(margins).replace(", room", "\nroom"), loc="left", fontsize="small")
-    phase.semilogx(omega, np.degrees(np.unwrap(np.angle(L))))
-    phase.axhline(-180.0, color="0.7", linewidth=0.8)
-    phase.set_ylim(-360.0, 0.0)
-    phase.set_ylabel("phase [degrees]")
-    phase.set_xlabel("frequency [rad/s]")
-    for ax in (gain, phase):
-        ax.axvline(margins.crossover, color="C3", linestyle="--", linewidth=0.8)
-    factors = np.concatenate([[0.0], np.geomspace(0.01, 100.0, 600)])
-    poles = found.locus(factors)
-    locus.plot(poles.real, poles.imag, "C0.", markersize=2)
-    here = found.locus([1.0])[0]
-    locus.plot(here.real, here.imag, "C3x", markersize=8, label="poles with these gains")
-    far = 4.0 * margins.crossover
-    locus.set_xlim(-far, 0.5 * far)
-    locus.set_ylim(-far, far)
-    locus.axvline(0.0, color="0.7", linewidth=0.8)
-    locus.set_xlabel("real part [1/s]")
-    locus.set_ylabel("imaginary part [1/s]")
-    locus.legend(frameon=False, fontsize="small")
-    t = np.linspace(0.0, 10.0 / margins.crossover, 400)
-    step.plot(t, found.step(t))
-    step.axhline(1.0, color="0.7", linewidth=0.8)
-    step.set_xlabel("time [s]")
-    step.set_ylabel("step response")
-    return axes
 
 
 def describe(log: Log, model: Model | None = None) -> str:

@@ -141,6 +141,11 @@ def test_importing_labkit_loads_no_drawing_nor_notebook_package():
     assert not heavy & {name.split(".")[0] for name in loaded}
 
 
+def test_drawing_a_run_does_not_load_what_analyses_a_loop():
+    """python-control takes longer to load than all that draws."""
+    assert "control" not in python("import sys, labkit.plotting; print(*sys.modules)").split()
+
+
 def test_importing_labkit_costs_little_more_than_its_engines():
     """How long it takes in seconds, and how soon an arm is ready, `make bench` says."""
     clock = "import time; t = time.perf_counter(); import {}; print(time.perf_counter() - t)"

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit import plotting
 from labkit.study import analysis
 from labkit.study.analysis import Joint, Loop, torque_joint, velocity_joint, velocity_joint_of
 from solutions.report_procedure import decay_ratio
@@ -79,16 +78,6 @@ def test_the_arm_overshoots_as_its_loop_says(Kp):
     actual = e / e[0]
     assert actual.min() == pytest.approx(predicted.min(), abs=0.03)
     assert t[actual.argmin()] == pytest.approx(t[predicted.argmin()], abs=0.015)
-
-
-def test_the_figure_of_a_loop_shows_its_margins_and_its_poles():
-    loop = Loop(velocity_joint_of(lk.BAXTER), 20.0)
-    gain, phase, locus, step = plotting.loop(loop)
-    assert "phase margin" in gain.get_title(loc="left")
-    crossing = np.interp(loop.margins().crossover, *phase.get_lines()[0].get_data())
-    assert crossing == pytest.approx(loop.margins().phase - 180.0, abs=0.5)
-    assert len(locus.get_lines()) == 3 + len(loop.locus([1.0])[0]) - 1
-    assert step.get_lines()[0].get_ydata()[-1] == pytest.approx(1.0, abs=0.01)
 
 
 @pytest.mark.parametrize(
