@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from . import controllers, energy, errors, impedance, metrics, se3
 from .arm import Arm
-from .arrays import as_array
 from .commands import Command, JointPosition, JointTorque, JointVelocity, State
 from .errors import LabkitError
 from .log import Log
@@ -113,7 +112,6 @@ __all__ = [
     "Trapezoid",
     "Wall",
     "World",
-    "as_array",
     "check",
     "controllers",
     "detect_tags",

@@ -109,13 +109,14 @@ class Trajectory:
                 f"the scaling gave {shown(at_t)}, expected three numbers: s, ds/dt and d2s/dt2"
             ) from None
         at_s = self.path(s)
-        if not isinstance(at_s, AnySample):
+        try:
+            x, dx, ddx = at_s
+            return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
+        except (TypeError, ValueError):
             raise TypeMismatch(
                 f"the path gave {shown(at_s)}, expected lk.Sample(position, velocity, "
-                "acceleration) with the derivatives by s, or an lk.PoseSample"
-            )
-        x, dx, ddx = map(np.asarray, at_s)
-        return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
+                "acceleration) of arrays, with the derivatives by s, or an lk.PoseSample"
+            ) from None
 
 
 def _check_path(path: Any) -> None:
