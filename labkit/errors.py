@@ -83,7 +83,7 @@ class UnknownName(LabkitError, KeyError):
         super().__init__(kind, name, self.known)
 
     def __str__(self) -> str:
-        return f"no {self.kind} {self.name!r}; there is {', '.join(map(repr, self.known))}"
+        return f"no {self.kind} {self.name!r:.60}; there is {', '.join(map(repr, self.known))}"
 
 
 class Unreachable(LabkitError, ValueError):

@@ -221,6 +221,14 @@ def test_there_are_two_arms(side):
         lk.Arm(side)
 
 
+def test_a_plant_in_the_place_of_the_side_makes_no_long_sentence():
+    with pytest.raises(
+        UnknownName, match=r"no arm Plant\(name='baxter'.*; there is 'left'"
+    ) as caught:
+        lk.Arm(lk.BAXTER)
+    assert len(str(caught.value)) < 120
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
