@@ -13,7 +13,6 @@ from .arrays import Array, as_array, locked, shown
 from .body import load
 from .commands import (
     COMMANDS,
-    JOINTS,
     NOTHING,
     Command,
     JointPosition,
@@ -26,15 +25,15 @@ from .errors import Closed, ControllerError, LabkitError, TypeMismatch
 from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
-from .robot import Robot, Side, robot
+from .robot import JOINTS, Robot, Side, robot
 from .sensors import Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
 with quiet():
     import pybullet as bullet
 
-_JOINTS = tuple(range(7))
-_ZERO = [0.0] * 7
+_JOINTS = tuple(range(JOINTS))
+_ZERO = [0.0] * JOINTS
 
 BRAKING = 0.5
 """Share of the torque left by gravity that the position mode plans to brake with."""

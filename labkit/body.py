@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from .commands import JOINTS
 from .plant import Plant
 from .quiet import quiet
-from .robot import Side, robot
+from .robot import JOINTS, Side, robot
 from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 
 with quiet():

@@ -11,8 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .arrays import Array, as_vector, locked
-
-JOINTS = 7
+from .robot import JOINTS
 
 NOTHING = locked(np.zeros(JOINTS))
 """No torque, or no speed."""

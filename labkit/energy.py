@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array, as_array, as_gains, locked
-from .commands import JOINTS
 from .log import Log
 from .metrics import joint_error, joint_speed_error, model_of
 from .model import Model
+from .robot import JOINTS
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,9 +19,8 @@ from .errors import JointLimitExceeded, TypeMismatch, Unreachable
 from .limits import warn_of_singularity, warn_of_speed
 from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 from .paths import Spline
-from .robot import Robot
+from .robot import JOINTS, Robot
 
-_N = 7
 _ITERATIONS = 200
 _SLACK = 1e-9
 
@@ -40,7 +39,7 @@ class Kinematics:
         self.robot = robot
         self._pin = pin.buildModelFromXML(urdf)
         self._tip = self._pin.addFrame(
-            pin.Frame("tip", _N, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
+            pin.Frame("tip", JOINTS, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
         )
         self._data = self._pin.createData()
 
@@ -53,7 +52,7 @@ class Kinematics:
         Returns:
             Shape (4, 4).
         """
-        pin.forwardKinematics(self._pin, self._data, as_array(q, (_N,), "q"))
+        pin.forwardKinematics(self._pin, self._data, as_array(q, (JOINTS,), "q"))
         T: Array = pin.updateFramePlacement(self._pin, self._data, self._tip).homogeneous
         return T
 
@@ -98,7 +97,7 @@ class Kinematics:
         return self._jacobian(q, pin.WORLD)
 
     def _jacobian(self, q: Any, frame: Any) -> Array:
-        q = as_array(q, (_N,), "q")
+        q = as_array(q, (JOINTS,), "q")
         J: Array = pin.computeFrameJacobian(self._pin, self._data, q, self._tip, frame)
         return J
 
@@ -112,7 +111,7 @@ class Kinematics:
         Returns:
             Shape (6, 7).
         """
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
         pin.computeJointJacobiansTimeVariation(self._pin, self._data, q, dq)
         pin.updateFramePlacement(self._pin, self._data, self._tip)
         dJ: Array = pin.getFrameJacobianTimeVariation(
@@ -159,7 +158,7 @@ class Kinematics:
         Raises:
             JointLimitExceeded: A joint is outside its range.
         """
-        angles: Array = as_array(q, (_N,), name)
+        angles: Array = as_array(q, (JOINTS,), name)
         low, high = self.robot.lower - _SLACK, self.robot.upper + _SLACK
         for i in np.flatnonzero((angles < low) | (angles > high))[:1]:
             raise JointLimitExceeded(
@@ -186,8 +185,8 @@ class Kinematics:
             Unreachable: No such angles were found; the sentence says how near it came and why.
         """
         T_wt = se3.as_pose(T_wt, "T_wt")
-        q = np.clip(as_array(q0, (_N,), "q0"), self.robot.lower, self.robot.upper)
-        near = q if posture is None else as_array(posture, (_N,), "posture")
+        q = np.clip(as_array(q0, (JOINTS,), "q0"), self.robot.lower, self.robot.upper)
+        near = q if posture is None else as_array(posture, (JOINTS,), "posture")
         for _ in range(_ITERATIONS):
             e = self.pose_error(T_wt, q)
             J = self.tip_jacobian(q)
@@ -270,7 +269,7 @@ class Kinematics:
         if isinstance(start, Sample):
             target = Trajectory(PosePath(target.path, R_wt), target.scaling)
         grid = np.linspace(0.0, 1.0, samples)
-        angles = np.empty((samples, _N))
+        angles = np.empty((samples, JOINTS))
         for k, s in enumerate(grid):
             try:
                 q = self.inverse_kinematics(target.path(s).pose, q, posture=posture)
@@ -293,7 +292,7 @@ class Kinematics:
         off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
             f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
         )
-        stretched = self.pose(np.zeros(_N))
+        stretched = self.pose(np.zeros(JOINTS))
         shoulder, wrist = (self._data.oMi[i].translation for i in (2, 6))
         reach = np.linalg.norm(wrist - shoulder)
         hand = stretched[:3, :3].T @ (stretched[:3, 3] - wrist)  # from the wrist to the tip

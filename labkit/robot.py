@@ -19,6 +19,7 @@ from .arrays import Array, locked
 from .errors import UnknownName
 from .plant import IDEAL, Plant
 
+JOINTS = 7
 Side = Literal["left", "right"]
 
 

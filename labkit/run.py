@@ -9,10 +9,11 @@ import numpy as np
 
 from .arm import Arm
 from .arrays import as_array, as_number, shown
-from .commands import COMMANDS, JOINTS, Command, State
+from .commands import COMMANDS, Command, State
 from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .log import Log, Recorder
 from .motion import AnySample, PoseSample, Sample, Target
+from .robot import JOINTS
 from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array, locked
-from .commands import JOINTS, NOTHING, State
+from .commands import NOTHING, State
 from .model import Model
 from .plant import Plant
+from .robot import JOINTS
 from .world import whole_steps
 
 

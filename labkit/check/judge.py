@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, as_array, as_gains
-from ..commands import COMMANDS, JOINTS
+from ..commands import COMMANDS
 from ..errors import LabkitError
 from ..motion import PoseSample, Sample
+from ..robot import JOINTS
 
 
 @dataclass(frozen=True)
