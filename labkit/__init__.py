@@ -55,7 +55,7 @@ _LATER = {
     "ready": "readiness",
     "replay": "",
 }
-"""Where to find what is loaded when first asked for: OpenCV and Matplotlib are slow to import."""
+"""Where to find what is loaded when first asked for; OpenCV and Matplotlib are slow to import."""
 
 
 def __getattr__(name: str) -> Any:

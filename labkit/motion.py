@@ -52,7 +52,7 @@ AnySample = Sample | PoseSample
 
 _S = TypeVar("_S", bound=AnySample)
 Path = Callable[[float], _S]
-"""A curve in s, from 0 to 1: its value and derivatives with respect to s."""
+"""A curve in s, from 0 to 1, by its value and derivatives with respect to s."""
 
 
 class TimeScaling(Protocol):
@@ -67,7 +67,7 @@ class TimeScaling(Protocol):
 
 
 Target = Callable[[float], AnySample]
-"""What `run` follows: any function of time, in [s] since the run began."""
+"""What `run` follows, any function of time, in [s] since the run began."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ Controller = Callable[[State, Any], Command]
 """A function of the state and of the target's sample; nothing to inherit, nothing to register."""
 
 RUNAWAY = 50.0
-"""Joints faster than this, in [rad/s], are out of control: twelve times the quickest's limit."""
+"""Joints faster than this, in [rad/s], are out of control; the quickest's limit is 4."""
 
 
 def run(

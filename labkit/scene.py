@@ -25,7 +25,7 @@ with quiet():
     import pybullet as bullet
 
 TIP_RADIUS = 0.01
-"""Radius of the ball about the tip's origin, in [m]: contact begins this far from it."""
+"""Radius of the ball about the tip's origin, in [m]; contact begins this far from it."""
 
 TIP_STIFFNESS = 10_000.0
 """Of the finger's rubber pad, in [N/m]."""

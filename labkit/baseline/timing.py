@@ -45,7 +45,7 @@ MOVEIT = Limits(
     speed=(0.27, 0.27, 0.27, 0.27, 0.3, 0.3, 0.5),
     acceleration=(0.5,) * 7,
 )
-"""What MoveIt keeps to on Baxter: joint_limits.yaml of moveit_robots' baxter_moveit_config."""
+"""What MoveIt keeps to on Baxter, joint_limits.yaml of moveit_robots' baxter_moveit_config."""
 
 HARDWARE = Limits(
     speed=(1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0),

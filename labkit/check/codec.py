@@ -50,7 +50,7 @@ GIVEN = (
     Trials,
     Runner,
 )
-"""What a student's function may be given on top: frozen values, sent as their fields."""
+"""What a student's function may be given on top, frozen values, sent as their fields."""
 
 _DATA = {kind.__name__: kind for kind in DATA}
 _ALL = _DATA | {kind.__name__: kind for kind in GIVEN}

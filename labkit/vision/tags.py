@@ -23,7 +23,7 @@ Picture = NDArray[np.uint8]
 """Grey levels (height, width) or colours (height, width, 3) in RGB order, 0 to 255."""
 
 APRILTAG = "apriltag_36h11"
-"""The tags that robots mostly use: 587 of them, any two differ in at least 11 of 36 bits."""
+"""The tags that robots mostly use, 587 of them, any two differ in at least 11 of 36 bits."""
 
 ARUCO = "aruco_4x4"
 """250 coarse patterns that a poor camera can still read; they are more easily mistaken."""
