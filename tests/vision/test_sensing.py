@@ -8,7 +8,7 @@ import labkit as lk
 from labkit import se3
 from labkit.errors import OutOfRange, UnknownName
 from labkit.vision import sensing, sensor_plots
-from labkit.vision.estimation import average_pose, low_pass, low_pass_noise
+from labkit.vision.estimation import average_pose, low_pass
 from labkit.vision.sensing import Readings, Setup, quality, random_poses, read, sweep
 
 matplotlib.use("Agg")
@@ -73,7 +73,7 @@ def test_averaging_and_a_filter_help_against_image_noise_by_the_expected_amount(
     means = [average_pose(group)[2, 3] for group in seen.estimate.reshape(10, 16, 4, 4)]
     assert 0.1 < np.std(means) / one < 0.45  # 1/4, from ten means
     calm = low_pass(depth, 0.2)[15:]
-    assert np.std(calm) / one == pytest.approx(low_pass_noise(0.2), rel=0.5)
+    assert np.std(calm) / one == pytest.approx(np.sqrt(0.2 / 1.8), rel=0.5)
 
 
 def test_the_detectors_covariance_is_of_the_size_of_its_errors():
