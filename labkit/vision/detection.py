@@ -66,12 +66,6 @@ class Detection:
     ratio: float
     covariance: Array
 
-    @property
-    def tilt(self) -> float:
-        """Angle between the tag's normal and the ray on which it is seen, in [rad]."""
-        ray = self.T_cm[:3, 3] / np.linalg.norm(self.T_cm[:3, 3])
-        return float(np.arccos(np.clip(-self.T_cm[:3, 2] @ ray, -1.0, 1.0)))
-
 
 def detect_tags(
     image: Any,

@@ -4,7 +4,6 @@ import matplotlib
 import numpy as np
 import pytest
 
-import labkit as lk
 from labkit import se3
 from labkit.errors import OutOfRange, UnknownName
 from labkit.vision import sensing, sensor_plots
@@ -18,7 +17,7 @@ def readings(truth, estimate):
     n = len(truth)
     nothing = np.zeros(n)
     return Readings(
-        np.array(truth), np.array(estimate), nothing, nothing + 2.0, nothing,
+        np.array(truth), np.array(estimate), nothing + 2.0, nothing,
         np.zeros((n, 4, 2)), np.zeros((n, 6, 6)),
     )  # fmt: skip
 
@@ -43,8 +42,10 @@ def test_random_poses_are_as_the_setup_says():
         ray = T[:3, 3] / np.linalg.norm(T[:3, 3])
         assert np.linalg.norm(T[:3, 3]) == pytest.approx(0.9)
         assert 0.2 - 1e-9 <= np.arccos(-T[:3, 2] @ ray) <= 0.5 + 1e-9
-    with pytest.raises(OutOfRange, match="tilt"):
-        random_poses(Setup(tilt=(0.0, 2.0)), 1, np.random.default_rng(0))
+    refused = {"tilt": (Setup(tilt=(0.0, 2.0)), 1), "distance": (Setup(distance=0.0), 1)}
+    for name, (wrong, count) in (refused | {"count": (setup, 0)}).items():
+        with pytest.raises(OutOfRange, match=f"{name} is"):
+            random_poses(wrong, count, np.random.default_rng(0))
 
 
 def worst(q):
@@ -113,4 +114,3 @@ def test_the_figures_draw(tmp_path):
     ax = sensor_plots.ambiguity(read(setup, random_poses(setup, 6, np.random.default_rng(0))))
     assert ax.get_xlabel() == "tilt [degrees]"
     assert tuple(sensor_plots.UNITS) == sensing.DIALS
-    assert lk.Tag().size == sensing.TAG.size
