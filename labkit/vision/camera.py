@@ -13,8 +13,8 @@ import numpy as np
 
 from .. import se3
 from ..arm import Arm
-from ..arrays import Array, as_number, as_vector, locked
-from ..errors import Closed, LabkitError, OutOfRange
+from ..arrays import Array, as_number, as_vector, locked, shown
+from ..errors import Closed, LabkitError, OutOfRange, TypeMismatch
 from ..quiet import quiet
 from ..world import World
 from .board import Board
@@ -96,9 +96,17 @@ class Camera:
             samples: s, for s^2 + 1 points of each pixel on a tag; 1 shows the renderer's own jagged
                 edges.
             seed: Of the noise.
+
+        Raises:
+            TypeMismatch: There is no world or no lens in its place.
+            OutOfRange: ``noise`` or ``samples`` is not what it may be.
         """
+        if not isinstance(world, World):
+            raise TypeMismatch(f"world is {shown(world)}, expected a World; an arm's is arm.world")
         self.world = world
         self.intrinsics = Intrinsics() if intrinsics is None else intrinsics
+        if not isinstance(self.intrinsics, Intrinsics):
+            raise TypeMismatch(f"intrinsics is {shown(intrinsics)}, expected lk.Intrinsics(...)")
         self.noise = as_number(noise, "noise", least=0.0)
         if not isinstance(samples, int) or not 1 <= samples <= 8:
             raise OutOfRange(f"samples is {samples!r}; give a whole number from 1 to 8")
@@ -132,12 +140,12 @@ class Camera:
     @property
     def T_wc(self) -> Array:
         """Where the camera really is now, shape (4, 4)."""
-        return self._fixed if self._hand is None else self._in_hand(self._hand.truth().q)
+        return self._fixed if self._hand is None else _held(self._hand, self._hand.truth().q)
 
     @property
     def reported_T_wc(self) -> Array:
         """Where the robot thinks that the camera is: by its reported joint angles, if in a hand."""
-        return self._fixed if self._hand is None else self._in_hand(self._hand.state().q)
+        return self._fixed if self._hand is None else _held(self._hand, self._hand.state().q)
 
     def image(self) -> Picture:
         """Take a picture.
@@ -170,12 +178,6 @@ class Camera:
         shape = (self.intrinsics.height, self.intrinsics.width, 3)
         picture = np.full(shape, BACKGROUND, np.uint8)
         return self._developed(picture, self._refine(picture, T_wc, looks))
-
-    def _in_hand(self, q: Array) -> Array:
-        arm = self._hand
-        assert arm is not None
-        T_tc = se3.inverse(arm.robot.T_hand_tip) @ arm.robot.T_hand_camera
-        return locked(arm.model.pose(q) @ T_tc)
 
     def _focus(self) -> tuple[Array, Looks]:
         """Everything in its place; where the camera is, and the robot it sees."""
@@ -354,6 +356,12 @@ class Camera:
             picture[drawn] = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
         picture.setflags(write=False)
         return picture
+
+
+def _held(arm: Arm, q: Array) -> Array:
+    """Pose in the world of the camera in an arm's hand, at joint angles ``q``."""
+    T_tc = se3.inverse(arm.robot.T_hand_tip) @ arm.robot.T_hand_camera
+    return locked(arm.model.pose(q) @ T_tc)
 
 
 def looking_at(eye: Any, at: Any, up: Any = (0.0, 0.0, 1.0)) -> Array:
