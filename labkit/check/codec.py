@@ -7,6 +7,7 @@ Only the kinds named here travel; never pickle, never code.  `decode` builds wha
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from types import MethodType
 from typing import Any
 
@@ -39,8 +40,12 @@ GIVEN = (
     scalings.Cubic,
     scalings.Quintic,
     scalings.Trapezoid,
+    paths.Spline,
     motion.Trajectory,
     motion.PosePath,
+    motion.Chain,
+    motion.Hold,
+    Model,
     plant.Plant,
     scene.Push,
     scene.Spring,
@@ -50,7 +55,15 @@ GIVEN = (
     Trials,
     Runner,
 )
-"""What a student's function may be given on top: frozen values, sent as their fields."""
+"""What a student's function may be given on top: values, sent as what they are made of."""
+
+_MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
+    paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
+    motion.Chain: lambda chain: {"parts": chain.parts},
+    motion.Hold: lambda hold: {"place": hold(0.0)[0], "duration": hold.duration},
+    Model: lambda model: {"side": model.robot.side, "plant": model.plant},
+}
+"""The arguments to make those of again that are neither a dataclass nor a named tuple."""
 
 _DATA = {kind.__name__: kind for kind in DATA}
 _ALL = _DATA | {kind.__name__: kind for kind in GIVEN}
@@ -62,8 +75,7 @@ def encode(value: Any) -> Any:
 
     Args:
         value: None, a truth value, number, text, list, tuple, dict with text keys, array of
-            numbers, one of `DATA` or `GIVEN`, a `Model`, `Chain`, `Hold` or `Spline`, or a method
-            of one of these.
+            numbers, one of `DATA` or `GIVEN`, a method of one of these, or a type of command.
 
     Returns:
         What `json.dumps` takes; numbers keep every bit.
@@ -86,13 +98,7 @@ def encode(value: Any) -> Any:
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
     name = type(value).__name__
     if type(value) is _ALL.get(name):
-        if dataclasses.is_dataclass(value):
-            fields = {
-                f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(value) if f.init
-            }
-        else:
-            fields = {key: encode(x) for key, x in value._asdict().items()}
-        return {"$": name, "fields": fields}
+        return {"$": name, "fields": {key: encode(x) for key, x in _made_of(value).items()}}
     if isinstance(value, list):
         return [encode(x) for x in value]
     if isinstance(value, tuple):
@@ -101,19 +107,6 @@ def encode(value: Any) -> Any:
         if not all(isinstance(key, str) for key in value):
             raise TypeMismatch("a dict travels only with text keys")
         return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
-    return _encode_machinery(value, name)
-
-
-def _encode_machinery(value: Any, name: str) -> Any:
-    if isinstance(value, Model):
-        return {"$": "Model", "side": value.robot.side, "plant": encode(value.plant)}
-    if isinstance(value, motion.Chain):
-        return {"$": "Chain", "parts": [encode(part) for part in value.parts]}
-    if isinstance(value, motion.Hold):
-        sample = value(0.0)
-        return {"$": "Hold", "place": encode(sample[0]), "duration": _number(value.duration)}
-    if isinstance(value, paths.Spline):
-        return {"$": "Spline", "s": encode(value.s), "values": encode(value.values)}
     if isinstance(value, MethodType):
         return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
     if type(value).__module__.startswith("control.") and hasattr(value, "num"):
@@ -127,13 +120,22 @@ def _encode_machinery(value: Any, name: str) -> Any:
     )
 
 
+def _made_of(value: Any) -> dict[str, Any]:
+    if type(value) in _MADE_OF:
+        return _MADE_OF[type(value)](value)
+    if dataclasses.is_dataclass(value):
+        return {f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.init}
+    fields: dict[str, Any] = value._asdict()
+    return fields
+
+
 def decode(data: Any) -> Any:
     """The value that `encode` wrote; arrays come read-only.
 
     Args:
         data: From `json.loads`, written by labkit itself.
     """
-    return _decode(data, _ALL, machinery=True)
+    return _decode(data, _ALL)
 
 
 def decode_answer(data: Any) -> Any:
@@ -143,14 +145,17 @@ def decode_answer(data: Any) -> Any:
         TypeMismatch: It is not of the form that `encode` writes.
     """
     try:
-        return _decode(data, _DATA, machinery=False)
-    except (KeyError, ValueError, TypeError, RecursionError) as error:
+        return _decode(data, _DATA)
+    except Exception as error:  # what else may come of it, its author chooses
         raise TypeMismatch(f"the answer did not arrive in one piece: {error}") from None
 
 
-def _decode(data: Any, kinds: dict[str, Any], *, machinery: bool) -> Any:
+def _decode(data: Any, kinds: dict[str, Any]) -> Any:
+    def inner(x: Any) -> Any:
+        return _decode(x, kinds)
+
     if isinstance(data, list):
-        return [_decode(x, kinds, machinery=machinery) for x in data]
+        return [inner(x) for x in data]
     if not isinstance(data, dict):
         return data
     kind = data["$"]
@@ -161,29 +166,16 @@ def _decode(data: Any, kinds: dict[str, Any], *, machinery: bool) -> Any:
             x if isinstance(x, bool | int | float) else float(x["value"]) for x in data["numbers"]
         ]
         return locked(np.array(numbers, dtype=float).reshape([int(n) for n in data["shape"]]))
-
-    def inner(x: Any) -> Any:
-        return _decode(x, kinds, machinery=machinery)
-
     if kind == "tuple":
         return tuple(inner(x) for x in data["items"])
     if kind == "dict":
         return {str(key): inner(x) for key, x in data["items"].items()}
     if kind in kinds:
         return kinds[kind](**{str(key): inner(x) for key, x in data["fields"].items()})
-    if machinery:
-        if kind == "Model":
-            return Model(data["side"], inner(data["plant"]))
-        if kind == "Chain":
-            return motion.Chain(inner(data["parts"]))
-        if kind == "Hold":
-            return motion.Hold(inner(data["place"]), data["duration"])
-        if kind == "Spline":
-            return paths.Spline(inner(data["s"]), inner(data["values"]))
-        if kind == "method":
-            return getattr(inner(data["of"]), data["name"])
-        if kind == "command type":
-            return _COMMANDS[data["name"]]
+    if kinds is _ALL and kind == "method":
+        return getattr(inner(data["of"]), data["name"])
+    if kinds is _ALL and kind == "command type":
+        return _COMMANDS[data["name"]]
     raise TypeMismatch(f"no value of kind {kind!r} can be read here")
 
 
