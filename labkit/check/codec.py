@@ -7,7 +7,7 @@ Only the kinds named here travel; never pickle, never code.  `decode` builds wha
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from types import MethodType
 from typing import Any
 
@@ -65,17 +65,23 @@ _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
 }
 """The arguments to make those of again that are neither a dataclass nor a named tuple."""
 
-_DATA = {kind.__name__: kind for kind in DATA}
-_ALL = _DATA | {kind.__name__: kind for kind in GIVEN}
+Kinds = Mapping[str, Any]
+"""Types by their names."""
+
+_DATA: Kinds = {kind.__name__: kind for kind in DATA}
+TRUSTED: Kinds = {kind.__name__: kind for kind in (*DATA, *GIVEN)}
+"""What `decode` builds, beside methods."""
+
 _COMMANDS: dict[str, type] = {kind.__name__: kind for kind in commands.COMMANDS}
 
 
-def encode(value: Any) -> Any:
+def encode(value: Any, kinds: Kinds = TRUSTED) -> Any:
     """A value as JSON data.
 
     Args:
         value: None, a truth value, number, text, list, tuple, dict with text keys, array of
-            numbers, one of `DATA` or `GIVEN`, a method of one of these, or a type of command.
+            numbers, one of ``kinds``, a method of one of these, or a type of command.
+        kinds: What may travel beside plain data.
 
     Returns:
         What `json.dumps` takes; numbers keep every bit.
@@ -83,6 +89,10 @@ def encode(value: Any) -> Any:
     Raises:
         TypeMismatch: It is none of these.
     """
+
+    def inner(x: Any) -> Any:
+        return encode(x, kinds)
+
     if value is None or isinstance(value, bool | str):
         return value
     if isinstance(value, np.bool_):
@@ -97,21 +107,21 @@ def encode(value: Any) -> Any:
         numbers = [_number(x) for x in value.ravel().tolist()]
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
     name = type(value).__name__
-    if type(value) is _ALL.get(name):
-        return {"$": name, "fields": {key: encode(x) for key, x in _made_of(value).items()}}
+    if type(value) is kinds.get(name):
+        return {"$": name, **{key: inner(x) for key, x in _made_of(value).items()}}
     if isinstance(value, list):
-        return [encode(x) for x in value]
+        return [inner(x) for x in value]
     if isinstance(value, tuple):
-        return {"$": "tuple", "items": [encode(x) for x in value]}
+        return {"$": "tuple", "items": [inner(x) for x in value]}
     if isinstance(value, dict):
         if not all(isinstance(key, str) for key in value):
             raise TypeMismatch("a dict travels only with text keys")
-        return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
+        return {"$": "dict", "items": {key: inner(x) for key, x in value.items()}}
     if isinstance(value, MethodType):
-        return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
+        return {"$": "method", "of": inner(value.__self__), "name": value.__name__}
     if type(value).__module__.startswith("control.") and hasattr(value, "num"):
         num, den = (tuple(float(x) for x in part[0][0]) for part in (value.num, value.den))
-        return encode(Ratio(num, den))
+        return inner(Ratio(num, den))
     if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
         return {"$": "command type", "name": value.__name__}
     raise TypeMismatch(
@@ -129,13 +139,14 @@ def _made_of(value: Any) -> dict[str, Any]:
     return fields
 
 
-def decode(data: Any) -> Any:
+def decode(data: Any, kinds: Kinds = TRUSTED) -> Any:
     """The value that `encode` wrote; arrays come read-only.
 
     Args:
         data: From `json.loads`, written by labkit itself.
+        kinds: As `encode` was given.
     """
-    return _decode(data, _ALL)
+    return _decode(data, kinds)
 
 
 def decode_answer(data: Any) -> Any:
@@ -150,7 +161,7 @@ def decode_answer(data: Any) -> Any:
         raise TypeMismatch(f"the answer did not arrive in one piece: {error}") from None
 
 
-def _decode(data: Any, kinds: dict[str, Any]) -> Any:
+def _decode(data: Any, kinds: Kinds) -> Any:
     def inner(x: Any) -> Any:
         return _decode(x, kinds)
 
@@ -171,10 +182,10 @@ def _decode(data: Any, kinds: dict[str, Any]) -> Any:
     if kind == "dict":
         return {str(key): inner(x) for key, x in data["items"].items()}
     if kind in kinds:
-        return kinds[kind](**{str(key): inner(x) for key, x in data["fields"].items()})
-    if kinds is _ALL and kind == "method":
+        return kinds[kind](**{key: inner(x) for key, x in data.items() if key != "$"})
+    if kinds is not _DATA and kind == "method":
         return getattr(inner(data["of"]), data["name"])
-    if kinds is _ALL and kind == "command type":
+    if kinds is not _DATA and kind == "command type":
         return _COMMANDS[data["name"]]
     raise TypeMismatch(f"no value of kind {kind!r} can be read here")
 

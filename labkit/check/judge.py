@@ -273,7 +273,6 @@ class Gains:
 
 
 Judge = Close | Within | AtMost | Response | Gains
-JUDGES: dict[str, Any] = {k.__name__: k for k in (Close, Within, AtMost, Response, Gains)}
 
 
 def _flat(value: Any) -> list[Any]:
