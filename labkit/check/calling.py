@@ -32,11 +32,11 @@ def heard() -> Iterator[Heard]:
                 yield result
             finally:
                 words = [out.getvalue(), *(f"{w.category.__name__}: {w.message}\n" for w in said)]
-                result.text = "".join([*words, *below()])
+                result.text = "".join([*words, below()])
 
 
 @contextmanager
-def _descriptors() -> Iterator[Callable[[], list[str]]]:
+def _descriptors() -> Iterator[Callable[[], str]]:
     """Point file descriptors 1 and 2 at a file, and give a function that reads it."""
     for stream in (sys.stdout, sys.stderr):
         with suppress(Exception):
@@ -46,9 +46,9 @@ def _descriptors() -> Iterator[Callable[[], list[str]]]:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
 
-        def read() -> list[str]:
+        def read() -> str:
             file.seek(0)
-            return [file.read(100_000).decode(errors="replace")]
+            return file.read(100_000).decode(errors="replace")
 
         try:
             yield read

@@ -47,7 +47,7 @@ class Close:
     def distance(self, answer: Any, expected: Any) -> float:
         """How far the answer is off, in tolerances; infinite where it has another form."""
         try:
-            a, b = (np.concatenate([x.ravel() for x in _flat(v)]) for v in (answer, expected))
+            a, b = numbers(answer), numbers(expected)
         except (LabkitError, TypeError, ValueError):
             return float("inf")
         if a.shape != b.shape or not np.isfinite(a).all():
@@ -129,11 +129,9 @@ class Within:
             x = float(as_array(answer, (), "the answer"))
         except LabkitError as error:
             return str(error)
-        return (
-            None
-            if self.distance(x, expected) <= 1.0
-            else f"got {_number(x)}, which is none of the right ones"
-        )
+        if self.distance(x, expected) <= 1.0:
+            return None
+        return f"got {_number(x)}, which is none of the right ones"
 
     def same(self, answer: Any, other: Any) -> bool:
         """Whether two answers, right or wrong, are the same number."""
@@ -275,8 +273,16 @@ class Gains:
 Judge = Close | Within | AtMost | Response | Gains
 
 
-def _flat(value: Any) -> list[Any]:
-    """All numbers of an answer, part by part."""
+def numbers(value: Any) -> Array:
+    """All numbers of an answer, part by part, shape (n,).
+
+    Raises:
+        TypeError, ValueError: It is not made of numbers.
+    """
+    return np.concatenate([x.ravel() for x in _flat(value)])
+
+
+def _flat(value: Any) -> list[Array]:
     if isinstance(value, COMMANDS):
         value = value.value
     if isinstance(value, dict):

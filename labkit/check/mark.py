@@ -212,7 +212,6 @@ class _Failure(Raised):
     """An exception as an answer."""
 
     sentence: str
-    not_attempted: bool = False
     log: Log | None = None
 
 
@@ -230,7 +229,7 @@ def _failure(error: BaseException) -> _Failure:
     known = isinstance(error, Failed) or (isinstance(error, LabkitError) and error.__cause__)
     sentence = str(error) if known else told(error)
     log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
-    return _Failure(kind, sentence, not_attempted=kind == "NotImplementedError", log=log)
+    return _Failure(kind, sentence, log)
 
 
 def _try(
@@ -248,7 +247,8 @@ def _try(
         hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
         where = hidden if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
-            outcome = Outcome.NOT_ATTEMPTED if answer.not_attempted else Outcome.ERROR
+            stub = answer.kind == "NotImplementedError"
+            outcome = Outcome.NOT_ATTEMPTED if stub else Outcome.ERROR
             says = f"{where} raised {answer.kind if case.hidden else answer.sentence}"
             return TestResult(test.name, test.weight, outcome, says, case.hidden)
         found = _difference(question, case, answer)
