@@ -106,10 +106,7 @@ class Motion:
         times = np.linspace(self.t[0], self.t[-1], count)
 
         def even(x: Array | None) -> Array | None:
-            if x is None:
-                return None
-            flat = x.reshape(len(x), -1)
-            return np.column_stack([np.interp(times, self.t, column) for column in flat.T])
+            return None if x is None else resampled(x, self.t, times)
 
         channels = {
             "q": even(self.q),
@@ -122,9 +119,7 @@ class Motion:
             "tau": even(self.tau),
         }
         packed = {k: pack(v, STEPS[k]) for k, v in channels.items() if v is not None}
-        ghosts = {
-            k: pack(v, STEPS["q"]) for k, q in self.ghosts.items() if (v := even(q)) is not None
-        }
+        ghosts = {k: pack(resampled(q, self.t, times), STEPS["q"]) for k, q in self.ghosts.items()}
         return {
             "kind": "motion",
             "title": self.title,
@@ -142,11 +137,6 @@ class Motion:
     def to_json(self, rate: float = 25.0) -> str:
         """Compact JSON of `data(rate)`; ten seconds with torques and two ghosts fit 40 kB."""
         return json.dumps(self.data(rate), separators=(",", ":"), ensure_ascii=False)
-
-    @cached_property
-    def size(self) -> int:
-        """Bytes of `to_json()`."""
-        return len(self.to_json().encode())
 
     @cached_property
     def alt(self) -> str:
@@ -225,6 +215,20 @@ def unpack(channel: Mapping[str, Any]) -> Array:
     for _ in range(channel["order"]):
         whole = np.cumsum(whole, axis=1)
     return np.asarray(whole.T * float(channel["step"]), dtype=np.float64)
+
+
+def resampled(x: Array, t: Array, times: Array) -> Array:
+    """Rows that belong to times ``t``, read at other times; beyond either end they stay.
+
+    Args:
+        x: Shape (N,) or (N, k).
+        t: Increasing, shape (N,) in [s].
+        times: Shape (M,) in [s].
+
+    Returns:
+        Shape (M, k).
+    """
+    return np.column_stack([np.interp(times, t, column) for column in x.reshape(len(x), -1).T])
 
 
 def _frozen(value: Any, shape: tuple[int, ...], name: str) -> Array:
