@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
-from .notebook import FILE
+from .notebook import read_checks
 
 LARGEST = 10.0
 """Above this many megabytes a notebook may not pass a learning platform's upload."""
@@ -69,10 +69,7 @@ def look(path: Path) -> HandIn:
         LabkitError: The file is missing or no notebook, or its questions are not there.
     """
     cells = read_cells(path)
-    checks = path.parent / FILE
-    if not checks.exists():
-        raise LabkitError(f"{FILE} is not beside {path.name}; it came with the assignment")
-    data = json.loads(checks.read_text(encoding="utf-8"))
+    data = read_checks(path.resolve().parent)
     name, questions = data["assignment"], [q["name"] for q in data["questions"]]
     problems, notes = [], []
     if path.name != f"{name}.ipynb":

@@ -32,6 +32,7 @@ BACKGROUND = 255
 """Grey level where there is nothing to see."""
 
 _MARGIN = 4  # pixels around a tag's paper that are drawn with it
+_PLAIN = np.eye(2)  # the picture's own grid
 _LIGHT = (0.6, 0.35, 1.0)  # where the light comes from, world axes
 
 
@@ -159,7 +160,7 @@ class Camera:
         """
         T_wc, looks = self._focus()
         size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
-        picture = self._draw(T_wc, looks, size, FAR, np.eye(2), (size.width, size.height))
+        picture = self._draw(T_wc, looks, size, FAR)
         if self.samples > 1:
             self._refine(picture, T_wc, looks)
         return self._developed(picture, [size])
@@ -261,7 +262,7 @@ class Camera:
         """
         s = self.samples
         if s == 1:
-            return self._draw(T_wc, looks, window, depth, np.eye(2), (window.width, window.height))
+            return self._draw(T_wc, looks, window, depth)
         turn = np.array([[s, -1], [1, s]])  # from pixels to the fine grid
         size = (s * window.width + window.height + 2 * s, window.width + s * window.height + 2 * s)
         first = np.array([window.height + s - 1, s])  # where the first pixel's middle comes to lie
@@ -282,8 +283,8 @@ class Camera:
         looks: Looks,
         window: Window,
         depth: float,
-        grid: Any,
-        size: tuple[int, int],
+        grid: Any = _PLAIN,
+        size: tuple[int, int] | None = None,
         first: Any = (0, 0),
     ) -> Picture:
         """Let PyBullet draw a part of the picture, its middles of pixels on a grid of its own.
@@ -298,10 +299,10 @@ class Camera:
             window: Which part.
             depth: Up to how far away, in [m].
             grid: From pixels to steps of the grid, shape (2, 2).
-            size: Columns and rows of the grid.
+            size: Columns and rows of the grid; None is the window's own.
             first: Where on the grid the window's first pixel comes to lie.
         """
-        lens, (wide, tall) = self.intrinsics, size
+        lens, (wide, tall) = self.intrinsics, size or (window.width, window.height)
         x0, y0 = window.left - 0.5, window.top - 0.5
         left, right = (x0 - lens.cx) / lens.fx, (x0 + window.width - lens.cx) / lens.fx
         top, bottom = (y0 - lens.cy) / lens.fy, (y0 + window.height - lens.cy) / lens.fy

@@ -104,6 +104,15 @@ def test_a_damaged_file_is_a_sentence(folder, text):
         look(path)
 
 
+def test_a_notebook_without_its_questions_is_a_sentence(folder):
+    """A missing or damaged checks.json is named, with the way out."""
+    file = folder / "checks.json"
+    for text, says in (("{", "only a damaged"), (None, "no")):
+        file.unlink() if text is None else file.write_text(text)
+        with pytest.raises(LabkitError, match=rf"there is {says} checks\.json in .*whole folder"):
+            look(folder / "01_paths.ipynb")
+
+
 def test_merging_keeps_answers_and_own_cells(folder):
     """A corrected release takes over the answer and the student's own cell, in its place."""
     new = read_cells(folder / "01_paths.ipynb")

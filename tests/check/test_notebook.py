@@ -150,6 +150,9 @@ def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path / "elsewhere")
     with pytest.raises(LabkitError, match=r"no checks\.json in 'elsewhere'.*whole folder"):
         check("double", double)
+    Path("checks.json").write_text('{"assignment": ')
+    with pytest.raises(LabkitError, match=r"only a damaged checks\.json in 'elsewhere'"):
+        check("double", double)
 
 
 def test_a_figure_shows_the_evidence(desk):
