@@ -21,7 +21,7 @@ STEPS = {  # how fine each channel is kept
     "board": 1e-4,  # m
     "board_quaternion": 1e-4,
     "path": 1e-4,  # m
-    "error": 1e-5,  # m or rad
+    "error": 1e-5,  # m
     "tau": 1e-2,  # N m
 }
 LIMIT = 40_000  # bytes that a page spends on one motion
@@ -42,9 +42,7 @@ class Motion:
         board_position: Where the tag's board was, shape (N, 3), in [m].
         board_rotation: How it was turned, shape (N, 3, 3), the tag facing its own +z.
         path: Points of the desired path, shape (K, 3), in [m].
-        error: A tracking error over time, shape (N,), in `error_unit`.
-        error_name: What that error is.
-        error_unit: "m" (shown in mm) or "rad".
+        error: How far the tip was from its target, shape (N,), in [m].
         tau: Joint torques, shape (N, 7), in [N m].
         ghosts: Other arms' angles by name, each of shape (N, 7), in [rad].
     """
@@ -60,16 +58,12 @@ class Motion:
     board_rotation: Array | None = None
     path: Array | None = None
     error: Array | None = None
-    error_name: str = "Tip error"
-    error_unit: str = "m"
     tau: Array | None = None
     ghosts: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.side not in ("left", "right"):
             raise UnknownName("side", self.side, ("left", "right"))
-        if self.error_unit not in ("m", "rad"):
-            raise UnknownName("unit of an error", self.error_unit, ("m", "rad"))
         n = np.shape(self.t)[0] if np.ndim(self.t) else 0
         if n < 2:
             raise OutOfRange(f"t has {n} times, and a motion needs at least two")
@@ -128,8 +122,8 @@ class Motion:
             "side": self.side,
             "start": round(float(times[0]), 6),
             "period": round(float(times[1] - times[0]), 9),
-            "error_name": self.error_name,
-            "error_unit": self.error_unit,
+            "error_name": "Tip error",
+            "error_unit": "m",
             **packed,
             "ghosts": ghosts,
         }
@@ -143,7 +137,8 @@ class Motion:
         """One or two sentences for whoever does not see the picture, with the run's own numbers."""
         words = f"Baxter's {self.side} arm moves for {self.t[-1] - self.t[0]:.1f} s"
         if self.error is not None:
-            words += f"; {_lower(self.error_name)} {self._span(self.error)}"
+            rms = float(np.sqrt(np.mean(self.error**2)))
+            words += f"; tip error {_mm(rms)} RMS, {_mm(np.abs(self.error).max())} at most"
         if self.ghosts:
             words += f"; compared with {_listed(list(self.ghosts))}, drawn as see-through arms"
         return words + "."
@@ -168,9 +163,8 @@ class Motion:
         if self.error is not None:
             e, peak = np.abs(self.error), int(np.abs(self.error).argmax())
             words.append(
-                f"{self.error_name} is {self._amount(e[0])} at the start, largest at"
-                f" t = {self.t[peak]:.2f} s with {self._amount(e[peak])},"
-                f" and {self._amount(e[-1])} at the end."
+                f"Tip error is {_mm(e[0])} at the start, largest at t = {self.t[peak]:.2f} s with"
+                f" {_mm(e[peak])}, and {_mm(e[-1])} at the end."
             )
         if self.tau is not None:
             at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)
@@ -179,13 +173,6 @@ class Motion:
                 f" t = {self.t[at]:.2f} s."
             )
         return " ".join(words)
-
-    def _amount(self, e: float) -> str:
-        return f"{1000 * e:.1f} mm" if self.error_unit == "m" else f"{e:.3f} rad"
-
-    def _span(self, error: Array) -> str:
-        rms = float(np.sqrt(np.mean(error**2)))
-        return f"{self._amount(rms)} RMS, {self._amount(float(np.abs(error).max()))} at most"
 
 
 def pack(x: Array, step: float) -> dict[str, Any]:
@@ -246,8 +233,8 @@ def _quaternions(R: Array | None) -> Array | None:
     return np.asarray(q * np.cumprod([1.0, *flips])[:, None], dtype=np.float64)
 
 
-def _lower(name: str) -> str:
-    return name[:1].lower() + name[1:]
+def _mm(metres: float) -> str:
+    return f"{1000 * metres:.1f} mm"
 
 
 def _listed(names: list[str]) -> str:
