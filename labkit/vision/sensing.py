@@ -6,7 +6,7 @@ camera's axes, orientation as a rotation vector there.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from math import pi
 from typing import Any
@@ -184,7 +184,14 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
     return Readings(*map(locked, columns))
 
 
-DIALS = ("distance", "tilt", "resolution", "noise", "size")
+_TURNED: dict[str, Callable[[Setup, float], Setup]] = {
+    "distance": lambda setup, x: replace(setup, distance=x),
+    "tilt": lambda setup, x: replace(setup, tilt=(x, x)),
+    "resolution": lambda setup, x: replace(setup, intrinsics=setup.intrinsics.resized(x)),
+    "noise": lambda setup, x: replace(setup, noise=x),
+    "size": lambda setup, x: replace(setup, tag=replace(setup.tag, size=x)),
+}
+DIALS = tuple(_TURNED)
 """What `sweep` can turn."""
 
 
@@ -207,24 +214,11 @@ def sweep(
     Raises:
         UnknownName: No such dial.
     """
-    setup = Setup() if setup is None else setup
+    if dial not in DIALS:
+        raise UnknownName("dial", dial, DIALS)
     results = {}
     for value in values:
-        turned = _turned(setup, dial, float(value))
+        turned = _TURNED[dial](setup or Setup(), float(value))
         poses = random_poses(turned, count, np.random.default_rng(seed))
         results[float(value)] = quality(read(turned, poses, seed))
     return results
-
-
-def _turned(setup: Setup, dial: str, value: float) -> Setup:
-    if dial == "distance":
-        return replace(setup, distance=value)
-    if dial == "tilt":
-        return replace(setup, tilt=(value, value))
-    if dial == "resolution":
-        return replace(setup, intrinsics=setup.intrinsics.resized(value))
-    if dial == "noise":
-        return replace(setup, noise=value)
-    if dial == "size":
-        return replace(setup, tag=replace(setup.tag, size=value))
-    raise UnknownName("dial", dial, DIALS)
