@@ -85,12 +85,13 @@ class Close:
         return None
 
     def _differ_each(self, answer: Any, expected: Any, names: tuple[str, ...]) -> str | None:
+        wanted = f"it should be {len(expected)} things ({', '.join(names)})"
         try:
             items = list(answer)
         except TypeError:
-            return f"it should be {len(expected)} things ({', '.join(names)}), not {_shown(answer)}"
+            return f"{wanted}, not {_shown(answer)}"
         if len(items) != len(expected):
-            return f"it should be {len(expected)} things ({', '.join(names)}), not {len(items)}"
+            return f"{wanted}, not {len(items)}"
         for name, a, b in zip(names, items, expected, strict=True):
             if found := self._differ(a, b, name):
                 return found
