@@ -30,11 +30,13 @@ COPY --from=course /handout/baxter-lab /lab/tools/start_container.sh /opt/baxter
 RUN pip install --quiet --no-cache-dir --disable-pip-version-check --root-user-action=ignore \
       --constraint /opt/baxter-lab/constraints.txt \
       /opt/baxter-lab/labkit-*.whl "jupyterhub==$HUB" nbgitpuller nbgrader
-# Of nbgrader, a student has the list of assignments; a hub mounts its exchange here.
+# Of nbgrader, a student has the list of assignments; a hub mounts its exchange here. No news is asked for.
 RUN for part in formgrader course_list validate_assignment; do \
       jupyter server extension disable --sys-prefix "nbgrader.server_extensions.$part"; done \
-    && for part in formgrader create-assignment course-list validate-assignment; do \
-      jupyter labextension disable --level=system "@jupyter/nbgrader:$part"; done \
+    && for part in jupyter/nbgrader:formgrader jupyter/nbgrader:create-assignment \
+      jupyter/nbgrader:course-list jupyter/nbgrader:validate-assignment \
+      jupyterlab/apputils-extension:announcements; do \
+      jupyter labextension disable --level=system "@$part"; done \
     && mkdir -m 777 -p /usr/local/share/nbgrader/exchange
 # The user and the home that hubs expect; a volume laid over it is filled at the start.
 RUN useradd --create-home --uid 1000 jovyan
