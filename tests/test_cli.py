@@ -99,3 +99,12 @@ def test_outside_a_course_it_says_so(tmp_path):
     assert done.returncode == 2
     assert "--course" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_ctrl_c_is_no_traceback(monkeypatch, capsys):
+    def stopped(args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("labkit.cli._submit_check", stopped)
+    assert cli.main(["submit-check", "01_paths.ipynb"]) == 130
+    assert capsys.readouterr().err == "labkit submit-check: stopped\n"

@@ -75,7 +75,7 @@ def _homes(new: Cells) -> Callable[[dict[str, Any]], int | None]:
 
 
 def _purpose(cell: dict[str, Any]) -> str:
-    return str(cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", ""))
+    return str(cell["metadata"].get("nbgrader", {}).get("grade_id", ""))
 
 
 def _is_own(cell: dict[str, Any], new: Cells) -> bool:

@@ -21,7 +21,7 @@ from .sandbox import NoIsolation
 from .submission import Submission
 
 LOUD = 0.3
-"""Above this share of a class that fails one test, the run says so: is the test to blame?"""
+"""Above this share of a class that fails one test, the run says so; is the test to blame?"""
 FEW = 5
 """Of fewer who tried nothing is concluded."""
 

@@ -17,6 +17,7 @@ from typing import Any
 import labkit
 
 from ..errors import LabkitError
+from ..study.campaign import dask_client
 from .sandbox import NoIsolation
 
 Job = dict[str, Any]
@@ -164,16 +165,9 @@ def through_dask(jobs: Sequence[Job], address: str, *, isolated: bool = True) ->
     Raises:
         LabkitError: distributed is missing, or nobody answers there.
     """
-    try:
-        from distributed import Client
+    with dask_client(address) as client:
         from distributed import as_completed as as_completed_there
-    except ImportError:
-        raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
-    try:
-        client = Client(address, timeout="10s", set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise LabkitError(f"no Dask scheduler at {address}: {error}") from None
-    with client:
+
         texts = [json.dumps(job) for job in jobs]
         futures = client.map(on_dask, texts, isolated=isolated, pure=False, retries=2)
         by_key = {future.key: job for future, job in zip(futures, jobs, strict=True)}

@@ -22,7 +22,7 @@ from .problem import Problem
 from .remembered import remembering
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
-"""Functions by their question: its name, or "assignment/name" where two assignments ask it."""
+"""Functions by their question, its name, or "assignment/name" where two assignments ask it."""
 
 DRAWS = 20
 

@@ -8,6 +8,7 @@ import nbformat
 import pytest
 from courses import copied
 
+from labkit.check import read_question
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.course import Course
@@ -141,5 +142,6 @@ def test_the_public_file_is_small_and_valid():
         assert path.stat().st_size < 300_000
         data = json.loads(path.read_text(encoding="utf-8"))
         assert data["assignment"] == name
-        cases = [c for q in data["questions"] for t in q["tests"] for c in t["cases"]]
-        assert cases and not any(case["hidden"] for case in cases)
+        questions = map(read_question, data["questions"])
+        cases = [case for question in questions for test in question.tests for case in test.cases]
+        assert cases and not any(case.hidden for case in cases)

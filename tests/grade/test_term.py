@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 from handmade import QUICK, ROOT
 
+from labkit.check.codec import encode
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.batch import Graded, How, grade_class
@@ -98,9 +99,9 @@ def numbers(data):
 
 def test_feedback_has_no_hidden_case(term, bundle):
     """No hidden input stands in any page, though every page says what class of case failed."""
-    cases = [c for q in bundle.data["questions"] for t in q["tests"] for c in t["cases"]]
-    hidden = {x for c in cases if c["hidden"] for x in numbers(c["args"])}
-    hidden -= {x for c in cases if not c["hidden"] for x in numbers(c["args"])}
+    cases = [case for q in bundle.questions for test in q.tests for case in test.cases]
+    hidden = {x for c in cases if c.hidden for x in numbers(encode(c.args))}
+    hidden -= {x for c in cases if not c.hidden for x in numbers(encode(c.args))}
     assert len(hidden) > 50
     text = "".join(page(r) for r in Results(term, NAME))
     assert not [x for x in hidden if x in text]
