@@ -21,6 +21,7 @@ from pathlib import Path
 
 from ..errors import LabkitError
 from .course import Course
+from .handback import SECRET, read_secret
 from .limits import Limits
 from .lms import Known, folders, known, remember
 from .submission import check_size, read_file
@@ -63,6 +64,7 @@ class _Found:
     when: str = ""
     late: bool = False
     known: Known | None = None
+    beside: Path | None = None  # the folder in the exchange, with its secret
 
 
 def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
@@ -133,9 +135,12 @@ def _put(course: Course, assignment: str, one: _Found) -> Taken:
     path = folder / f"{assignment}.ipynb"
     try:
         data = one.read()
+        secret = None if one.beside is None else read_secret(one.beside)
     except LabkitError as error:
         return Taken(one.student, one.file, f"not taken; {error}")
     if path.is_file() and path.read_bytes() == data:
+        if secret is not None:  # handed in once more: the newer one is asked about
+            (folder / SECRET).write_bytes(secret)
         return Taken(one.student, one.file, "there already")
     again = folder.exists()
     shutil.rmtree(folder, ignore_errors=True)
@@ -143,6 +148,8 @@ def _put(course: Course, assignment: str, one: _Found) -> Taken:
     path.write_bytes(data)
     if one.when:
         (folder / "timestamp.txt").write_text(one.when, encoding="utf-8")
+    if secret is not None:
+        (folder / SECRET).write_bytes(secret)
     says = "taken, in place of an earlier one" if again else "taken"
     says += "" if one.file == path.name else f", as {path.name}"
     return Taken(one.student, one.file, says + (", late" if one.late else ""))
@@ -178,7 +185,7 @@ def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
             continue
         for path in sorted(inside.glob("*.ipynb")):
             read = partial(read_file, path, Limits().notebook)
-            yield _Found(match["name"], path.name, read, _time(match["when"]))
+            yield _Found(match["name"], path.name, read, _time(match["when"]), beside=inside)
 
 
 def _time(text: str) -> str:

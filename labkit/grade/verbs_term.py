@@ -18,6 +18,9 @@ def add(verbs: Verbs) -> None:
         verbs, "feedback", feedback, "write a page for each student", "--student ada"
     )
     verb.add_argument("--student", metavar="S", help="only this one")
+    verb.add_argument(
+        "--moodle", type=Path, metavar="ZIP", help="also write the feedback files that Moodle takes"
+    )
     verb = assignment_verb(verbs, "export", export, "marks as a table", "--to marks.csv")
     verb.add_argument(
         "--layout",
@@ -56,6 +59,7 @@ def feedback(args: argparse.Namespace) -> int:
     """Write the pages."""
     from .feedback import write_feedback
     from .gradebook import comments
+    from .handback import for_exchange, moodle_zip
     from .results import Results
 
     here = course_with(args)
@@ -64,8 +68,13 @@ def feedback(args: argparse.Namespace) -> int:
         raise nobody(args.name, args.student)
     made = write_feedback(here, args.name, results, comments(here, args.name))
     size = sum(path.stat().st_size for path in made) / 1e6
-    print(f"{len(made)} pages, {size:.1f} MB, in {here.root / 'feedback'}; hand them out with")
-    print(f"  nbgrader release_feedback {args.name}")
+    print(f"{len(made)} pages, {size:.1f} MB, in {here.root / 'feedback'}")
+    if sum([for_exchange(here, args.name, page) for page in made]):
+        print(f"back to the exchange: nbgrader release_feedback {args.name}")
+    if args.moodle:
+        count = moodle_zip(here, args.name, made, args.moodle)
+        size = args.moodle.stat().st_size / 1e6
+        print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {args.moodle}")
     return 0
 
 
