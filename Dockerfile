@@ -1,18 +1,47 @@
-# One image for a JupyterHub user, for trying the course, and for grading:
+# Two images.  A student's, which JupyterHub can start; in it are labkit and the notebooks, no answers:
 #   docker build -t baxter-lab .
-#   docker run --rm -p 8888:8888 baxter-lab                          a student's Jupyter, with a token
-#   docker run --rm OPTIONS baxter-lab make demo                     everything, isolation included
+#   docker run --rm -p 8888:8888 baxter-lab                          Jupyter, with a token
+# And the whole course's, for instructors, graders and the dev container:
+#   docker build --target course -t baxter-course .
+#   docker run --rm OPTIONS baxter-course make demo                  everything, isolation included
 # Grading makes sandboxes, which Docker forbids unasked. OPTIONS, for a container that does nothing else:
 #   --security-opt=seccomp=unconfined --security-opt=apparmor=unconfined
 #   --security-opt=systempaths=unconfined --cap-add=SYS_ADMIN --cap-add=NET_ADMIN
 # `labkit doctor` says inside whether that suffices. Our gate, which has no Docker, tries the sandbox
-# with these rights, but not the image.
-FROM python:3.11-slim-bookworm
+# with these rights, but not the images.
+FROM python:3.11-slim-bookworm AS python
+RUN apt-get update && apt-get install -y --no-install-recommends libgomp1 git \
+    && rm -rf /var/lib/apt/lists/*
+
+FROM python AS course
 RUN apt-get update && apt-get install -y --no-install-recommends \
-      make git libgomp1 bubblewrap chromium nodejs npm && rm -rf /var/lib/apt/lists/*
+      make bubblewrap chromium nodejs libatomic1 && rm -rf /var/lib/apt/lists/*
 WORKDIR /lab
 COPY . .
-RUN make .venv/.course
+RUN make .venv/.course && .venv/bin/labkit student-bundle && .venv/bin/python -m zipfile -e dist/baxter-lab.zip /handout
 ENV PATH="/lab/.venv/bin:$PATH"
 EXPOSE 8888
 CMD ["jupyter", "lab", "--ip=0.0.0.0", "--no-browser", "--allow-root", "--notebook-dir=assignments"]
+
+FROM python AS student
+# The hub's own version: docker build --build-arg HUB=5.4.0
+ARG HUB=6.1.1
+COPY --from=course /handout/baxter-lab /lab/tools/start_container.sh /opt/baxter-lab/
+RUN pip install --quiet --no-cache-dir --disable-pip-version-check --root-user-action=ignore \
+      --constraint /opt/baxter-lab/constraints.txt \
+      /opt/baxter-lab/labkit-*.whl "jupyterhub==$HUB" nbgitpuller nbgrader
+# Of nbgrader, a student has the list of assignments; a hub mounts its exchange here. No news is asked for.
+RUN for part in formgrader course_list validate_assignment; do \
+      jupyter server extension disable --sys-prefix "nbgrader.server_extensions.$part"; done \
+    && for part in jupyter/nbgrader:formgrader jupyter/nbgrader:create-assignment \
+      jupyter/nbgrader:course-list jupyter/nbgrader:validate-assignment \
+      jupyterlab/apputils-extension:announcements; do \
+      jupyter labextension disable --level=system "@$part"; done \
+    && mkdir -m 777 -p /usr/local/share/nbgrader/exchange
+# The user and the home that hubs expect; a volume laid over it is filled at the start.
+RUN useradd --create-home --uid 1000 jovyan
+USER jovyan
+WORKDIR /home/jovyan
+EXPOSE 8888
+ENTRYPOINT ["sh", "/opt/baxter-lab/start_container.sh"]
+CMD ["lab"]

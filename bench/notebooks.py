@@ -1,15 +1,13 @@
 """What a student's machine, or a hub, has to give: time and memory of the solved notebooks."""
 
-import shutil
 import tempfile
-from pathlib import Path
 
 import nbformat
 
-from labkit.grade.course import Course
 from labkit.grade.release import release
 
-ROOT = Path(__file__).parents[1]
+from .courses import fresh_course
+
 USED = """
 import resource, time
 print(time.process_time(), resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
@@ -35,10 +33,7 @@ def worked_through(path):
 def measure():
     """The most seconds and megabytes that a solved notebook takes of its kernel."""
     found = {}
-    with tempfile.TemporaryDirectory(prefix="labkit-bench-") as folder:
-        (Path(folder) / "solutions").symlink_to(ROOT / "solutions")
-        shutil.copy(ROOT / "nbgrader_config.py", folder)
-        course = Course(Path(folder))
+    with fresh_course() as course:
         for name in course.names():
             release(course, name, seed=1)
             found[name] = worked_through(course.solution / name / f"{name}.ipynb")

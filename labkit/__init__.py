@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from . import controllers, energy, errors, impedance, metrics, se3
 from .arm import Arm
-from .arrays import as_array
 from .commands import Command, JointPosition, JointTorque, JointVelocity, State
 from .errors import LabkitError
 from .log import Log
@@ -56,7 +55,7 @@ _LATER = {
     "ready": "readiness",
     "replay": "",
 }
-"""Where to find what is loaded when first asked for: OpenCV and Matplotlib are slow to import."""
+"""Where to find what is loaded when first asked for; OpenCV and Matplotlib are slow to import."""
 
 
 def __getattr__(name: str) -> Any:
@@ -66,6 +65,10 @@ def __getattr__(name: str) -> Any:
     value = getattr(module, name) if _LATER[name] else module
     globals()[name] = value
     return value
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *_LATER]
 
 
 __all__ = [
@@ -109,7 +112,6 @@ __all__ = [
     "Trapezoid",
     "Wall",
     "World",
-    "as_array",
     "check",
     "controllers",
     "detect_tags",

@@ -13,7 +13,7 @@ from .arrays import Array, as_array, locked, shown
 from .body import load
 from .commands import (
     COMMANDS,
-    JOINTS,
+    NOTHING,
     Command,
     JointPosition,
     JointTorque,
@@ -21,19 +21,19 @@ from .commands import (
     State,
     still,
 )
-from .errors import Closed, ControllerError
+from .errors import Closed, ControllerError, LabkitError, TypeMismatch
 from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
-from .robot import Robot, Side, robot
-from .sensors import NOTHING, Reports, TorqueSensors, angles, motor_torques
+from .robot import JOINTS, Robot, Side, robot
+from .sensors import Reports, TorqueSensors, angles, motor_torques
 from .world import World
 
 with quiet():
     import pybullet as bullet
 
-_JOINTS = tuple(range(7))
-_ZERO = [0.0] * 7
+_JOINTS = tuple(range(JOINTS))
+_ZERO = [0.0] * JOINTS
 
 BRAKING = 0.5
 """Share of the torque left by gravity that the position mode plans to brake with."""
@@ -70,31 +70,47 @@ class Arm:
 
         Raises:
             UnknownName: Baxter has no such arm.
+            TypeMismatch: Plant, seed or world is something else.
             Closed: The world is closed.
+            LabkitError: The world has this arm already.
             JointLimitExceeded: q0 is outside the joints' range.
         """
         self.robot: Robot = robot(side)
         self.plant = plant
         self.model = Model(side, plant)
         self.world = World() if world is None else world
-        self.check_open()
-        self._random = np.random.default_rng(seed)
+        self._check_place()
+        try:
+            self._random = np.random.default_rng(seed)
+        except (TypeError, ValueError):
+            raise TypeMismatch(
+                f"seed is {shown(seed)}, expected a whole number from 0 up"
+            ) from None
         self._client = self.world.client
         self._body = load(self._client, side, plant)
         hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
         # The arm knows its own weight, not what it carries.
-        self._own = (
-            Model(side, plant) if plant.payload == 0.0 else Model(side, replace(plant, payload=0.0))
-        )
+        self._own = Model(side, replace(plant, payload=0.0))
         self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
         self._reports = Reports(plant, self.world.dt, self._random)
         self._sensors = TorqueSensors(self._own, plant, self.world.dt)
         self._effort, self._speed = self.robot.effort.tolist(), self.robot.speed.tolist()
         self._stiction, self._laden = list(plant.stiction), plant.payload > 0.0
         self.reset(q0)
-        self.world.add(self)
+        self.world.add(self._act)
         self.world.arms.append(self)
+
+    def _check_place(self) -> None:
+        if not isinstance(self.world, World):
+            raise TypeMismatch(f"world is {shown(self.world)}, expected an lk.World")
+        self.check_open()
+        side = self.robot.side
+        if side in [arm.robot.side for arm in self.world.arms]:
+            raise LabkitError(
+                f"this world has a {side} arm already, and two would stand in one place; use that "
+                "one, or make a new World too"
+            )
 
     # What a controller may use
 
@@ -126,7 +142,8 @@ class Arm:
         elif kind is JointPosition:
             wanted = allowed = self.model.within_limits(command.value, "JointPosition")
         else:
-            raise ControllerError(f"{shown(command)} is no command; give one of {_names()}")
+            names = ", ".join(kind.__name__ for kind in COMMANDS)
+            raise ControllerError(f"{shown(command)} is no command; give one of {names}")
         self._wanted, self.saturated = allowed, allowed is not wanted
         if kind is not self._kind:
             self._enter(kind)
@@ -208,7 +225,8 @@ class Arm:
         """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
         if not self.plant.lost_ticks:
             return [False] * ticks
-        return [bool(x < self.plant.lost_ticks) for x in self._random.random(ticks)]
+        late: list[bool] = (self._random.random(ticks) < self.plant.lost_ticks).tolist()
+        return late
 
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once.
@@ -222,7 +240,7 @@ class Arm:
 
     # The machinery, once per physics step
 
-    def act(self) -> None:
+    def _act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
         steps = self.world._steps
         if steps > self._deadline:
@@ -360,7 +378,3 @@ def _cut(x: Array, limit: list[float]) -> Array:
     if all(map(le, map(abs, x.tolist()), limit)):  # NumPy is slow with seven numbers
         return x
     return np.clip(x, np.negative(limit), limit)
-
-
-def _names() -> str:
-    return ", ".join(kind.__name__ for kind in COMMANDS)

@@ -36,13 +36,12 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
         a = _converted(x, shape, name)
     if a.shape != shape:
         raise ShapeError(name, shape, a.shape)
-    flat = a.ravel()
-    if not isfinite(sum(flat.tolist())):  # quick where all is well
-        bad = np.flatnonzero(~np.isfinite(flat))
-        if bad.size:
+    if not isfinite(sum(a.ravel().tolist())):  # quick where all is well
+        for at in map(tuple, np.argwhere(~np.isfinite(a)).tolist()[:1]):
+            what = f"holds {a[at]} at index {at if len(at) > 1 else at[0]}" if at else f"is {a}"
             raise NotFinite(
-                f"{name} holds {flat[bad[0]]} at index {_index(bad[0], shape)}; "
-                "look for a division by zero, a square root or arccos out of its range"
+                f"{name} {what}; look for a division by zero, a square root or arccos out of its "
+                "range"
             )
     return a
 
@@ -61,6 +60,12 @@ def as_vector(x: Any, n: int, name: str) -> Array:
     return locked(np.array(as_array(x, (n,), name)))
 
 
+def lock_vectors(owner: Any, n: int, *names: str) -> None:
+    """Make fields of a frozen dataclass what `as_vector` makes of them: ``n`` numbers each."""
+    for name in names:
+        object.__setattr__(owner, name, as_vector(getattr(owner, name), n, name))
+
+
 def as_numbers(x: Any, name: str) -> Array:
     """Read ``x`` as finite floats of whatever shape it has; a copy.
 
@@ -71,8 +76,23 @@ def as_numbers(x: Any, name: str) -> Array:
     Returns:
         A float64 array.
     """
-    a = np.array(_converted(x, None, name))
+    a = _converted(x, None, name)
     return as_array(a, a.shape, name)
+
+
+def as_each(x: Any, n: int, name: str) -> Array:
+    """Read ``x`` as ``n`` numbers; one number serves all.
+
+    Args:
+        x: A number, or a vector of ``n``.
+        n: How many.
+        name: What to call them in the sentence, if they do not fit.
+
+    Returns:
+        Shape (n,), read-only.
+    """
+    numbers = as_numbers(x, name)
+    return as_vector(np.full(n, numbers) if numbers.ndim == 0 else numbers, n, name)
 
 
 def as_gains(x: Any, n: int, name: str) -> Array:
@@ -90,9 +110,7 @@ def as_gains(x: Any, n: int, name: str) -> Array:
         ShapeError: There are too few or too many.
         OutOfRange: One is negative: with e = target - actual every gain is at least 0.
     """
-    if np.ndim(x) == 0:
-        x = np.full(n, as_number(x, name))
-    gains = as_vector(x, n, name)
+    gains = as_each(x, n, name)
     for i in np.flatnonzero(gains < 0.0)[:1]:
         raise OutOfRange(
             f"{name} is {gains[i]:g} at index {i}; a gain is at least 0, "
@@ -117,15 +135,11 @@ def as_number(
 
     Raises:
         TypeMismatch: It is not a number.
+        ShapeError: There are several.
         NotFinite: It is NaN or infinite.
         OutOfRange: It is too small.
     """
-    try:
-        value = float(x)
-    except (TypeError, ValueError):
-        raise TypeMismatch(f"{name} is {shown(x)}, expected one number") from None
-    if not isfinite(value):
-        raise NotFinite(f"{name} is {value}, expected a finite number")
+    value = float(as_array(x, (), name))
     if above is not None and not value > above:
         raise OutOfRange(f"{name} is {value:g}, it must be greater than {above:g}")
     if least is not None and not value >= least:
@@ -158,8 +172,3 @@ def shown(x: Any) -> str:
     """A value and its type, short enough for a sentence."""
     text = repr(x)
     return f"{text if len(text) < 40 else text[:37] + '...'} ({type(x).__name__})"
-
-
-def _index(flat: int, shape: tuple[int, ...]) -> str:
-    index = np.unravel_index(flat, shape)
-    return str(int(index[0])) if len(index) == 1 else str(tuple(map(int, index)))

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import tempfile
-from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
-from .commands import JOINTS
 from .plant import Plant
 from .quiet import quiet
-from .robot import Side, robot
+from .robot import JOINTS, Side, robot
 from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 
 with quiet():
@@ -25,9 +23,11 @@ def load(client: int, side: Side, plant: Plant) -> int:
     Returns:
         PyBullet's number of the body, whose links and joints 0 to 6 are the arm's.
     """
-    with quiet():
+    with quiet(), TemporaryDirectory() as folder:
+        file = Path(folder, "arm.urdf")  # PyBullet reads only files
+        file.write_text(_urdf(side, plant))
         body: int = bullet.loadURDF(
-            _file(side, plant),
+            str(file),
             useFixedBase=True,
             flags=bullet.URDF_USE_INERTIA_FROM_FILE,
             physicsClientId=client,
@@ -55,19 +55,11 @@ def load(client: int, side: Side, plant: Plant) -> int:
     return body
 
 
-@cache
-def _file(side: Side, plant: Plant) -> str:
-    """PyBullet reads only files: one for each kind of arm, gone with the process."""
-    path = Path(_folder().name) / f"{side}_{len(list(Path(_folder().name).iterdir()))}.urdf"
+def _urdf(side: Side, plant: Plant) -> str:
+    """The arm with the ball."""
     x, y, z = robot(side).T_hand_tip[:3, 3]
     ball = (
         f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="{TIP_RADIUS}"/>'
         "</geometry></collision></link>"
     )
-    path.write_text(ball.join(robot(side).urdf(plant).rsplit("</link>", 1)))
-    return str(path)
-
-
-@cache
-def _folder() -> tempfile.TemporaryDirectory[str]:
-    return tempfile.TemporaryDirectory(prefix="labkit-")
+    return ball.join(robot(side).urdf(plant).rsplit("</link>", 1))

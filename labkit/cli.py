@@ -24,6 +24,8 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    how well the checks tell right from wrong
 """
+FOR_INSTRUCTORS = ("nbgrader", "jupytext")
+"""Packages that a student's environment does without."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -68,6 +70,16 @@ def main(argv: Sequence[str] | None = None) -> int:
     except LabkitError as error:
         print(f"labkit {args.verb}: {error}", file=sys.stderr)
         return 2
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package not in FOR_INSTRUCTORS:
+            raise
+        mend = "type: pip install 'labkit[instructor]'"
+        print(f"labkit {args.verb}: {package} is missing; {mend}", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print(f"labkit {args.verb}: stopped", file=sys.stderr)
+        return 130
     except BrokenPipeError:  # whoever was reading has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1

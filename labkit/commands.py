@@ -11,10 +11,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .arrays import Array, as_vector, locked
+from .robot import JOINTS
 
-JOINTS = 7
-
-_UNTOUCHED = locked(np.zeros(JOINTS))
+NOTHING = locked(np.zeros(JOINTS))
+"""No torque, or no speed."""
 
 
 class State(NamedTuple):
@@ -31,49 +31,39 @@ class State(NamedTuple):
     t: float
     q: Array
     dq: Array
-    tau_ext: Array = _UNTOUCHED
+    tau_ext: Array = NOTHING
 
 
 @dataclass(frozen=True, eq=False)
-class JointPosition:
+class _ForJoints:
+    value: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", as_vector(self.value, JOINTS, type(self).__name__))
+
+
+class JointPosition(_ForJoints):
     """Go to these joint angles, as fast as speed and torque allow.
 
     Attributes:
         value: Joint angles, shape (7,) in [rad].
     """
 
-    value: Array
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", as_vector(self.value, JOINTS, "JointPosition"))
-
-
-@dataclass(frozen=True, eq=False)
-class JointVelocity:
+class JointVelocity(_ForJoints):
     """Turn the joints at these speeds.
 
     Attributes:
         value: Joint speeds, shape (7,) in [rad/s].
     """
 
-    value: Array
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", as_vector(self.value, JOINTS, "JointVelocity"))
-
-
-@dataclass(frozen=True, eq=False)
-class JointTorque:
+class JointTorque(_ForJoints):
     """Drive the joints with these torques, on top of the arm's own gravity compensation, if any.
 
     Attributes:
         value: Joint torques, shape (7,) in [N m].
     """
-
-    value: Array
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "value", as_vector(self.value, JOINTS, "JointTorque"))
 
 
 Command = JointPosition | JointVelocity | JointTorque
@@ -82,4 +72,4 @@ COMMANDS = (JointPosition, JointVelocity, JointTorque)
 
 def still() -> JointVelocity:
     """The command that stops the arm where it is."""
-    return JointVelocity(np.zeros(JOINTS))
+    return JointVelocity(NOTHING)

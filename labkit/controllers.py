@@ -6,9 +6,10 @@ from collections.abc import Callable
 from typing import Any
 
 from .arrays import as_gains
-from .commands import JOINTS, JointPosition, JointTorque, JointVelocity, State
+from .commands import JointPosition, JointTorque, JointVelocity, State
 from .errors import ControllerError
 from .motion import Sample
+from .robot import JOINTS
 
 
 def hold(q: Any) -> Callable[[State, Any], JointPosition]:

@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, locked
+from .arrays import Array, as_array, as_gains, locked
 from .log import Log
 from .metrics import joint_error, joint_speed_error, model_of
 from .model import Model
+from .robot import JOINTS
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ def lyapunov(log: Log, Kp: Any, *, inertia: Any = None, model: Model | None = No
 
     Args:
         log: A run after joint angles.
-        Kp: Gains, shape (7,).
+        Kp: Gains, shape (7,) or one number.
         inertia: M, shape (7, 7); None is the arm's own M(q); the identity is what computed torque
             makes of the arm.
         model: Of the arm that made the log; None makes one.
@@ -84,15 +85,15 @@ def lyapunov(log: Log, Kp: Any, *, inertia: Any = None, model: Model | None = No
         Shape (N,), in [J] where the inertia is the arm's own.
 
     Raises:
-        TypeMismatch: The run followed poses.
+        TypeMismatch: The run did not follow joint angles.
     """
     e, de = joint_error(log), joint_speed_error(log)
-    Kp = as_array(Kp, (e.shape[1],), "Kp")
+    Kp = as_gains(Kp, JOINTS, "Kp")
     if inertia is None:
         model = model or model_of(log)
         M = np.array([model.mass_matrix(q) for q in log.q])
     else:
-        M = np.broadcast_to(inertia, (len(e), *np.shape(inertia)))
+        M = np.array([as_array(inertia, (JOINTS, JOINTS), "inertia")] * len(e))
     return np.asarray(0.5 * np.einsum("ki,kij,kj->k", de, M, de) + 0.5 * (e * e) @ Kp)
 
 

@@ -2,7 +2,7 @@
 
 Everything labkit raises derives from `LabkitError`, so a caller can catch one thing; each child is
 also the built-in exception that a Python programmer would expect, and keeps its evidence as
-attributes.
+attributes.  Their `args` are those of the constructor, so that they can be sent between processes.
 """
 
 from __future__ import annotations
@@ -22,9 +22,13 @@ class ShapeError(LabkitError, ValueError):
     """An array has not the shape that the mathematics asks for."""
 
     def __init__(self, name: str, expected: tuple[int, ...], actual: tuple[int, ...]) -> None:
-        """Say which array, what was expected, what came, and how it is usually mended."""
+        """Say which array, what was expected and what came."""
+        super().__init__(name, expected, actual)
         self.name, self.expected, self.actual = name, expected, actual
-        super().__init__(f"{name} has shape {actual}, expected {expected}{_mend(expected, actual)}")
+
+    def __str__(self) -> str:
+        mend = _mend(self.expected, self.actual)
+        return f"{self.name} has shape {self.actual}, expected {self.expected}{mend}"
 
 
 def _mend(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
@@ -59,11 +63,14 @@ class JointLimitExceeded(OutOfRange):
 
     def __init__(self, name: str, joint: str, value: float, lower: float, upper: float) -> None:
         """Name the joint, the value and the range, all in radians."""
-        self.joint, self.value, self.lower, self.upper = joint, value, lower, upper
-        hint = "; angles are in radians, is this in degrees?" if abs(value) > 6.5 else ""
-        super().__init__(
-            f"{name}: joint {joint} at {value:.4g} rad is outside "
-            f"[{lower:.4g}, {upper:.4g}] rad{hint}"
+        super().__init__(name, joint, value, lower, upper)
+        self.name, self.joint, self.value, self.lower, self.upper = name, joint, value, lower, upper
+
+    def __str__(self) -> str:
+        hint = "; angles are in radians, is this in degrees?" if abs(self.value) > 6.5 else ""
+        return (
+            f"{self.name}: joint {self.joint} at {self.value:.4g} rad is outside "
+            f"[{self.lower:.4g}, {self.upper:.4g}] rad{hint}"
         )
 
 
@@ -72,11 +79,11 @@ class UnknownName(LabkitError, KeyError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Name the thing that is missing, and those that exist."""
-        self.name, self.known = name, tuple(known)
-        super().__init__(f"no {kind} {name!r}; there is {', '.join(map(repr, self.known))}")
+        self.kind, self.name, self.known = kind, name, tuple(known)
+        super().__init__(kind, name, self.known)
 
-    def __str__(self) -> str:  # KeyError would quote the whole sentence
-        return str(self.args[0])
+    def __str__(self) -> str:
+        return f"no {self.kind} {self.name!r:.60}; there is {', '.join(map(repr, self.known))}"
 
 
 class Unreachable(LabkitError, ValueError):

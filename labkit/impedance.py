@@ -13,8 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, locked
+from .arrays import Array, as_array, as_numbers, locked
 from .errors import OutOfRange, ShapeError
+from .metrics import rms
+
+SMOOTHING = 0.02
+"""Half the width of the window through which force and motion pass, in [s]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +40,7 @@ class Impedance:
     residual: float
 
 
-def fit_impedance(t: Any, force: Any, displacement: Any, *, smooth: float = 0.02) -> Impedance:
+def fit_impedance(t: Any, force: Any, displacement: Any) -> Impedance:
     """Fit an impedance to what was pushed and what gave way, by least squares.
 
     Force and motion pass through the same smoothing first, which a linear equation does not
@@ -46,30 +50,36 @@ def fit_impedance(t: Any, force: Any, displacement: Any, *, smooth: float = 0.02
         t: Times, evenly spaced, shape (N,) in [s].
         force: On the arm, shape (N, n) in [N].
         displacement: Actual minus target, shape (N, n) in [m].
-        smooth: Width of the smoothing, in [s].
 
     Returns:
         The matrices; velocity and acceleration are central differences of the displacement.
 
     Raises:
         ShapeError: The shapes do not go together.
-        OutOfRange: The motion does not tell all of them apart: push in every direction, and let go.
+        OutOfRange: The times are not evenly spaced or span too little, or the motion does not tell
+            all of them apart: push in every direction, and let go.
     """
-    x = np.asarray(displacement, dtype=float)
+    x = as_numbers(displacement, "displacement")
     if x.ndim != 2:
-        raise ShapeError("displacement", (len(x), 3), x.shape)
-    N, n = as_array(x, x.shape, "displacement").shape
-    if N < 10:
-        raise OutOfRange(f"{N} rows are too few to fit an impedance to")
+        raise ShapeError("displacement", (x.size, 3), x.shape)
+    N, n = x.shape
     t, F = as_array(t, (N,), "t"), as_array(force, (N, n), "force")
+    steps = np.diff(t)
+    if N < 10 or steps.min() <= 0.0 or np.ptp(steps) > 1e-6 * steps[0]:
+        raise OutOfRange("t must be at least ten times that rise in even steps")
+    half = max(1, round(SMOOTHING / steps[0]))
+    if 2 * half + 5 > N:
+        raise OutOfRange(
+            f"t spans {t[-1] - t[0]:.3g} s, too little to fit an impedance to: it takes more than "
+            f"{2.0 * SMOOTHING:g} s"
+        )
     dx = np.gradient(x, t, axis=0)
     ddx = np.gradient(dx, t, axis=0)
-    window = np.bartlett(2 * max(1, round(smooth / (t[1] - t[0]))) + 1)
+    window = np.bartlett(2 * half + 1)
     window /= window.sum()
     # differences at the ends are one-sided
     F, dx, ddx, x = (
-        np.stack([np.convolve(column[2:-2], window, "valid") for column in y.T], axis=1)
-        for y in (F, dx, ddx, x)
+        np.apply_along_axis(np.convolve, 0, y[2:-2], window, "valid") for y in (F, dx, ddx, x)
     )
     A = np.hstack([ddx, dx, x, np.ones((len(x), 1))])
     scale = np.sqrt((A**2).mean(axis=0))
@@ -80,11 +90,5 @@ def fit_impedance(t: Any, force: Any, displacement: Any, *, smooth: float = 0.02
         )
     fit, *_ = np.linalg.lstsq(A / scale, F, rcond=None)
     left = F - A / scale @ fit
-    M, D, K, offset = np.split((fit.T / scale), [n, 2 * n, 3 * n], axis=1)
-    return Impedance(
-        stiffness=locked(K.copy()),
-        damping=locked(D.copy()),
-        inertia=locked(M.copy()),
-        offset=locked(offset[:, 0].copy()),
-        residual=float(np.sqrt((left**2).sum(axis=1).mean())),
-    )
+    M, D, K, offset = np.split(locked(fit.T / scale), [n, 2 * n, 3 * n], axis=1)
+    return Impedance(stiffness=K, damping=D, inertia=M, offset=offset[:, 0], residual=rms(left))

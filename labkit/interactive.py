@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import ipywidgets as widgets
+import matplotlib.pyplot as plt
 from IPython.display import display
 from matplotlib.figure import Figure
 
@@ -26,9 +28,6 @@ def dials(
     Returns:
         The sliders by name; setting a slider's `value` redraws.
     """
-    import ipywidgets as widgets
-    import matplotlib.pyplot as plt
-
     sliders: dict[str, Any] = {}
     rows = []
     caption = widgets.HTML()
@@ -80,8 +79,6 @@ def progress(doing: str, total: float) -> Callable[[float], None]:
     Returns:
         To be told how much is done; cheap enough for every tick of a control loop.
     """
-    import ipywidgets as widgets
-
     bar = widgets.FloatProgress(0.0, max=total)
     words = widgets.Label(f"{doing} …")
     place = display(_saying(widgets.HBox, f"{doing} …")([bar, words]), display_id=True)

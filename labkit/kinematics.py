@@ -19,9 +19,8 @@ from .errors import JointLimitExceeded, TypeMismatch, Unreachable
 from .limits import warn_of_singularity, warn_of_speed
 from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 from .paths import Spline
-from .robot import Robot
+from .robot import JOINTS, Robot
 
-_N = 7
 _ITERATIONS = 200
 _SLACK = 1e-9
 
@@ -40,7 +39,7 @@ class Kinematics:
         self.robot = robot
         self._pin = pin.buildModelFromXML(urdf)
         self._tip = self._pin.addFrame(
-            pin.Frame("tip", _N, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
+            pin.Frame("tip", JOINTS, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
         )
         self._data = self._pin.createData()
 
@@ -53,7 +52,7 @@ class Kinematics:
         Returns:
             Shape (4, 4).
         """
-        pin.forwardKinematics(self._pin, self._data, as_array(q, (_N,), "q"))
+        pin.forwardKinematics(self._pin, self._data, as_array(q, (JOINTS,), "q"))
         T: Array = pin.updateFramePlacement(self._pin, self._data, self._tip).homogeneous
         return T
 
@@ -98,7 +97,7 @@ class Kinematics:
         return self._jacobian(q, pin.WORLD)
 
     def _jacobian(self, q: Any, frame: Any) -> Array:
-        q = as_array(q, (_N,), "q")
+        q = as_array(q, (JOINTS,), "q")
         J: Array = pin.computeFrameJacobian(self._pin, self._data, q, self._tip, frame)
         return J
 
@@ -112,7 +111,7 @@ class Kinematics:
         Returns:
             Shape (6, 7).
         """
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
         pin.computeJointJacobiansTimeVariation(self._pin, self._data, q, dq)
         pin.updateFramePlacement(self._pin, self._data, self._tip)
         dJ: Array = pin.getFrameJacobianTimeVariation(
@@ -159,7 +158,7 @@ class Kinematics:
         Raises:
             JointLimitExceeded: A joint is outside its range.
         """
-        angles: Array = as_array(q, (_N,), name)
+        angles: Array = as_array(q, (JOINTS,), name)
         low, high = self.robot.lower - _SLACK, self.robot.upper + _SLACK
         for i in np.flatnonzero((angles < low) | (angles > high))[:1]:
             raise JointLimitExceeded(
@@ -186,8 +185,8 @@ class Kinematics:
             Unreachable: No such angles were found; the sentence says how near it came and why.
         """
         T_wt = se3.as_pose(T_wt, "T_wt")
-        q = np.clip(as_array(q0, (_N,), "q0"), self.robot.lower, self.robot.upper)
-        near = q if posture is None else as_array(posture, (_N,), "posture")
+        q = np.clip(as_array(q0, (JOINTS,), "q0"), self.robot.lower, self.robot.upper)
+        near = q if posture is None else as_array(posture, (JOINTS,), "posture")
         for _ in range(_ITERATIONS):
             e = self.pose_error(T_wt, q)
             J = self.tip_jacobian(q)
@@ -206,7 +205,8 @@ class Kinematics:
         e = self.pose_error(T_wt, q)
         if e @ e < 1e-18:
             return q
-        raise Unreachable(f"the pose {_place(T_wt)} {self._why(T_wt, q, e)}")
+        place = ", ".join(f"{x:.3f}" for x in T_wt[:3, 3])
+        raise Unreachable(f"the pose at ({place}) m {self._why(T_wt, q, e)}")
 
     def pose_error(self, T_wd: Any, q: Any) -> Array:
         """Target minus actual: how far the tip at ``q`` is from a pose.
@@ -237,7 +237,7 @@ class Kinematics:
 
         Raises:
             Unreachable: A pose along the way cannot be reached; names s, the pose and the reason.
-            TypeMismatch: It is none of these.
+            TypeMismatch: It is none of these, as a target that has joint angles already.
 
         Warns:
             LabkitWarning: A joint would exceed its speed limit, or the path comes near a
@@ -253,18 +253,23 @@ class Kinematics:
         return self._joint_trajectory(target, q0, q0, samples)
 
     def _joint_trajectory(self, target: Any, q: Array, posture: Array, samples: int) -> Any:
-        if isinstance(target, Hold):
-            T_wt = self._posed(target(0.0), posture)
-            return Hold(self.inverse_kinematics(T_wt, q, posture=posture), target.duration)
-        if not isinstance(target, Trajectory):
+        if not isinstance(target, Trajectory | Hold):
             raise TypeMismatch(
                 f"joint_trajectory takes a Trajectory, Chain or Hold, not {type(target).__name__}"
             )
-        if isinstance(target.path(0.0), Sample):
-            R_wt = self.pose(posture)[:3, :3]
+        start, R_wt = target(0.0), self.pose(posture)[:3, :3]
+        if isinstance(start, Sample) and start.position.size != 3:
+            raise TypeMismatch(
+                f"joint_trajectory takes poses or points of the tip, not {start.position.size} "
+                "numbers; what is a target of joint angles can be followed as it is"
+            )
+        if isinstance(target, Hold):
+            T_wt = start.pose if isinstance(start, PoseSample) else se3.pose(R_wt, start.position)
+            return Hold(self.inverse_kinematics(T_wt, q, posture=posture), target.duration)
+        if isinstance(start, Sample):
             target = Trajectory(PosePath(target.path, R_wt), target.scaling)
         grid = np.linspace(0.0, 1.0, samples)
-        angles = np.empty((samples, _N))
+        angles = np.empty((samples, JOINTS))
         for k, s in enumerate(grid):
             try:
                 q = self.inverse_kinematics(target.path(s).pose, q, posture=posture)
@@ -282,19 +287,16 @@ class Kinematics:
         warn_of_speed(joints, self.robot)
         return joints
 
-    def _posed(self, sample: Sample | PoseSample, q0: Array) -> Array:
-        if isinstance(sample, PoseSample):
-            return sample.pose
-        return se3.pose(self.pose(q0)[:3, :3], sample.position)
-
     def _why(self, T_wt: Array, q: Array, e: Array) -> str:
         """Why a search ended at q with error e: too far, a joint at its limit, or just stuck."""
         off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
             f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
         )
-        shoulder, reach = self._reach()
-        wrist = T_wt[:3, 3] - T_wt[:3, :3] @ (0.0, 0.0, self._wrist_to_tip())
-        distance = float(np.linalg.norm(wrist - shoulder))
+        stretched = self.pose(np.zeros(JOINTS))
+        shoulder, wrist = (self._data.oMi[i].translation for i in (2, 6))
+        reach = np.linalg.norm(wrist - shoulder)
+        hand = stretched[:3, :3].T @ (stretched[:3, 3] - wrist)  # from the wrist to the tip
+        distance = np.linalg.norm(T_wt[:3, 3] - T_wt[:3, :3] @ hand - shoulder)
         if distance > reach:
             return (
                 f"cannot be reached: it puts the wrist {distance:.3f} m from the shoulder and the "
@@ -308,20 +310,3 @@ class Kinematics:
                 f"{q[i]:.4g} rad {off}; change the orientation, or start from another q0"
             )
         return f"was not found from this q0 {off}; start from another q0"
-
-    def _reach(self) -> tuple[Array, float]:
-        """The shoulder's place in the world, and the longest span from it to the wrist's centre."""
-        at_zero = [self._origins(np.zeros(_N))[i] for i in (1, 5)]
-        return at_zero[0], float(np.linalg.norm(at_zero[1] - at_zero[0]))
-
-    def _wrist_to_tip(self) -> float:
-        last = np.array(self.robot.bodies[6]["T_parent"])[:3, 3]
-        return float(np.linalg.norm(last) + self.robot.T_hand_tip[2, 3])
-
-    def _origins(self, q: Array) -> list[Array]:
-        pin.forwardKinematics(self._pin, self._data, q)
-        return [np.array(T.translation) for T in list(self._data.oMi)[1:]]
-
-
-def _place(T: Array) -> str:
-    return f"at ({', '.join(f'{x:.3f}' for x in T[:3, 3])}) m"

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array, locked
-from .commands import JOINTS, Command, State
+from .commands import Command, State
 from .motion import AnySample
 from .plant import Plant
-from .robot import Side, robot
+from .robot import JOINTS, Side, robot
 
 
 @dataclass(frozen=True, eq=False)

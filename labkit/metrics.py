@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from . import se3
-from .arrays import Array
-from .errors import TypeMismatch
+from .arrays import Array, as_array, as_number, as_numbers
+from .errors import OutOfRange, TypeMismatch
 from .log import Log
 from .model import Model
 from .motion import PoseSample, Sample
@@ -27,24 +27,31 @@ def joint_error(log: Log) -> Array:
     """Target minus actual joint angles of a run after joint angles, shape (N, 7) in [rad].
 
     Raises:
-        TypeMismatch: The run followed poses.
+        TypeMismatch: The run followed something else.
     """
-    return np.asarray(_joint_target(log, instead="tip_error").position - log.q)
+    return np.asarray(_joint_target(log).position - log.q)
 
 
 def joint_speed_error(log: Log) -> Array:
     """Target minus actual joint speeds of a run after joint angles, shape (N, 7) in [rad/s].
 
     Raises:
-        TypeMismatch: The run followed poses.
+        TypeMismatch: The run followed something else.
     """
-    return np.asarray(_joint_target(log, instead="velocity_error").velocity - log.dq)
+    return np.asarray(_joint_target(log).velocity - log.dq)
 
 
-def _joint_target(log: Log, *, instead: str) -> Sample:
+def _joint_target(log: Log) -> Sample:
     target = log.target
-    if isinstance(target, PoseSample) or target.position.shape[1] != log.q.shape[1]:
-        raise TypeMismatch(f"this run followed poses, not joint angles: ask for {instead}(log)")
+    if isinstance(target, PoseSample):
+        raise TypeMismatch(
+            "this run followed poses, not joint angles: ask for tip_error(log), velocity_error(log)"
+        )
+    if target.position.shape != log.q.shape:
+        raise TypeMismatch(
+            f"this run followed points of {target.position.shape[1]} numbers, neither poses nor "
+            "joint angles; PosePath(path, R_wt) makes poses of points"
+        )
     return target
 
 
@@ -59,16 +66,14 @@ def target_poses(log: Log, model: Model | None = None) -> Array:
     if isinstance(log.target, PoseSample):
         return log.target.pose
     model = model or model_of(log)
-    joint_error(log)  # says so, if these are no joint angles
-    return np.array([model.pose(q) for q in log.target.position])
+    return np.array([model.pose(q) for q in _joint_target(log).position])
 
 
 def tip_error(log: Log, model: Model | None = None) -> Array:
     """Target minus actual of the tip, world axes, shape (N, 6): [m], then [rad]."""
     model = model or model_of(log)
-    T_wd, T_wt = target_poses(log, model), tip_poses(log, model)
-    turn = [se3.rotation_log(d[:3, :3] @ t[:3, :3].T) for d, t in zip(T_wd, T_wt, strict=True)]
-    return np.hstack([T_wd[:, :3, 3] - T_wt[:, :3, 3], np.array(turn)])
+    pairs = zip(target_poses(log, model), tip_poses(log, model), strict=True)
+    return np.array([se3.pose_error(T_wd, T_wt) for T_wd, T_wt in pairs])
 
 
 def felt_wrench(log: Log, model: Model | None = None) -> Array:
@@ -89,9 +94,11 @@ def rms(error: Any) -> float:
 
     Returns:
         ``sqrt(mean(|e|^2))``, in the error's unit.
+
+    Raises:
+        OutOfRange: There is no instant.
     """
-    e = np.asarray(error, dtype=float)
-    return float(np.sqrt(np.mean(np.sum(e.reshape(len(e), -1) ** 2, axis=1))))
+    return float(np.sqrt(np.mean(np.sum(_rows(error) ** 2, axis=1))))
 
 
 def settling_time(t: Any, error: Any, tolerance: float) -> float:
@@ -104,12 +111,24 @@ def settling_time(t: Any, error: Any, tolerance: float) -> float:
 
     Returns:
         In [s] since the first row; infinite if it is still outside at the end.
+
+    Raises:
+        OutOfRange: There is no instant.
+        ShapeError: Times and errors are not as many.
     """
-    e = np.asarray(error, dtype=float)
-    outside = np.flatnonzero(np.linalg.norm(e.reshape(len(e), -1), axis=1) > tolerance)
+    e = _rows(error)
+    t = as_array(t, (len(e),), "t")
+    outside = np.flatnonzero(np.linalg.norm(e, axis=1) > tolerance)
     if not outside.size:
         return 0.0
     return float("inf") if outside[-1] == len(e) - 1 else float(t[outside[-1] + 1] - t[0])
+
+
+def _rows(error: Any) -> Array:
+    e = as_numbers(error, "error")
+    if e.size == 0:
+        raise OutOfRange("error is empty; it needs a row for each instant")
+    return e.reshape(len(np.atleast_1d(e)), -1)
 
 
 SETTLED = 5e-3
@@ -117,8 +136,14 @@ SETTLED = 5e-3
 
 
 def since(log: Log, t: float) -> Log:
-    """The rows of a run from a time ``t`` [s] on; its clock runs on."""
-    first = int(np.searchsorted(log.t, t - 1e-9))
+    """The rows of a run from a time ``t`` [s] on; its clock runs on.
+
+    Raises:
+        OutOfRange: The run has ended by then.
+    """
+    first = int(np.searchsorted(log.t, as_number(t, "t") - 1e-9))
+    if first == len(log):
+        raise OutOfRange(f"t is {t:g} s, and this run ends at {log.t[-1]:g} s")
     cut: dict[str, Any] = {
         f.name: column[first:]
         for f in fields(log)
@@ -190,8 +215,8 @@ def target_velocities(log: Log, model: Model | None = None) -> Array:
     """Velocity that the tip's origin should have had, world axes, shape (N, 3) in [m/s]."""
     if isinstance(log.target, PoseSample):
         return log.target.twist[:, :3]
-    joint_error(log)  # says so, if these are no joint angles
-    return _tip_velocities(model or model_of(log), log.target.position, log.target.velocity)
+    target = _joint_target(log)
+    return _tip_velocities(model or model_of(log), target.position, target.velocity)
 
 
 def velocity_error(log: Log, model: Model | None = None) -> Array:

@@ -15,14 +15,14 @@ import numpy as np
 import pinocchio as pin
 
 from . import se3
-from .arrays import Array, as_array
+from .arrays import Array, as_array, shown
+from .errors import TypeMismatch
 from .kinematics import Kinematics
 from .plant import IDEAL, Plant
-from .robot import Side, robot
+from .robot import JOINTS, Side, robot
 
-_N = 7
-_LOWER = np.tril_indices(_N, -1)
-_AT_REST = np.zeros(_N)
+_LOWER = np.tril_indices(JOINTS, -1)
+_AT_REST = np.zeros(JOINTS)
 
 
 class Terms(NamedTuple):
@@ -59,7 +59,12 @@ class Model(Kinematics):
 
         Raises:
             UnknownName: Baxter has no such arm.
+            TypeMismatch: The plant is none.
         """
+        if not isinstance(plant, Plant):
+            raise TypeMismatch(
+                f"plant is {shown(plant)}, expected lk.IDEAL, lk.BAXTER or an lk.Plant(...)"
+            )
         super().__init__(robot(side), robot(side).urdf(plant))
         self.plant = plant
 
@@ -75,7 +80,7 @@ class Model(Kinematics):
         Returns:
             Shape (7, 7) in [kg m^2].
         """
-        M: Array = pin.crba(self._pin, self._data, as_array(q, (_N,), "q")).copy()
+        M: Array = pin.crba(self._pin, self._data, as_array(q, (JOINTS,), "q")).copy()
         M[_LOWER] = M.T[_LOWER]  # Pinocchio fills the upper half
         return M
 
@@ -89,7 +94,7 @@ class Model(Kinematics):
         Returns:
             Shape (7, 7) in [kg m^2/s]; ``C @ dq`` is the Coriolis and centrifugal torque.
         """
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
         return np.array(pin.computeCoriolisMatrix(self._pin, self._data, q, dq))
 
     def gravity(self, q: Any) -> Array:
@@ -101,7 +106,7 @@ class Model(Kinematics):
         Returns:
             Shape (7,) in [N m].
         """
-        q = as_array(q, (_N,), "q")
+        q = as_array(q, (JOINTS,), "q")
         return np.array(pin.computeGeneralizedGravity(self._pin, self._data, q))
 
     def bias(self, q: Any, dq: Any) -> Array:
@@ -114,7 +119,7 @@ class Model(Kinematics):
         Returns:
             Shape (7,) in [N m].
         """
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
         return np.array(pin.nonLinearEffects(self._pin, self._data, q, dq))
 
     def inverse_dynamics(self, q: Any, dq: Any, ddq: Any) -> Array:
@@ -128,8 +133,8 @@ class Model(Kinematics):
         Returns:
             Shape (7,) in [N m].
         """
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
-        ddq = as_array(ddq, (_N,), "ddq")
+        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
+        ddq = as_array(ddq, (JOINTS,), "ddq")
         return np.array(pin.rnea(self._pin, self._data, q, dq, ddq))
 
     def tip_wrench(self, q: Any, tau_ext: Any) -> Array:
@@ -145,7 +150,7 @@ class Model(Kinematics):
         Returns:
             Force [N] and moment [N m] about the tip's origin, world axes, shape (6,).
         """
-        tau_ext = as_array(tau_ext, (_N,), "tau_ext")
+        tau_ext = as_array(tau_ext, (JOINTS,), "tau_ext")
         return np.asarray(np.linalg.lstsq(self.tip_jacobian(q).T, tau_ext, rcond=None)[0])
 
     def terms(self, q: Any, dq: Any) -> Terms:
@@ -155,7 +160,7 @@ class Model(Kinematics):
             q: Joint angles, shape (7,) in [rad].
             dq: Joint speeds, shape (7,) in [rad/s].
         """
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
         m, d = self._pin, self._data
         pin.forwardKinematics(m, d, q, dq, _AT_REST)
         T_wt = pin.updateFramePlacement(m, d, self._tip).homogeneous
@@ -179,12 +184,12 @@ class Model(Kinematics):
 
     def kinetic_energy(self, q: Any, dq: Any) -> float:
         """Half of ``dq @ M(q) @ dq``, in [J]."""
-        q, dq = as_array(q, (_N,), "q"), as_array(dq, (_N,), "dq")
+        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
         return float(pin.computeKineticEnergy(self._pin, self._data, q, dq))
 
     def potential_energy(self, q: Any) -> float:
         """Energy in the field of gravity, zero at the height of the world's origin, in [J]."""
-        return float(pin.computePotentialEnergy(self._pin, self._data, as_array(q, (_N,), "q")))
+        return float(pin.computePotentialEnergy(self._pin, self._data, as_array(q, (JOINTS,), "q")))
 
 
 @dataclass(frozen=True, eq=False)
@@ -209,7 +214,7 @@ class Link:
 def links(model: Model, q: Any) -> tuple[Link, ...]:
     """The seven bodies at ``q``, shape (7,) in [rad]: what M and g are summed from."""
     m, d = model._pin, model._data
-    pin.computeJointJacobians(m, d, as_array(q, (_N,), "q"))
+    pin.computeJointJacobians(m, d, as_array(q, (JOINTS,), "q"))
     out = []
     for i in range(1, m.njoints):
         body, T_wl = m.inertias[i], d.oMi[i].homogeneous

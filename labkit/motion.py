@@ -49,14 +49,10 @@ class PoseSample(NamedTuple):
 
 
 AnySample = Sample | PoseSample
-S_co = TypeVar("S_co", bound=AnySample, covariant=True)
 
-
-class Path(Protocol[S_co]):
-    """A curve in s, from 0 to 1."""
-
-    def __call__(self, s: float) -> S_co:
-        """Value and derivatives with respect to s."""
+_S = TypeVar("_S", bound=AnySample)
+Path = Callable[[float], _S]
+"""A curve in s, from 0 to 1, by its value and derivatives with respect to s."""
 
 
 class TimeScaling(Protocol):
@@ -71,7 +67,7 @@ class TimeScaling(Protocol):
 
 
 Target = Callable[[float], AnySample]
-"""What `run` follows: any function of time, in [s] since the run began."""
+"""What `run` follows, any function of time, in [s] since the run began."""
 
 
 @dataclass(frozen=True)
@@ -87,8 +83,7 @@ class Trajectory:
     scaling: TimeScaling
 
     def __post_init__(self) -> None:
-        if not callable(self.path):
-            raise TypeMismatch(f"path is {shown(self.path)}; a path is a function of s")
+        _check_path(self.path)
         if not callable(self.scaling) or not hasattr(self.scaling, "duration"):
             raise TypeMismatch(
                 f"scaling is {shown(self.scaling)}; a time scaling is a function of t that has a "
@@ -118,12 +113,20 @@ class Trajectory:
             x, dx, ddx = at_s
             return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
         except (TypeError, ValueError):
-            if isinstance(at_s, AnySample):
-                raise
             raise TypeMismatch(
                 f"the path gave {shown(at_s)}, expected lk.Sample(position, velocity, "
-                "acceleration) with the derivatives by s, or an lk.PoseSample"
+                "acceleration) of arrays, with the derivatives by s, or an lk.PoseSample"
             ) from None
+
+
+def _check_path(path: Any) -> None:
+    if not callable(path):
+        raise TypeMismatch(f"path is {shown(path)}; a path is a function of s")
+    if hasattr(path, "duration"):
+        raise TypeMismatch(
+            f"path is {shown(path)}, which has a duration: a function of t.  A path is a function "
+            "of s from 0 to 1: Trajectory(path, scaling), Trajectory(PosePath(path, R_wt), scaling)"
+        )
 
 
 class Chain:
@@ -133,7 +136,7 @@ class Chain:
     in position and velocity.
 
     Attributes:
-        parts: The trajectories, in order.
+        parts: The trajectories, in order; those of a chain among them one by one.
         starts: When each begins, in [s].
     """
 
@@ -144,12 +147,13 @@ class Chain:
             OutOfRange: There is none.
             TypeMismatch: One has no duration.
         """
-        self.parts = tuple(parts)
-        if not self.parts:
-            raise OutOfRange("a Chain needs at least one trajectory")
-        for part in self.parts:
+        self.parts: tuple[Any, ...] = ()
+        for part in parts:
             if not hasattr(part, "duration"):
                 raise TypeMismatch(f"a part of the Chain is {shown(part)}, which has no duration")
+            self.parts += part.parts if isinstance(part, Chain) else (part,)
+        if not self.parts:
+            raise OutOfRange("a Chain needs at least one trajectory")
         *self.starts, self.duration = accumulate((p.duration for p in self.parts), initial=0.0)
 
     def __call__(self, t: float) -> Any:
@@ -176,6 +180,7 @@ class PosePath:
     R_goal: Array | None = None
 
     def __post_init__(self) -> None:
+        _check_path(self.path)
         for name in ("R_wt", "R_goal"):
             R = getattr(self, name)
             if R is not None or name == "R_wt":
@@ -208,13 +213,13 @@ class Hold:
     def __init__(self, place: Any, duration: float) -> None:
         """Hold joint angles (n,) [rad], a point (3,) [m] or a pose (4, 4)."""
         self.duration = as_number(duration, "duration", least=0.0)
-        x = as_numbers(place, "place")
+        x = locked(as_numbers(place, "place"))
+        still = locked(np.zeros(6 if x.ndim == 2 else x.size))
+        self._sample: AnySample
         if x.shape == (4, 4):
-            T = locked(se3.as_pose(x, "place"))
-            self._sample: AnySample = PoseSample(T, locked(np.zeros(6)), locked(np.zeros(6)))
+            self._sample = PoseSample(se3.as_pose(x, "place"), still, still)
         else:
-            x = locked(as_array(x, (x.size,), "place"))
-            self._sample = Sample(x, locked(np.zeros(x.size)), locked(np.zeros(x.size)))
+            self._sample = Sample(as_array(x, (x.size,), "place"), still, still)
 
     def __call__(self, t: float) -> Any:
         """The same sample, whatever the time."""

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, as_number, as_numbers, locked
+from .arrays import Array, as_number, as_numbers, lock_vectors, locked
 from .errors import OutOfRange, ShapeError
 from .motion import Sample
 
@@ -27,7 +27,7 @@ class Line:
     goal: Array
 
     def __post_init__(self) -> None:
-        _freeze_ends(self, "start", "goal")
+        lock_vectors(self, np.size(as_numbers(self.start, "start")), "start", "goal")
 
     @cached_property
     def _along(self) -> Array:
@@ -64,7 +64,7 @@ class Circle:
     turns: float = 1.0
 
     def __post_init__(self) -> None:
-        _freeze_ends(self, "start", "centre", size=3)
+        lock_vectors(self, 3, "start", "centre")
         as_number(self.turns, "turns")
         if self.radius < 1e-9:
             raise OutOfRange("the start lies on the circle's axis, so the circle has no radius")
@@ -124,10 +124,12 @@ class Polyline:
         return tuple(Line(a, b) for a, b in zip(self.points[:-1], self.points[1:], strict=True))
 
     @cached_property
-    def _ends(self) -> Array:
-        """The way gone at each corner, as a share of the whole."""
+    def _pieces(self) -> tuple[list[Line], Array]:
+        """The segments that have a length, and the way gone at their ends, as shares of it all."""
         way = np.cumsum([0.0, *(line.length for line in self.lines)])
-        return np.asarray(way / way[-1])
+        ends = way / way[-1]
+        lines = [line for line, share in zip(self.lines, np.diff(ends), strict=True) if share > 0.0]
+        return lines, np.unique(ends)
 
     @property
     def length(self) -> float:
@@ -136,12 +138,10 @@ class Polyline:
 
     def __call__(self, s: float) -> Sample:
         """Value and derivatives with respect to s; at a corner, those of the later segment."""
-        ends = self._ends
-        i = min(int(np.searchsorted(ends, s, side="right")) - 1, len(self.lines) - 1)
-        while ends[i + 1] == ends[i]:  # a segment without length: the last one before it with some
-            i -= 1
+        lines, ends = self._pieces
+        i = int(np.searchsorted(ends[1:-1], s, side="right"))
         share = float(ends[i + 1] - ends[i])
-        x, dx, ddx = self.lines[i]((s - float(ends[i])) / share)
+        x, dx, ddx = lines[i]((s - float(ends[i])) / share)
         return Sample(x, dx / share, ddx)
 
 
@@ -189,11 +189,3 @@ class Spline:
             ]
         )
         return Sample(*(powers @ self._pieces[i]))  # (3, 6) @ (6, n)
-
-
-def _freeze_ends(path: Any, *names: str, size: int | None = None) -> None:
-    """Replace the named fields by read-only float copies of one common shape."""
-    for name in names:
-        x = as_numbers(getattr(path, name), name)
-        n = size or np.size(getattr(path, names[0]))
-        object.__setattr__(path, name, locked(as_array(x, (n,), name)))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from .arrays import as_number, as_vector
+from .arrays import as_each, as_number
 from .errors import OutOfRange
 
 
@@ -58,8 +58,7 @@ class Plant:
         for field in fields(self):
             value = getattr(self, field.name)
             if field.name in _PER_JOINT:
-                value = (value,) * 7 if isinstance(value, int | float) else value
-                value = tuple(as_vector(value, 7, field.name).tolist())  # hashable, comparable
+                value = tuple(as_each(value, 7, field.name).tolist())  # hashable, comparable
                 object.__setattr__(self, field.name, value)
                 as_number(min(value), field.name, least=0.0)
             elif field.name not in ("name", "gravity_compensation"):

@@ -12,15 +12,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 from IPython.core.getipython import get_ipython
 from IPython.display import display
-from matplotlib import colors
 from matplotlib.figure import Figure
 
 from . import metrics
 from .log import Log
 from .model import Model
 from .motion import PoseSample
-from .study.analysis import Loop
-from .study.maps import ErrorMap
 
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
@@ -42,11 +39,8 @@ def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
         _, axes = plt.subplots(2, 1, figsize=(8, 5.2), sharex=True, layout="constrained")
     above, below = axes
     T_wt, T_wd = metrics.tip_poses(log, model), metrics.target_poses(log, model)
-    for k, (name, style) in enumerate(zip(AXES, STYLES, strict=False)):
-        above.plot(log.t, T_wd[:, k, 3], "0.6", linewidth=4, label="target" if k == 0 else None)
-        above.plot(log.t, T_wt[:, k, 3], f"C{k}{style}", label=f"{name} of the tip")
-    above.set_ylabel("position [m]")
-    above.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    _against(above, log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
+    _legend_beside(above)
     e = metrics.tip_error(log, model)
     below.plot(log.t, 1e3 * np.linalg.norm(e[:, :3], axis=1), "C3-", label="position [mm]")
     below.plot(
@@ -54,7 +48,7 @@ def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
     )
     below.set_ylabel("error")
     below.set_xlabel("time [s]")
-    below.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+    _legend_beside(below)
     above.set_title(f"{log.controller} on the {log.plant.name} arm", loc="left", fontsize="medium")
     return axes
 
@@ -107,20 +101,12 @@ def everything(
     left, middle, right = (columns[k].subgridspec(n, 1) for k, n in enumerate((4, 7, 7)))
     e = metrics.tip_error(log, model)
     tip = [figure.add_subplot(left[k]) for k in range(4)]
-    _against(
-        tip[0],
-        log,
-        metrics.tip_poses(log, model)[:, :3, 3],
-        metrics.target_poses(log, model)[:, :3, 3],
-        "tip position [m]",
-    )
-    _against(
-        tip[1],
-        log,
-        metrics.tip_velocities(log, model),
-        metrics.target_velocities(log, model),
-        "tip velocity [m/s]",
-    )
+    T_wt, T_wd = metrics.tip_poses(log, model), metrics.target_poses(log, model)
+    _against(tip[0], log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
+    v_wt, v_wd = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
+    _against(tip[1], log, v_wt, v_wd, "tip velocity [m/s]")
+    for ax in tip[:2]:
+        _legend_above(ax)
     for ax, error, label in (
         (tip[2], 1e3 * e[:, :3], "position error [mm]"),
         (tip[3], np.degrees(e[:, 3:]), "orientation error [deg]"),
@@ -155,15 +141,19 @@ def everything(
 
 
 def _against(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
-    for k, (name, style) in enumerate(zip(AXES, STYLES, strict=False)):
+    for k, name in enumerate(AXES):
         ax.plot(log.t, target[:, k], "0.6", linewidth=4, label="target" if k == 0 else None)
-        ax.plot(log.t, actual[:, k], f"C{k}{style}", label=name)
+        ax.plot(log.t, actual[:, k], f"C{k}{STYLES[k]}", label=name)
     ax.set_ylabel(label)
-    _legend_above(ax)
+
+
+def _legend_beside(ax: Any) -> None:
+    """Outside, where no curve can run through it."""
+    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
 
 
 def _legend_above(ax: Any) -> None:
-    """Outside, where no curve can run through it."""
+    """Outside, where there is no room beside."""
     ax.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
@@ -172,44 +162,6 @@ def _legend_above(ax: Any) -> None:
         ncols=4,
         fontsize="x-small",
     )
-
-
-def error_map(found: ErrorMap, point: tuple[float, float] | None = None, *, ax: Any = None) -> Any:
-    """RMS error over the plane of gains, dark where it is small, with the least marked.
-
-    Args:
-        found: The map.
-        point: Gains (Kp, Kd) of your own to mark; None marks none.
-        ax: Axes to draw on; None makes a figure.
-
-    Returns:
-        The axes.
-    """
-    if ax is None:
-        _, ax = plt.subplots(figsize=(7, 4.5), layout="constrained")
-    rows, columns = np.arange(len(found.Kp)), np.arange(len(found.Kd))
-    picture = ax.pcolormesh(
-        columns, rows, found.array(), norm=colors.LogNorm(), cmap="viridis", edgecolors="none"
-    )
-    bar = ax.figure.colorbar(picture, ax=ax, label="RMS error of the tip [mm]")
-    ticks = [x for x in (0.5, 1, 2, 5, 10, 20, 50, 100, 200) if bar.vmin <= x <= bar.vmax]
-    bar.set_ticks(ticks, labels=[f"{x:g}" for x in ticks])
-    bar.ax.minorticks_off()
-    ax.set_facecolor("0.75")  # where the arm was lost
-    ax.set_xticks(columns, [f"{x:.4g}" for x in found.Kd])
-    ax.set_yticks(rows, [f"{x:.4g}" for x in found.Kp])
-    ax.set_xlabel(f"Kd [{found.unit[1]}]")
-    ax.set_ylabel(f"Kp [{found.unit[0]}]")
-    ax.set_title(found.title, loc="left", fontsize="medium")
-    Kp, Kd, least = found.best
-    ax.plot(found.Kd.index(Kd), found.Kp.index(Kp), "w*", markersize=14, label=f"{least:.3g} mm")
-    if point is not None:
-        x, y = np.interp(point[1], found.Kd, columns), np.interp(point[0], found.Kp, rows)
-        ax.plot(x, y, "rX", markersize=12, markeredgecolor="w", label="yours")
-    if np.isnan(found.array()).any():
-        ax.plot([], [], "s", color="0.75", markersize=10, label="arm lost")
-    ax.legend(loc="upper left", fontsize="small", facecolor="0.45", labelcolor="w", framealpha=0.9)
-    return ax
 
 
 def show(caption: str) -> None:
@@ -247,56 +199,8 @@ def answers(call: str, expected: Any, given: Any) -> Any:
     ax.set_xlabel("number in the answer")
     ax.set_xticks(index[:: max(1, len(index) // 14)])
     ax.set_title(call, loc="left", fontsize="small", family="monospace")
-    ax.legend(frameon=False, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    _legend_beside(ax)
     return figure
-
-
-def loop(found: Loop, *, axes: Any = None) -> Any:
-    """A joint's loop three ways: gain and phase over frequency, poles, and a step.
-
-    Args:
-        found: The loop.
-        axes: Four axes to draw on; None makes a figure.
-
-    Returns:
-        The four axes: gain, phase, root locus, step response.
-    """
-    if axes is None:
-        _, axes = plt.subplots(2, 2, figsize=(10, 6.5), layout="constrained")
-        axes = axes[:, 0].tolist() + axes[:, 1].tolist()
-    gain, phase, locus, step = axes
-    margins = found.margins()
-    omega = np.geomspace(0.01, 20.0, 600) * margins.crossover
-    L = (found.Kp + 1j * omega * found.Kd) * found.joint.response(omega)
-    gain.loglog(omega, np.abs(L))
-    gain.axhline(1.0, color="0.7", linewidth=0.8)
-    gain.set_ylabel("gain of the loop")
-    gain.set_title(str(margins).replace(", room", "\nroom"), loc="left", fontsize="small")
-    phase.semilogx(omega, np.degrees(np.unwrap(np.angle(L))))
-    phase.axhline(-180.0, color="0.7", linewidth=0.8)
-    phase.set_ylim(-360.0, 0.0)
-    phase.set_ylabel("phase [degrees]")
-    phase.set_xlabel("frequency [rad/s]")
-    for ax in (gain, phase):
-        ax.axvline(margins.crossover, color="C3", linestyle="--", linewidth=0.8)
-    factors = np.concatenate([[0.0], np.geomspace(0.01, 100.0, 600)])
-    poles = found.locus(factors)
-    locus.plot(poles.real, poles.imag, "C0.", markersize=2)
-    here = found.locus([1.0])[0]
-    locus.plot(here.real, here.imag, "C3x", markersize=8, label="poles with these gains")
-    far = 4.0 * margins.crossover
-    locus.set_xlim(-far, 0.5 * far)
-    locus.set_ylim(-far, far)
-    locus.axvline(0.0, color="0.7", linewidth=0.8)
-    locus.set_xlabel("real part [1/s]")
-    locus.set_ylabel("imaginary part [1/s]")
-    locus.legend(frameon=False, fontsize="small")
-    t = np.linspace(0.0, 10.0 / margins.crossover, 400)
-    step.plot(t, found.step(t))
-    step.axhline(1.0, color="0.7", linewidth=0.8)
-    step.set_xlabel("time [s]")
-    step.set_ylabel("step response")
-    return axes
 
 
 def describe(log: Log, model: Model | None = None) -> str:

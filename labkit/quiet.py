@@ -5,22 +5,28 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 
 @contextmanager
 def quiet() -> Iterator[None]:
     """Send file descriptors 1 and 2 to nowhere while the block runs."""
-    sys.stdout.flush()
-    sys.stderr.flush()
+    with open(os.devnull, "wb") as nowhere, diverted(nowhere.fileno()):
+        yield
+
+
+@contextmanager
+def diverted(file: int) -> Iterator[None]:
+    """Send file descriptors 1 and 2 to an open file, by its own, while the block runs."""
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(Exception):  # whatever somebody put in their place
+            stream.flush()
     saved = os.dup(1), os.dup(2)
-    nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
-        os.dup2(nowhere, 1)
-        os.dup2(nowhere, 2)
+        os.dup2(file, 1)
+        os.dup2(file, 2)
         yield
     finally:
-        os.dup2(saved[0], 1)
-        os.dup2(saved[1], 2)
-        for fd in (*saved, nowhere):
-            os.close(fd)
+        for target, copy in enumerate(saved, start=1):
+            os.dup2(copy, target)
+            os.close(copy)

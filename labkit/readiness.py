@@ -11,6 +11,7 @@ import psutil
 
 from . import __version__
 from .arm import Arm
+from .controllers import feedforward
 from .errors import LabkitError
 from .motion import Trajectory
 from .paths import Line
@@ -35,12 +36,10 @@ def ready() -> None:
 
 def _nudge() -> float:
     """How far the tip goes, in [mm], when the shoulder turns by a tenth of a radian."""
-    from .commands import JointVelocity
-
     with Arm() as arm:
         q0 = arm.state().q
         turn = Trajectory(Line(q0, q0 + 0.1 * np.eye(7)[0]), Quintic(0.5))
-        log = run(arm, turn, lambda state, target: JointVelocity(target.velocity))
+        log = run(arm, turn, feedforward)
         a, b = (arm.model.pose(q)[:3, 3] for q in (log.q[0], log.q[-1]))
         off = np.abs(log.q[-1] - turn(0.5).position).max()
     if off > 0.01:

@@ -19,6 +19,7 @@ from .arrays import Array, locked
 from .errors import UnknownName
 from .plant import IDEAL, Plant
 
+JOINTS = 7
 Side = Literal["left", "right"]
 
 
@@ -110,23 +111,14 @@ def robot(side: str) -> Robot:
     if side not in ("left", "right"):
         raise UnknownName("arm", side, ("left", "right"))
     data = json.loads((files("labkit") / "data" / "baxter.json").read_text())[side]
-    bodies = data["bodies"]
-
-    def column(key: str) -> Array:
-        return locked(np.array([b[key] for b in bodies]))
-
+    bodies = data.pop("bodies")  # the rest is named as here
+    for limit in ("lower", "upper", "speed", "effort"):
+        data[limit] = [body[limit] for body in bodies]
     return Robot(
         side=side,  # type: ignore[arg-type]
-        joint_names=tuple(b["joint"] for b in bodies),
-        lower=column("lower"),
-        upper=column("upper"),
-        speed=column("speed"),
-        effort=column("effort"),
-        neutral=locked(np.array(data["neutral"])),
-        ready=locked(np.array(data["ready"])),
-        T_hand_tip=locked(np.array(data["T_hand_tip"])),
-        T_hand_camera=locked(np.array(data["T_hand_camera"])),
+        joint_names=tuple(body["joint"] for body in bodies),
         bodies=tuple(bodies),
+        **{name: locked(np.array(numbers)) for name, numbers in data.items()},
     )
 
 

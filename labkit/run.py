@@ -13,13 +13,14 @@ from .commands import COMMANDS, Command, State
 from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .log import Log, Recorder
 from .motion import AnySample, PoseSample, Sample, Target
+from .robot import JOINTS
 from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]
 """A function of the state and of the target's sample; nothing to inherit, nothing to register."""
 
 RUNAWAY = 50.0
-"""Joints faster than this, in [rad/s], are out of control: twelve times the quickest's limit."""
+"""Joints faster than this, in [rad/s], are out of control; the quickest's limit is 4."""
 
 
 def run(
@@ -62,20 +63,19 @@ def run(
     if not isinstance(arm, Arm):
         raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
     arm.check_open()
-    rate = as_number(rate, "rate", above=0.0)
-    steps = whole_steps(rate, arm.world.dt, "rate")
-    ticks = _ticks(target, duration, steps * arm.world.dt)
-    who, whom, world, period = _name(controller), _name(target), arm.world, steps * arm.world.dt
+    world, who, whom = arm.world, _name(controller), f"the target {_name(target)}"
+    steps = whole_steps(as_number(rate, "rate", above=0.0), world.dt, "rate")
+    period = steps * world.dt
+    ticks = _ticks(target, duration, period)
     lost = arm.lost_ticks(ticks)
     samples = _Samples(target, whom)
     recorder = Recorder(period, samples.first)
     saturated = recorder.saturated
-    the_target = f"the target {whom}"
     kind, t, k, asked = None, 0.0, 0, who
     often = max(1, round(0.01 / period))  # every 10 ms: nothing runs far in so short a time
     try:
         for k in range(ticks):
-            t, asked = k * period, the_target
+            t, asked = k * period, whom
             truth, seen, torque = arm.observe()
             sample = samples.checked(target(t), t)
             asked = who
@@ -102,7 +102,7 @@ def run(
     except Exception as error:
         samples.blame(t)
         raise ControllerError(
-            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error)}"
+            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest)}"
         ) from error
     finally:
         if world.client >= 0:
@@ -125,13 +125,12 @@ class _Samples:
             sample: Any = target(0.0)
         except Exception as error:
             what = f"{type(error).__name__}: {error}"
-            raise ControllerError(f"the target {name} failed at t = 0: {what}") from error
+            raise ControllerError(f"{name} failed at t = 0: {what}") from error
         self.kind: type = type(sample)
-        self.shapes: list[tuple[int, ...]] = [(4, 4), (6,), (6,)]
+        self.shapes: tuple[tuple[int, ...], ...] = ((4, 4), (6,), (6,))
         if isinstance(sample, Sample):
-            self.shapes = [(np.size(sample.position),)] * 3
+            self.shapes = ((np.size(sample.position),),) * 3
         self.latest = self.first = self.read(sample, 0.0)
-        self._layout = tuple(part.shape for part in self.first)
 
     def checked(self, sample: Any, t: float) -> Any:
         """The sample of time ``t``, if it is as it should be."""
@@ -140,7 +139,7 @@ class _Samples:
             good = (
                 type(sample) is self.kind
                 and x.dtype is dx.dtype is ddx.dtype is _FLOAT
-                and (x.shape, dx.shape, ddx.shape) == self._layout
+                and (x.shape, dx.shape, ddx.shape) == self.shapes
             )
         except (AttributeError, TypeError, ValueError):  # lists, or no sample at all
             good = False
@@ -156,7 +155,7 @@ class _Samples:
         """Read a sample with care, or say what is wrong with it; a copy."""
         if type(sample) is not self.kind or not isinstance(sample, Sample | PoseSample):
             raise ControllerError(
-                f"the target {self.name} gave {str(sample)[:80]} ({type(sample).__name__}) at "
+                f"{self.name} gave {str(sample)[:80]} ({type(sample).__name__}) at "
                 f"t = {t:.3f} s; a target gives lk.Sample(position, velocity, acceleration) or "
                 "lk.PoseSample(pose, twist, dtwist), the same kind at all times"
             )
@@ -164,7 +163,7 @@ class _Samples:
         try:
             return type(sample)(*(np.array(as_array(x, n, name)) for name, x, n in parts))
         except LabkitError as error:
-            raise ControllerError(f"the target {self.name} at t = {t:.3f} s: {error}") from error
+            raise ControllerError(f"{self.name} at t = {t:.3f} s: {error}") from error
 
     def blame(self, t: float) -> None:
         """Raise if it was the target that broke the controller."""
@@ -189,16 +188,20 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _what(error: Exception) -> str:
-    """What a controller's error says; of a sample of the other kind, what it is."""
+def _what(error: Exception, sample: AnySample) -> str:
+    """What a controller's error says; of a sample that is none of joint angles, what it is."""
     if isinstance(error, LabkitError):
         return str(error)
-    what = f"{type(error).__name__}: {error}"
+    what, makes = f"{type(error).__name__}: {error}", "model.joint_trajectory(target, q0) makes"
     if isinstance(error, AttributeError) and isinstance(error.obj, Sample | PoseSample):
         has = ", ".join(error.obj._fields)
         what = f"it asked the target's sample for its {error.name}, and that has only {has}"
         if isinstance(error.obj, PoseSample):
-            what += "; model.joint_trajectory(target, q0) makes joint angles of poses"
+            what += f"; {makes} joint angles of poses"
+    elif isinstance(error, ValueError) and isinstance(sample, Sample):
+        n = sample.position.size
+        if n != JOINTS:
+            what += f"; the target gives {n} numbers, {makes} joint angles of points"
     return what
 
 

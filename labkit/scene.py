@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_number, as_vector
+from .arrays import Array, as_number, lock_vectors, locked
 from .errors import OutOfRange, UnknownName
 from .quiet import quiet
 from .robot import Side
@@ -25,7 +25,7 @@ with quiet():
     import pybullet as bullet
 
 TIP_RADIUS = 0.01
-"""Radius of the ball about the tip's origin, in [m]: contact begins this far from it."""
+"""Radius of the ball about the tip's origin, in [m]; contact begins this far from it."""
 
 TIP_STIFFNESS = 10_000.0
 """Of the finger's rubber pad, in [N/m]."""
@@ -52,7 +52,7 @@ class Wall:
         stiffness: Of the wall alone, in [N/m]; see `contact_stiffness`.
         damping: Of the wall alone, in [N s/m].
         friction: Coefficient of dry friction; 0 keeps the force along the normal.
-        colour: Red, green, blue, opacity, from 0 to 1.
+        colour: Red, green, blue and opacity, from 0 to 1.
     """
 
     point: Any
@@ -61,15 +61,14 @@ class Wall:
     stiffness: float = 5_000.0
     damping: float = 100.0
     friction: float = 0.0
-    colour: tuple[float, float, float, float] = (0.75, 0.75, 0.8, 1.0)
+    colour: Any = (0.75, 0.75, 0.8, 1.0)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "point", as_vector(self.point, 3, "point"))
-        normal = as_vector(self.normal, 3, "normal")
-        length = float(np.linalg.norm(normal))
+        lock_vectors(self, 3, "point", "normal")
+        length = float(np.linalg.norm(self.normal))
         if length < 1e-9:
             raise OutOfRange("normal is zero; a wall faces some way")
-        object.__setattr__(self, "normal", as_vector(normal / length, 3, "normal"))
+        object.__setattr__(self, "normal", locked(self.normal / length))
         _check_slab(self)
 
     @property
@@ -82,7 +81,7 @@ class Wall:
 
     def put_into(self, world: World) -> None:
         """Build it."""
-        _build_box(world, self.T_wf, self)
+        _build_box(world, self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +96,7 @@ class Table:
         stiffness: Of the table alone, in [N/m]; see `contact_stiffness`.
         damping: Of the table alone, in [N s/m].
         friction: Coefficient of dry friction.
-        colour: Red, green, blue, opacity, from 0 to 1.
+        colour: Red, green, blue and opacity, from 0 to 1.
     """
 
     height: float = -0.25
@@ -106,11 +105,11 @@ class Table:
     stiffness: float = 20_000.0
     damping: float = 200.0
     friction: float = 0.4
-    colour: tuple[float, float, float, float] = (0.72, 0.56, 0.38, 1.0)
+    colour: Any = (0.72, 0.56, 0.38, 1.0)
 
     def __post_init__(self) -> None:
         as_number(self.height, "height")
-        object.__setattr__(self, "centre", as_vector(self.centre, 2, "centre"))
+        lock_vectors(self, 2, "centre")
         _check_slab(self)
 
     @property
@@ -120,7 +119,7 @@ class Table:
 
     def put_into(self, world: World) -> None:
         """Build it."""
-        _build_box(world, self.T_wf, self)
+        _build_box(world, self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,15 +141,20 @@ class Push:
     side: Side | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "force", as_vector(self.force, 3, "force"))
-        object.__setattr__(self, "moment", as_vector(self.moment, 3, "moment"))
+        lock_vectors(self, 3, "force", "moment")
         as_number(self.start, "start")
         if not self.duration > 0.0:
             raise OutOfRange(f"duration is {self.duration}, it must be greater than 0")
 
     def put_into(self, world: World) -> Actor:
         """Wait for the window."""
-        return _Pushing(self, world)
+        half = 0.5 * world.dt
+
+        def act() -> None:
+            if self.start - half < world.t < self.start + self.duration - half:
+                _arm_of(world, self.side).push(self.force, self.moment)
+
+        return act
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,7 +174,7 @@ class Spring:
     side: Side | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "anchor", as_vector(self.anchor, 3, "anchor"))
+        lock_vectors(self, 3, "anchor")
         as_number(self.stiffness, "stiffness", least=0.0)
         as_number(self.damping, "damping", least=0.0)
 
@@ -180,47 +184,31 @@ class Spring:
 
     def put_into(self, world: World) -> Actor:
         """Hook it on."""
-        return _Pulling(self, world)
 
+        def act() -> None:
+            arm = _arm_of(world, self.side)
+            _, q, dq, *_ = arm.truth()
+            p, v = arm.model.pose(q)[:3, 3], arm.model.tip_jacobian(q)[:3] @ dq
+            arm.push(self.force(p, v), np.zeros(3))
 
-@dataclass(frozen=True)
-class _Pushing:
-    push: Push
-    world: World
-
-    def act(self) -> None:
-        """Push, if it is time."""
-        push, half = self.push, 0.5 * self.world.dt
-        if push.start - half < self.world.t < push.start + push.duration - half:
-            _arm_of(self.world, push.side).push(push.force, push.moment)
-
-
-@dataclass(frozen=True)
-class _Pulling:
-    spring: Spring
-    world: World
-
-    def act(self) -> None:
-        """Pull on the tip."""
-        arm = _arm_of(self.world, self.spring.side)
-        _, q, dq, *_ = arm.truth()
-        p, v = arm.model.pose(q)[:3, 3], arm.model.tip_jacobian(q)[:3] @ dq
-        arm.push(self.spring.force(p, v), np.zeros(3))
+        return act
 
 
 def _arm_of(world: World, side: Side | None) -> Pushable:
     arms = [arm for arm in world.arms if side in (None, arm.robot.side)]
     if len(arms) == 1:
         return arms[0]
-    known = [arm.robot.side for arm in world.arms]
     if arms:
-        raise OutOfRange(f"this world has {len(known)} arms: give side={known[0]!r} or the other")
-    raise UnknownName("arm in this world", str(side), known)
+        raise OutOfRange("this world has two arms: give side='left' or side='right'")
+    if not world.arms:
+        raise OutOfRange("this world has no arm to push: lk.Arm(world=world) puts one into it")
+    raise UnknownName("arm in this world", str(side), [arm.robot.side for arm in world.arms])
 
 
 def _check_slab(thing: Any) -> None:
     """Size and material of a wall or a table top."""
-    object.__setattr__(thing, "size", as_vector(thing.size, 2, "size"))
+    lock_vectors(thing, 2, "size")
+    lock_vectors(thing, 4, "colour")
     for side in thing.size:
         as_number(side, "size", above=0.0)
     as_number(thing.stiffness, "stiffness", above=0.0)
@@ -228,8 +216,9 @@ def _check_slab(thing: Any) -> None:
     as_number(thing.friction, "friction", least=0.0)
 
 
-def _build_box(world: World, T_wf: Array, thing: Any) -> None:
-    """A fixed box whose upper face is the frame's xy plane."""
+def _build_box(world: World, thing: Wall | Table) -> None:
+    """A fixed box whose upper face is the thing's."""
+    T_wf = thing.T_wf
     half = [*(0.5 * thing.size).tolist(), 0.5 * FACE]
     shape = bullet.createCollisionShape(
         bullet.GEOM_BOX, halfExtents=half, physicsClientId=world.client
@@ -237,7 +226,7 @@ def _build_box(world: World, T_wf: Array, thing: Any) -> None:
     look = bullet.createVisualShape(
         bullet.GEOM_BOX,
         halfExtents=half,
-        rgbaColor=list(thing.colour),
+        rgbaColor=thing.colour.tolist(),
         physicsClientId=world.client,
     )
     body = bullet.createMultiBody(

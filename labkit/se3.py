@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array
-from .errors import OutOfRange
+from .arrays import Array, as_array, as_numbers
+from .errors import OutOfRange, ShapeError
 
 _IDENTITY = np.eye(3)
 _SMALL = 1e-4  # below this angle the closed forms lose digits and the series are exact
@@ -92,22 +92,6 @@ def rotation_log(R: Any) -> Array:
     return axis * theta
 
 
-def rotation_about(axis: Any, angle: float) -> Array:
-    """The rotation by ``angle`` [rad] about ``axis``, shape (3,), of any length but zero.
-
-    Returns:
-        Shape (3, 3).
-
-    Raises:
-        OutOfRange: The axis has no length.
-    """
-    axis = as_array(axis, (3,), "axis")
-    length = sqrt(axis @ axis)
-    if length < 1e-12:
-        raise OutOfRange("axis is zero; a rotation needs a direction to turn about")
-    return rotation(axis * (angle / length))
-
-
 def orientation_error(R_wd: Any, R_wt: Any) -> Array:
     r"""The turn, in world axes, that takes the actual orientation to the desired one.
 
@@ -135,9 +119,10 @@ def pose_error(T_wd: Any, T_wt: Any) -> Array:
     Returns:
         Position error [m] and `orientation_error` [rad], shape (6,).
     """
+    T_wd, T_wt = as_array(T_wd, (4, 4), "T_wd"), as_array(T_wt, (4, 4), "T_wt")
     e = np.empty(6)
     e[:3] = T_wd[:3, 3] - T_wt[:3, 3]
-    e[3:] = orientation_error(T_wd[:3, :3], T_wt[:3, :3])
+    e[3:] = rotation_log(T_wd[:3, :3] @ T_wt[:3, :3].T)
     return e
 
 
@@ -223,10 +208,7 @@ def adjoint(T_ab: Any) -> Array:
 
 def angle_between(R_a: Any, R_b: Any) -> float:
     """The angle of the turn from one orientation to the other, in [rad], from 0 to pi."""
-    R = as_array(R_a, (3, 3), "R_a").T @ as_array(R_b, (3, 3), "R_b")
-    s = float(np.linalg.norm(vee(R)))
-    c = 0.5 * float(np.trace(R) - 1.0)
-    return atan2(s, c)
+    return float(np.linalg.norm(orientation_error(R_a, R_b)))
 
 
 def quaternion(R: Any) -> Array:
@@ -288,6 +270,28 @@ def as_pose(x: Any, name: str) -> Array:
         raise OutOfRange(f"{name}'s last row is {T[3]}, a pose has (0, 0, 0, 1); is it transposed?")
     as_rotation(T[:3, :3], f"{name}[:3, :3]")
     return T
+
+
+def as_poses(x: Any, name: str) -> Array:
+    """Read ``x`` as poses, one or more.
+
+    Args:
+        x: Shape (n, 4, 4).
+        name: What to call them in the sentence, if they are none.
+
+    Returns:
+        Shape (n, 4, 4); a copy.
+
+    Raises:
+        ShapeError: They are not a row of poses, or there is none.
+        OutOfRange: One is no rigid motion.
+    """
+    poses = as_numbers(x, name)
+    if poses.ndim != 3 or not len(poses):
+        raise ShapeError(name, (1, 4, 4), poses.shape)
+    for i, T in enumerate(poses):
+        as_pose(T, f"{name}[{i}]")
+    return poses
 
 
 def _coefficients(theta: float) -> tuple[float, float, float]:

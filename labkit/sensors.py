@@ -11,13 +11,11 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array, locked
-from .commands import JOINTS, State
+from .commands import NOTHING, State
 from .model import Model
 from .plant import Plant
+from .robot import JOINTS
 from .world import whole_steps
-
-NOTHING = locked(np.zeros(JOINTS))
-"""No torque, or no speed."""
 
 
 def angles(rows: Any) -> Array:

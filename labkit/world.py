@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, Protocol, Self
 
-from .arrays import Array, as_number
-from .errors import Closed, OutOfRange
+from .arrays import Array, as_number, shown
+from .errors import Closed, OutOfRange, TypeMismatch
 from .quiet import quiet
 
 with quiet():
     import pybullet as bullet
 
 
-class Actor(Protocol):
-    """Something that pushes on the world before each physics step."""
-
-    def act(self) -> None:
-        """Apply forces and motor targets for the next step."""
+Actor = Callable[[], None]
+"""Applies forces and motor targets for the next physics step."""
 
 
 class Thing(Protocol):
@@ -100,16 +97,19 @@ class World:
 
         Raises:
             Closed: The world is closed.
+            TypeMismatch: It cannot be put into a world.
         """
         if self.client < 0:
             raise Closed("this world was closed; make a new World")
+        if isinstance(thing, type) or not hasattr(thing, "put_into"):
+            raise TypeMismatch(f"{shown(thing)} is no thing; put in an lk.Table(), an lk.Wall(...)")
         actor = thing.put_into(self)
         self.things.append(thing)
         if actor is not None:
             self.add(actor)
 
     def add(self, actor: Actor) -> None:
-        """Let ``actor`` act before each physics step from now on."""
+        """Call ``actor`` before each physics step from now on."""
         self._actors.append(actor)
 
     def show(self, thing: Shown) -> None:
@@ -126,8 +126,8 @@ class World:
         if client < 0:
             raise Closed("this world was closed; make a new World, or a new Arm")
         for _ in range(count):
-            for actor in self._actors:
-                actor.act()
+            for act in self._actors:
+                act()
             bullet.stepSimulation(client)
             self._steps += 1
 
@@ -152,7 +152,7 @@ def whole_steps(rate: float, dt: float, name: str) -> int:
     if rate == 0.0:
         return 0
     steps = 1.0 / (rate * dt)
-    if steps < 0.999 or abs(steps - round(steps)) > 1e-6:
+    if steps < 0.999 or abs(steps - round(steps)) > 1e-5 * steps:  # as exact as it is shown
         raise OutOfRange(
             f"{name} is {rate:g} Hz: its period is {steps:.3g} physics steps of {dt:g} s, it must "
             f"be a whole number; try {1.0 / (max(1, round(steps)) * dt):g} Hz"

@@ -12,6 +12,7 @@ import argparse
 import hashlib
 import json
 import math
+import sys
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, replace
@@ -27,6 +28,7 @@ from labkit import (
     Arm,
     Hold,
     JointVelocity,
+    LabkitError,
     Log,
     Model,
     Plant,
@@ -320,4 +322,8 @@ def main() -> None:
 if __name__ == "__main__":
     from solutions import campaign  # by its own name, so that workers find the jobs
 
-    campaign.main()
+    try:
+        campaign.main()
+    except LabkitError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)

@@ -1,5 +1,9 @@
 """The arm: holds, obeys, keeps its limits, and says what it will not do."""
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -11,6 +15,7 @@ from labkit.errors import (
     LabkitError,
     NotFinite,
     ShapeError,
+    TypeMismatch,
     UnknownName,
 )
 
@@ -214,3 +219,44 @@ def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
 def test_there_are_two_arms(side):
     with pytest.raises(UnknownName, match="there is 'left', 'right'"):
         lk.Arm(side)
+
+
+def test_a_plant_in_the_place_of_the_side_makes_no_long_sentence():
+    with pytest.raises(
+        UnknownName, match=r"no arm Plant\(name='baxter'.*; there is 'left'"
+    ) as caught:
+        lk.Arm(lk.BAXTER)
+    assert len(str(caught.value)) < 120
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"plant": "baxter"}, r"plant is 'baxter' \(str\), expected lk.IDEAL, lk.BAXTER"),
+        ({"seed": "one"}, "seed is 'one'.*whole number from 0 up"),
+        ({"seed": -1}, "seed is -1"),
+        ({"world": lk.Table()}, "world is Table"),
+    ],
+)
+def test_what_is_no_plant_no_seed_or_no_world_is_named(given, words):
+    with pytest.raises(TypeMismatch, match=words):
+        lk.Arm("left", **given)
+
+
+def test_a_world_has_each_arm_once():
+    """Two would stand in one place and push each other off by their tips."""
+    with lk.Arm() as arm:
+        lk.Arm("right", world=arm.world)
+        with pytest.raises(LabkitError, match=r"left arm already.*new World"):
+            lk.Arm(world=arm.world)
+
+
+def test_it_leaves_no_file_that_somebody_could_take_away(tmp_path):
+    """A cleaner of temporary folders, or the end of a forked process, harms no later arm."""
+    program = (
+        "import labkit, os, tempfile; arm = labkit.Arm(); print(os.listdir(tempfile.gettempdir()))"
+    )
+    words = [sys.executable, "-W", "error", "-c", program]
+    env = os.environ | {"TMPDIR": str(tmp_path)}
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=env)
+    assert (done.stdout.strip(), done.stderr) == ("[]", "")

@@ -95,6 +95,7 @@ def test_one_gain_serves_all_joints():
         ([1, 1, -2], OutOfRange, "Kp is -2 at index 2"),
         (np.nan, NotFinite, "Kp is nan"),
         ("high", TypeMismatch, "Kp"),
+        ([[1], [1, 2]], TypeMismatch, "Kp has rows of different lengths"),
         (None, TypeMismatch, "Kp"),
     ],
 )
@@ -108,7 +109,9 @@ def test_a_bad_gain_is_named(x, error, words):
     [
         ("two", TypeMismatch, "v_max is 'two'"),
         (None, TypeMismatch, "v_max is None"),
-        ([1.0, 2.0], TypeMismatch, "expected one number"),
+        ("2", TypeMismatch, r"v_max is '2' \(str\), expected one real number"),
+        ([1.0, 2.0], ShapeError, r"v_max has shape \(2,\).*one number is asked for"),
+        ([1.0], ShapeError, "without brackets"),
         (np.nan, NotFinite, "v_max is nan"),
         (np.inf, NotFinite, "v_max is inf"),
         (0.0, OutOfRange, "v_max is 0, it must be greater than 0"),

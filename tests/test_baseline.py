@@ -29,6 +29,7 @@ from labkit.baseline import (
     quickest,
 )
 from labkit.baseline.__main__ import drive
+from labkit.errors import ShapeError, TypeMismatch
 from labkit.paths import Line
 from labkit.study import recorded, tasks
 
@@ -113,6 +114,17 @@ def test_blocked_places_are_named_with_what_touches_what(scene):
         plan(scene, ROBOT.neutral, q)
     with pytest.raises(lk.LabkitError, match="post's size"):
         Box("post", (0, 0, 0), (0, 1, 1))
+
+
+def test_what_is_no_obstacle_or_no_place_of_the_joints_is_a_sentence(scene):
+    with pytest.raises(TypeMismatch, match="expected a Box, a Table or a Wall"):
+        PlanningScene("left", (lk.Spring([0.6, 0.2, 0.1], 300.0),))
+    for q in (np.zeros(6), [0.0] * 6):
+        with pytest.raises(ShapeError, match="q has shape"):
+            scene.free(q)
+    assert scene.free(list(ROBOT.ready)) == scene.free(ROBOT.ready)
+    with pytest.raises(ShapeError, match="the path's position has shape"):
+        quickest(Line([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]))
 
 
 # Where it goes

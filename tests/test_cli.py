@@ -69,7 +69,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["forget", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
-        (["rehearse", "01_paths", "--to", WARMUP, "--course", ROOT], "File exists"),
+        (["rehearse", "01_paths", "--to", WARMUP, "--course", ROOT], "Not a directory"),
     ],
 )
 def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):
@@ -99,3 +99,12 @@ def test_outside_a_course_it_says_so(tmp_path):
     assert done.returncode == 2
     assert "--course" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_ctrl_c_is_no_traceback(monkeypatch, capsys):
+    def stopped(args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("labkit.cli._submit_check", stopped)
+    assert cli.main(["submit-check", "01_paths.ipynb"]) == 130
+    assert capsys.readouterr().err == "labkit submit-check: stopped\n"

@@ -5,7 +5,7 @@ import pytest
 
 import labkit as lk
 from labkit.energy import energy_balance, lyapunov
-from labkit.errors import ShapeError, TypeMismatch
+from labkit.errors import OutOfRange, ShapeError, TypeMismatch
 from solutions.gains import known
 from solutions.joint_torque import AugmentedPD, ComputedTorque
 
@@ -97,7 +97,7 @@ def test_a_wrong_sign_makes_the_lyapunov_function_rise():
 
 
 def test_lyapunov_needs_joint_angles_and_seven_gains():
-    """A run after poses, or gains of another length, is refused."""
+    """A run after poses, gains of another length or below zero, another inertia: all refused."""
     with lk.Arm(q0=READY) as arm:
         still = lk.JointVelocity(np.zeros(7))
         poses = lk.run(arm, lk.Hold(MODEL.pose(READY), 0.1), lambda state, target: still)
@@ -106,3 +106,8 @@ def test_lyapunov_needs_joint_angles_and_seven_gains():
         lyapunov(poses, KP)
     with pytest.raises(ShapeError):
         lyapunov(joints, KP[:6])
+    with pytest.raises(OutOfRange, match="a gain is at least 0"):
+        lyapunov(joints, -KP)
+    with pytest.raises(ShapeError, match="inertia"):
+        lyapunov(joints, KP, inertia=np.eye(6))
+    np.testing.assert_array_equal(lyapunov(joints, 10.0), lyapunov(joints, np.full(7, 10.0)))

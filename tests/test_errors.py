@@ -1,6 +1,7 @@
 """Errors: one family, each also the built-in that a Python programmer would catch."""
 
 import inspect
+import pickle
 
 import pytest
 
@@ -67,3 +68,19 @@ def test_a_joint_out_of_range_keeps_its_evidence_and_suspects_degrees():
 def test_an_unknown_name_lists_those_that_exist_without_extra_quotes():
     error = UnknownName("arm", "middle", ("left", "right"))
     assert str(error) == "no arm 'middle'; there is 'left', 'right'"
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        ShapeError("q", (7,), (6,)),
+        JointLimitExceeded("q", "left_s1", 45.0, -2.147, 1.047),
+        UnknownName("arm", "middle", ("left", "right")),
+        errors.OutOfRange("rate is 0"),
+    ],
+    ids=lambda e: type(e).__name__,
+)
+def test_an_error_comes_back_whole_from_another_process(error):
+    """One that does not breaks a pool of workers."""
+    back = pickle.loads(pickle.dumps(error))
+    assert (type(back), str(back), vars(back)) == (type(error), str(error), vars(error))

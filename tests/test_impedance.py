@@ -69,6 +69,22 @@ def test_a_push_in_one_direction_does_not_tell_the_others():
         fit_impedance(t, force, 0.0 * x)
 
 
+@pytest.mark.parametrize(
+    ("rows", "stretch", "words"),
+    [
+        (slice(None, 9), 1.0, "at least ten times"),
+        (slice(None, 40), 1.0, "t spans 0.039 s, too little"),
+        (slice(None), 0.0, "rise in even steps"),
+        (slice(None), -1.0, "rise in even steps"),
+        (np.geomspace(1, 3999, 200).astype(int), 1.0, "rise in even steps"),
+    ],
+)
+def test_times_must_be_even_and_longer_than_the_smoothing(rows, stretch, words):
+    t, force, x = excited()
+    with pytest.raises(OutOfRange, match=words):
+        fit_impedance(stretch * t[rows], force[rows], x[rows])
+
+
 def test_shapes_must_go_together():
     """Force and displacement have a row for each time."""
     t, force, x = excited()

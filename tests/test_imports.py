@@ -129,11 +129,21 @@ def test_a_public_name_means_the_same_whichever_module_was_loaded_first():
     assert python(f"import labkit, {modules}; print(({kind})())") == alone
 
 
+def test_completion_offers_what_is_not_loaded_yet():
+    """What a notebook shows after ``lk.`` and Tab."""
+    assert python("import labkit; print(*set(labkit.__all__) - set(dir(labkit)))").split() == []
+
+
 def test_importing_labkit_loads_no_drawing_nor_notebook_package():
     loaded = python("import sys, labkit; print(*sys.modules)").split()
     heavy = {"matplotlib", "IPython", "anywidget", "ipywidgets", "cv2", "scipy", "control",
              "nbgrader", "pandas", "ompl", "toppra"}  # fmt: skip
     assert not heavy & {name.split(".")[0] for name in loaded}
+
+
+def test_drawing_a_run_does_not_load_what_analyses_a_loop():
+    """python-control takes longer to load than all that draws."""
+    assert "control" not in python("import sys, labkit.plotting; print(*sys.modules)").split()
 
 
 def test_importing_labkit_costs_little_more_than_its_engines():

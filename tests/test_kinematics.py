@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 
 import labkit as lk
 from labkit import se3
-from labkit.errors import JointLimitExceeded, LabkitError, Unreachable
+from labkit.errors import JointLimitExceeded, LabkitError, TypeMismatch, Unreachable
 
 STEP = 1e-6
 
@@ -127,7 +127,7 @@ def test_a_chain_stays_a_chain_and_is_continuous(model):
     p = model.pose(q0)[:3, 3]
     corners = [p, p + [0.1, 0, 0], p + [0.1, 0.1, 0], p]
     parts = [lk.Trajectory(line, lk.Quintic(1.0)) for line in lk.Polyline(corners).lines]
-    joints = model.joint_trajectory(lk.Chain(parts), q0)
+    joints = model.joint_trajectory(lk.Chain([parts[0], lk.Chain(parts[1:])]), q0)
     assert joints.starts == [0.0, 1.0, 2.0]
     for t in (1.0, 2.0):
         assert_allclose(joints(t - 1e-9).position, joints(t).position, atol=1e-7)
@@ -163,9 +163,6 @@ def test_an_unreachable_point_on_the_way_is_named_with_s_the_pose_and_the_limit(
 def test_a_joint_at_its_limit_is_named_with_the_limit(model):
     """The gripper turned about its own axis further than the last joint can."""
     q0 = model.robot.ready
-    T = model.pose(q0)
-    half = T[:3, :3] @ se3.rotation([0.0, 0.0, 1.7])
-    path = lk.PosePath(lk.Line(T[:3, 3], T[:3, 3]), T[:3, :3], half)
     down = np.array(q0)
     down[6] = model.robot.upper[6] - 0.05
     T = model.pose(down)
@@ -204,6 +201,6 @@ def test_a_joint_trajectory_wants_a_trajectory(model, target):
 
 def test_a_joint_trajectory_of_joint_angles_is_refused(model):
     q0 = model.robot.ready
-    turn = lk.Trajectory(lk.Line(q0, q0 + 0.1), lk.Cubic(1.0))
-    with pytest.raises(LabkitError, match="position has shape"):
-        model.joint_trajectory(turn, q0)
+    for target in (lk.Trajectory(lk.Line(q0, q0 + 0.1), lk.Cubic(1.0)), lk.Hold(q0, 1.0)):
+        with pytest.raises(TypeMismatch, match=r"not 7 numbers.*followed as it is"):
+            model.joint_trajectory(target, q0)

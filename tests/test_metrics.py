@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 import labkit as lk
 from labkit import metrics, se3
-from labkit.errors import TypeMismatch
+from labkit.errors import NotFinite, OutOfRange, ShapeError, TypeMismatch
 
 errors = arrays(np.float64, (8, 3), elements=st.floats(-1.0, 1.0))
 
@@ -64,6 +64,24 @@ def test_a_run_after_poses_has_no_joint_error(pose_log):
         metrics.joint_error(pose_log)
 
 
+def test_a_run_after_points_is_told_how_to_make_poses_of_them(ideal):
+    """No orientation was asked for, so the tip has no error of it."""
+    p = ideal.model.pose(ideal.robot.neutral)[:3, 3]
+    log = lk.run(ideal, lk.Hold(p, 0.1), lambda s, x: lk.JointVelocity(np.zeros(7)))
+    for ask in (metrics.joint_error, metrics.tip_error, metrics.velocity_error, metrics.summary):
+        with pytest.raises(TypeMismatch, match=r"points of 3 numbers.*PosePath"):
+            ask(log)
+
+
+def test_since_keeps_the_rows_from_a_time_on(joint_log):
+    rest = metrics.since(joint_log, 0.75)
+    assert (rest.t[0], rest.t[-1]) == (0.75, 1.0)
+    assert_allclose(rest.target.position, joint_log.target.position[750:])
+    assert_allclose(rest.measured.q, joint_log.measured.q[750:])
+    with pytest.raises(OutOfRange, match="t is 2 s, and this run ends at 1 s"):
+        metrics.since(joint_log, 2.0)
+
+
 def test_a_log_knows_its_model(joint_log):
     model = metrics.model_of(joint_log)
     assert (model.robot.side, model.plant) == ("left", lk.IDEAL)
@@ -88,6 +106,20 @@ def test_settling_is_the_last_time_outside():
     assert metrics.settling_time(t, [0, 0, 0, 0, 0], 0.5) == 0.0
     assert metrics.settling_time(t, [0, 0, 0, 0, 3], 0.5) == float("inf")
     assert metrics.settling_time(t + 7.0, [3, 0, 0, 0, 0], 0.5) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: metrics.rms([]), OutOfRange, "error is empty"),
+        (lambda: metrics.rms("small"), TypeMismatch, "error is 'small'"),
+        (lambda: metrics.rms([1.0, np.nan]), NotFinite, "error holds nan at index 1"),
+        (lambda: metrics.settling_time([0, 1], [3, 2, 0.1], 0.5), ShapeError, "t has shape"),
+    ],
+)
+def test_what_is_no_error_over_time_is_named(call, error, words):
+    with pytest.raises(error, match=words):
+        call()
 
 
 def test_a_summary_is_what_its_parts_say(pose_log):

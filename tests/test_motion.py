@@ -82,6 +82,8 @@ def chain():
             r"the path gave .* \(tuple\), expected lk\.Sample",
         ),
         (lambda s: None, Cubic(1.0), r"the path gave None"),
+        (lambda s: Sample([s], [1], [0]), Cubic(1.0), r"the path gave .*\[1\].* of arrays"),
+        (lambda s: Sample(A, np.ones(3), np.ones(2)), Cubic(1.0), r"the path gave .* of arrays"),
         (
             Line(A, B),
             "half",
@@ -205,7 +207,11 @@ skewed = np.diag([1.0, 1.0, 1.1])
         (lambda: Chain([Line(A, B)]), LabkitError, "Line.*no duration"),
         (lambda: Trajectory(Line(A, B), 2.0), LabkitError, "scaling is 2.0"),
         (lambda: Trajectory(A, Cubic(1.0)), LabkitError, "path is"),
-        (lambda: Trajectory(Cubic(1.0), Line(A, B)), LabkitError, "scaling is .*Line"),
+        (lambda: Trajectory(Cubic(1.0), Line(A, B)), LabkitError, "path is Cubic.*a function of t"),
+        (lambda: Trajectory(Line(A, B), Line(A, B)), LabkitError, "scaling is .*Line"),
+        (lambda: Trajectory(chain(), Cubic(1.0)), LabkitError, "path is .*Chain.*a function of t"),
+        (lambda: PosePath(chain(), np.eye(3)), LabkitError, r"Trajectory\(PosePath"),
+        (lambda: PosePath(A, np.eye(3)), LabkitError, "path is .*a function of s"),
     ],
 )
 def test_a_motion_that_cannot_be_is_refused_in_a_sentence(call, error, words):

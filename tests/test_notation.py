@@ -1,9 +1,12 @@
 """The table of symbols is what the docstrings say."""
 
+import ast
 import importlib
 import inspect
 import pkgutil
 import re
+from itertools import pairwise
+from pathlib import Path
 
 import pytest
 
@@ -57,3 +60,14 @@ def test_docstrings_give_this_symbol_the_tables_shape_and_unit(name):
 def test_no_symbol_stands_twice():
     names = [s.code for s in (*SYMBOLS, *ERRORS)]
     assert len(names) == len(set(names))
+
+
+def test_the_words_under_a_constant_have_no_colon_in_their_first_line():
+    """The reference would print what stands before it as the constant's type."""
+    for path in Path(labkit.__file__).parent.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Module | ast.ClassDef):
+                for constant, words in pairwise(node.body):
+                    match constant, words:
+                        case ast.Assign() | ast.AnnAssign(), ast.Expr(ast.Constant(str(text))):
+                            assert ": " not in text.splitlines()[0], f"{path}: {text}"

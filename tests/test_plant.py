@@ -22,6 +22,7 @@ def test_every_effect_is_off_by_default_and_on_the_ideal_arm():
 
 def test_a_plant_is_a_value():
     assert lk.Plant(stiction=1.0) == lk.Plant(stiction=[1.0] * 7)
+    assert lk.Plant(stiction=np.float32(1.0)) == lk.Plant(stiction=1)
     assert hash(lk.Plant(stiction=1.0)) == hash(lk.Plant(stiction=np.ones(7)))
     assert lk.BAXTER != lk.IDEAL
     with pytest.raises(dataclasses.FrozenInstanceError):

@@ -348,6 +348,13 @@ def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
         lk.run(ideal, pose, follow)
 
 
+def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
+    point = lk.Hold(ideal.model.pose(ideal.robot.neutral)[:3, 3], 1.0)
+    words = r"springs failed .*\(3,\) \(7,\).*gives 3 numbers, model.joint_traj.* of points"
+    with pytest.raises(ControllerError, match=words):
+        lk.run(ideal, point, lk.controllers.springs(100.0, 1.0))
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
@@ -365,6 +372,14 @@ def test_a_controller_that_wants_joints_and_gets_poses_is_told_so(ideal):
 def test_impossible_rates_and_durations_are_refused(ideal, given, words):
     with pytest.raises(LabkitError, match=words):
         lk.run(ideal, still(ideal), follow, **given)
+
+
+@pytest.mark.parametrize("steps", [3, 7, 9, 11])
+def test_the_rate_that_the_sentence_proposes_is_accepted(ideal, steps):
+    with pytest.raises(OutOfRange) as caught:
+        lk.run(ideal, still(ideal), follow, rate=1000.0 / (steps + 0.1))
+    proposed = float(str(caught.value).split()[-2])
+    assert lk.run(ideal, still(ideal), follow, rate=proposed).t[1] == pytest.approx(1e-3 * steps)
 
 
 def test_a_target_without_duration_needs_one(ideal):

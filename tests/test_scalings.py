@@ -7,7 +7,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from labkit import BangBang, Cubic, Quintic, Trapezoid
-from labkit.errors import LabkitError, NotFinite, OutOfRange, TypeMismatch
+from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError, TypeMismatch
 
 PROFILES = (BangBang, Cubic, Quintic)
 durations = st.floats(0.1, 20.0)
@@ -124,7 +124,7 @@ def test_a_way_too_short_to_cruise_is_a_triangle(d, v, a):
         (lambda: Trapezoid(1.0, 0.0, 1.0), OutOfRange, "v_max is 0, it must be greater than 0"),
         (lambda: Trapezoid(1.0, 1.0, -2.0), OutOfRange, "a_max is -2"),
         (lambda: Trapezoid(-1.0, 1.0, 2.0), OutOfRange, "distance is -1"),
-        (lambda: Trapezoid([1, 2], 1.0, 2.0), TypeMismatch, "distance"),
+        (lambda: Trapezoid([1, 2], 1.0, 2.0), ShapeError, "distance"),
         (lambda: Quintic.within(1.0, 0.0, 1.0), OutOfRange, "v_max"),
     ],
 )

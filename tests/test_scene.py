@@ -5,7 +5,7 @@ import pybullet
 import pytest
 
 import labkit as lk
-from labkit.errors import Closed, OutOfRange, ShapeError, UnknownName
+from labkit.errors import Closed, OutOfRange, ShapeError, TypeMismatch, UnknownName
 from labkit.scene import TIP_RADIUS, TIP_STIFFNESS, contact_stiffness
 
 READY = lk.robot("left").ready
@@ -162,6 +162,7 @@ def test_things_are_put_where_they_say():
         (lambda: lk.Wall((0, 0), (0, 0, 1)), ShapeError),
         (lambda: lk.Wall((0, 0, 0), (0, 0, 1), stiffness=-1.0), OutOfRange),
         (lambda: lk.Table(size=(0.0, 1.0)), OutOfRange),
+        (lambda: lk.Table(colour="red"), TypeMismatch),
         (lambda: lk.Spring((0, 0, 0), stiffness=-5.0), OutOfRange),
         (lambda: lk.Push((1.0, 0.0)), ShapeError),
         (lambda: lk.Push((1.0, 0.0, 0.0), duration=0.0), OutOfRange),
@@ -178,11 +179,22 @@ def test_a_push_needs_to_know_whom():
     with lk.World(things=[lk.Push((0, 0, 1.0))]) as world:
         lk.Arm("left", world=world)
         lk.Arm("right", world=world)
-        with pytest.raises(OutOfRange, match="2 arms"):
+        with pytest.raises(OutOfRange, match="two arms"):
             world.step()
+    with (
+        lk.World(things=[lk.Spring((0, 0, 1.0), 100.0)]) as world,
+        pytest.raises(OutOfRange, match=r"no arm to push.*Arm\(world"),
+    ):
+        world.step()
     with lk.World(things=[lk.Push((0, 0, 1.0), side="right")]) as world:
         lk.Arm("left", world=world)
         with pytest.raises(UnknownName, match="'right'"):
             world.step()
     with pytest.raises(Closed):
         world.put(lk.Table())
+
+
+@pytest.mark.parametrize("thing", ["table", lk.Table, None])
+def test_what_is_no_thing_is_refused(thing):
+    with lk.World() as world, pytest.raises(TypeMismatch, match="is no thing; put in an"):
+        world.put(thing)

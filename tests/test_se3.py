@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from scipy.linalg import expm, logm
 
 from labkit import se3
-from labkit.errors import LabkitError, OutOfRange, ShapeError
+from labkit.errors import LabkitError, OutOfRange, ShapeError, TypeMismatch
 
 vectors = arrays(np.float64, 3, elements=st.floats(-2.0, 2.0))
 unit = vectors.filter(lambda v: np.linalg.norm(v) > 1e-3).map(lambda v: v / np.linalg.norm(v))
@@ -55,16 +55,6 @@ def test_half_a_turn_gives_back_the_same_rotation(axis):
     phi = se3.rotation_log(R)
     assert_allclose(np.linalg.norm(phi), np.pi, atol=1e-9)
     assert_allclose(se3.rotation(phi), R, atol=1e-9)
-
-
-@given(unit, st.floats(-10.0, 10.0))
-def test_rotation_about_takes_an_axis_of_any_length(axis, angle):
-    assert_allclose(se3.rotation_about(3.0 * axis, angle), se3.rotation(axis * angle), atol=1e-13)
-
-
-def test_an_axis_without_length_is_refused():
-    with pytest.raises(OutOfRange, match="axis is zero"):
-        se3.rotation_about([0, 0, 0], 1.0)
 
 
 @given(twists)
@@ -141,6 +131,8 @@ transposed = se3.pose(np.eye(3), [1.0, 2.0, 3.0]).T
         (lambda: se3.as_pose(np.eye(3), "T_wt"), ShapeError, "T_wt has shape"),
         (lambda: se3.hat([1.0, 2.0]), ShapeError, "give 3 numbers, not 2"),
         (lambda: se3.exp(np.zeros((6, 1))), ShapeError, "ravel"),
+        (lambda: se3.pose_error(np.eye(3), np.eye(4)), ShapeError, "T_wd has shape"),
+        (lambda: se3.pose_error(np.eye(4), None), TypeMismatch, "T_wt is None"),
         (lambda: se3.pose(np.eye(3), [np.nan, 0, 0]), LabkitError, "p holds nan"),
         (lambda: se3.log(2.0 * np.eye(4)), OutOfRange, "no rotation"),
     ],

@@ -2,12 +2,13 @@
 # Make sure that what a verb needs is there: sh tools/need.sh THING[,OTHER]:PACKAGE ...
 # A thing is a program, a library (libNAME.so.N) or one of Python's modules (NAME.py).
 # As root it installs the Debian packages that are missing; else it prints the one line to run.
-python=$(sh "$(dirname "$0")/find_python.sh" 2>/dev/null)
+python=.venv/bin/python # what was made before needs nothing found again
+[ -x "$python" ] || python=$(sh "$(dirname "$0")/find_python.sh") || exit 1
 
 there() {
   case "$1" in
-    *.py) [ -z "$python" ] || "$python" -c "import ${1%.py}" 2>/dev/null ;;
-    *.so.*) [ -z "$python" ] || "$python" -c "import ctypes; ctypes.CDLL('$1')" 2>/dev/null ;;
+    *.py) "$python" -c "import ${1%.py}" 2>/dev/null ;;
+    *.so.*) "$python" -c "import ctypes; ctypes.CDLL('$1')" 2>/dev/null ;;
     *) command -v "$1" >/dev/null 2>&1 ;;
   esac
 }

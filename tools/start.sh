@@ -3,8 +3,8 @@
 set -eu
 cd "$(dirname "$0")"
 sh tools/need.sh ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
-python=$(sh tools/find_python.sh)
 if [ ! -e .venv/.done ]; then
+  python=$(sh tools/find_python.sh)
   "$python" -m venv .venv
   echo "fetching what the lab needs, a few minutes"
   labkit=$(ls ./labkit-*.whl 2>/dev/null || echo --editable=.)

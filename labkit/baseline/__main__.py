@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
 from ..arm import Arm
 from ..log import Log
@@ -15,8 +14,6 @@ from ..scene import Table
 from ..study import recorded, tasks
 from ..study.tasks import Task
 from . import RATE, PlanningScene, PositionServer, VelocityServer, along, plan, quickest
-
-FOLDER = Path(__file__).parents[1] / "data" / "recorded"
 
 
 def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) -> tuple[Log, Log]:
@@ -32,14 +29,13 @@ def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) ->
 def main() -> None:
     """Write the files and say what they hold."""
     argparse.ArgumentParser(description=__doc__).parse_args()
-    FOLDER.mkdir(exist_ok=True)
     position, velocity = PositionServer(), VelocityServer()
     logs = {}
     for task in (tasks.line(), tasks.circle(), tasks.square()):
         logs["baseline_approach"], logs[f"baseline_{task.name}"] = drive(task, position)
     logs["baseline_line_velocity"] = drive(tasks.line(), velocity)[1]
     for name, log in logs.items():
-        path = FOLDER / f"{name}.npz"
+        path = recorded.FOLDER / f"{name}.npz"
         recorded.save(log, path)
         print(f"{path.name}: {path.stat().st_size / 1024:.0f} kB, {log}, {summary(log)}")
 

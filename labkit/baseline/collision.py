@@ -18,8 +18,8 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from ..arrays import Array, as_array, as_number, as_vector
-from ..errors import JointLimitExceeded, LabkitError, OutOfRange
+from ..arrays import Array, as_array, as_number, as_vector, shown
+from ..errors import JointLimitExceeded, LabkitError, OutOfRange, TypeMismatch
 from ..robot import Robot, Side, robot
 from ..scene import FACE, Table, Wall
 
@@ -65,6 +65,7 @@ class PlanningScene:
 
         Raises:
             UnknownName: Baxter has no such arm.
+            TypeMismatch: An obstacle is not solid.
         """
         self.robot: Robot = robot(side)
         self.obstacles = tuple(obstacles)
@@ -93,6 +94,7 @@ class PlanningScene:
 
     def free(self, q: Any) -> bool:
         """Whether nothing comes nearer than the margin at joint angles ``q``, shape (7,) [rad]."""
+        q = as_array(q, (7,), "q")
         hit = pin.computeCollisions(self._model, self._data, self._shapes, self._results, q, True)
         return not hit
 
@@ -162,6 +164,8 @@ def _solid(thing: Box | Table | Wall) -> tuple[str, int, Array, Any]:
     if isinstance(thing, Box):
         T[:3, 3] = thing.centre
         return thing.name, 0, T, coal.Box(*thing.size)
+    if not isinstance(thing, Table | Wall):
+        raise TypeMismatch(f"an obstacle is {shown(thing)}, expected a Box, a Table or a Wall")
     T[2, 3] = -0.5 * FACE  # the face is its upper side
     return type(thing).__name__.lower(), 0, thing.T_wf @ T, coal.Box(*thing.size, FACE)
 

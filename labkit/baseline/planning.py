@@ -22,7 +22,7 @@ with quiet():
     from ompl import base, geometric, util
 
 CHECKS = 20_000
-"""How many places the planner may try before it gives up: about a second, and no clock decides."""
+"""How many places the planner may try before it gives up, about a second, and no clock decides."""
 STEP = 0.02
 """How far apart, in [rad], the places are that are looked at along a way."""
 

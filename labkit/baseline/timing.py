@@ -45,13 +45,17 @@ MOVEIT = Limits(
     speed=(0.27, 0.27, 0.27, 0.27, 0.3, 0.3, 0.5),
     acceleration=(0.5,) * 7,
 )
-"""What MoveIt keeps to on Baxter: joint_limits.yaml of moveit_robots' baxter_moveit_config."""
+"""What MoveIt keeps to on Baxter, joint_limits.yaml of moveit_robots' baxter_moveit_config."""
 
 HARDWARE = Limits(
     speed=(1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0),
     acceleration=(5.0,) * 7,
 )
 """The arm's own speed limits; Rethink states no accelerations, and ten of MoveIt's are taken."""
+
+
+_NO_LIMIT = 1e3  # more than any arm needs
+_PLACES = 801  # along a path, at which the limits are looked at
 
 
 class Schedule:
@@ -94,7 +98,7 @@ class Schedule:
 
 
 def quickest(
-    path: Path[Sample], limits: Limits = MOVEIT, *, ds_dt: float | None = None, grid: int = 801
+    path: Path[Sample], limits: Limits = MOVEIT, *, ds_dt: float | None = None
 ) -> Trajectory:
     """The quickest trajectory along a path of joint angles, at rest at both ends.
 
@@ -103,15 +107,16 @@ def quickest(
         limits: Joint speeds and accelerations to keep to.
         ds_dt: A ceiling for ds/dt too, in [1/s]; None sets none.  (A tip that may not exceed v_max
             on a path of even pace and of this length has v_max / length.)
-        grid: At how many places along the path the limits are looked at.
 
     Returns:
         The same path on a `Schedule`.
 
     Raises:
+        ShapeError: The path is not one of joint angles.
         OutOfRange: No schedule keeps the limits, which only a path with a jump brings about.
     """
-    places = np.linspace(0.0, 1.0, grid)
+    as_array(path(0.0).position, (7,), "the path's position")
+    places = np.linspace(0.0, 1.0, _PLACES)
     ceiling = _NO_LIMIT if ds_dt is None else as_number(ds_dt, "ds_dt", above=0.0)
     keep: list[Any] = [
         constraint.JointVelocityConstraint(_both_signs(limits.speed, ceiling)),
@@ -155,6 +160,3 @@ class _Geometry(AbstractGeometricPath):  # type: ignore[misc]
 def _both_signs(limit: Array, of_s: float) -> Array:
     limit = np.append(limit, of_s)
     return np.column_stack([-limit, limit])
-
-
-_NO_LIMIT = 1e3

@@ -6,13 +6,13 @@ of stream are caught.
 
 from __future__ import annotations
 
-import os
-import sys
 import tempfile
 import warnings
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
+
+from ..quiet import diverted
 
 
 class Heard:
@@ -25,34 +25,17 @@ class Heard:
 def heard() -> Iterator[Heard]:
     """Catch stdout, stderr and warnings, of Python and of C, while the block runs."""
     out, result = StringIO(), Heard()
-    with _descriptors() as below, warnings.catch_warnings(record=True) as said:
+    with (
+        tempfile.TemporaryFile() as file,
+        diverted(file.fileno()),
+        warnings.catch_warnings(record=True) as said,
+    ):
         warnings.simplefilter("always")
         with redirect_stdout(out), redirect_stderr(out):
             try:
                 yield result
             finally:
                 words = [out.getvalue(), *(f"{w.category.__name__}: {w.message}\n" for w in said)]
-                result.text = "".join([*words, *below()])
-
-
-@contextmanager
-def _descriptors() -> Iterator[Callable[[], list[str]]]:
-    """Point file descriptors 1 and 2 at a file, and give a function that reads it."""
-    for stream in (sys.stdout, sys.stderr):
-        with suppress(Exception):
-            stream.flush()
-    with tempfile.TemporaryFile() as file:
-        saved = [os.dup(1), os.dup(2)]
-        os.dup2(file.fileno(), 1)
-        os.dup2(file.fileno(), 2)
-
-        def read() -> list[str]:
-            file.seek(0)
-            return [file.read(100_000).decode(errors="replace")]
-
-        try:
-            yield read
-        finally:
-            for target, copy in enumerate(saved, start=1):
-                os.dup2(copy, target)
-                os.close(copy)
+                file.seek(0)
+                below = file.read(100_000).decode(errors="replace")
+                result.text = "".join([*words, below])

@@ -7,6 +7,7 @@ Only the kinds named here travel; never pickle, never code.  `decode` builds wha
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable, Mapping
 from types import MethodType
 from typing import Any
 
@@ -39,8 +40,12 @@ GIVEN = (
     scalings.Cubic,
     scalings.Quintic,
     scalings.Trapezoid,
+    paths.Spline,
     motion.Trajectory,
     motion.PosePath,
+    motion.Chain,
+    motion.Hold,
+    Model,
     plant.Plant,
     scene.Push,
     scene.Spring,
@@ -50,20 +55,33 @@ GIVEN = (
     Trials,
     Runner,
 )
-"""What a student's function may be given on top: frozen values, sent as their fields."""
+"""What a student's function may be given on top: values, sent as what they are made of."""
 
-_DATA = {kind.__name__: kind for kind in DATA}
-_ALL = _DATA | {kind.__name__: kind for kind in GIVEN}
+_MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
+    paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
+    motion.Chain: lambda chain: {"parts": chain.parts},
+    motion.Hold: lambda hold: {"place": hold(0.0)[0], "duration": hold.duration},
+    Model: lambda model: {"side": model.robot.side, "plant": model.plant},
+}
+"""The arguments to make those of again that are neither a dataclass nor a named tuple."""
+
+Kinds = Mapping[str, Any]
+"""Types by their names."""
+
+_DATA: Kinds = {kind.__name__: kind for kind in DATA}
+TRUSTED: Kinds = {kind.__name__: kind for kind in (*DATA, *GIVEN)}
+"""What `decode` builds, beside methods."""
+
 _COMMANDS: dict[str, type] = {kind.__name__: kind for kind in commands.COMMANDS}
 
 
-def encode(value: Any) -> Any:
+def encode(value: Any, kinds: Kinds = TRUSTED) -> Any:
     """A value as JSON data.
 
     Args:
         value: None, a truth value, number, text, list, tuple, dict with text keys, array of
-            numbers, one of `DATA` or `GIVEN`, a `Model`, `Chain`, `Hold` or `Spline`, or a method
-            of one of these.
+            numbers, one of ``kinds``, a method of one of these, or a type of command.
+        kinds: What may travel beside plain data.
 
     Returns:
         What `json.dumps` takes; numbers keep every bit.
@@ -71,6 +89,10 @@ def encode(value: Any) -> Any:
     Raises:
         TypeMismatch: It is none of these.
     """
+
+    def inner(x: Any) -> Any:
+        return encode(x, kinds)
+
     if value is None or isinstance(value, bool | str):
         return value
     if isinstance(value, np.bool_):
@@ -85,40 +107,21 @@ def encode(value: Any) -> Any:
         numbers = [_number(x) for x in value.ravel().tolist()]
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
     name = type(value).__name__
-    if type(value) is _ALL.get(name):
-        if dataclasses.is_dataclass(value):
-            fields = {
-                f.name: encode(getattr(value, f.name)) for f in dataclasses.fields(value) if f.init
-            }
-        else:
-            fields = {key: encode(x) for key, x in value._asdict().items()}
-        return {"$": name, "fields": fields}
+    if type(value) is kinds.get(name):
+        return {"$": name, **{key: inner(x) for key, x in _made_of(value).items()}}
     if isinstance(value, list):
-        return [encode(x) for x in value]
+        return [inner(x) for x in value]
     if isinstance(value, tuple):
-        return {"$": "tuple", "items": [encode(x) for x in value]}
+        return {"$": "tuple", "items": [inner(x) for x in value]}
     if isinstance(value, dict):
         if not all(isinstance(key, str) for key in value):
             raise TypeMismatch("a dict travels only with text keys")
-        return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
-    return _encode_machinery(value, name)
-
-
-def _encode_machinery(value: Any, name: str) -> Any:
-    if isinstance(value, Model):
-        return {"$": "Model", "side": value.robot.side, "plant": encode(value.plant)}
-    if isinstance(value, motion.Chain):
-        return {"$": "Chain", "parts": [encode(part) for part in value.parts]}
-    if isinstance(value, motion.Hold):
-        sample = value(0.0)
-        return {"$": "Hold", "place": encode(sample[0]), "duration": _number(value.duration)}
-    if isinstance(value, paths.Spline):
-        return {"$": "Spline", "s": encode(value.s), "values": encode(value.values)}
+        return {"$": "dict", "items": {key: inner(x) for key, x in value.items()}}
     if isinstance(value, MethodType):
-        return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
+        return {"$": "method", "of": inner(value.__self__), "name": value.__name__}
     if type(value).__module__.startswith("control.") and hasattr(value, "num"):
         num, den = (tuple(float(x) for x in part[0][0]) for part in (value.num, value.den))
-        return encode(Ratio(num, den))
+        return inner(Ratio(num, den))
     if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
         return {"$": "command type", "name": value.__name__}
     raise TypeMismatch(
@@ -127,13 +130,23 @@ def _encode_machinery(value: Any, name: str) -> Any:
     )
 
 
-def decode(data: Any) -> Any:
+def _made_of(value: Any) -> dict[str, Any]:
+    if type(value) in _MADE_OF:
+        return _MADE_OF[type(value)](value)
+    if dataclasses.is_dataclass(value):
+        return {f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.init}
+    fields: dict[str, Any] = value._asdict()
+    return fields
+
+
+def decode(data: Any, kinds: Kinds = TRUSTED) -> Any:
     """The value that `encode` wrote; arrays come read-only.
 
     Args:
         data: From `json.loads`, written by labkit itself.
+        kinds: As `encode` was given.
     """
-    return _decode(data, _ALL, machinery=True)
+    return _decode(data, kinds)
 
 
 def decode_answer(data: Any) -> Any:
@@ -143,14 +156,17 @@ def decode_answer(data: Any) -> Any:
         TypeMismatch: It is not of the form that `encode` writes.
     """
     try:
-        return _decode(data, _DATA, machinery=False)
-    except (KeyError, ValueError, TypeError, RecursionError) as error:
+        return _decode(data, _DATA)
+    except Exception as error:  # what else may come of it, its author chooses
         raise TypeMismatch(f"the answer did not arrive in one piece: {error}") from None
 
 
-def _decode(data: Any, kinds: dict[str, Any], *, machinery: bool) -> Any:
+def _decode(data: Any, kinds: Kinds) -> Any:
+    def inner(x: Any) -> Any:
+        return _decode(x, kinds)
+
     if isinstance(data, list):
-        return [_decode(x, kinds, machinery=machinery) for x in data]
+        return [inner(x) for x in data]
     if not isinstance(data, dict):
         return data
     kind = data["$"]
@@ -161,29 +177,16 @@ def _decode(data: Any, kinds: dict[str, Any], *, machinery: bool) -> Any:
             x if isinstance(x, bool | int | float) else float(x["value"]) for x in data["numbers"]
         ]
         return locked(np.array(numbers, dtype=float).reshape([int(n) for n in data["shape"]]))
-
-    def inner(x: Any) -> Any:
-        return _decode(x, kinds, machinery=machinery)
-
     if kind == "tuple":
         return tuple(inner(x) for x in data["items"])
     if kind == "dict":
         return {str(key): inner(x) for key, x in data["items"].items()}
     if kind in kinds:
-        return kinds[kind](**{str(key): inner(x) for key, x in data["fields"].items()})
-    if machinery:
-        if kind == "Model":
-            return Model(data["side"], inner(data["plant"]))
-        if kind == "Chain":
-            return motion.Chain(inner(data["parts"]))
-        if kind == "Hold":
-            return motion.Hold(inner(data["place"]), data["duration"])
-        if kind == "Spline":
-            return paths.Spline(inner(data["s"]), inner(data["values"]))
-        if kind == "method":
-            return getattr(inner(data["of"]), data["name"])
-        if kind == "command type":
-            return _COMMANDS[data["name"]]
+        return kinds[kind](**{key: inner(x) for key, x in data.items() if key != "$"})
+    if kinds is not _DATA and kind == "method":
+        return getattr(inner(data["of"]), data["name"])
+    if kinds is not _DATA and kind == "command type":
+        return _COMMANDS[data["name"]]
     raise TypeMismatch(f"no value of kind {kind!r} can be read here")
 
 

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
-from ..commands import COMMANDS
+from .judge import numbers
 from .mark import Verdict
 from .question import Question
 
@@ -29,19 +29,11 @@ class Evidence(NamedTuple):
 def evidence(question: Question, verdict: Verdict) -> Evidence | None:
     """The first public call whose answer differs, where both are numbers of one form."""
     for call, answer in zip(question.calls, verdict.answers, strict=True):
-        expected, given = _numbers(call.expected), _numbers(answer)
-        if expected is None or given is None or expected.shape != given.shape:
+        try:
+            expected, given = numbers(call.expected), numbers(answer)
+        except (TypeError, ValueError):
             continue
-        if np.isfinite(given).all() and question.judge(answer, call.expected) is not None:
+        same_form = expected.shape == given.shape and np.isfinite(given).all()
+        if same_form and question.judge(answer, call.expected) is not None:
             return Evidence(call.shown(question.name), expected, given)
     return None
-
-
-def _numbers(value: Any) -> Array | None:
-    if isinstance(value, COMMANDS):
-        value = value.value
-    parts = value if isinstance(value, list | tuple) else [value]
-    try:
-        return np.concatenate([np.asarray(part, dtype=float).ravel() for part in parts])
-    except (TypeError, ValueError):
-        return None

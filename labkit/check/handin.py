@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
-from .notebook import FILE
+from .notebook import read_checks
 
 LARGEST = 10.0
 """Above this many megabytes a notebook may not pass a learning platform's upload."""
@@ -69,10 +69,7 @@ def look(path: Path) -> HandIn:
         LabkitError: The file is missing or no notebook, or its questions are not there.
     """
     cells = read_cells(path)
-    checks = path.parent / FILE
-    if not checks.exists():
-        raise LabkitError(f"{FILE} is not beside {path.name}; it came with the assignment")
-    data = json.loads(checks.read_text(encoding="utf-8"))
+    data = read_checks(path.resolve().parent)
     name, questions = data["assignment"], [q["name"] for q in data["questions"]]
     problems, notes = [], []
     if path.name != f"{name}.ipynb":
@@ -82,7 +79,7 @@ def look(path: Path) -> HandIn:
         problems.append(
             f"it has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
         )
-    ids = Counter(cell.get("metadata", {}).get("nbgrader", {}).get("grade_id") for cell in cells)
+    ids = Counter(cell["metadata"].get("nbgrader", {}).get("grade_id") for cell in cells)
     verdicts = {}
     for question in questions:
         if not any(defines(cell, question) for cell in cells):
@@ -123,9 +120,15 @@ def read_cells(path: Path) -> list[dict[str, Any]]:
     """
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        cells = data["cells"]
-        for cell in cells:
-            cell["source"] = "".join(cell["source"])
+        return [
+            {
+                **cell,
+                "cell_type": cell["cell_type"],
+                "metadata": dict(cell.get("metadata") or {}),
+                "source": "".join(cell["source"]),
+            }
+            for cell in data["cells"]
+        ]
     except FileNotFoundError:
         raise LabkitError(f"there is no file {path}") from None
     except (ValueError, KeyError, TypeError, UnicodeDecodeError):
@@ -133,8 +136,6 @@ def read_cells(path: Path) -> list[dict[str, Any]]:
             f"{path.name} is no notebook, or was cut off while saving; open it in Jupyter, or "
             "restore an older version"
         ) from None
-    found: list[dict[str, Any]] = cells
-    return found
 
 
 def defines(cell: Mapping[str, Any], name: str) -> bool:

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, as_array, as_gains
-from ..commands import COMMANDS, JOINTS
+from ..commands import COMMANDS
 from ..errors import LabkitError
 from ..motion import PoseSample, Sample
+from ..robot import JOINTS
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Close:
     def distance(self, answer: Any, expected: Any) -> float:
         """How far the answer is off, in tolerances; infinite where it has another form."""
         try:
-            a, b = (np.concatenate([x.ravel() for x in _flat(v)]) for v in (answer, expected))
+            a, b = numbers(answer), numbers(expected)
         except (LabkitError, TypeError, ValueError):
             return float("inf")
         if a.shape != b.shape or not np.isfinite(a).all():
@@ -85,12 +86,13 @@ class Close:
         return None
 
     def _differ_each(self, answer: Any, expected: Any, names: tuple[str, ...]) -> str | None:
+        wanted = f"it should be {len(expected)} things ({', '.join(names)})"
         try:
             items = list(answer)
         except TypeError:
-            return f"it should be {len(expected)} things ({', '.join(names)}), not {_shown(answer)}"
+            return f"{wanted}, not {_shown(answer)}"
         if len(items) != len(expected):
-            return f"it should be {len(expected)} things ({', '.join(names)}), not {len(items)}"
+            return f"{wanted}, not {len(items)}"
         for name, a, b in zip(names, items, expected, strict=True):
             if found := self._differ(a, b, name):
                 return found
@@ -129,11 +131,9 @@ class Within:
             x = float(as_array(answer, (), "the answer"))
         except LabkitError as error:
             return str(error)
-        return (
-            None
-            if self.distance(x, expected) <= 1.0
-            else f"got {_number(x)}, which is none of the right ones"
-        )
+        if self.distance(x, expected) <= 1.0:
+            return None
+        return f"got {_number(x)}, which is none of the right ones"
 
     def same(self, answer: Any, other: Any) -> bool:
         """Whether two answers, right or wrong, are the same number."""
@@ -273,11 +273,18 @@ class Gains:
 
 
 Judge = Close | Within | AtMost | Response | Gains
-JUDGES: dict[str, Any] = {k.__name__: k for k in (Close, Within, AtMost, Response, Gains)}
 
 
-def _flat(value: Any) -> list[Any]:
-    """All numbers of an answer, part by part."""
+def numbers(value: Any) -> Array:
+    """All numbers of an answer, part by part, shape (n,).
+
+    Raises:
+        TypeError, ValueError: It is not made of numbers.
+    """
+    return np.concatenate([x.ravel() for x in _flat(value)])
+
+
+def _flat(value: Any) -> list[Array]:
     if isinstance(value, COMMANDS):
         value = value.value
     if isinstance(value, dict):

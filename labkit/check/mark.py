@@ -109,11 +109,11 @@ class Tried:
 
     Attributes:
         results: One for each test, as far as its public cases tell.
-        answers: What came back, by the case's identity.
+        answers: What came back from each case that was asked.
     """
 
     results: tuple[TestResult, ...]
-    answers: Mapping[int, Any]
+    answers: Mapping[Case, Any]
 
 
 def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
@@ -136,8 +136,8 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
         for test, result in zip(question.tests, tried.results, strict=True)
     )
     outcome, mistake = _outcome(question, results), None
-    answers = [tried.answers.get(id(call)) for call in question.calls]
-    asked = all(id(call) in tried.answers for call in question.calls)
+    answers = [tried.answers.get(call) for call in question.calls]
+    asked = all(call in tried.answers for call in question.calls)
     if outcome in (Outcome.WRONG, Outcome.ERROR) and asked:
         mistake = recognise(question, answers)
     return Verdict(
@@ -155,7 +155,7 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
 def _runs(question: Question, tried: Tried) -> Iterator[Ran]:
     for test in question.tests:
         for case in test.cases:
-            answer = tried.answers.get(id(case))
+            answer = tried.answers.get(case)
             log = answer.log if isinstance(answer, _Failure) else answer
             if isinstance(case, Loop | Tuned) and isinstance(log, Log):
                 yield Ran(test.name, case, log, complete=log is answer)
@@ -166,15 +166,15 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
 
     Where one fails, all public calls are made, by which a known mistake can be told.
     """
-    answers: dict[int, Any] = {}
+    answers: dict[Case, Any] = {}
     results = tuple(
         _try(test, [c for c in test.cases if not c.hidden], question, function, answers)
         for test in question.tests
     )
     if _outcome(question, results) in (Outcome.WRONG, Outcome.ERROR):
         for call in question.calls:
-            if id(call) not in answers:
-                answers[id(call)] = _answer(call, function)
+            if call not in answers:
+                answers[call] = _answer(call, function)
     return Tried(results, answers)
 
 
@@ -212,7 +212,6 @@ class _Failure(Raised):
     """An exception as an answer."""
 
     sentence: str
-    not_attempted: bool = False
     log: Log | None = None
 
 
@@ -230,7 +229,7 @@ def _failure(error: BaseException) -> _Failure:
     known = isinstance(error, Failed) or (isinstance(error, LabkitError) and error.__cause__)
     sentence = str(error) if known else told(error)
     log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
-    return _Failure(kind, sentence, not_attempted=kind == "NotImplementedError", log=log)
+    return _Failure(kind, sentence, log)
 
 
 def _try(
@@ -238,17 +237,18 @@ def _try(
     cases: Iterable[Case],
     question: Question,
     function: Callable[..., Any],
-    answers: dict[int, Any],
+    answers: dict[Case, Any],
 ) -> TestResult:
     """Put some cases of one test, until one fails."""
     for case in cases:
         answer = _answer(case, function)
         if not case.hidden:
-            answers[id(case)] = answer
+            answers[case] = answer
         hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
         where = hidden if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
-            outcome = Outcome.NOT_ATTEMPTED if answer.not_attempted else Outcome.ERROR
+            stub = answer.kind == "NotImplementedError"
+            outcome = Outcome.NOT_ATTEMPTED if stub else Outcome.ERROR
             says = f"{where} raised {answer.kind if case.hidden else answer.sentence}"
             return TestResult(test.name, test.weight, outcome, says, case.hidden)
         found = _difference(question, case, answer)

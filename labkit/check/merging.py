@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import copy
 import re
 from collections.abc import Callable
@@ -32,13 +33,13 @@ def merge(mine: Cells, new: Cells) -> Cells:
     home = _homes(new)
     asked = [cell for cell in merged if cell["metadata"].get("nbgrader", {}).get("solution")]
     answers = [_answer(mine, _purpose(cell)) for cell in asked]
-    if asked and not any(answers):
+    if asked and not any(_cells_for(mine, _purpose(cell)) for cell in asked):
         raise LabkitError(
             f"your notebook answers nothing that the new one asks ({_purpose(asked[0])}, ...); "
             "are they two releases of the same assignment?"
         )
     for cell, answer in zip(asked, answers, strict=True):
-        if answer is not None and "raise NotImplementedError" not in answer:
+        if answer is not None:
             cell["source"] = answer
     anchor = -1
     after: dict[int, Cells] = {}
@@ -74,7 +75,7 @@ def _homes(new: Cells) -> Callable[[dict[str, Any]], int | None]:
 
 
 def _purpose(cell: dict[str, Any]) -> str:
-    return str(cell.get("metadata", {}).get("nbgrader", {}).get("grade_id", ""))
+    return str(cell["metadata"].get("nbgrader", {}).get("grade_id", ""))
 
 
 def _is_own(cell: dict[str, Any], new: Cells) -> bool:
@@ -85,7 +86,26 @@ def _is_own(cell: dict[str, Any], new: Cells) -> bool:
 
 
 def _answer(mine: Cells, name: str) -> str | None:
-    """The last cell that answers, which is the one that counts in marking."""
+    """The last cell in which something was written, which is the one that counts in marking."""
+    sources = [str(cell["source"]) for cell in _cells_for(mine, name)]
+    return next((source for source in reversed(sources) if not _is_stub(source)), None)
+
+
+def _cells_for(mine: Cells, name: str) -> Cells:
+    """The cells that define an answer, else those that were made for it."""
     defining = [cell for cell in mine if defines(cell, name)]
-    made_for = [cell for cell in mine if _purpose(cell) == name]
-    return next((str(cell["source"]) for cell in reversed(defining or made_for)), None)
+    return defining or [cell for cell in mine if _purpose(cell) == name]
+
+
+def _is_stub(source: str) -> bool:
+    """Whether a cell holds nothing but functions that say that they are still to be written."""
+    try:
+        written = [x for x in ast.parse(source).body if not isinstance(x, ast.Import)]
+    except SyntaxError:
+        return False
+    return all(isinstance(x, ast.FunctionDef) and _is_to_be_written(x) for x in written)
+
+
+def _is_to_be_written(function: ast.FunctionDef) -> bool:
+    body = function.body[1:] if ast.get_docstring(function) else function.body
+    return len(body) == 1 and ast.unparse(body[0]).startswith("raise NotImplementedError")

@@ -25,6 +25,24 @@ from .source import withheld_names
 FILE = "checks.json"
 
 
+def read_checks(folder: Path) -> dict[str, Any]:
+    """What lies beside a notebook: the name of its ``assignment``, and its ``questions`` as data.
+
+    Raises:
+        LabkitError: It is not there, or damaged.
+    """
+    file = folder / FILE
+    try:
+        data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    except (FileNotFoundError, ValueError) as error:
+        there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
+        raise LabkitError(
+            f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
+            "beside it, so fetch the assignment's whole folder again"
+        ) from None
+    return data
+
+
 class Desk:
     """The questions of one notebook, and what has come of them so far."""
 
@@ -38,16 +56,10 @@ class Desk:
         """The desk of the notebook in ``folder``.
 
         Raises:
-            LabkitError: No questions lie there.
+            LabkitError: No questions lie there, or damaged ones.
         """
-        file = folder / FILE
-        if not file.exists():
-            raise LabkitError(
-                f"there is no {FILE} in {folder.name!r}; it came with the notebook and belongs "
-                "beside it, so fetch the assignment's whole folder again"
-            )
-        data = json.loads(file.read_text(encoding="utf-8"))
-        return cls({q["name"]: read_question(q) for q in data["questions"]})
+        questions = map(read_question, read_checks(folder)["questions"])
+        return cls({question.name: question for question in questions})
 
     def question(self, name: str) -> Question:
         """One question.

@@ -54,6 +54,8 @@ _WAYS_OUT = {
     "Singular matrix": "a matrix has an inverse only if its rank is its size; J is (6, 7), so "
     "J @ J.T has one and J.T @ J has none",
     "must be square": "only square matrices have an inverse",
+    "object is not callable": "brackets behind a name call it; is a * missing, or does the name "
+    "stand for something else by now?",
     "cannot unpack non-iterable NoneType": "is a return missing?",
     "unsupported operand type(s) for -: 'list' and 'list'": "turn lists into arrays first, with "
     "np.array or np.subtract",

@@ -10,18 +10,19 @@ from .question import Question, Test
 WIDTH = 79
 """Of a line, in characters."""
 
-_HEADS = {
+HEADS = {
     Outcome.NOT_ATTEMPTED: "not attempted yet",
     Outcome.ERROR: "it stopped with an error",
     Outcome.WRONG: "not yet right",
     Outcome.RIGHT: "right",
 }
+"""What each outcome is called."""
 
 
 def head(verdict: Verdict) -> str:
     """The verdict in a line."""
     return (
-        f"{verdict.name}: {_HEADS[verdict.outcome]}. "
+        f"{verdict.name}: {HEADS[verdict.outcome]}. "
         f"{verdict.earned:g} of {verdict.points:g} points."
     )
 
@@ -74,10 +75,10 @@ def tell(
 def hint(question: Question, level: int) -> str:
     """One hint, and how to get the next; or that there is none of that number."""
     name, hints = question.name, question.hints
-    if level not in range(1, len(hints) + 1):
+    if not isinstance(level, int) or not 1 <= level <= len(hints):
         return wrapped(
-            f"{name} has {len(hints)} hints, and no hint {level}. If it does not work with all of "
-            "them, ask the teacher or a forum; labkit submit-check --forum says what to send."
+            f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
+            "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
         )
     more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
     return wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}") + more

@@ -6,6 +6,7 @@ release's form; `Isolated` takes the place of nbgrader's ``Execute`` and runs no
 
 from __future__ import annotations
 
+from contextlib import closing
 from typing import Any
 
 from nbgrader.preprocessors import NbGraderPreprocessor
@@ -13,7 +14,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from .batch import job
 from .course import Course
 from .limits import Limits
-from .pool import Worker
+from .pool import Worker, result_of
 from .results import Bundle, Result
 from .submission import Submission
 from .written import in_release_form, release_source, with_verdicts
@@ -48,10 +49,8 @@ def _grade(about: dict[str, Any]) -> Result:
     if result is None:
         bundle = Bundle.of(course, about["assignment"])
         submission = Submission.of(course, about["assignment"], about["student"])
-        worker = Worker()
-        try:
-            result = Result.read(worker.ask(job(course, bundle, submission, Limits())))
-        finally:
-            worker.close()
+        todo = job(course, bundle, submission, Limits())
+        with closing(Worker()) as worker:
+            result = Result.read(result_of(todo, worker.ask(todo)))
         _known[key] = result
     return result

@@ -6,7 +6,7 @@ import fcntl
 import os
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,13 +14,14 @@ from pathlib import Path
 from ..errors import LabkitError
 from .checker import hashes
 from .course import Course
-from .limits import Limits, slowness
+from .limits import Limits
 from .pool import Done, Job, locally, through_dask
 from .results import Bundle, Result, Results, digest
+from .sandbox import NoIsolation
 from .submission import Submission
 
 LOUD = 0.3
-"""Above this share of a class that fails one test, the run says so: is the test to blame?"""
+"""Above this share of a class that fails one test, the run says so; is the test to blame?"""
 FEW = 5
 """Of fewer who tried nothing is concluded."""
 
@@ -35,7 +36,6 @@ class How:
         dask: Address of a scheduler, or None for this machine.
         shard: (i, n): the i-th of n parts of the class, from 1.
         again: Whether results that are there already are made anew.
-        lower: Whether a mark may fall though the submission is the same; `labkit regrade` decides.
         limits: What a submission may use, on a quick machine.
     """
 
@@ -44,7 +44,6 @@ class How:
     dask: str | None = None
     shard: tuple[int, int] = (1, 1)
     again: bool = False
-    lower: bool = False
     limits: Limits = field(default_factory=Limits)
 
 
@@ -72,7 +71,7 @@ def in_shard(student: str, shard: tuple[int, int]) -> bool:
 
 
 def grade_class(
-    course: Course, assignment: str, students: Sequence[str], how: How | None = None
+    course: Course, assignment: str, students: Sequence[str], how: How
 ) -> Iterator[Graded | LabkitError]:
     """Grade submissions, each into a result file of its own.
 
@@ -87,10 +86,10 @@ def grade_class(
 
     Raises:
         LabkitError: The assignment was not released, or another run is under way.
+        NoIsolation: There is no sandbox to be had.
     """
-    how = how or How()
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
-    jobs: list[Job] = []
+    todo: list[Submission] = []
     with _alone(results.folder, how.shard):
         for student in students:
             if not in_shard(student, how.shard):
@@ -100,38 +99,53 @@ def grade_class(
             if before is not None:
                 yield Graded(before, "as before")
                 continue
-            jobs.append(job(course, bundle, submission, how.limits))
-        done: Iterator[Done] = (
-            through_dask(jobs, how.dask, isolated=how.isolated)
-            if how.dask
-            else locally(jobs, how.jobs, isolated=how.isolated)
-        )
-        for _, text in done:
-            if isinstance(text, LabkitError):
-                yield text
-                continue
-            yield _keep(results, Result.read(text), lower=how.lower)
+            todo.append(submission)
+        for result in grade_aside(course, bundle, todo, how):
+            yield result if isinstance(result, LabkitError) else _keep(results, result)
 
 
-def _keep(results: Results, result: Result, *, lower: bool) -> Graded:
+def grade_aside(
+    course: Course, bundle: Bundle, submissions: Iterable[Submission], how: How
+) -> Iterator[Result | LabkitError]:
+    """Grade submissions and keep nothing of it.
+
+    Yields:
+        Each result, or what failed.
+
+    Raises:
+        NoIsolation: There is no sandbox to be had.
+    """
+    jobs = [job(course, bundle, submission, how.limits) for submission in submissions]
+    done: Iterator[Done] = (
+        through_dask(jobs, how.dask, isolated=how.isolated)
+        if how.dask
+        else locally(jobs, how.jobs, isolated=how.isolated)
+    )
+    for text in done:
+        if isinstance(text, NoIsolation):
+            raise text  # it would be so for all of them
+        yield text if isinstance(text, LabkitError) else Result.read(text)
+
+
+def _keep(results: Results, result: Result) -> Graded:
     """Let a result count, unless a mark would fall that nobody has earned worse."""
     before = results.get(result.student)
     same = before is not None and before.hashes["submission"] == result.hashes["submission"]
-    if before is not None and same and result.score < before.score and not lower:
+    if before is not None and same and result.score < before.score:
         return Graded(before, f"kept; it would be {result.score:g} now, see `labkit regrade`")
     results.keep(result)
     return Graded(result, "" if before is None else f"was {before.score:g}")
 
 
 def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) -> Job:
-    """What a worker is told of a submission; slow machines give it more time."""
+    """What a worker is told of a submission."""
     return {
         "student": submission.student,
         "assignment": submission.assignment,
         "folder": str(submission.folder),
         "bundle": str(course.bundle / f"{submission.assignment}.json"),
         "hash": bundle.data["hash"],
-        "limits": limits.scaled(slowness()).data(),
+        "limits": limits.data(),
     }
 
 

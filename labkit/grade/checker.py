@@ -75,11 +75,9 @@ def grade(
         }
         failed = tuple(seat.failed())
         spent = seat.spent
-    return Result(
-        bundle.data["assignment"],
-        student,
+    return replace(
+        _ungraded(student, bundle, sandbox.level, data),
         score=round(sum(v.earned for v in verdicts.values()), 2),
-        points=bundle.points,
         questions=tuple(
             _verdict(question, verdicts.get(question.name) or _absent(question), todo)
             for question in bundle.questions
@@ -87,22 +85,21 @@ def grade(
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
         cells=failed,
         own=todo.own,
-        isolation=sandbox.level,
-        versions=versions(),
-        hashes=hashes(data, bundle),
-        seed=bundle.data["seed"],
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
     )
 
 
 def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = b"") -> Result:
     """The result of a submission that cannot be graded."""
+    return replace(_ungraded(student, bundle, level, data), rejected=clean(why))
+
+
+def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
     return Result(
         bundle.data["assignment"],
         student,
         0.0,
         bundle.points,
-        rejected=clean(why),
         isolation=level,
         versions=versions(),
         hashes=hashes(data, bundle),

@@ -42,15 +42,9 @@ def report(
     lines += _mistakes(graded, problems)
     lines += _listed("Tests to doubt", common_failures(graded))
     lines += _listed("Rejected", (f"{who[r.student]}: {r.rejected}" for r in results if r.rejected))
-    slow = sorted(graded, key=lambda r: -r.seconds.get("all", 0.0))
-    lines += _listed(
-        f"Slower than {SLOW:g} s",
-        (
-            f"{who[r.student]}: {r.seconds['all']:.0f} s"
-            for r in slow
-            if r.seconds.get("all", 0.0) > SLOW
-        ),
-    )
+    slow = sorted((r for r in graded if r.seconds["all"] > SLOW), key=lambda r: -r.seconds["all"])
+    times = (f"{who[r.student]}: {r.seconds['all']:.0f} s" for r in slow)
+    lines += _listed(f"Slower than {SLOW:g} s", times)
     lines += _listed("Look-alikes", _alike(graded, who))
     return "\n".join(lines) + "\n"
 

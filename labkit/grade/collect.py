@@ -11,16 +11,20 @@ from __future__ import annotations
 import re
 import shutil
 import zipfile
+import zlib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from ..errors import LabkitError
 from .course import Course
+from .handback import SECRET, read_secret
 from .limits import Limits
 from .lms import Known, folders, known, remember
+from .submission import check_size, read_file
 
 _MOODLE = re.compile(
     r"^(?P<name>[^/]+)_(?P<id>\d+)_assignsubmission_file(?:_?/|_)(?:[^/]+/)*(?P<file>[^/]+)$"
@@ -28,7 +32,10 @@ _MOODLE = re.compile(
 _CANVAS = re.compile(
     r"^(?P<name>[^/_]+)_(?P<late>LATE_)?(?P<id>\d+)_(?P<number>\d+)_(?P<file>[^/]+)$"
 )
-_EXCHANGE = re.compile(r"^(?P<name>[^+/]+)\+(?P<assignment>[^+/]+)\+(?P<when>[^+/]+?)(\+[^/]*)?$")
+_EXCHANGE = re.compile(
+    r"^(?P<name>[^.+/][^+/]*)\+(?P<assignment>[^+/]+)\+(?P<when>[^+/]+?)(\+[^/]*)?$"
+)
+_REPEATED = re.compile(r" ?[(-](\d+)\)?\.ipynb$")
 
 
 @dataclass(frozen=True)
@@ -36,8 +43,8 @@ class Taken:
     """One file, and what was done with it.
 
     Attributes:
-        student: Whose, as the folder is called.
-        file: Its name in the download.
+        student: Whose, as the folder is called; empty if nobody's.
+        file: Its name in the download; empty if it is of none in particular.
         says: What was done.
     """
 
@@ -46,17 +53,18 @@ class Taken:
     says: str
 
     def __str__(self) -> str:
-        return f"{self.student or '(nobody)'}: {self.file}: {self.says}"
+        return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
 @dataclass(frozen=True)
 class _Found:
     student: str
     file: str
-    data: bytes
+    read: Callable[[], bytes]  # late, as a class's files need not fit into memory together
     when: str = ""
     late: bool = False
     known: Known | None = None
+    beside: Path | None = None  # the folder in the exchange, with its secret
 
 
 def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
@@ -68,27 +76,41 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
 
     Yields:
-        What was done with each file; of several of one student the last counts.
+        What was done with each file; of several of one student the last counts, of several that he
+        handed in together the one that is called as the assignment.
 
     Raises:
-        LabkitError: It is neither, or holds nothing.
+        LabkitError: It is neither, it is damaged, or it holds nothing.
     """
+    if not source.exists():
+        raise LabkitError(f"there is no {source}")
     if source.is_dir():
-        found = list(_from_exchange(source, assignment))
-    elif zipfile.is_zipfile(source):
-        found = list(_from_zip(source))
-    else:
+        yield from _take(course, assignment, source, list(_from_exchange(source, assignment)))
+    elif not zipfile.is_zipfile(source):
         raise LabkitError(
             f"{source} is neither a folder nor a zip file; give the download as it is"
         )
+    else:
+        try:
+            with zipfile.ZipFile(source) as archive:
+                yield from _take(course, assignment, source, list(_from_zip(archive)))
+        except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError) as error:
+            raise LabkitError(
+                f"{source} is damaged or locked: {error}; download it again"
+            ) from None
+
+
+def _take(
+    course: Course, assignment: str, source: Path, found: Sequence[_Found]
+) -> Iterator[Taken]:
     if not found:
         raise LabkitError(f"nothing in {source} was handed in for {assignment}")
     before = known(course, assignment)
     people = {one.known: one.student for one in found if one.known is not None}
-    places = folders(people, before, people)
+    places = folders(people, before)
     for name, count in Counter(people.values()).items():
         if count > 1:
-            yield Taken("", name, f"{count} students are called so; told apart by their number")
+            yield Taken(name, "", f"{count} students are called so; told apart by their number")
     remember(course, assignment, {folder: one for one, folder in places.items()})
     by_student: dict[str, list[_Found]] = {}
     for one in found:
@@ -100,49 +122,58 @@ def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
         else:
             by_student.setdefault(one.student, []).append(one)
     for student, files in sorted(by_student.items()):
-        files.sort(key=lambda one: (one.when, _number(one.file)))
-        for one in files[:-1]:
-            yield Taken(student, one.file, "not taken; a later one is there")
-        yield _put(course, assignment, files[-1])
+        files.sort(key=lambda one: (one.when, _called(one.file, assignment), _number(one.file)))
+        *others, counts = files
+        for one in others:
+            which = "a later one" if one.file == counts.file else counts.file
+            yield Taken(student, one.file, f"not taken; {which} counts")
+        yield _put(course, assignment, counts)
 
 
 def _put(course: Course, assignment: str, one: _Found) -> Taken:
     folder = course.submitted / one.student / assignment
     path = folder / f"{assignment}.ipynb"
-    same = path.is_file() and path.read_bytes() == one.data
-    if same:
+    try:
+        data = one.read()
+        secret = None if one.beside is None else read_secret(one.beside)
+    except LabkitError as error:
+        return Taken(one.student, one.file, f"not taken; {error}")
+    if path.is_file() and path.read_bytes() == data:
+        if secret is not None:  # handed in once more: the newer one is asked about
+            (folder / SECRET).write_bytes(secret)
         return Taken(one.student, one.file, "there already")
     again = folder.exists()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    path.write_bytes(one.data)
+    path.write_bytes(data)
     if one.when:
         (folder / "timestamp.txt").write_text(one.when, encoding="utf-8")
+    if secret is not None:
+        (folder / SECRET).write_bytes(secret)
     says = "taken, in place of an earlier one" if again else "taken"
     says += "" if one.file == path.name else f", as {path.name}"
     return Taken(one.student, one.file, says + (", late" if one.late else ""))
 
 
-def _from_zip(path: Path) -> Iterator[_Found]:
-    most = Limits().notebook * 2**20
-    with zipfile.ZipFile(path) as archive:
-        for entry in archive.infolist():
-            if entry.is_dir():
-                continue
-            moodle = _MOODLE.match(entry.filename)
-            match = moodle or _CANVAS.match(entry.filename)
-            if match is None:
-                yield _Found("", entry.filename[-80:], b"")
-                continue
-            if entry.file_size > most:
-                yield _Found("", f"{entry.filename[-80:]} ({entry.file_size / 2**20:.0f} MB)", b"")
-                continue
-            with archive.open(entry) as file:
-                data = file.read(most)
-            parts = match.groupdict()
-            who = Known("moodle" if moodle else "canvas", parts["id"], parts["name"])
-            late = bool(parts.get("late"))
-            yield _Found(_slug(who.name), parts["file"], data, late=late, known=who)
+def _from_zip(archive: zipfile.ZipFile) -> Iterator[_Found]:
+    for entry in archive.infolist():
+        if entry.is_dir():
+            continue
+        read = partial(_read, archive, entry)
+        moodle = _MOODLE.match(entry.filename)
+        match = moodle or _CANVAS.match(entry.filename)
+        if match is None:
+            yield _Found("", entry.filename[-80:], read)
+            continue
+        parts = match.groupdict()
+        who = Known("moodle" if moodle else "canvas", parts["id"], parts["name"])
+        late = bool(parts.get("late"))
+        yield _Found(_slug(who.name), parts["file"], read, late=late, known=who)
+
+
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+    check_size(entry.file_size, Limits().notebook)
+    return archive.read(entry)
 
 
 def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
@@ -153,10 +184,8 @@ def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
         if match["assignment"] != assignment:
             continue
         for path in sorted(inside.glob("*.ipynb")):
-            if path.is_symlink() or path.stat().st_size > Limits().notebook * 2**20:
-                yield _Found("", path.name, b"")
-                continue
-            yield _Found(_slug(match["name"]), path.name, path.read_bytes(), _time(match["when"]))
+            read = partial(read_file, path, Limits().notebook)
+            yield _Found(match["name"], path.name, read, _time(match["when"]), beside=inside)
 
 
 def _time(text: str) -> str:
@@ -176,5 +205,10 @@ def _slug(name: str) -> str:
 
 def _number(name: str) -> int:
     """The number that a browser or platform put on a repeated file: notebook(3), notebook-3."""
-    match = re.search(r"[(-](\d+)\)?\.ipynb$", name)
+    match = _REPEATED.search(name)
     return int(match[1]) if match else 0
+
+
+def _called(name: str, assignment: str) -> bool:
+    """Whether a file is called as the assignment, whatever number it has."""
+    return _REPEATED.sub(".ipynb", name) == f"{assignment}.ipynb"

@@ -10,6 +10,9 @@ from pathlib import Path
 from ..errors import LabkitError, UnknownName
 from .problem import Problem
 
+PUBLIC_SEED = 2019
+"""The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
+
 
 @dataclass(frozen=True)
 class Course:
@@ -90,10 +93,22 @@ class Course:
         return self.root / "solutions" / "notebooks" / f"{name}.py"
 
     def problems(self, name: str) -> tuple[Problem, ...]:
-        """The problems of an assignment, from the course's own ``solutions`` package."""
+        """The problems of an assignment, from the course's own ``solutions`` package.
+
+        Raises:
+            UnknownName: There is no assignment of that name.
+            LabkitError: It has a notebook, and no problems.
+        """
         self.notebook_source(name)
         if str(self.root) not in sys.path:
             sys.path.insert(0, str(self.root))
-        module = importlib.import_module(f"solutions.problems.{name.partition('_')[2]}")
+        where = f"solutions.problems.{name.partition('_')[2]}"
+        try:
+            module = importlib.import_module(where)
+        except ModuleNotFoundError as error:
+            if error.name != where:
+                raise
+            path = where.replace(".", "/")
+            raise LabkitError(f"{name} has no problems; write {path}.py with PROBLEMS") from None
         problems: tuple[Problem, ...] = module.PROBLEMS
         return problems

@@ -27,7 +27,7 @@ DOCKER = (
     "--cap-add=SYS_ADMIN",
     "--cap-add=NET_ADMIN",
 )
-"""What a container needs in which sandboxes are made: namespaces, mounts, and a network that is a
+"""What a container needs in which sandboxes are made; namespaces, mounts, and a network that is a
 loopback without anything behind it.  The sandbox has a filter of system calls of its own."""
 
 

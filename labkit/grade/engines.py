@@ -32,12 +32,11 @@ class Mark:
     says: str = ""
 
 
-def nbgrader_api(course: Course, quiet: int = logging.ERROR, *, own_engine: bool = False) -> Any:
+def nbgrader_api(course: Course, *, own_engine: bool = False) -> Any:
     """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says.
 
     Args:
         course: The course.
-        quiet: The least level of message that it logs.
         own_engine: Whether its autograde runs students' code itself, as it does unasked.
     """
     from nbgrader.apps import NbGraderAPI
@@ -51,7 +50,7 @@ def nbgrader_api(course: Course, quiet: int = logging.ERROR, *, own_engine: bool
     config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
     settings = Config(config)
     settings.CourseDirectory.root = str(course.root)
-    settings.Application.log_level = quiet
+    settings.Application.log_level = logging.CRITICAL
     if own_engine:
         settings.pop("Autograde", None)
     return NbGraderAPI(CourseDirectory(config=settings), config=settings)
@@ -69,7 +68,7 @@ def grade_with_nbgrader(course: Course, name: str, student: str) -> Mark:
     """
     from .gradebook import quiet_database
 
-    api = nbgrader_api(course, quiet=logging.CRITICAL, own_engine=True)
+    api = nbgrader_api(course, own_engine=True)
     with quiet_database():
         return _autograde(api, name, student)
 

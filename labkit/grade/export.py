@@ -79,7 +79,7 @@ class Row:
 def rows(course: Course, assignment: str) -> Iterator[Row]:
     """Everybody's marks, in order of name."""
     by_platform = known(course, assignment)
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         for submission in sorted(
             book.assignment_submissions(assignment), key=lambda s: str(s.student.id)
         ):

@@ -15,6 +15,8 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from ..check import Outcome
+from ..check.words import HEADS
 from ..replay import viewer_scripts
 from .course import Course
 from .own_work import has_replay, own_work
@@ -33,12 +35,6 @@ _HEAD = """<!doctype html>
 <body>
 <main>
 """
-_WORDS = {
-    "right": "right",
-    "wrong": "not yet right",
-    "error": "it stopped with an error",
-    "not attempted": "not attempted",
-}
 
 
 def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
@@ -130,7 +126,7 @@ def _question(question: Mapping[str, Any], comment: str) -> Iterable[str]:
     mark = "yes" if outcome == "right" else "no"
     yield f'<section aria-labelledby="{name}"><h2 id="{name}"><code>{name}</code></h2>'
     yield (
-        f'<p><strong class="{mark}">{_WORDS[outcome].capitalize()}.</strong> '
+        f'<p><strong class="{mark}">{HEADS[Outcome(outcome)].capitalize()}.</strong> '
         f"{question['earned']:g} of {question['points']:g} points.</p>"
     )
     if outcome in {"wrong", "error"}:

@@ -5,6 +5,7 @@ Manual grades and comments stay; formgrader finds a notebook to open for every s
 
 from __future__ import annotations
 
+import fcntl
 import logging
 import warnings
 from collections.abc import Iterable, Iterator
@@ -12,13 +13,15 @@ from contextlib import contextmanager
 from datetime import datetime
 from typing import Any
 
+from ..errors import LabkitError
 from .course import Course
-from .results import Result
+from .engines import nbgrader_api
+from .results import Bundle, Result
 from .written import in_release_form, release_source, save, with_verdicts
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str]:
-    """Write results into the gradebook, all of them or none, and a notebook for each.
+    """Write results into the gradebook, the scores of all or of none, and a notebook for each.
 
     Args:
         course: The course.
@@ -27,16 +30,28 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
 
     Returns:
         What a person should look at, a sentence each.
+
+    Raises:
+        LabkitError: The gradebook does not know the assignment.
     """
     source, notes = release_source(course, assignment), []
-    with open_gradebook(course) as (book, api):
-        late = _late_rule(api)
-        for result in results:
+    late = _late_rule(course)
+    with open_gradebook(course) as book:
+        if assignment not in {known.name for known in book.assignments}:
+            seed = Bundle.of(course, assignment).data["seed"]
+            raise LabkitError(
+                f"the gradebook does not know {assignment}, as if it were a new one; type: "
+                f"labkit release {assignment} --seed {seed}"
+            )
+        submissions = []
+        for result in results:  # first: with each of these nbgrader commits what was done before
             when, note = timestamp(course, result)
             notes += [f"{result.student}: {note}"] if note else []
             book.update_or_create_student(result.student)
             known = {} if when is None else {"timestamp": when}
-            submission = book.update_or_create_submission(assignment, result.student, **known)
+            made = book.update_or_create_submission(assignment, result.student, **known)
+            submissions.append((made, result))
+        for submission, result in submissions:
             notes += _write_scores(submission, result)
             submission.late_submission_penalty = None
             for notebook in submission.notebooks:
@@ -52,7 +67,7 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
 def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
     """What was written by hand: by student, then by question."""
     found: dict[str, dict[str, str]] = {}
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         for submission in book.assignment_submissions(assignment):
             said = {c.name: c.manual_comment for n in submission.notebooks for c in n.comments}
             found[str(submission.student.id)] = {k: v for k, v in said.items() if v}
@@ -60,17 +75,20 @@ def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
 
 
 @contextmanager
-def open_gradebook(course: Course) -> Iterator[tuple[Any, Any]]:
-    """The gradebook as nbgrader sees it, and nbgrader's interface.
+def open_gradebook(course: Course) -> Iterator[Any]:
+    """The gradebook as nbgrader sees it; whatever is wrong, nothing is written by halves.
 
-    Whatever is wrong, nothing is written by halves.
+    A second one, in another terminal, waits until the first is closed.
     """
-    from .engines import nbgrader_api
-
-    api = nbgrader_api(course, quiet=logging.CRITICAL)
-    with quiet_database(), api.gradebook as book:
+    course.build.mkdir(parents=True, exist_ok=True)
+    with (
+        open(course.build / ".gradebook", "w") as writer,
+        quiet_database(),
+        nbgrader_api(course).gradebook as book,
+    ):
+        fcntl.flock(writer, fcntl.LOCK_EX)
         try:
-            yield book, api
+            yield book
         except BaseException:
             book.db.rollback()
             raise
@@ -117,13 +135,14 @@ def _write_scores(submission: Any, result: Result) -> Iterator[str]:
             grade.auto_score = score
 
 
-def _late_rule(api: Any) -> Any:
+def _late_rule(course: Course) -> Any:
     """The course's own rule for late work, from nbgrader's settings."""
     from nbgrader.plugins import LateSubmissionPlugin
     from traitlets.utils.importstring import import_item
 
-    chosen = api.config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
-    plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=api.config)
+    config = nbgrader_api(course).config
+    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
+    plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
     plugin.log.setLevel(logging.CRITICAL)
 
     def late(student: str, notebook: Any, submission: Any) -> float | None:

@@ -13,7 +13,7 @@ from types import ModuleType
 from typing import Any
 
 Key = tuple[str, str]
-"""A definition: its module and its name there."""
+"""A definition, its module and its name there."""
 
 
 @dataclass

@@ -19,7 +19,7 @@ class Limits:
         call: For one call of a function.
         question: For all of a question's calls, runs of the arm included.
         wall: For everything.
-        memory: For each process, beside what was there before; 0 is no limit.
+        memory: For each process, beside what was there before.
         files: In its own temporary folder, and for one file.
         output: Characters of text from the cells, in all.
         processes: At once.

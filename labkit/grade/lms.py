@@ -6,7 +6,7 @@ Names and numbers stand in ``course_private/lms.json``, which git ignores; they 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
 from .course import Course
@@ -44,25 +44,20 @@ def remember(course: Course, assignment: str, found: Mapping[str, Known]) -> Non
         write(course.root / FILE, text + "\n")
 
 
-def folders(
-    found: Iterable[Known], before: Mapping[str, Known], slugs: Mapping[Known, str]
-) -> dict[Known, str]:
+def folders(slugs: Mapping[Known, str], before: Mapping[str, Known]) -> dict[Known, str]:
     """Which folder each student gets.
 
     Canvas's numbers stay the same all term, so they are part of the name.  Moodle's do not, so a
     student is called by his name alone, and by the number too only where two have that name.
 
     Args:
-        found: In one download.
+        slugs: Those of one download, with their names as a folder's.
         before: By folder, from earlier downloads of this assignment.
-        slugs: Their names as a folder's.
     """
-    students = sorted(set(found), key=lambda one: (one.system, one.number))
     there = {(one.system, one.number): folder for folder, one in before.items()}
-    names = [slugs[one] for one in students]
+    names = list(slugs.values())
     chosen = {}
-    for one in students:
-        slug = slugs[one]
+    for one, slug in slugs.items():
         alone = one.system == "moodle" and names.count(slug) == 1 and slug not in before
         chosen[one] = there.get((one.system, one.number)) or (
             slug if alone else f"{slug}-{one.number}"

@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import jupytext
 import nbformat
 
 from ..check import Question
@@ -21,6 +20,7 @@ from ..errors import LabkitError
 
 Notebook = Any
 KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
+END_HIDDEN = "### END HIDDEN TESTS\n"
 
 
 def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
@@ -33,6 +33,8 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     Raises:
         LabkitError: Stubs and questions do not match.
     """
+    import jupytext  # slow to load, and only a release needs it
+
     text = jupytext.read(path, fmt="py:percent")
     cells: list[dict[str, Any]] = []
     asked: list[str] = []
@@ -50,10 +52,10 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
         _check_stub(path, name, cell)
         cells.append(_cell("markdown", brief(question), "brief", {}))
         cells.append(_cell("code", cell.source, "answer", _nbgrader(name, solution=True)))
-        check = f"from labkit.check import also\n\nalso({name!r}, {pack_hidden(question)!r})"
-        check = f"### BEGIN HIDDEN TESTS\n{check}\n### END HIDDEN TESTS\ncheck({name!r}, {name})"
+        hidden = f'from labkit.check import also\n\nalso("{name}", "{pack_hidden(question)}")'
+        check = f'### BEGIN HIDDEN TESTS\n{hidden}\n{END_HIDDEN}check("{name}", {name})'
         meta = _nbgrader(f"{name}-check", locked=True, grade=True, points=question.points)
-        cells.append(_cell("code", check.replace("'", '"'), "check", meta))
+        cells.append(_cell("code", check, "check", meta))
     for name in questions:
         if asked.count(name) != 1:
             raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
@@ -63,6 +65,11 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     return nbformat.from_dict(
         {"cells": cells, "metadata": meta, "nbformat": 4, "nbformat_minor": 5}
     )
+
+
+def without_hidden(source: str) -> str:
+    """A cell's text as students have it."""
+    return source.rpartition(END_HIDDEN)[2]
 
 
 def _check_stub(path: Path, name: str, cell: Mapping[str, Any]) -> None:

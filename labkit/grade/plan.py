@@ -63,13 +63,12 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     """
     setup = [m["source"] for m in manifest if m["kind"] == "setup" and m["type"] == "code"]
     walk = {_same(m["source"]) for m in manifest if m["kind"] == "walk" and m["type"] == "code"}
-    known = {_same(x) for x in setup}
+    released = _released(manifest)
     notes: dict[str, list[str]] = {}
     places: dict[str, int] = {}
     spare: set[int] = set()
     code = {k: cell for k, cell in enumerate(cells) if cell["type"] == "code"}
-    own = {k: cell for k, cell in code.items() if _same(cell["source"]) not in walk | known}
-    own = {k: cell for k, cell in own.items() if not _is_check(cell["source"], manifest)}
+    own = {k: cell for k, cell in code.items() if _same(cell["source"]) not in released}
     for m in manifest:
         if m["kind"] == "answer":
             said = notes.setdefault(m["grade_id"], [])
@@ -107,12 +106,10 @@ def _own(
     cells: Sequence[Cell], manifest: Sequence[Cell], places: set[int]
 ) -> Iterator[dict[str, str]]:
     """Cells that the release does not have."""
-    known = {_same(m["source"]) for m in manifest if m["kind"] != "answer"}
-    ids, after = {m["id"] for m in manifest}, ""
+    released, ids, after = _released(manifest), {m["id"] for m in manifest}, ""
     for k, cell in enumerate(cells):
         after = cell["id"] if cell["id"] in ids else after
-        released = _same(cell["source"]) in known or _is_check(cell["source"], manifest)
-        if k not in places and not released and cell["source"].strip():
+        if k not in places and cell["source"].strip() and _same(cell["source"]) not in released:
             yield {"after": after, "type": cell["type"], "source": cell["source"]}
 
 
@@ -157,9 +154,9 @@ def _needed(code: Mapping[int, Cell], places: Iterable[int]) -> set[int]:
     return needed
 
 
-def _is_check(source: str, manifest: Iterable[Mapping[str, Any]]) -> bool:
-    names = [m["grade_id"].removesuffix("-check") for m in manifest if m["kind"] == "check"]
-    return _same(source) in {f'check("{name}", {name})' for name in names}
+def _released(manifest: Sequence[Cell]) -> set[str]:
+    """The texts of the release's cells, but for those that students are to change."""
+    return {_same(m["source"]) for m in manifest if m["kind"] != "answer"}
 
 
 def _same(source: str) -> str:

@@ -8,7 +8,8 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -16,15 +17,14 @@ from typing import Any
 import labkit
 
 from ..errors import LabkitError
+from ..study.campaign import dask_client
 from .sandbox import NoIsolation
 
 Job = dict[str, Any]
+Done = str | LabkitError
+"""A result as JSON, or what failed."""
 TRIES = 3
-"""How often a submission is given to a fresh worker, if the worker itself dies."""
-
-
-class Died(LabkitError):
-    """A worker ended while it graded."""
+"""How often a submission is given to a fresh process, if the one that grades it dies."""
 
 
 class Worker:
@@ -33,29 +33,25 @@ class Worker:
     def __init__(self, *, isolated: bool = True) -> None:
         self.isolated = isolated
         self.process: subprocess.Popen[str] | None = None
+        self.closed = False
 
     def ask(self, job: Job) -> str:
-        """The result of a job, as JSON.
-
-        Raises:
-            NoIsolation: The machine has no sandbox.
-            LabkitError: The worker failed, whatever it was given.
-        """
+        """What the process says of a job, a line of JSON that `result_of` reads."""
         for _ in range(TRIES):
-            try:
-                answer = self._ask(job)
-            except (OSError, Died):
-                self.close()
-                continue
-            if "no isolation" in answer:
-                raise NoIsolation(answer["no isolation"])
-            if "failed" in answer:
-                raise LabkitError(f"{job['student']}: the grader failed: {answer['failed']}")
-            return str(answer["result"])
-        raise Died(f"{job['student']}: the worker died {TRIES} times; grade again to try once more")
+            with suppress(OSError, EOFError):
+                return self._ask(job)
+            self._end()
+            if self.closed:
+                break
+        says = f"its worker died {TRIES} times; grade again to try once more"
+        return json.dumps({"failed": says})
 
     def close(self) -> None:
-        """End the process."""
+        """End the process, for good."""
+        self.closed = True
+        self._end()
+
+    def _end(self) -> None:
         process, self.process = self.process, None
         if process is None:
             return
@@ -69,7 +65,7 @@ class Worker:
             process.wait()
         process.stdout.close()
 
-    def _ask(self, job: Job) -> dict[str, Any]:
+    def _ask(self, job: Job) -> str:
         if self.process is None:
             words = [sys.executable, "-m", "labkit.grade.worker"]
             here = str(Path(labkit.__file__).parent.parent)
@@ -85,13 +81,24 @@ class Worker:
         self.process.stdin.write(json.dumps(job) + "\n")
         self.process.stdin.flush()
         line = self.process.stdout.readline()
-        if not line:
-            raise Died("the worker died")
-        answer: dict[str, Any] = json.loads(line)
-        return answer
+        if not line.endswith("\n"):
+            raise EOFError
+        return line
 
 
-Done = tuple[Job, str | LabkitError]
+def result_of(job: Job, line: str) -> str:
+    """The result in what a worker said, as JSON.
+
+    Raises:
+        NoIsolation: The machine has no sandbox.
+        LabkitError: The worker failed.
+    """
+    answer = json.loads(line)
+    if "no isolation" in answer:
+        raise NoIsolation(answer["no isolation"])
+    if "failed" in answer:
+        raise LabkitError(f"{job['student']}: the grader failed: {answer['failed']}")
+    return str(answer["result"])
 
 
 def locally(jobs: Sequence[Job], count: int, *, isolated: bool = True) -> Iterator[Done]:
@@ -101,55 +108,50 @@ def locally(jobs: Sequence[Job], count: int, *, isolated: bool = True) -> Iterat
         jobs: What to grade.
         count: How many workers.
         isolated: Whether they use sandboxes.
-
-    Yields:
-        Each job with its result as JSON, or with what failed.
     """
-    waiting: queue.SimpleQueue[Job] = queue.SimpleQueue()
-    done: queue.SimpleQueue[Done] = queue.SimpleQueue()
-    for job in jobs:
-        waiting.put(job)
-    workers = [Worker(isolated=isolated) for _ in range(min(count, len(jobs)))]
+    workers = [Worker(isolated=isolated) for _ in range(count)]
+    free: queue.SimpleQueue[Worker] = queue.SimpleQueue()
+    for worker in workers:
+        free.put(worker)
 
-    def serve(worker: Worker) -> None:
-        with suppress(queue.Empty):
-            while True:
-                job = waiting.get_nowait()
-                try:
-                    done.put((job, worker.ask(job)))
-                except LabkitError as error:
-                    done.put((job, error))
-                except Exception as error:
-                    done.put(
-                        (job, LabkitError(f"{job['student']}: {type(error).__name__}: {error}"))
-                    )
+    def grade(job: Job) -> str:
+        worker = free.get()
+        try:
+            return worker.ask(job)
+        finally:
+            free.put(worker)
 
-    threads = [threading.Thread(target=serve, args=(w,), daemon=True) for w in workers]
-    for thread in threads:
-        thread.start()
+    threads = ThreadPoolExecutor(count)
     try:
-        for _ in jobs:
-            yield done.get()
+        futures = {threads.submit(grade, job): job for job in jobs}
+        for future in as_completed(futures):
+            yield _done(futures.pop(future), future.result)
     finally:
+        threads.shutdown(wait=False, cancel_futures=True)
         for worker in workers:
             worker.close()
 
 
-_here: list[Worker] = []
+def _done(job: Job, line: Callable[[], str]) -> Done:
+    """Whatever happened to one submission, the others are graded."""
+    try:
+        return result_of(job, line())
+    except LabkitError as error:
+        return error
+    except Exception as error:
+        return LabkitError(f"{job['student']}: {type(error).__name__}: {error}")
+
+
+_here: dict[bool, Worker] = {}
 _lock = threading.Lock()
 
 
-def on_dask(text: str) -> str:
+def on_dask(text: str, *, isolated: bool) -> str:
     """One job in a Dask worker: JSON in, JSON out, so that nothing is unpickled from students."""
-    job = json.loads(text)
     with _lock:
-        if not _here:
-            _here.append(Worker(isolated=job.pop("isolated")))
-        job.pop("isolated", None)
-        try:
-            return json.dumps({"result": _here[0].ask(job)})
-        except LabkitError as error:
-            return json.dumps({"failed": str(error)})
+        if isolated not in _here:
+            _here[isolated] = Worker(isolated=isolated)
+        return _here[isolated].ask(json.loads(text))
 
 
 def through_dask(jobs: Sequence[Job], address: str, *, isolated: bool = True) -> Iterator[Done]:
@@ -160,32 +162,14 @@ def through_dask(jobs: Sequence[Job], address: str, *, isolated: bool = True) ->
         address: Of the scheduler, such as "tcp://127.0.0.1:8786"; take loopback or TLS.
         isolated: Whether they use sandboxes.
 
-    Yields:
-        Each job with its result as JSON, or with what failed.
-
     Raises:
         LabkitError: distributed is missing, or nobody answers there.
     """
-    try:
-        from distributed import Client, as_completed
-    except ImportError:
-        raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
-    try:
-        client = Client(address, timeout="10s", set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise LabkitError(f"no Dask scheduler at {address}: {error}") from None
-    with client:
-        texts = [json.dumps(job | {"isolated": isolated}) for job in jobs]
-        futures = client.map(on_dask, texts, pure=False, retries=2)
+    with dask_client(address) as client:
+        from distributed import as_completed as as_completed_there
+
+        texts = [json.dumps(job) for job in jobs]
+        futures = client.map(on_dask, texts, isolated=isolated, pure=False, retries=2)
         by_key = {future.key: job for future, job in zip(futures, jobs, strict=True)}
-        for future in as_completed(futures, loop=client.loop):
-            job = by_key[future.key]
-            try:
-                answer = json.loads(future.result())
-            except Exception as error:
-                yield job, LabkitError(f"{job['student']}: {type(error).__name__}: {error}")
-                continue
-            if "failed" in answer:
-                yield job, LabkitError(answer["failed"])
-            else:
-                yield job, answer["result"]
+        for future in as_completed_there(futures, loop=client.loop):
+            yield _done(by_key[future.key], future.result)

@@ -96,17 +96,8 @@ class Problem:
     def question(self, seed: int) -> Question:
         """The question with hidden cases drawn from a seed; the mistakes as fingerprints."""
         tests = tuple(
-            Test(
-                trial.name,
-                (
-                    *(self._with_expected(case, hidden=False) for case in trial.public),
-                    *(self._with_expected(case, hidden=True) for case in trial.hidden(random)),
-                ),
-                trial.weight,
-                trial.also,
-            )
+            self._test(trial, np.random.default_rng([seed, k, *self.name.encode()]))
             for k, trial in enumerate(self.trials)
-            for random in (np.random.default_rng([seed, k, *self.name.encode()]),)
         )
         plain = Question(
             self.name,
@@ -119,6 +110,11 @@ class Problem:
         )
         mistakes = (Mistake(w.name, w.says, fingerprint(plain, w.function)) for w in self.wrong)
         return replace(plain, mistakes=tuple(mistakes))
+
+    def _test(self, trial: Trial, random: np.random.Generator) -> Test:
+        public = (self._with_expected(case, hidden=False) for case in trial.public)
+        hidden = (self._with_expected(case, hidden=True) for case in trial.hidden(random))
+        return Test(trial.name, (*public, *hidden), trial.weight, trial.also)
 
     def _with_expected(self, case: Case, *, hidden: bool) -> Case:
         if isinstance(case, Call):

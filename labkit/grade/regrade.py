@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 
 from ..errors import LabkitError
-from .batch import How, grade_class
+from .batch import How, grade_aside
 from .course import Course
-from .results import Result, Results
+from .results import Bundle, Result, Results
+from .submission import Submission
 
 
 @dataclass(frozen=True)
@@ -46,33 +45,20 @@ class Move:
         )
 
 
-class _Elsewhere(Course):
-    """The course, but results go to another folder."""
-
-    place: Path
-
-    @property
-    def results(self) -> Path:
-        """The other folder."""
-        return self.place
-
-
 def moves(
     course: Course, assignment: str, students: Sequence[str], how: How
 ) -> Iterator[Move | LabkitError]:
     """Grade aside, and compare with the results that count; nothing of the course is changed."""
-    with tempfile.TemporaryDirectory(prefix="labkit-regrade-") as folder:
-        aside = _Elsewhere(course.root)
-        object.__setattr__(aside, "place", Path(folder))
-        now = Results(course, assignment)
-        for graded in grade_class(aside, assignment, students, replace(how, again=True)):
-            if isinstance(graded, LabkitError):
-                yield graded
-                continue
-            yield Move(now.get(graded.result.student), graded.result)
+    bundle, now = Bundle.of(course, assignment), Results(course, assignment)
+    submissions = [Submission.of(course, assignment, student) for student in students]
+    for result in grade_aside(course, bundle, submissions, how):
+        if isinstance(result, LabkitError):
+            yield result
+        else:
+            yield Move(now.get(result.student), result)
 
 
-def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: bool) -> list[Move]:
+def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: bool) -> list[Result]:
     """Let new results count; the old ones are kept beside them.
 
     Args:
@@ -82,12 +68,10 @@ def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: boo
         lower: Whether marks may fall; otherwise those keep their old result.
 
     Returns:
-        What was left as it was.
+        Those that count now.
     """
-    results, left = Results(course, assignment), []
-    for move in moved:
-        if move.by < 0 and move.before is not None and not lower:
-            left.append(move)
-        else:
-            results.keep(move.after)
-    return left
+    results = Results(course, assignment)
+    accepted = [move.after for move in moved if lower or move.by >= 0]
+    for result in accepted:
+        results.keep(result)
+    return accepted

@@ -12,7 +12,7 @@ from ..errors import LabkitError
 from .batch import Graded, How, common_failures, grade_class
 from .class_report import report
 from .collect import collect
-from .course import Course
+from .course import PUBLIC_SEED, Course
 from .engines import students
 from .export import LAYOUTS, as_csv, rows
 from .feedback import write_feedback
@@ -20,7 +20,6 @@ from .gradebook import comments, record
 from .release import release
 from .results import Results, write
 from .synthetic import differences, make_class
-from .term import PUBLIC_SEED
 
 LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 
@@ -39,14 +38,11 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
         What was done, a sentence each, with its time.
 
     Raises:
-        LabkitError: A mark is not what the submission deserves.
+        LabkitError: The folder holds something else, or a mark is not what the submission deserves.
     """
     stage = Course(to.resolve())
     clock = _Clock()
-    if not (stage.root / "nbgrader_config.py").exists():
-        stage.root.mkdir(parents=True, exist_ok=True)
-        (stage.root / "solutions").symlink_to(course.root / "solutions")
-        shutil.copy(course.root / "nbgrader_config.py", stage.root)
+    _set_up(stage, course)
     download = stage.root / f"{name}-{count}-moodle.zip"
     if not download.exists():
         yield clock.says(str(release(stage, name, PUBLIC_SEED)))
@@ -54,7 +50,9 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
         size = download.stat().st_size / 1e6
         yield clock.says(f"{count} hand in; their download has {size:.1f} MB")
     taken = list(collect(stage, name, download))
-    yield clock.says(f"collected: {sum('taken' in t.says for t in taken)} of {len(taken)} are new")
+    yield clock.says(
+        f"collected: {sum(t.says.startswith('taken') for t in taken)} of {len(taken)} are new"
+    )
     who = students(stage, name)
     graded = [one for one in grade_class(stage, name, who, how) if isinstance(one, Graded)]
     new = sum(one.says != "as before" for one in graded)
@@ -78,6 +76,21 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
     if wrong:
         raise LabkitError(f"{len(wrong)} marks are not what was deserved: {'; '.join(wrong[:3])}")
     yield clock.says("every mark is what was deserved")
+
+
+def _set_up(stage: Course, course: Course) -> None:
+    """A course that borrows its sources; in a true one this class would take the true one's place.
+
+    Raises:
+        LabkitError: Something else lies there.
+    """
+    sources = stage.root / "solutions"
+    if not sources.is_symlink():
+        if stage.root.exists() and any(stage.root.iterdir()):
+            raise LabkitError(f"{stage.root} is no rehearsal's; give a folder that is new or empty")
+        stage.root.mkdir(parents=True, exist_ok=True)
+        sources.symlink_to(course.root / "solutions")
+    shutil.copy(course.root / "nbgrader_config.py", stage.root)
 
 
 class _Clock:

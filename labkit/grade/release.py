@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import logging
 import shutil
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -22,7 +21,8 @@ from ..check.notebook import FILE
 from ..check.question_codec import pack_hidden
 from ..errors import LabkitError
 from .course import Course
-from .notebook import Notebook, source_notebook
+from .inside.withheld import find
+from .notebook import Notebook, source_notebook, without_hidden
 from .room import make_room
 from .solved import solution_notebook
 
@@ -67,16 +67,21 @@ def release(course: Course, name: str, seed: int) -> Released:
 
     Raises:
         UnknownName: No such assignment.
-        LabkitError: nbgrader refused, an answer would have leaked, or marks given by hand would
-            have been lost.
+        LabkitError: nbgrader refused, an answer would have leaked, a question withholds what there
+            is not, or marks given by hand would have been lost.
     """
     problems = {problem.name: problem for problem in course.problems(name)}
     questions = {key: problem.question(seed) for key, problem in problems.items()}
+    for question in questions.values():
+        for withheld in question.withheld:
+            if find(withheld)[1] is None:
+                raise LabkitError(f"{question.name} withholds {withheld}, which does not exist")
     source = source_notebook(course.notebook_source(name), questions)
-    added = make_room(course, name, source)
+    solved = solution_notebook(source, problems)
     public = _checks(name, [q.public() for q in questions.values()])
+    added = make_room(course, name, source)  # once nothing of the author's can be refused any more
     _write(course.source / name, source, public)
-    _write(course.solution / name, solution_notebook(source, problems), public)
+    _write(course.solution / name, solved, public)
     _write_bundle(course, name, seed, source, questions, added)
     _generate(course, name)
     _verify(course.release / name, questions)
@@ -93,7 +98,7 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
             "type": cell.cell_type,
             "kind": cell.metadata["lab"],
             "grade_id": cell.metadata.get("nbgrader", {}).get("grade_id"),
-            "source": cell.source if cell.metadata["lab"] != "check" else "",
+            "source": without_hidden(cell.source),
         }
         for cell in source.cells
     ]
@@ -139,7 +144,7 @@ def _generate(course: Course, name: str) -> None:
     from .engines import nbgrader_api, reason
 
     shutil.rmtree(course.release / name, ignore_errors=True)
-    api = nbgrader_api(course, quiet=logging.CRITICAL)
+    api = nbgrader_api(course)
     result = api.generate_assignment(name, force=True, create=True)
     if not result["success"]:
         raise LabkitError(
@@ -162,8 +167,3 @@ def _verify(folder: Path, questions: Mapping[str, Question]) -> None:
             if word in text:
                 shutil.rmtree(folder)
                 raise LabkitError(f"{path.name} would have shown {word[:40]!r}; nothing released")
-
-
-def stub_notebook(course: Course, name: str) -> Notebook:
-    """The students' copy as it was released, with the metadata that comes back."""
-    return nbformat.read(course.release / name / f"{name}.ipynb", as_version=4)

@@ -9,7 +9,8 @@ from typing import Any
 
 from ..check import Call, Choice, Loop, Question, Tuned
 from ..check.cases import Case
-from ..check.question_codec import case_data
+from ..check.codec import encode
+from ..check.question_codec import KINDS
 
 Memory = dict[Any, dict[str, float]]
 """Measures of a run, by the function and the run."""
@@ -39,7 +40,7 @@ class Remembered:
 
     def ask(self, function: Callable[..., Any]) -> dict[str, float]:
         """The measures of the run, for a log takes room; runs that raise are made again."""
-        key = (function, json.dumps(case_data(self.run)))
+        key = (function, json.dumps(encode(self.run, KINDS)))
         if key not in self.memory:
             self.memory[key] = self.run.measured(self.run.ask(function))
         return self.memory[key]

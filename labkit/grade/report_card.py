@@ -22,7 +22,7 @@ from .problem import Problem
 from .remembered import remembering
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
-"""Functions by their question: its name, or "assignment/name" where two assignments ask it."""
+"""Functions by their question, its name, or "assignment/name" where two assignments ask it."""
 
 DRAWS = 20
 
@@ -140,28 +140,28 @@ def _row(
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
     questions = remembering([problem.question(seed + k) for k in range(DRAWS)])
-    wrong = {w.name: w.function for w in problem.wrong}
-    wrong |= {f"from outside: {_name(f)}": f for f in mistakes}
-    right = {"the answer": problem.answer}
-    right |= {_name(f): f for f in (*problem.variants, *variants)}
-    failures, marks = [], {}
+    own = {w.name: w.function for w in problem.wrong}
+    wrong = own | _labelled("from outside: ", mistakes)
+    right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])
+    verdicts = {
+        label: [mark(question, function) for question in questions]
+        for label, function in (wrong | right).items()
+    }
+    marks = {label: [verdict.earned for verdict in found] for label, found in verdicts.items()}
+    failures = []
     rejected = named = accepted = 0
-    for label, function in wrong.items():
-        verdicts = [mark(question, function) for question in questions]
-        marks[label] = [verdict.earned for verdict in verdicts]
+    for label in wrong:
         if max(marks[label]) < 0.5 * problem.points:
             rejected += 1
         else:
             failures.append(f"{label}: earned {max(marks[label]):g} of {problem.points:g}")
-        known = verdicts[0].mistake
+        known = verdicts[label][0].mistake
         if known is not None and known.name == label:
             named += 1
-        elif label in {w.name for w in problem.wrong}:
+        elif label in own:
             failures.append(f"{label}: taken for {known.name if known else 'nothing known'}")
-    for label, function in right.items():
-        verdicts = [mark(question, function) for question in questions]
-        marks[label] = [verdict.earned for verdict in verdicts]
-        if all(verdict.outcome is Outcome.RIGHT for verdict in verdicts):
+    for label in right:
+        if all(verdict.outcome is Outcome.RIGHT for verdict in verdicts[label]):
             accepted += 1
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
@@ -180,6 +180,14 @@ def _row(
         nearest,
         tuple(failures),
     )
+
+
+def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
+    """Functions by their names; those of one name are numbered, so that none is left out."""
+    names = [f"{whose}{getattr(f, '__name__', type(f).__name__)}" for f in functions]
+    before = [names[:k].count(name) for k, name in enumerate(names)]
+    labels = [f"{name} ({n + 1})" if n else name for name, n in zip(names, before, strict=True)]
+    return dict(zip(labels, functions, strict=True))
 
 
 def functions_from(file: Path, table: str) -> Functions:
@@ -247,7 +255,3 @@ def markdown(card: Card) -> str:
     return (
         "\n".join([*lines, *(["", "## What failed", "", *failures] if failures else [""])]) + "\n"
     )
-
-
-def _name(function: Callable[..., Any]) -> str:
-    return getattr(function, "__name__", type(function).__name__)

@@ -71,6 +71,10 @@ class Result:
             data[name] = tuple(data[name])
         return cls(**data)
 
+    def __str__(self) -> str:
+        came = f"{self.score:g} of {self.points:g}"
+        return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
+
     @property
     def verdict(self) -> dict[str, Any]:
         """Everything that must come out the same wherever it is graded."""
@@ -100,13 +104,14 @@ class Results:
 
     def keep(self, result: Result) -> None:
         """Write a result; an older one that came from other contents goes to ``old/``."""
-        before = self.get(result.student)
-        if before is not None and before.hashes != result.hashes:
-            key = "-".join(before.hashes.get(x, "")[:8] for x in ("submission", "bundle", "engine"))
+        path, before = self.path(result.student), self.get(result.student)
+        if path.exists() and (before is None or before.hashes != result.hashes):
+            hashes = {} if before is None else before.hashes
+            key = "-".join(hashes.get(x, "")[:8] for x in ("submission", "bundle", "engine"))
             old = self.folder / "old" / f"{result.student}-{key}.json"
             old.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(self.path(result.student), old)
-        write(self.path(result.student), result.text())
+            shutil.copyfile(path, old)
+        write(path, result.text())
 
     def __iter__(self) -> Iterator[Result]:
         for path in sorted(self.folder.glob("*.json")):

@@ -39,7 +39,7 @@ def make_room(course: Course, assignment: str, source: Any) -> list[str]:
     }
     graded = {name: pair for name, pair in cells.items() if pair[1]["grade"]}
     solved = {name for name, pair in cells.items() if pair[1]["solution"]}
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         try:
             notebook = book.find_notebook(assignment, assignment)
         except MissingEntry:

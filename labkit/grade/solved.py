@@ -11,7 +11,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from .inline import names_defined
-from .notebook import Notebook
+from .notebook import Notebook, without_hidden
 from .problem import Problem
 
 
@@ -23,7 +23,7 @@ def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Note
         if kind == "answer":
             cell.source = inlined(problems[grade_id])
         elif kind == "check":
-            cell.source = cell.source.rpartition("### END HIDDEN TESTS\n")[2]
+            cell.source = without_hidden(cell.source)
     return notebook
 
 

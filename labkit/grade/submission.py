@@ -7,6 +7,7 @@ import stat
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import LabkitError
 from .course import Course
 
 
@@ -32,8 +33,6 @@ class Submission:
     def read(self, most: int) -> tuple[bytes, str, str]:
         """The notebook's bytes, a note, and why there are none; at least one is empty.
 
-        Links are not followed: they could lead to somebody else's file.
-
         Args:
             most: The largest size, in [MiB].
         """
@@ -49,18 +48,38 @@ class Submission:
         path = named[0]
         note = "" if path.stem == self.assignment else f"the file is called {path.name[:80]}"
         try:
-            end = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
-        except OSError:
-            return (
-                b"",
-                "",
-                f"{path.name[:80]} is a link or cannot be opened; hand in the file itself",
-            )
-        with open(end, "rb") as file:
-            about = os.fstat(file.fileno())
-            if not stat.S_ISREG(about.st_mode):
-                return b"", "", f"{path.name[:80]} is not a file"
-            if about.st_size > most * 2**20:
-                size = about.st_size / 2**20
-                return b"", "", f"the file has {size:.0f} MB, the limit is {most} MB"
-            return file.read(), note, ""
+            return read_file(path, most), note, ""
+        except LabkitError as error:
+            return b"", "", str(error)
+
+
+def read_file(path: Path, most: int) -> bytes:
+    """A file that somebody else may have put there.
+
+    Links are not followed: they could lead to somebody else's file.
+
+    Args:
+        path: Where.
+        most: The largest size, in [MiB].
+
+    Raises:
+        LabkitError: It is too large, or no plain file.
+    """
+    try:
+        end = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+    except OSError:
+        raise LabkitError(
+            f"{path.name[:80]} is a link or cannot be opened; hand in the file itself"
+        ) from None
+    with open(end, "rb") as file:
+        about = os.fstat(file.fileno())
+        if not stat.S_ISREG(about.st_mode):
+            raise LabkitError(f"{path.name[:80]} is not a file")
+        check_size(about.st_size, most)
+        return file.read()
+
+
+def check_size(size: int, most: int) -> None:
+    """Refuse a file of more than so many [MiB]."""
+    if size > most * 2**20:
+        raise LabkitError(f"the file has {size / 2**20:.0f} MB, the limit is {most} MB")

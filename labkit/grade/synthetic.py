@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..check import mark, read_question
+from ..check import mark
 from ..check.question import Question
 from ..errors import LabkitError
 from . import synthetic_kinds
@@ -72,12 +72,6 @@ class Draft:
         for name, problem in self.problems.items():
             self.answer_with(name, problem.answer)
 
-    def mistaken(self, number: int) -> None:
-        """Answer everything wrong, each in the n-th of its ways."""
-        for name, problem in self.problems.items():
-            wrong = problem.wrong
-            self.answer_with(name, wrong[number % len(wrong)].function if wrong else problem.answer)
-
     def anyhow(self) -> None:
         """Answer as people do: most right, some otherwise right, some wrong, some not at all."""
         for name, problem in self.problems.items():
@@ -92,8 +86,8 @@ class Draft:
                 choices = problem.variants
             self.answer_with(name, choices[int(self.random.integers(len(choices)))])
 
-    def add(self, source: str, at: int | None = None) -> None:
-        """Add a code cell, at the end by default."""
+    def add(self, source: str) -> None:
+        """Add a code cell near the start."""
         cell: dict[str, Any] = {
             "cell_type": "code",
             "id": f"own{len(self.cells):05d}",
@@ -102,7 +96,7 @@ class Draft:
             "outputs": [],
             "execution_count": None,
         }
-        self.cells.insert(len(self.cells) if at is None else at, cell)
+        self.cells.insert(2, cell)
 
     def bytes(self) -> bytes:
         """The file."""
@@ -124,13 +118,12 @@ def make_class(course: Course, assignment: str, seed: int, count: int = 40) -> d
     Returns:
         By student: kind, points of each question, score; also in ``build/class/``.
     """
-    from .release import stub_notebook
-
     random = np.random.default_rng(seed)
     bundle = Bundle.of(course, assignment)
     problems = {problem.name: problem for problem in course.problems(assignment)}
-    questions = {q["name"]: read_question(q) for q in bundle.data["questions"]}
-    blank = json.loads(json.dumps(stub_notebook(course, assignment)))["cells"]
+    questions = {question.name: question for question in bundle.questions}
+    released = course.release / assignment / f"{assignment}.ipynb"
+    blank = json.loads(released.read_text(encoding="utf-8"))["cells"]
     kinds = [*synthetic_kinds.KINDS.items()][:count]
     kinds += [(f"person {k}", Draft.anyhow) for k in range(count - len(kinds))]
     order = random.permutation(count)

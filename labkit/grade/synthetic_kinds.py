@@ -48,7 +48,14 @@ def _emptied(draft: Draft) -> None:
 
 
 def _mistaken(number: int) -> Kind:
-    return lambda draft: draft.mistaken(number)
+    """Everything wrong, each in the n-th of its ways."""
+
+    def make(draft: Draft) -> None:
+        for name, problem in draft.problems.items():
+            choices = [wrong.function for wrong in problem.wrong] or [problem.answer]
+            draft.answer_with(name, choices[number % len(choices)])
+
+    return make
 
 
 def _warns(draft: Draft) -> None:
@@ -143,7 +150,7 @@ def _right_and(source: str) -> Kind:
 
     def make(draft: Draft) -> None:
         draft.solve()
-        draft.add(source, at=2)
+        draft.add(source)
 
     return make
 
@@ -152,7 +159,7 @@ def _wrong_and(source: str) -> Kind:
     """Nothing written, with a cell at the start that tries this."""
 
     def make(draft: Draft) -> None:
-        draft.add(source, at=2)
+        draft.add(source)
 
     return make
 

@@ -11,11 +11,9 @@ from typing import Any
 
 from ..errors import LabkitError
 from . import lms
-from .course import Course
+from .course import PUBLIC_SEED, Course
 from .release import release
-
-PUBLIC_SEED = 2019
-"""The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
+from .results import write
 
 NAMED = ("submitted", "autograded", "feedback", "results", "gradebook.db", lms.FILE)
 """Where students' names stand; all of it is ignored by git."""
@@ -26,9 +24,34 @@ def _private(course: Course) -> Path:
 
 
 def seed_of(course: Course) -> int:
-    """The course's own seed, or the public one if no term was begun."""
+    """The course's own seed, or the public one if no term was begun.
+
+    Raises:
+        LabkitError: The term's record cannot be read.
+    """
     file = _private(course) / "term.json"
-    return int(json.loads(file.read_text())["seed"]) if file.exists() else PUBLIC_SEED
+    if not file.exists():
+        return PUBLIC_SEED
+    try:
+        return int(json.loads(file.read_text(encoding="utf-8"))["seed"])
+    except (ValueError, KeyError, TypeError):
+        raise LabkitError(
+            f"{file} is damaged and holds no seed; restore it, or write the term's as "
+            '{"seed": 123}'
+        ) from None
+
+
+def seed_for(course: Course, assignment: str) -> int:
+    """The seed of an assignment that is released without one.
+
+    It is the term's.  Where no term was begun, it is that of the last release, so that a
+    correction leaves hidden cases as they are; and the public one where that is the first.
+    """
+    seed = seed_of(course)
+    bundle = course.bundle / f"{assignment}.json"
+    if seed == PUBLIC_SEED and bundle.exists():
+        seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
+    return seed
 
 
 def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
@@ -52,16 +75,20 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
         raise LabkitError(f"seed {seed} was used before, so its cases may be known; take another")
     seed = secrets.randbelow(2**31) if seed is None else seed
     archive(course)
+    record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": {}}
+    _keep(course, record)  # first, so that a release that fails is made again with this seed
     for name in names:
         release(course, name, seed)
-    bundles = {
+    record["bundles"] = {
         path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
         for path in sorted(course.bundle.glob("*.json"))
     }
-    record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": bundles}
-    _private(course).mkdir(exist_ok=True)
-    (_private(course) / "term.json").write_text(json.dumps(record, indent=1) + "\n")
+    _keep(course, record)
     return record
+
+
+def _keep(course: Course, record: dict[str, Any]) -> None:
+    write(_private(course) / "term.json", json.dumps(record, indent=1) + "\n")
 
 
 def archive(course: Course) -> Path | None:

@@ -6,28 +6,20 @@ import argparse
 import json
 import sys
 from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
 from ..verbs import Verbs, add_verb, whole
-from .course import Course
-from .verbs_course import course_option, course_with
+from .course import PUBLIC_SEED, Course
+from .verbs_course import assignment_verb, course_option, course_with
 
 
 def add(verbs: Verbs) -> None:
-    """All of them."""
-    add_grade(verbs)
-    add_make_class(verbs)
-    add_report_card(verbs)
-    add_doctor(verbs)
-
-
-def add_grade(verbs: Verbs) -> None:
-    """``labkit grade``."""
+    """``grade``, ``make-class``, ``report-card`` and ``doctor``."""
     does = "grade what was handed in and is not graded yet, each in a sandbox of its own"
-    verb = add_verb(verbs, "grade", grade, does, "01_paths --student ada")
-    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    verb = assignment_verb(verbs, "grade", grade, does, "--student ada")
     verb.add_argument("--student", metavar="S", help="only this one")
     verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
     verb.add_argument("--json", action="store_true", help="one JSON object per line, for programs")
@@ -53,32 +45,28 @@ def add_grade(verbs: Verbs) -> None:
         action="store_true",
         help="run students' code with your own rights, able to read and delete your files",
     )
-    course_option(verb)
 
-
-def add_make_class(verbs: Verbs) -> None:
-    """``labkit make-class``."""
     does = "write a class that never was, to try things on"
-    verb = add_verb(verbs, "make-class", make_class, does, "01_paths --count 12")
-    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
-    verb.add_argument("--seed", type=whole(0), default=2019, help="of the class (default: 2019)")
+    verb = assignment_verb(verbs, "make-class", make_class, does, "--count 12")
+    _seed(verb, "of the class")
     verb.add_argument("--count", type=whole(1), default=40, help="how many students (default: 40)")
-    course_option(verb)
 
-
-def add_report_card(verbs: Verbs) -> None:
-    """``labkit report-card``."""
     does = "how well the checks tell right from wrong"
     example = "01_paths --mistakes seen_in_class.py"
     verb = add_verb(verbs, "report-card", report_card, does, example)
     verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
-    verb.add_argument(
-        "--seed", type=whole(0), default=2019, help="of the first draw (default: 2019)"
-    )
+    _seed(verb, "of the first draw")
     of = "a Python file with a dict {} = {{question: [functions]}}"
     verb.add_argument("--mistakes", type=Path, metavar="FILE", help=of.format("MISTAKES"))
     verb.add_argument("--variants", type=Path, metavar="FILE", help=of.format("VARIANTS"))
     course_option(verb)
+
+    add_verb(verbs, "doctor", doctor, "what is missing on this machine, and how to get it", "")
+
+
+def _seed(verb: argparse.ArgumentParser, of: str) -> None:
+    says = f"{of} (default: {PUBLIC_SEED})"
+    verb.add_argument("--seed", type=whole(0), default=PUBLIC_SEED, help=says)
 
 
 def report_card(args: argparse.Namespace) -> int:
@@ -121,7 +109,6 @@ def grade(args: argparse.Namespace) -> int:
     from .batch import How, common_failures, grade_class, workers
     from .gradebook import record
     from .results import Result, Results
-    from .says import line
 
     here = course_with(args)
     who = in_part(here, args.name, args.student)
@@ -135,20 +122,18 @@ def grade(args: argparse.Namespace) -> int:
         again=args.again,
     )
     graded: list[Result] = []
-    failed: list[LabkitError] = []
+    failed = 0
     for number, one in enumerate(grade_class(here, args.name, who, how), start=1):
         if isinstance(one, LabkitError):
-            failed.append(one)
+            failed += 1
             print(f"not graded: {one}", file=sys.stderr, flush=True)
             continue
         graded.append(one.result)
         if args.json:
-            print(json.dumps(json.loads(one.result.text())), flush=True)
+            print(json.dumps(asdict(one.result)), flush=True)
         else:
             says = f" ({one.says})" if one.says else ""
-            print(f"[{number}/{len(who)}] {line(one.result)}{says}", flush=True)
-    if failed and not graded:
-        raise failed[0]
+            print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
     say = sys.stderr if args.json else sys.stdout
     if how.shard == (1, 1):
         _tell(record(here, args.name, graded), say)
@@ -189,25 +174,22 @@ def _shard(text: str) -> tuple[int, int]:
 def _with_nbgrader(here: Course, args: argparse.Namespace, who: list[str]) -> int:
     from .engines import grade_with_nbgrader
 
+    failed = 0
     for number, student in enumerate(who, start=1):
         mark = grade_with_nbgrader(here, args.name, student)
+        failed += mark.score is None
         if args.json:
             print(json.dumps(vars(mark)), flush=True)
             continue
         got = "not graded" if mark.score is None else f"{mark.score:g} of {mark.points:g}"
         says = f"; {mark.says}" if mark.says else ""
         print(f"[{number}/{len(who)}] {student}: {got}{says}", flush=True)
-    return 0
+    return 1 if failed else 0
 
 
 def _tell(sentences: Iterable[str], where: Any) -> None:
     for sentence in sentences:
         print(sentence, file=where, flush=True)
-
-
-def add_doctor(verbs: Verbs) -> None:
-    """``labkit doctor``."""
-    add_verb(verbs, "doctor", doctor, "what is missing on this machine, and how to get it", "")
 
 
 def doctor(args: argparse.Namespace) -> int:

@@ -5,13 +5,23 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ..verbs import Verbs, add_verb, whole
+from ..verbs import Do, Verbs, add_verb, whole
 from .course import Course
 
 
 def course_option(verb: argparse.ArgumentParser) -> None:
     """The option that says which course."""
     verb.add_argument("--course", type=Path, metavar="DIR", help="default: the one around you")
+
+
+def assignment_verb(
+    verbs: Verbs, name: str, do: Do, does: str, example: str = ""
+) -> argparse.ArgumentParser:
+    """A verb on one assignment of a course."""
+    verb = add_verb(verbs, name, do, does, f"01_paths {example}")
+    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
+    course_option(verb)
+    return verb
 
 
 def course_with(args: argparse.Namespace) -> Course:
@@ -29,7 +39,9 @@ def add(verbs: Verbs) -> None:
     """``release``, ``student-bundle``, ``new-term``, ``forget`` and ``export-course``."""
     verb = add_verb(verbs, "release", release, "make the students' notebooks", "01_paths --seed 7")
     verb.add_argument("names", nargs="*", metavar="NAME", help="such as 01_paths; all by default")
-    verb.add_argument("--seed", type=whole(0), help="of the hidden cases; the term's by default")
+    verb.add_argument(
+        "--seed", type=whole(0), help="of the hidden cases; the term's by default, or the last"
+    )
     course_option(verb)
 
     does = "a zip for students: labkit and notebooks"
@@ -57,11 +69,12 @@ def add(verbs: Verbs) -> None:
 def release(args: argparse.Namespace) -> int:
     """Make assignments."""
     from .release import release
-    from .term import seed_of
+    from .term import seed_for
 
     course = Course.here(args.course)
-    seed = seed_of(course) if args.seed is None else args.seed
     for name in args.names or course.names():
+        course.notebook_source(name)
+        seed = seed_for(course, name) if args.seed is None else args.seed
         print(release(course, name, seed), flush=True)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
     return 0

@@ -7,16 +7,21 @@ import sys
 from pathlib import Path
 
 from ..errors import LabkitError
-from ..verbs import Do, Verbs, add_verb, whole
+from ..verbs import Verbs, whole
 from .verbs import in_part, nobody
-from .verbs_course import course_option, course_with
+from .verbs_course import assignment_verb, course_with
 
 
 def add(verbs: Verbs) -> None:
-    """All of them."""
-    verb = _verb(verbs, "feedback", feedback, "write a page for each student", "--student ada")
+    """``feedback``, ``export``, ``regrade``, ``class-report``, ``collect`` and ``rehearse``."""
+    verb = assignment_verb(
+        verbs, "feedback", feedback, "write a page for each student", "--student ada"
+    )
     verb.add_argument("--student", metavar="S", help="only this one")
-    verb = _verb(verbs, "export", export, "marks as a table", "--to marks.csv")
+    verb.add_argument(
+        "--moodle", type=Path, metavar="ZIP", help="also write the feedback files that Moodle takes"
+    )
+    verb = assignment_verb(verbs, "export", export, "marks as a table", "--to marks.csv")
     verb.add_argument(
         "--layout",
         choices=("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"),
@@ -28,23 +33,23 @@ def add(verbs: Verbs) -> None:
     )
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
     does = "grade again after a test or its points have changed"
-    verb = _verb(verbs, "regrade", regrade, does, "--diff")
+    verb = assignment_verb(verbs, "regrade", regrade, does, "--diff")
     verb.add_argument("--student", metavar="S", help="only this one")
     verb.add_argument("--diff", action="store_true", help="only say whose mark would move")
     verb.add_argument("--lower", action="store_true", help="let marks fall too")
     verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
     does = "what the class got right, and what it got wrong"
-    verb = _verb(verbs, "class-report", class_report, does, "--names")
+    verb = assignment_verb(verbs, "class-report", class_report, does, "--names")
     verb.add_argument("--names", action="store_true", help="with names, for your eyes only")
     verb.add_argument("--to", type=Path, metavar="FILE", help="instead of the screen")
     verb.add_argument(
         "--jplag", type=Path, metavar="DIR", help="also write answers for JPlag there"
     )
     does = "take downloads from Moodle, Canvas or nbgrader's exchange"
-    verb = _verb(verbs, "collect", collect, does, "moodle.zip")
+    verb = assignment_verb(verbs, "collect", collect, does, "moodle.zip")
     verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
     does = "play a term through with a class that never was, in a folder"
-    verb = _verb(verbs, "rehearse", rehearse, does, "--to trial")
+    verb = assignment_verb(verbs, "rehearse", rehearse, does, "--to trial")
     verb.add_argument("--count", type=whole(1), default=12, help="how many students (default: 12)")
     verb.add_argument("--to", type=Path, required=True, metavar="DIR", help="made if need be")
     verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
@@ -54,6 +59,7 @@ def feedback(args: argparse.Namespace) -> int:
     """Write the pages."""
     from .feedback import write_feedback
     from .gradebook import comments
+    from .handback import for_exchange, moodle_zip
     from .results import Results
 
     here = course_with(args)
@@ -62,8 +68,13 @@ def feedback(args: argparse.Namespace) -> int:
         raise nobody(args.name, args.student)
     made = write_feedback(here, args.name, results, comments(here, args.name))
     size = sum(path.stat().st_size for path in made) / 1e6
-    print(f"{len(made)} pages, {size:.1f} MB, in {here.root / 'feedback'}; hand them out with")
-    print(f"  nbgrader release_feedback {args.name}")
+    print(f"{len(made)} pages, {size:.1f} MB, in {here.root / 'feedback'}")
+    if sum([for_exchange(here, args.name, page) for page in made]):
+        print(f"back to the exchange: nbgrader release_feedback {args.name}")
+    if args.moodle:
+        count = moodle_zip(here, args.name, made, args.moodle)
+        size = args.moodle.stat().st_size / 1e6
+        print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {args.moodle}")
     return 0
 
 
@@ -92,6 +103,7 @@ def regrade(args: argparse.Namespace) -> int:
     who = in_part(here, args.name, args.student)
     found = list(moves(here, args.name, who, How(jobs=args.jobs or workers())))
     moved = [m for m in found if isinstance(m, Move)]
+    failed = [error for error in found if isinstance(error, LabkitError)]
     for move in sorted(moved, key=lambda m: m.by):
         if move.by or move.before is None:
             print(move)
@@ -101,17 +113,16 @@ def regrade(args: argparse.Namespace) -> int:
     if before:
         full = ", ".join(f"{points:g}" for points in sorted(before))
         print(f"full marks were {full} and are {moved[0].after.points:g} now")
-    for error in found:
-        if isinstance(error, LabkitError):
-            print(f"not graded: {error}", file=sys.stderr)
-    if args.diff:
-        return 0
-    left = accept(here, args.name, moved, lower=args.lower)
-    if left:
-        print(f"{len(left)} marks would fall and stay as they are; --lower lets them")
-    for sentence in record(here, args.name, [m.after for m in moved if m not in left]):
-        print(sentence)
-    return 0
+    for error in failed:
+        print(f"not graded: {error}", file=sys.stderr)
+    if not args.diff:
+        accepted = accept(here, args.name, moved, lower=args.lower)
+        if len(accepted) < len(moved):
+            left = len(moved) - len(accepted)
+            print(f"{left} marks would fall and stay as they are; --lower lets them")
+        for sentence in record(here, args.name, accepted):
+            print(sentence)
+    return 1 if failed else 0
 
 
 def class_report(args: argparse.Namespace) -> int:
@@ -150,14 +161,6 @@ def rehearse(args: argparse.Namespace) -> int:
     for sentence in play(here, args.name, args.to, args.count, How(jobs=args.jobs or workers())):
         print(sentence, flush=True)
     return 0
-
-
-def _verb(verbs: Verbs, name: str, do: Do, does: str, example: str = "") -> argparse.ArgumentParser:
-    """A verb on one assignment."""
-    verb = add_verb(verbs, name, do, does, f"01_paths {example}")
-    verb.add_argument("name", metavar="ASSIGNMENT", help="such as 01_paths")
-    course_option(verb)
-    return verb
 
 
 def _out(text: str, where: Path | None) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from .checker import grade, rejection
-from .limits import Limits
+from .limits import Limits, slowness
 from .plan import imports
 from .results import Bundle, Result
 from .sandbox import Broken, NoIsolation, Sandbox
@@ -37,7 +37,7 @@ class Desk:
         """
         bundle = _bundle(job["bundle"], job["hash"])
         submission = Submission(job["student"], job["assignment"], Path(job["folder"]))
-        limits = Limits(**job["limits"])
+        limits = Limits(**job["limits"]).scaled(slowness())
         data, note, why = submission.read(limits.notebook)
         for _ in range(TRIES):
             if self.sandbox is None:

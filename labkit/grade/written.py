@@ -6,16 +6,17 @@ nbgrader's formgrader opens it; its metadata is the release's, whatever the stud
 from __future__ import annotations
 
 import copy
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import nbformat
 
+from ..check import Outcome
+from ..check.words import HEADS
 from .course import Course
+from .notebook import Notebook, without_hidden
 from .results import Result, write
-from .says import question_lines
-
-Notebook = Any
 
 
 def in_release_form(source: Notebook, result: Result) -> Notebook:
@@ -51,9 +52,9 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
         if not cell.metadata.get("nbgrader", {}).get("grade"):
             continue
         name = grade_id.removesuffix("-check")
-        cell.source = cell.source.rpartition("### END HIDDEN TESTS\n")[2]
+        cell.source = without_hidden(cell.source)
         question = verdicts.get(name)
-        text = "\n".join(question_lines(question)) if question else result.rejected
+        text = "\n".join(_told(question)) if question else result.rejected
         earned = question["earned"] if question else 0.0
         cell.execution_count = 1
         cell.outputs = [
@@ -63,6 +64,23 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
             ),
         ]
     return notebook
+
+
+def _told(question: Mapping[str, Any]) -> list[str]:
+    """A question's verdict, the verdict first, then why."""
+    outcome = Outcome(question["outcome"])
+    points = f"{question['earned']:g} of {question['points']:g} points"
+    lines = [f"{question['name']}: {HEADS[outcome]}. {points}."]
+    if outcome in {Outcome.WRONG, Outcome.ERROR}:
+        for test in question["tests"]:
+            gate = "" if test["weight"] else " (needed before anything counts)"
+            right = test["outcome"] == "right"
+            says = "" if right else f": {test['says']}"
+            lines.append(f"  [{'passed' if right else 'failed'}] {test['name']}{gate}{says}")
+        if question["mistake"]:
+            lines.append(f"  This is a well-known one: {question['mistake']['name']}.")
+            lines.append(f"  {question['mistake']['says']}")
+    return [*lines, *(f"  Note: {note}." for note in question["notes"])]
 
 
 def release_source(course: Course, assignment: str) -> Notebook:

@@ -21,7 +21,7 @@ STEPS = {  # how fine each channel is kept
     "board": 1e-4,  # m
     "board_quaternion": 1e-4,
     "path": 1e-4,  # m
-    "error": 1e-5,  # m or rad
+    "error": 1e-5,  # m
     "tau": 1e-2,  # N m
 }
 LIMIT = 40_000  # bytes that a page spends on one motion
@@ -42,9 +42,7 @@ class Motion:
         board_position: Where the tag's board was, shape (N, 3), in [m].
         board_rotation: How it was turned, shape (N, 3, 3), the tag facing its own +z.
         path: Points of the desired path, shape (K, 3), in [m].
-        error: A tracking error over time, shape (N,), in `error_unit`.
-        error_name: What that error is.
-        error_unit: "m" (shown in mm) or "rad".
+        error: How far the tip was from its target, shape (N,), in [m].
         tau: Joint torques, shape (N, 7), in [N m].
         ghosts: Other arms' angles by name, each of shape (N, 7), in [rad].
     """
@@ -60,16 +58,12 @@ class Motion:
     board_rotation: Array | None = None
     path: Array | None = None
     error: Array | None = None
-    error_name: str = "Tip error"
-    error_unit: str = "m"
     tau: Array | None = None
     ghosts: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.side not in ("left", "right"):
             raise UnknownName("side", self.side, ("left", "right"))
-        if self.error_unit not in ("m", "rad"):
-            raise UnknownName("unit of an error", self.error_unit, ("m", "rad"))
         n = np.shape(self.t)[0] if np.ndim(self.t) else 0
         if n < 2:
             raise OutOfRange(f"t has {n} times, and a motion needs at least two")
@@ -106,10 +100,7 @@ class Motion:
         times = np.linspace(self.t[0], self.t[-1], count)
 
         def even(x: Array | None) -> Array | None:
-            if x is None:
-                return None
-            flat = x.reshape(len(x), -1)
-            return np.column_stack([np.interp(times, self.t, column) for column in flat.T])
+            return None if x is None else resampled(x, self.t, times)
 
         channels = {
             "q": even(self.q),
@@ -122,9 +113,7 @@ class Motion:
             "tau": even(self.tau),
         }
         packed = {k: pack(v, STEPS[k]) for k, v in channels.items() if v is not None}
-        ghosts = {
-            k: pack(v, STEPS["q"]) for k, q in self.ghosts.items() if (v := even(q)) is not None
-        }
+        ghosts = {k: pack(resampled(q, self.t, times), STEPS["q"]) for k, q in self.ghosts.items()}
         return {
             "kind": "motion",
             "title": self.title,
@@ -133,8 +122,8 @@ class Motion:
             "side": self.side,
             "start": round(float(times[0]), 6),
             "period": round(float(times[1] - times[0]), 9),
-            "error_name": self.error_name,
-            "error_unit": self.error_unit,
+            "error_name": "Tip error",
+            "error_unit": "m",
             **packed,
             "ghosts": ghosts,
         }
@@ -144,16 +133,12 @@ class Motion:
         return json.dumps(self.data(rate), separators=(",", ":"), ensure_ascii=False)
 
     @cached_property
-    def size(self) -> int:
-        """Bytes of `to_json()`."""
-        return len(self.to_json().encode())
-
-    @cached_property
     def alt(self) -> str:
         """One or two sentences for whoever does not see the picture, with the run's own numbers."""
         words = f"Baxter's {self.side} arm moves for {self.t[-1] - self.t[0]:.1f} s"
         if self.error is not None:
-            words += f"; {_lower(self.error_name)} {self._span(self.error)}"
+            rms = float(np.sqrt(np.mean(self.error**2)))
+            words += f"; tip error {_mm(rms)} RMS, {_mm(np.abs(self.error).max())} at most"
         if self.ghosts:
             words += f"; compared with {_listed(list(self.ghosts))}, drawn as see-through arms"
         return words + "."
@@ -178,9 +163,8 @@ class Motion:
         if self.error is not None:
             e, peak = np.abs(self.error), int(np.abs(self.error).argmax())
             words.append(
-                f"{self.error_name} is {self._amount(e[0])} at the start, largest at"
-                f" t = {self.t[peak]:.2f} s with {self._amount(e[peak])},"
-                f" and {self._amount(e[-1])} at the end."
+                f"Tip error is {_mm(e[0])} at the start, largest at t = {self.t[peak]:.2f} s with"
+                f" {_mm(e[peak])}, and {_mm(e[-1])} at the end."
             )
         if self.tau is not None:
             at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)
@@ -189,13 +173,6 @@ class Motion:
                 f" t = {self.t[at]:.2f} s."
             )
         return " ".join(words)
-
-    def _amount(self, e: float) -> str:
-        return f"{1000 * e:.1f} mm" if self.error_unit == "m" else f"{e:.3f} rad"
-
-    def _span(self, error: Array) -> str:
-        rms = float(np.sqrt(np.mean(error**2)))
-        return f"{self._amount(rms)} RMS, {self._amount(float(np.abs(error).max()))} at most"
 
 
 def pack(x: Array, step: float) -> dict[str, Any]:
@@ -227,6 +204,20 @@ def unpack(channel: Mapping[str, Any]) -> Array:
     return np.asarray(whole.T * float(channel["step"]), dtype=np.float64)
 
 
+def resampled(x: Array, t: Array, times: Array) -> Array:
+    """Rows that belong to times ``t``, read at other times; beyond either end they stay.
+
+    Args:
+        x: Shape (N,) or (N, k).
+        t: Increasing, shape (N,) in [s].
+        times: Shape (M,) in [s].
+
+    Returns:
+        Shape (M, k).
+    """
+    return np.column_stack([np.interp(times, t, column) for column in x.reshape(len(x), -1).T])
+
+
 def _frozen(value: Any, shape: tuple[int, ...], name: str) -> Array:
     return locked(np.array(as_array(value, shape, name)))
 
@@ -242,8 +233,8 @@ def _quaternions(R: Array | None) -> Array | None:
     return np.asarray(q * np.cumprod([1.0, *flips])[:, None], dtype=np.float64)
 
 
-def _lower(name: str) -> str:
-    return name[:1].lower() + name[1:]
+def _mm(metres: float) -> str:
+    return f"{1000 * metres:.1f} mm"
 
 
 def _listed(names: list[str]) -> str:

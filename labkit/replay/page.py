@@ -54,9 +54,10 @@ def motion_html(
         OutOfRange: The motion is too large for a page.
     """
     text = motion.to_json(rate)
-    if len(text.encode()) > LIMIT:
+    size = len(text.encode())
+    if size > LIMIT:
         raise OutOfRange(
-            f"the motion {motion.title!r} is {len(text.encode()) / 1000:.0f} kB, more than"
+            f"the motion {motion.title!r} is {size / 1000:.0f} kB, more than"
             f" {LIMIT / 1000:.0f} kB: give fewer ghosts, a shorter run or a lower rate"
         )
     return _figure(text, caption or motion.title, motion.alt, motion.description, poster, root)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
 from .. import metrics
 from ..log import Log
 from ..motion import PoseSample
-from .motion import Motion
+from .motion import Motion, resampled
 
 
 def motion_of(
@@ -37,7 +36,7 @@ def motion_of(
         The motion, the position error of the tip included.
     """
     T_wd = metrics.target_poses(log)
-    arms = {name: _at(log, other) for name, other in (ghosts or {}).items()}
+    arms = {name: resampled(other.q, other.t, log.t) for name, other in (ghosts or {}).items()}
     if reference and not isinstance(log.target, PoseSample):
         arms["the target"] = log.target.position
     return Motion(
@@ -53,8 +52,3 @@ def motion_of(
         tau=log.tau if torque else None,
         ghosts=arms,
     )
-
-
-def _at(log: Log, other: Log) -> Any:
-    """The other run's joint angles at this run's times, shape (N, 7)."""
-    return np.column_stack([np.interp(log.t, other.t, column) for column in other.q.T])

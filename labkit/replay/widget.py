@@ -6,21 +6,25 @@ import json
 from functools import cache
 from typing import Any
 
+from ..arrays import shown
+from ..errors import TypeMismatch
 from .motion import Motion
 from .page import VIEWER, demo_data
 
 
-def show(motion: Motion, rate: float = 25.0) -> Any:
+def show(motion: Motion) -> Any:
     """A replay to put last in a cell.
 
     Args:
         motion: What to show.
-        rate: Samples per second.
 
     Returns:
         A widget; assign `.motion = another` to change what it shows.
+
+    Raises:
+        TypeMismatch: It is no `Motion`.
     """
-    return _widget_class()(data=motion.to_json(rate))
+    return _widget_class()(data=_data(motion))
 
 
 def demo(name: str) -> Any:
@@ -54,14 +58,22 @@ def _widget_class() -> type[Any]:
         @property
         def motion(self) -> dict[str, Any]:
             """What is shown, as the viewer reads it."""
-            shown: dict[str, Any] = json.loads(self.data)
-            return shown
+            data: dict[str, Any] = json.loads(self.data)
+            return data
 
         @motion.setter
         def motion(self, motion: Motion) -> None:
-            self.data = motion.to_json()
+            self.data = _data(motion)
 
     return Replay
+
+
+def _data(motion: Motion) -> str:
+    if not isinstance(motion, Motion):
+        raise TypeMismatch(
+            f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) gives"
+        )
+    return motion.to_json()
 
 
 def _answer(widget: Any, message: Any, _buffers: Any) -> None:

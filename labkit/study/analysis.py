@@ -4,9 +4,8 @@ A joint is a transfer function from its command to its angle, and a delay.  In v
 
 .. math:: G(s) = \frac{e^{-sd}}{s\,(\tau s + 1)}, \qquad u = \dot q_d + K_p e + K_d \dot e,
 
-and in torque mode :math:`G(s) = e^{-sd} / (I s^2 + b s)` with :math:`u = I \ddot q_d + b \dot q_d
-+ K_p e + K_d \dot e`.  In both the loop is :math:`L(s) = (K_p + K_d s)\,G(s)`.  Åström & Murray,
-*Feedback Systems*, chapters 10 and 12.
+and the loop is :math:`L(s) = (K_p + K_d s)\,G(s)`.  Åström & Murray, *Feedback Systems*, chapters
+10 and 12.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from typing import Any
 import control
 import numpy as np
 
-from ..arrays import Array, as_array, as_number
+from ..arrays import Array, as_number, as_numbers, shown
 from ..errors import OutOfRange
 from ..plant import Plant
 
@@ -75,18 +74,6 @@ def velocity_joint(lag: float, delay: float = 0.0) -> Joint:
     return Joint((1.0,), (lag, 1.0, 0.0) if lag else (1.0, 0.0), delay)
 
 
-def torque_joint(inertia: float, viscous: float = 0.0, delay: float = 0.0) -> Joint:
-    """A joint in torque mode: inertia, viscous friction, delay.
-
-    Args:
-        inertia: About its axis, rotor included, in [kg m^2].
-        viscous: Friction, in [N m s/rad].
-        delay: In [s].
-    """
-    as_number(inertia, "inertia", above=0.0)
-    return Joint((1.0,), (inertia, as_number(viscous, "viscous", least=0.0), 0.0), delay)
-
-
 def velocity_joint_of(plant: Plant, rate: float = 200.0) -> Joint:
     """What a plant's velocity mode is to a controller asked ``rate`` times a second.
 
@@ -118,7 +105,7 @@ class Margins:
     Attributes:
         gain: Factor by which the gain may grow; infinite if by any.
         phase: Phase that may be lost at the crossover, in [degrees].
-        crossover: Where the loop's gain is 1, in [rad/s].
+        crossover: Where the loop's gain is 1, in [rad/s]; infinite if it is so nowhere.
         delay: Further delay that may come in, in [s].
         stable: Whether the closed loop is stable.
     """
@@ -132,6 +119,8 @@ class Margins:
     def __str__(self) -> str:
         if not self.stable:
             return "unstable"
+        if self.crossover == inf:
+            return f"gain margin {self.gain:.3g}, and at no frequency is the loop's gain 1"
         return (
             f"gain margin {self.gain:.3g}, phase margin {self.phase:.3g} degrees at "
             f"{self.crossover:.3g} rad/s, room for {1e3 * self.delay:.3g} ms of delay"
@@ -172,9 +161,10 @@ class Loop:
         L = (self.Kp + 1j * omega * self.Kd) * self.joint.response(omega)
         data = control.FrequencyResponseData(L, omega, smooth=True)
         gain, phase, _, _, crossover, _ = control.stability_margins(data)
-        gain, phase = (inf if x is None or np.isnan(x) else float(x) for x in (gain, phase))
-        crossover = float(crossover) if crossover is not None else inf
-        room = np.radians(phase) / crossover if np.isfinite(phase) else inf
+        gain, phase, crossover = (
+            inf if x is None or np.isnan(x) else float(x) for x in (gain, phase, crossover)
+        )
+        room = np.radians(phase) / crossover if crossover < inf else inf
         # An integrator and falling gain: stable exactly when both margins are on the right side.
         stable = gain > 1.0 and phase > 0.0
         return Margins(gain, phase, crossover, float(room), stable)
@@ -187,8 +177,17 @@ class Loop:
 
         Returns:
             Shape (k,) in [rad].
+
+        Raises:
+            OutOfRange: The times are not such.
         """
-        t = as_array(t, (len(t),), "t")
+        t = as_numbers(t, "t")
+        even = t.ndim == 1 and t.size > 1 and t[0] == 0.0 < t[-1]
+        if not even or not np.allclose(t, np.linspace(0.0, t[-1], t.size)):
+            raise OutOfRange(
+                f"t is {shown(t)}; a step is computed at evenly spaced times from 0, such as "
+                "np.linspace(0, 2, 201)"
+            )
         out = control.step_response(control.feedback(self.open()), T=t).outputs
         return np.asarray(out, dtype=float).reshape(len(t))
 

@@ -67,6 +67,7 @@ def work_through(
 
     Raises:
         OutOfRange: ``jobs`` is less than 1.
+        LabkitError: There is no such scheduler, or Dask is missing.
     """
     todo = [dict(cell) for cell in grid]
     jobs = os.cpu_count() or 1 if jobs is None else int(as_number(jobs, "jobs", least=1))
@@ -97,16 +98,34 @@ def row_of(job: Job, cell: Cell) -> Row:
 
 
 def _on_dask(job: Job, todo: list[Row], address: str, tell: Progress) -> list[Row]:
-    try:
-        import distributed
-    except ImportError:
-        raise ImportError('a Dask cluster needs the extra: pip install "labkit[cluster]"') from None
-    with distributed.Client(address) as client:
+    with dask_client(address) as client:
+        from distributed import as_completed
+
         futures = client.map(row_of, [job] * len(todo), todo, pure=False)
-        finished = distributed.as_completed(futures)
-        for done, _ in enumerate(finished, start=1):
+        for done, _ in enumerate(as_completed(futures, loop=client.loop), start=1):
             tell(done, len(todo))
         return list(client.gather(futures))
+
+
+def dask_client(address: str) -> Any:
+    """A client of a Dask scheduler, to be closed after use.
+
+    Args:
+        address: Such as "tcp://127.0.0.1:8786"; take loopback or TLS.
+
+    Raises:
+        LabkitError: distributed is missing, or nobody answers there.
+    """
+    try:
+        from distributed import Client
+        from distributed.comm.addressing import resolve_address
+    except ImportError:
+        raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
+    try:
+        resolve_address(address)  # a client of what is no address takes 20 s to go
+        return Client(address, timeout="10s", set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise LabkitError(f"no Dask scheduler at {address}: {error}") from None
 
 
 @contextmanager

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +11,7 @@ import numpy as np
 from ..arrays import Array
 from ..errors import UnknownName
 
-_FOLDER = files("labkit") / "data" / "maps"
+_FOLDER = Path(__file__).parents[1] / "data" / "maps"
 
 
 @dataclass(frozen=True)
@@ -63,9 +61,9 @@ class ErrorMap:
         path.write_text(json.dumps(asdict(self)) + "\n")
 
 
-def names() -> Sequence[str]:
+def names() -> tuple[str, ...]:
     """The maps that come with labkit."""
-    return tuple(sorted(p.name.removesuffix(".json") for p in _FOLDER.iterdir()))
+    return tuple(sorted(path.stem for path in _FOLDER.glob("*.json")))
 
 
 def error_map(name: str) -> ErrorMap:

@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict
-from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +21,13 @@ from ..motion import PoseSample, Sample
 from ..plant import Plant
 
 _ROWS = ("t", "q", "dq", "tau", "command", "saturated")
-_FOLDER = files("labkit") / "data" / "recorded"
+FOLDER = Path(__file__).parents[1] / "data" / "recorded"
+"""Where those lie that come with labkit."""
 
 
 def names() -> tuple[str, ...]:
     """The recorded runs that come with labkit."""
-    return tuple(sorted(p.name.removesuffix(".npz") for p in _FOLDER.iterdir()))
+    return tuple(sorted(path.stem for path in FOLDER.glob("*.npz")))
 
 
 def recorded(name: str) -> Log:
@@ -41,11 +41,10 @@ def recorded(name: str) -> Log:
     """
     if name not in names():
         raise UnknownName("recorded run", name, names())
-    with as_file(_FOLDER / f"{name}.npz") as path:
-        return load(path)
+    return load(FOLDER / f"{name}.npz")
 
 
-_CAMPAIGN = files("labkit") / "data" / "campaign.json"
+_CAMPAIGN = FOLDER.with_name("campaign.json")
 _KEPT = ("way", "task", "plant", "seed", "late_rms_mm", "late_max_mm", "settling", "effort")
 
 
@@ -55,13 +54,14 @@ def campaign() -> list[dict[str, Any]]:
     Returns:
         One row for each run: its "way", "task", "plant" and "seed", and its errors.
     """
-    return [dict(row) for row in json.loads(_CAMPAIGN.read_text())]
+    rows: list[dict[str, Any]] = json.loads(_CAMPAIGN.read_text())
+    return rows
 
 
 def keep_campaign(rows: Iterable[Mapping[str, Any]]) -> None:
     """Write the rows that `campaign` reads, those of runs that were stopped left out."""
     kept = [{key: _short(row[key]) for key in _KEPT} for row in rows if not row["failed"]]
-    Path(str(_CAMPAIGN)).write_text("[" + ",\n".join(json.dumps(row) for row in kept) + "]\n")
+    _CAMPAIGN.write_text("[" + ",\n".join(json.dumps(row) for row in kept) + "]\n")
 
 
 def _short(x: Any) -> Any:

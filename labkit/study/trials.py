@@ -44,8 +44,8 @@ class Trials:
         Raises:
             OutOfRange: No such case, or gains that nobody recorded.
         """
-        if not 0 <= case < len(self.cases):
-            raise OutOfRange(f"there are cases 0 to {len(self.cases) - 1}, not {case}")
+        if not isinstance(case, int | np.integer) or not 0 <= case < len(self.cases):
+            raise OutOfRange(f"there are cases 0 to {len(self.cases) - 1}, not {case!r}")
         i, x = _place(as_number(Kp, "Kp"), self.Kp, "Kp", log)
         j, y = _place(as_number(Kd, "Kd"), self.Kd, "Kd", float)
         rows = np.array(self.rms_mm[case], dtype=float)[i : i + 2, j : j + 2]
@@ -60,7 +60,7 @@ class Trials:
 
     def save(self, path: Path) -> None:
         """Write it as JSON."""
-        path.write_text(json.dumps({k: v for k, v in vars(self).items()}) + "\n")
+        path.write_text(json.dumps(vars(self)) + "\n")
 
 
 LINE = Path(__file__).parents[1] / "data" / "trials_line.json"

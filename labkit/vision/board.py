@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .. import se3
-from ..arrays import Array, as_array, locked
+from ..arrays import Array, as_array, locked, shown
 from ..errors import Closed, TypeMismatch
 from ..motion import PoseSample, Sample, Target
 from ..quiet import quiet
@@ -42,7 +42,16 @@ class Board:
             world: Where to.
             tag: What is printed on it.
             T_wm: Pose of the tag in the world, shape (4, 4); its z axis comes out of the paper.
+
+        Raises:
+            TypeMismatch: The first is no world, or the second no tag.
+            Closed: The world is closed.
         """
+        if not isinstance(world, World) or not isinstance(tag, Tag):
+            raise TypeMismatch(
+                f"a board takes a World (an arm's is arm.world) and a Tag, not {shown(world)} and "
+                f"{shown(tag)}"
+            )
         self.tag, self.world = tag, world
         self.place(T_wm)
         self._build()
@@ -66,8 +75,13 @@ class Board:
                 are where the tag's middle goes, turned as it is now.
 
         Raises:
-            TypeMismatch: Its samples are neither poses nor points.
+            TypeMismatch: It is no function, or its samples are neither poses nor points.
         """
+        if not callable(motion):
+            raise TypeMismatch(
+                f"motion is {shown(motion)}, expected a function of time; board.place(T_wm) puts "
+                "the board somewhere"
+            )
         first = motion(0.0)
         is_point = isinstance(first, Sample) and first.position.shape == (3,)
         if not is_point and not isinstance(first, PoseSample):

@@ -60,7 +60,7 @@ def calibrate_fixed_camera(T_wt: Any, T_cm: Any) -> Calibration:
     """
     A, B = _views(T_wt, T_cm)
     X, Z = _solve(A, B)
-    return _result(camera=Z, tag=X, A=A, X=X, Z=Z, B=B)
+    return _result(camera=Z, tag=X, misfits=_misfits(A, X, Z, B))
 
 
 def calibrate_hand_camera(T_wt: Any, T_cm: Any) -> Calibration:
@@ -76,20 +76,18 @@ def calibrate_hand_camera(T_wt: Any, T_cm: Any) -> Calibration:
     A, views = _views(T_wt, T_cm)
     B = np.array([se3.inverse(T) for T in views])
     X, Z = _solve(A, B)
-    return _result(camera=X, tag=Z, A=A, X=X, Z=Z, B=B)
+    return _result(camera=X, tag=Z, misfits=_misfits(A, X, Z, B))
 
 
 def _views(T_wt: Any, T_cm: Any) -> tuple[Array, Array]:
-    A, B = np.asarray(T_wt, dtype=float), np.asarray(T_cm, dtype=float)
-    if A.shape != B.shape or A.ndim != 3 or A.shape[1:] != (4, 4):
-        raise ShapeError("T_cm", (len(np.atleast_1d(A)), 4, 4), B.shape)
+    A, B = se3.as_poses(T_wt, "T_wt"), se3.as_poses(T_cm, "T_cm")
+    if len(A) != len(B):
+        raise ShapeError("T_cm", A.shape, B.shape)
     if len(A) < 3:
         raise SingularViews(
             f"{len(A)} views do not fix a camera; give at least 3, better 10, with the gripper "
             "turned about different axes"
         )
-    for name, T in [(n, T) for n, poses in (("T_wt", A), ("T_cm", B)) for T in poses]:
-        se3.as_pose(T, name)
     turns = np.array([se3.rotation_log(T[:3, :3] @ A[0, :3, :3].T) for T in A[1:]])
     spread = np.linalg.svd(turns, compute_uv=False)
     if spread[1] < 0.05 * np.sqrt(len(turns)):
@@ -136,13 +134,12 @@ def _misfits(A: Array, X: Array, Z: Array, B: Array) -> Array:
     return np.asarray(errors * np.array([1.0] * 3 + [_LEVER] * 3))
 
 
-def _result(*, camera: Array, tag: Array, A: Array, X: Array, Z: Array, B: Array) -> Calibration:
-    errors = _misfits(A, X, Z, B)
-    place, turn = (np.sqrt(np.mean(np.sum(e**2, axis=1))) for e in (errors[:, :3], errors[:, 3:]))
+def _result(*, camera: Array, tag: Array, misfits: Array) -> Calibration:
+    place, turn = (np.sqrt(np.mean(np.sum(e**2, axis=1))) for e in np.hsplit(misfits, 2))
     return Calibration(
         camera=locked(camera),
         tag=locked(tag),
         residual_mm=float(1e3 * place),
         residual_deg=float(np.degrees(turn / _LEVER)),
-        views=len(A),
+        views=len(misfits),
     )

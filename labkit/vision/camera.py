@@ -13,8 +13,8 @@ import numpy as np
 
 from .. import se3
 from ..arm import Arm
-from ..arrays import Array, as_number, as_vector, locked
-from ..errors import Closed, LabkitError, OutOfRange
+from ..arrays import Array, as_number, as_vector, locked, shown
+from ..errors import Closed, LabkitError, OutOfRange, TypeMismatch
 from ..quiet import quiet
 from ..world import World
 from .board import Board
@@ -32,6 +32,7 @@ BACKGROUND = 255
 """Grey level where there is nothing to see."""
 
 _MARGIN = 4  # pixels around a tag's paper that are drawn with it
+_PLAIN = np.eye(2)  # the picture's own grid
 _LIGHT = (0.6, 0.35, 1.0)  # where the light comes from, world axes
 
 
@@ -96,9 +97,17 @@ class Camera:
             samples: s, for s^2 + 1 points of each pixel on a tag; 1 shows the renderer's own jagged
                 edges.
             seed: Of the noise.
+
+        Raises:
+            TypeMismatch: There is no world or no lens in its place.
+            OutOfRange: ``noise`` or ``samples`` is not what it may be.
         """
+        if not isinstance(world, World):
+            raise TypeMismatch(f"world is {shown(world)}, expected a World; an arm's is arm.world")
         self.world = world
         self.intrinsics = Intrinsics() if intrinsics is None else intrinsics
+        if not isinstance(self.intrinsics, Intrinsics):
+            raise TypeMismatch(f"intrinsics is {shown(intrinsics)}, expected lk.Intrinsics(...)")
         self.noise = as_number(noise, "noise", least=0.0)
         if not isinstance(samples, int) or not 1 <= samples <= 8:
             raise OutOfRange(f"samples is {samples!r}; give a whole number from 1 to 8")
@@ -132,12 +141,12 @@ class Camera:
     @property
     def T_wc(self) -> Array:
         """Where the camera really is now, shape (4, 4)."""
-        return self._fixed if self._hand is None else self._in_hand(self._hand.truth().q)
+        return self._fixed if self._hand is None else _held(self._hand, self._hand.truth().q)
 
     @property
     def reported_T_wc(self) -> Array:
         """Where the robot thinks that the camera is: by its reported joint angles, if in a hand."""
-        return self._fixed if self._hand is None else self._in_hand(self._hand.state().q)
+        return self._fixed if self._hand is None else _held(self._hand, self._hand.state().q)
 
     def image(self) -> Picture:
         """Take a picture.
@@ -151,7 +160,7 @@ class Camera:
         """
         T_wc, looks = self._focus()
         size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
-        picture = self._draw(T_wc, looks, size, FAR, np.eye(2), (size.width, size.height))
+        picture = self._draw(T_wc, looks, size, FAR)
         if self.samples > 1:
             self._refine(picture, T_wc, looks)
         return self._developed(picture, [size])
@@ -170,12 +179,6 @@ class Camera:
         shape = (self.intrinsics.height, self.intrinsics.width, 3)
         picture = np.full(shape, BACKGROUND, np.uint8)
         return self._developed(picture, self._refine(picture, T_wc, looks))
-
-    def _in_hand(self, q: Array) -> Array:
-        arm = self._hand
-        assert arm is not None
-        T_tc = se3.inverse(arm.robot.T_hand_tip) @ arm.robot.T_hand_camera
-        return locked(arm.model.pose(q) @ T_tc)
 
     def _focus(self) -> tuple[Array, Looks]:
         """Everything in its place; where the camera is, and the robot it sees."""
@@ -259,7 +262,7 @@ class Camera:
         """
         s = self.samples
         if s == 1:
-            return self._draw(T_wc, looks, window, depth, np.eye(2), (window.width, window.height))
+            return self._draw(T_wc, looks, window, depth)
         turn = np.array([[s, -1], [1, s]])  # from pixels to the fine grid
         size = (s * window.width + window.height + 2 * s, window.width + s * window.height + 2 * s)
         first = np.array([window.height + s - 1, s])  # where the first pixel's middle comes to lie
@@ -280,8 +283,8 @@ class Camera:
         looks: Looks,
         window: Window,
         depth: float,
-        grid: Any,
-        size: tuple[int, int],
+        grid: Any = _PLAIN,
+        size: tuple[int, int] | None = None,
         first: Any = (0, 0),
     ) -> Picture:
         """Let PyBullet draw a part of the picture, its middles of pixels on a grid of its own.
@@ -296,10 +299,10 @@ class Camera:
             window: Which part.
             depth: Up to how far away, in [m].
             grid: From pixels to steps of the grid, shape (2, 2).
-            size: Columns and rows of the grid.
+            size: Columns and rows of the grid; None is the window's own.
             first: Where on the grid the window's first pixel comes to lie.
         """
-        lens, (wide, tall) = self.intrinsics, size
+        lens, (wide, tall) = self.intrinsics, size or (window.width, window.height)
         x0, y0 = window.left - 0.5, window.top - 0.5
         left, right = (x0 - lens.cx) / lens.fx, (x0 + window.width - lens.cx) / lens.fx
         top, bottom = (y0 - lens.cy) / lens.fy, (y0 + window.height - lens.cy) / lens.fy
@@ -354,6 +357,12 @@ class Camera:
             picture[drawn] = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
         picture.setflags(write=False)
         return picture
+
+
+def _held(arm: Arm, q: Array) -> Array:
+    """Pose in the world of the camera in an arm's hand, at joint angles ``q``."""
+    T_tc = se3.inverse(arm.robot.T_hand_tip) @ arm.robot.T_hand_camera
+    return locked(arm.model.pose(q) @ T_tc)
 
 
 def looking_at(eye: Any, at: Any, up: Any = (0.0, 0.0, 1.0)) -> Array:

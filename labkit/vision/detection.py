@@ -14,17 +14,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import cv2
 import numpy as np
 
 from .. import se3
-from ..arrays import Array, as_array, as_number, locked
-from ..errors import LabkitError, TypeMismatch
+from ..arrays import Array, as_array, as_number, locked, shown
+from ..errors import LabkitError, OutOfRange, TypeMismatch
 from .edges import sharpened
 from .intrinsics import Intrinsics
 from .tags import APRILTAG, Picture, as_picture, pattern, tag_corners
+
+if TYPE_CHECKING:
+    from .camera import Camera
 
 CORNER_NOISE = 0.035
 """Standard deviation of a corner's coordinate, in [px], without image noise (`bench.tags`)."""
@@ -38,12 +41,6 @@ class TagNotFound(LabkitError, LookupError):
 
 class DuplicateTag(LabkitError, ValueError):
     """Two tags in the picture have the same number."""
-
-
-class _HasIntrinsics(Protocol):
-    @property
-    def intrinsics(self) -> Intrinsics:
-        """Lens and sensor."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,20 +66,12 @@ class Detection:
     ratio: float
     covariance: Array
 
-    @property
-    def tilt(self) -> float:
-        """Angle between the tag's normal and the ray on which it is seen, in [rad]."""
-        ray = self.T_cm[:3, 3] / np.linalg.norm(self.T_cm[:3, 3])
-        return float(np.arccos(np.clip(-self.T_cm[:3, 2] @ ray, -1.0, 1.0)))
-
 
 def detect_tags(
     image: Any,
-    camera: Intrinsics | _HasIntrinsics,
+    camera: Camera | Intrinsics,
     size: float | Mapping[int, float],
     dictionary: str = APRILTAG,
-    *,
-    noise: float = CORNER_NOISE,
 ) -> tuple[Detection, ...]:
     """Find the tags in a picture.
 
@@ -92,7 +81,6 @@ def detect_tags(
         size: Side of the black square, in [m]; or a size for each number, and tags of other numbers
             are passed over.
         dictionary: `tags.APRILTAG` or `tags.ARUCO`.
-        noise: Standard deviation of a corner's coordinate, in [px]; scales the covariance.
 
     Returns:
         What was found, by number; empty if there is none.
@@ -112,7 +100,7 @@ def detect_tags(
     for number, corners in found:
         side = size if sizes is None else sizes.get(number)
         if side is not None:
-            seen.append(_detection(number, corners, lens, float(side), noise))  # type: ignore[arg-type]
+            seen.append(_detection(number, corners, lens, float(side)))  # type: ignore[arg-type]
     return tuple(sorted(seen, key=lambda d: (d.id, d.error)))
 
 
@@ -142,7 +130,7 @@ def find_tag(detections: Sequence[Detection], id: int) -> Detection:
     return hits[0]
 
 
-def tag_poses(corners: Any, camera: Intrinsics | _HasIntrinsics, size: float) -> list[Array]:
+def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Array]:
     """The two poses at which a tag's corners look about as they do, best first, by IPPE alone.
 
     Args:
@@ -152,17 +140,24 @@ def tag_poses(corners: Any, camera: Intrinsics | _HasIntrinsics, size: float) ->
 
     Returns:
         Two `T_cm`, shape (4, 4) each.
+
+    Raises:
+        OutOfRange: No square looks like that from anywhere.
     """
     lens, pixels = _intrinsics(camera), as_array(corners, (4, 2), "corners")
-    points = tag_corners(size)
     _, turns, places, _ = cv2.solvePnPGeneric(
-        points, pixels, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+        tag_corners(size), pixels, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
     )
+    if not turns:
+        raise OutOfRange(
+            f"no square has its corners at the pixels {pixels.tolist()}; are they four different "
+            "ones, clockwise from the tag's upper left?"
+        )
     poses = [_pose(turn, place) for turn, place in zip(turns, places, strict=True)]
-    return sorted(poses, key=lambda T: _misfit(T, pixels, lens, points))
+    return sorted(poses, key=lambda T: reprojection_error(T, pixels, lens, size))
 
 
-def tag_pose(corners: Any, camera: Intrinsics | _HasIntrinsics, size: float) -> Array:
+def tag_pose(corners: Any, camera: Camera | Intrinsics, size: float) -> Array:
     """The pose at which a tag's corners look most as they do: IPPE's best, then least squares.
 
     Args:
@@ -172,12 +167,16 @@ def tag_pose(corners: Any, camera: Intrinsics | _HasIntrinsics, size: float) -> 
 
     Returns:
         `T_cm`, shape (4, 4).
+
+    Raises:
+        OutOfRange: No square looks like that from anywhere.
     """
-    return _polished(tag_poses(corners, camera, size)[0], corners, _intrinsics(camera), size)
+    pixels, lens = as_array(corners, (4, 2), "corners"), _intrinsics(camera)
+    return _polished(tag_poses(pixels, lens, size)[0], pixels, lens, size)
 
 
-def reprojection_error(T_cm: Any, corners: Any, camera: Any, size: float) -> float:
-    """How far a pose's corners are from those seen, root mean square, in [px].
+def reprojection_error(T_cm: Any, corners: Any, camera: Camera | Intrinsics, size: float) -> float:
+    """How far a pose's corners are from those seen, root mean square, in [px]; behind, infinitely.
 
     Args:
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
@@ -185,11 +184,17 @@ def reprojection_error(T_cm: Any, corners: Any, camera: Any, size: float) -> flo
         camera: The camera, or its intrinsics.
         size: Side of the black square, in [m].
     """
-    pixels = as_array(corners, (4, 2), "corners")
-    return _misfit(se3.as_pose(T_cm, "T_cm"), pixels, _intrinsics(camera), tag_corners(size))
+    pixels, T = as_array(corners, (4, 2), "corners"), se3.as_pose(T_cm, "T_cm")
+    points = tag_corners(size) @ T[:3, :3].T + T[:3, 3]
+    if points[:, 2].min() <= 0.0:
+        return float("inf")
+    off = _intrinsics(camera).project(points) - pixels
+    return float(np.sqrt(np.mean(np.sum(off**2, axis=1))))
 
 
-def pose_covariance(T_cm: Any, camera: Any, size: float, noise: float = CORNER_NOISE) -> Array:
+def pose_covariance(
+    T_cm: Any, camera: Camera | Intrinsics, size: float, noise: float = CORNER_NOISE
+) -> Array:
     """What an error of the corners means for the pose.
 
     Args:
@@ -203,21 +208,16 @@ def pose_covariance(T_cm: Any, camera: Any, size: float, noise: float = CORNER_N
     """
     lens, T = _intrinsics(camera), se3.as_pose(T_cm, "T_cm")
     arms = tag_corners(size) @ T[:3, :3].T
-    J = np.zeros((8, 6))
-    for i, arm in enumerate(arms):
-        x, y, z = arm + T[:3, 3]
-        du = np.array(
-            [[lens.fx / z, 0, -lens.fx * x / z**2], [0, lens.fy / z, -lens.fy * y / z**2]]
-        )
-        J[2 * i : 2 * i + 2] = np.hstack([du, -du @ se3.hat(arm)])
+    turn, place = np.zeros(3), np.array(T[:3, 3])  # small turns of what is turned already
+    J = cv2.projectPoints(arms, turn, place, lens.matrix, None)[1][:, [3, 4, 5, 0, 1, 2]]
     return locked(np.array(as_number(noise, "noise", above=0.0) ** 2 * np.linalg.inv(J.T @ J)))
 
 
-def _detection(id: int, corners: Array, lens: Intrinsics, size: float, noise: float) -> Detection:
+def _detection(id: int, corners: Array, lens: Intrinsics, size: float) -> Detection:
     first, other = tag_poses(corners, lens, size)
-    points, best = tag_corners(size), _polished(first, corners, lens, size)
+    best = _polished(first, corners, lens, size)
     error, first_error, other_error = (
-        _misfit(T, corners, lens, points) for T in (best, first, other)
+        reprojection_error(T, corners, lens, size) for T in (best, first, other)
     )
     return Detection(
         id=id,
@@ -226,7 +226,7 @@ def _detection(id: int, corners: Array, lens: Intrinsics, size: float, noise: fl
         other_T_cm=other,
         error=error,
         ratio=other_error / max(first_error, 1e-9),
-        covariance=pose_covariance(best, lens, size, noise),
+        covariance=pose_covariance(best, lens, size),
     )
 
 
@@ -240,19 +240,12 @@ def _pose(turn: Any, place: Any) -> Array:
     return locked(se3.pose(se3.rotation(np.ravel(turn)), np.ravel(place)))
 
 
-def _misfit(T_cm: Array, pixels: Array, lens: Intrinsics, points: Array) -> float:
-    p = points @ T_cm[:3, :3].T + T_cm[:3, 3]
-    if p[:, 2].min() <= 0.0:
-        return float("inf")
-    return float(np.sqrt(np.mean(np.sum((lens.project(p) - pixels) ** 2, axis=1))))
-
-
 def _intrinsics(camera: Any) -> Intrinsics:
     lens = camera if isinstance(camera, Intrinsics) else getattr(camera, "intrinsics", None)
     if not isinstance(lens, Intrinsics):
         raise TypeMismatch(
-            f"camera is {str(camera)[:60]} ({type(camera).__name__}); give the lk.Camera that took "
-            "the picture, or its lk.Intrinsics"
+            f"camera is {shown(camera)}; give the lk.Camera that took the picture, or its "
+            "lk.Intrinsics"
         )
     return lens
 

@@ -7,14 +7,13 @@ white acceleration, Bar-Shalom, Li & Kirubarajan, *Estimation with Applications*
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import se3
-from ..arrays import Array, as_array, as_number, locked
-from ..errors import OutOfRange, ShapeError
+from ..arrays import Array, as_array, as_number, as_numbers, locked
+from ..errors import OutOfRange
 
 
 def average_pose(poses: Any) -> Array:
@@ -29,10 +28,7 @@ def average_pose(poses: Any) -> Array:
     Raises:
         OutOfRange: The rotations are spread so evenly that they have no middle.
     """
-    poses = np.asarray(poses, dtype=float)
-    if poses.ndim != 3 or poses.shape[1:] != (4, 4) or not len(poses):
-        raise ShapeError("poses", (max(1, len(np.atleast_1d(poses))), 4, 4), poses.shape)
-    mean = poses.mean(axis=0)
+    mean = se3.as_poses(poses, "poses").mean(axis=0)
     U, s, Vt = np.linalg.svd(mean[:3, :3])
     mirror = np.sign(np.linalg.det(U @ Vt))
     if s[1] + mirror * s[2] < 1e-9:
@@ -53,19 +49,19 @@ def low_pass(values: Any, share: float) -> Array:
 
     Returns:
         The same shape; the first output is the first value.
+
+    Raises:
+        OutOfRange: The share is not above 0 and at most 1.
     """
-    values = np.asarray(values, dtype=float)
-    a = _share(share)
-    filtered = np.array(values)
-    for k in range(1, len(values)):
-        filtered[k] = filtered[k - 1] + a * (values[k] - filtered[k - 1])
+    a = as_number(share, "share", above=0.0)
+    if a > 1.0:
+        raise OutOfRange(
+            f"share is {a:g}; a filter that goes further than the new value overshoots"
+        )
+    filtered = np.atleast_1d(as_numbers(values, "values"))
+    for k in range(1, len(filtered)):
+        filtered[k] = filtered[k - 1] + a * (filtered[k] - filtered[k - 1])
     return filtered
-
-
-def low_pass_noise(share: float) -> float:
-    """How much of white noise's standard deviation `low_pass` lets through in the long run."""
-    a = _share(share)
-    return sqrt(a / (2.0 - a))
 
 
 class Estimate(NamedTuple):
@@ -121,12 +117,3 @@ def update(estimate: Estimate, position: Any, noise: Any) -> Estimate:
     return Estimate(
         estimate.t, locked(mean + K @ (z - mean[:3])), locked(0.5 * (covariance + covariance.T))
     )
-
-
-def _share(share: float) -> float:
-    a = as_number(share, "share", above=0.0)
-    if a > 1.0:
-        raise OutOfRange(
-            f"share is {a:g}; a filter that goes further than the new value overshoots"
-        )
-    return a

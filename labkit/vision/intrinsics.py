@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, as_number, locked
+from ..arrays import Array, as_number, as_numbers, locked
 from ..errors import OutOfRange, ShapeError
 
 
@@ -82,9 +82,9 @@ class Intrinsics:
         Raises:
             OutOfRange: A point is not in front of the camera.
         """
-        p = np.asarray(points, dtype=float)
+        p = as_numbers(points, "points")
         if p.ndim != 2 or p.shape[1] != 3:
-            raise ShapeError("points", (len(np.atleast_1d(p)), 3), p.shape)
+            raise ShapeError("points", (len(np.atleast_2d(p)), 3), p.shape)
         for i in np.flatnonzero(p[:, 2] <= 0.0)[:1]:
             raise OutOfRange(
                 f"point {i} is at z = {p[i, 2]:.3g} m in the camera's frame: it is behind the "

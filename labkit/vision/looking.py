@@ -167,7 +167,7 @@ def look(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Readin
         DuplicateTag: It is there twice.
     """
     now = camera.world.t
-    T_wc = camera.reported_T_wc if T_wc is None else T_wc
+    T_wc = camera.reported_T_wc if T_wc is None else se3.as_pose(T_wc, "T_wc")
     seen = detect_tags(camera.glimpse(), camera, {int(tag.id): tag.size}, tag.dictionary)
     found = find_tag(seen, tag.id)
     turn = np.kron(np.eye(2), T_wc[:3, :3])

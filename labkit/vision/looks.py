@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from scipy.spatial import ConvexHull
+from scipy.spatial.transform import Rotation
 
 from .. import se3
 from ..arrays import Array, locked
@@ -212,8 +213,5 @@ def _mesh(name: str) -> Mesh:
 
 
 def _placed(thing: dict[str, Any]) -> Array:
-    x, y, z, w = thing["quaternion"]
-    half = np.array([x, y, z])
-    sine = float(np.linalg.norm(half))
-    phi = half * (2.0 * np.arctan2(sine, w) / sine) if sine > 0.0 else half
-    return locked(se3.pose(se3.rotation(phi), np.array(thing["position"])))
+    R = Rotation.from_quat(thing["quaternion"]).as_matrix()
+    return locked(se3.pose(R, np.array(thing["position"])))

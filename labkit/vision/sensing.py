@@ -6,8 +6,8 @@ camera's axes, orientation as a rotation vector there.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 from math import pi
 from typing import Any
 
@@ -23,11 +23,8 @@ from .detection import detect_tags
 from .intrinsics import Intrinsics
 from .tags import Tag
 
-T_WC = looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))
-"""The camera of the experiments stands away from the robot and looks away from it."""
-
-
-TAG, LENS = Tag(), Intrinsics()
+_T_WC = looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))  # away from the robot, and looking away
+_SPREAD = 0.5  # how far from the middle of the picture a tag may be, as a share of the picture
 
 
 @dataclass(frozen=True)
@@ -40,17 +37,13 @@ class Setup:
         tilt: Range of the angle between the tag's normal and the ray on which it is seen, in [rad].
         intrinsics: Lens and sensor.
         noise: Of each colour of each pixel, standard deviation in grey levels.
-        samples: How fine the tag is drawn; see `Camera`.
-        spread: How far from the middle of the picture the tag may be, as a share of the picture.
     """
 
-    tag: Tag = TAG
+    tag: Tag = field(default_factory=Tag)
     distance: float = 0.7
     tilt: tuple[float, float] = (0.0, pi / 3)
-    intrinsics: Intrinsics = LENS
+    intrinsics: Intrinsics = field(default_factory=Intrinsics)
     noise: float = 0.0
-    samples: int = 2
-    spread: float = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,7 +53,6 @@ class Readings:
     Attributes:
         truth: `T_cm` as it was, shape (n, 4, 4).
         estimate: `T_cm` as it was read, shape (n, 4, 4).
-        tilt: Angle between the tag's normal and the ray on which it is seen, shape (n,) in [rad].
         ratio: How many times worse the other of the two poses fits, shape (n,).
         pixels: What is left between corners and pose, root mean square, shape (n,) in [px].
         corner_error: True minus found corners, shape (n, 4, 2) in [px].
@@ -69,7 +61,6 @@ class Readings:
 
     truth: Array
     estimate: Array
-    tilt: Array
     ratio: Array
     pixels: Array
     corner_error: Array
@@ -79,6 +70,13 @@ class Readings:
     def found(self) -> Any:
         """In which pictures the tag was found, shape (n,), bool."""
         return np.isfinite(self.pixels)
+
+    @property
+    def tilt(self) -> Array:
+        """Angle between the tag's normal and the ray on which it is seen, shape (n,) in [rad]."""
+        normal, ray = self.truth[:, :3, 2], self.truth[:, :3, 3]
+        along = np.einsum("ni,ni->n", normal, ray) / np.linalg.norm(ray, axis=1)
+        return np.asarray(np.arccos(np.clip(-along, -1.0, 1.0)))
 
     @property
     def error(self) -> Array:
@@ -133,22 +131,25 @@ def random_poses(setup: Setup, count: int, random: np.random.Generator) -> Array
 
     Returns:
         Shape (count, 4, 4).
+
+    Raises:
+        OutOfRange: There is no such distance, tilt or count.
     """
     lens, (low, high) = setup.intrinsics, setup.tilt
     if not 0.0 <= low <= high < pi / 2:
         raise OutOfRange(f"tilt is {setup.tilt} rad; give a range between 0 and pi/2")
-    half = 0.5 * as_number(setup.spread, "spread", least=0.0)
+    distance = as_number(setup.distance, "distance", above=0.0)
     poses = []
-    for _ in range(count):
-        u, v = random.uniform(-half, half, 2) * (lens.width, lens.height)
+    for _ in range(int(as_number(count, "count", least=1))):
+        u, v = random.uniform(-_SPREAD / 2, _SPREAD / 2, 2) * (lens.width, lens.height)
         middle = ((lens.width - 1) / 2 + u - lens.cx, (lens.height - 1) / 2 + v - lens.cy)
         ray = np.array([middle[0] / lens.fx, middle[1] / lens.fy, 1.0])
         facing = looking_at(np.zeros(3), ray, up=(0.0, -1.0, 0.0))[:3, :3] @ np.diag([1, -1, -1.0])
         tilt, about, roll = random.uniform((low, 0, 0), (high, 2 * pi, 2 * pi))
         lean = se3.rotation(tilt * np.array([np.cos(about), np.sin(about), 0.0]))
         turn = se3.rotation(np.array([0.0, 0.0, roll]))
-        poses.append(se3.pose(facing @ lean @ turn, setup.distance * ray / np.linalg.norm(ray)))
-    return np.array(poses).reshape(-1, 4, 4)
+        poses.append(se3.pose(facing @ lean @ turn, distance * ray / np.linalg.norm(ray)))
+    return np.array(poses)
 
 
 def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
@@ -162,20 +163,16 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
     Returns:
         The readings.
     """
-    poses = np.asarray(poses, dtype=float)
+    poses = se3.as_poses(poses, "poses")
     n = len(poses)
     estimate, covariance = np.full((n, 4, 4), np.nan), np.full((n, 6, 6), np.nan)
     ratio, pixels, off = np.full(n, np.nan), np.full(n, np.nan), np.full((n, 4, 2), np.nan)
-    tilt = np.zeros(n)
+    sizes = {int(setup.tag.id): setup.tag.size}
     with World() as world:
-        options: dict[str, Any] = {"noise": setup.noise, "samples": setup.samples, "seed": seed}
-        camera = Camera(world, T_WC, setup.intrinsics, **options)
-        board = Board(world, setup.tag, T_WC @ np.diag([1, -1, -1, 1.0]))
+        camera = Camera(world, _T_WC, setup.intrinsics, noise=setup.noise, seed=seed)
+        board = Board(world, setup.tag, _T_WC @ poses[0])
         for i, T_cm in enumerate(poses):
-            board.place(T_WC @ T_cm)
-            ray = T_cm[:3, 3] / np.linalg.norm(T_cm[:3, 3])
-            tilt[i] = np.arccos(np.clip(-T_cm[:3, 2] @ ray, -1.0, 1.0))
-            sizes = {int(setup.tag.id): setup.tag.size}
+            board.place(_T_WC @ T_cm)
             found = detect_tags(camera.glimpse(), camera, sizes, setup.tag.dictionary)
             if len(found) != 1:
                 continue
@@ -183,11 +180,18 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
             off[i] = setup.intrinsics.project(corners) - found[0].corners
             estimate[i], covariance[i] = found[0].T_cm, found[0].covariance
             ratio[i], pixels[i] = found[0].ratio, found[0].error
-    columns = (poses, estimate, tilt, ratio, pixels, off, covariance)
-    return Readings(*(locked(np.array(x)) for x in columns))
+    columns = (poses, estimate, ratio, pixels, off, covariance)
+    return Readings(*map(locked, columns))
 
 
-DIALS = ("distance", "tilt", "resolution", "noise", "size")
+_TURNED: dict[str, Callable[[Setup, float], Setup]] = {
+    "distance": lambda setup, x: replace(setup, distance=x),
+    "tilt": lambda setup, x: replace(setup, tilt=(x, x)),
+    "resolution": lambda setup, x: replace(setup, intrinsics=setup.intrinsics.resized(x)),
+    "noise": lambda setup, x: replace(setup, noise=x),
+    "size": lambda setup, x: replace(setup, tag=replace(setup.tag, size=x)),
+}
+DIALS = tuple(_TURNED)
 """What `sweep` can turn."""
 
 
@@ -210,24 +214,11 @@ def sweep(
     Raises:
         UnknownName: No such dial.
     """
-    setup = Setup() if setup is None else setup
+    if dial not in DIALS:
+        raise UnknownName("dial", dial, DIALS)
     results = {}
     for value in values:
-        turned = _turned(setup, dial, float(value))
+        turned = _TURNED[dial](setup or Setup(), float(value))
         poses = random_poses(turned, count, np.random.default_rng(seed))
         results[float(value)] = quality(read(turned, poses, seed))
     return results
-
-
-def _turned(setup: Setup, dial: str, value: float) -> Setup:
-    if dial == "distance":
-        return replace(setup, distance=value)
-    if dial == "tilt":
-        return replace(setup, tilt=(value, value))
-    if dial == "resolution":
-        return replace(setup, intrinsics=setup.intrinsics.resized(value))
-    if dial == "noise":
-        return replace(setup, noise=value)
-    if dial == "size":
-        return replace(setup, tag=replace(setup.tag, size=value))
-    raise UnknownName("dial", dial, DIALS)

@@ -23,7 +23,7 @@ Picture = NDArray[np.uint8]
 """Grey levels (height, width) or colours (height, width, 3) in RGB order, 0 to 255."""
 
 APRILTAG = "apriltag_36h11"
-"""The tags that robots mostly use: 587 of them, any two differ in at least 11 of 36 bits."""
+"""The tags that robots mostly use, 587 of them, any two differ in at least 11 of 36 bits."""
 
 ARUCO = "aruco_4x4"
 """250 coarse patterns that a poor camera can still read; they are more easily mistaken."""
@@ -134,12 +134,11 @@ def pattern(dictionary: str) -> Any:
     return cv2.aruco.getPredefinedDictionary(_PATTERNS[dictionary])
 
 
-def as_picture(x: Any, name: str = "image") -> Picture:
+def as_picture(x: Any) -> Picture:
     """Read ``x`` as a picture in grey levels.
 
     Args:
         x: Shape (height, width), or (height, width, 3) in RGB order, of dtype uint8.
-        name: What to call it in the sentence, if it is none.
 
     Returns:
         Grey levels, shape (height, width).
@@ -149,13 +148,9 @@ def as_picture(x: Any, name: str = "image") -> Picture:
     """
     if not isinstance(x, np.ndarray) or x.dtype != np.uint8:
         what = f"an array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
-        raise TypeMismatch(
-            f"{name} is {what}, expected a picture: a NumPy array of uint8, 0 to 255"
-        )
+        raise TypeMismatch(f"image is {what}, expected a picture: a NumPy array of uint8, 0 to 255")
     if x.size and x.ndim == 3 and x.shape[2] == 3:
         return np.asarray(cv2.cvtColor(x, cv2.COLOR_RGB2GRAY), dtype=np.uint8)
     if x.size and x.ndim == 2:
         return x
-    raise TypeMismatch(
-        f"{name} has shape {x.shape}, expected (height, width) or (height, width, 3)"
-    )
+    raise TypeMismatch(f"image has shape {x.shape}, expected (height, width) or (height, width, 3)")

@@ -84,7 +84,8 @@ def test_trajectories_say_the_same_afterwards():
     """Paths, scalings and chains of them are rebuilt and move alike."""
     line = lk.Trajectory(lk.Line([0.6, 0.1, 0.2], [0.7, 0.0, 0.3]), lk.Quintic(2.0))
     ring = lk.Trajectory(lk.PosePath(lk.Circle([0.8, 0, 0], [0.6, 0, 0]), np.eye(3)), lk.Cubic(3.0))
-    for target in (line, ring, lk.Chain([line, line]), lk.Hold(Q, 1.0)):
+    bent = lk.Trajectory(lk.Spline(np.linspace(0, 1, 9), np.outer(np.arange(9), Q)), lk.Cubic(1.0))
+    for target in (line, ring, bent, lk.Chain([line, line]), lk.Hold(Q, 1.0)):
         again = there_and_back(target)
         for t in (0.0, 0.7, 1.9, 5.0):
             for a, b in zip(target(t), again(t), strict=True):
@@ -120,15 +121,19 @@ def test_what_cannot_travel_is_a_sentence(value):
 @pytest.mark.parametrize(
     "data",
     [
-        {"$": "Model", "side": "left", "plant": None},
+        encode(lk.Model("left")),
+        encode(lk.Hold(Q, 1.0)),
         {"$": "method", "of": 1, "name": "bit_length"},
-        {"$": "Line", "fields": {}},
+        {"$": "Line"},
         {"$": "nonsense"},
         {"no": "kind"},
         {"$": "array", "shape": [3], "numbers": [1.0]},
         {"$": "array", "shape": [1], "numbers": [{"$": "float", "value": "spam"}]},
-        {"$": "JointVelocity", "fields": {"value": [1.0]}},
+        {"$": "JointVelocity", "value": [1.0]},
         {"$": "tuple", "items": 3},
+        {"$": "dict", "items": 3},
+        {"$": "array", "shape": [float("inf")], "numbers": [1.0]},
+        {"$": "array", "shape": [1], "numbers": [10**400]},
     ],
 )
 def test_answers_build_only_data(data):

@@ -1,5 +1,6 @@
 """Before handing in: what a look at the file tells."""
 
+import copy
 import json
 import shutil
 from pathlib import Path
@@ -104,6 +105,30 @@ def test_a_damaged_file_is_a_sentence(folder, text):
         look(path)
 
 
+@pytest.mark.parametrize("cell", [1, {"source": "x"}, {"cell_type": "code", "metadata": {}}])
+def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
+    path = folder / "01_paths.ipynb"
+    path.write_text(json.dumps({"cells": [cell]}))
+    with pytest.raises(LabkitError, match="no notebook, or was cut off"):
+        look(path)
+
+
+def test_a_cell_may_come_without_metadata(folder):
+    path = folder / "01_paths.ipynb"
+    path.write_text(json.dumps({"cells": [{"cell_type": "code", "source": ["def bang_bang(t):"]}]}))
+    found = look(path)
+    assert not any("no cell defines bang_bang" in text for text in found.problems)
+
+
+def test_a_notebook_without_its_questions_is_a_sentence(folder):
+    """A missing or damaged checks.json is named, with the way out."""
+    file = folder / "checks.json"
+    for text, says in (("{", "only a damaged"), (None, "no")):
+        file.unlink() if text is None else file.write_text(text)
+        with pytest.raises(LabkitError, match=rf"there is {says} checks\.json in .*whole folder"):
+            look(folder / "01_paths.ipynb")
+
+
 def test_merging_keeps_answers_and_own_cells(folder):
     """A corrected release takes over the answer and the student's own cell, in its place."""
     new = read_cells(folder / "01_paths.ipynb")
@@ -141,6 +166,19 @@ def test_merging_after_a_question_was_added(folder):
     assert [merged[k] for k in kept] == [
         c for c in new if not c["source"].startswith("def witness")
     ]
+
+
+def test_merging_keeps_an_answer_whatever_stands_around_it(folder):
+    """The stub's line left below an answer, or an empty stub further down, takes nothing away."""
+    new = read_cells(folder / "01_paths.ipynb")
+    mine = copy.deepcopy(new)
+    (cell,) = (c for c in mine if "def witness" in c["source"])
+    stub = copy.deepcopy(cell) | {"id": "pasted"}
+    cell["source"] = cell["source"].replace("    raise", "    return 2.0\n    raise")
+    for place in (mine, [*mine, stub]):
+        assert cell["source"] in [c["source"] for c in merge(place, new)]
+    cell["source"] = "def witness(theta, duration):\n    return (1.0"
+    assert cell["source"] in [c["source"] for c in merge(mine, new)], "though Python cannot read it"
 
 
 def test_merging_an_untouched_notebook_gives_the_new_release(folder):

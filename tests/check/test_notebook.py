@@ -98,9 +98,9 @@ def test_hints_lead_on(capsys):
         said = capsys.readouterr().out
         assert DOUBLE.hints[level - 1] in said
         assert (f'hint("double", {level + 1})' in said) == (level < 3)
-    for level in (0, 4, -1):
+    for level in (0, 4, -1, 1.0, "1"):
         hint("double", level)
-        assert f"double has 3 hints, and no hint {level}." in capsys.readouterr().out
+        assert f"double has 3 hints, and no hint {level!r}." in capsys.readouterr().out
 
 
 def test_use_takes_yours_only_if_right(capsys):
@@ -149,6 +149,9 @@ def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path / "elsewhere")
     with pytest.raises(LabkitError, match=r"no checks\.json in 'elsewhere'.*whole folder"):
+        check("double", double)
+    Path("checks.json").write_text('{"assignment": ')
+    with pytest.raises(LabkitError, match=r"only a damaged checks\.json in 'elsewhere'"):
         check("double", double)
 
 

@@ -25,6 +25,7 @@ def writes():
         (lambda: 2.0 @ np.zeros(3), "for a number write *"),
         (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "the product of matrices is @"),
         (lambda: np.linalg.inv(np.zeros((6, 7))), "only square matrices"),
+        (lambda: FIXED(2.0), "is a * missing"),
         (lambda: writes(1), "leave the names in the function's first line"),
     ],
 )

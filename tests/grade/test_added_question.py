@@ -54,7 +54,7 @@ def early(tmp_path_factory):
     for student, folder in (("ada", course.solution), ("bob", course.release)):
         hand_in(course, NAME, student, (folder / NAME / f"{NAME}.ipynb").read_bytes())
     record(course, NAME, graded(course))
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         book.find_grade("circle-check", NAME, NAME, "bob").manual_score = 1.5
         book.find_comment("circle", NAME, NAME, "bob").manual_comment = "see me"
         book.db.commit()
@@ -81,7 +81,7 @@ def graded(course):
 
 
 def marks(course):
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         return {
             s.student.id: {g.name: g.score for n in s.notebooks for g in n.grades}
             for s in book.assignment_submissions(NAME)
@@ -95,7 +95,7 @@ def test_nbgrader_alone_refuses(marked):
     shutil.copy(
         ROOT / "assignments" / NAME / f"{NAME}.ipynb", course.source / NAME / f"{NAME}.ipynb"
     )
-    result = nbgrader_api(course, quiet=50).generate_assignment(NAME, force=True, create=True)
+    result = nbgrader_api(course).generate_assignment(NAME, force=True, create=True)
     assert not result["success"]
     assert "Cannot add or remove cells" in f"{result['log']}{result.get('error')}"
 
@@ -115,7 +115,7 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
     assert "0 of 2 marks move" in said
     assert "full marks were 16 and are 20 now" in said
     assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         assert book.find_comment("circle", NAME, NAME, "bob").manual_comment == "see me"
         assert book.find_submission(NAME, "ada").max_score == 20
     for result in Results(course, NAME):
@@ -161,7 +161,7 @@ def test_a_question_goes_unless_somebody_marked_it(marked):
     assert f"{LATER}-check" not in marks(course)["ada"]
     become(True)
     release(course, NAME, SEED)
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         book.find_grade(f"{LATER}-check", NAME, NAME, "ada").manual_score = 2.0
         book.db.commit()
     whole = {p: p.read_bytes() for p in (course.root / "build").rglob("*") if p.is_file()}
@@ -170,6 +170,21 @@ def test_a_question_goes_unless_somebody_marked_it(marked):
         release(course, NAME, SEED)
     assert {p: p.read_bytes() for p in whole} == whole
     assert marks(course)["ada"][f"{LATER}-check"] == 2.0
+
+
+def test_a_release_that_is_refused_leaves_the_gradebook_alone(marked, monkeypatch):
+    """Where an answer cannot be copied, no row is added and no automatic mark is taken away."""
+    course, become = marked
+    before = marks(course)
+
+    def refused(*args):
+        raise LabkitError("keep it whole")
+
+    become(True)
+    monkeypatch.setattr("labkit.grade.release.solution_notebook", refused)
+    with pytest.raises(LabkitError, match="keep it whole"):
+        release(course, NAME, SEED)
+    assert marks(course) == before
 
 
 def test_a_question_without_points_is_reported_as_void(marked):

@@ -9,14 +9,17 @@ import subprocess
 import sys
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from handmade import QUICK, ROOT
 
 from labkit.cli import main
+from labkit.grade import gradebook
 from labkit.grade.batch import Graded, How, common_failures, grade_class, in_shard
 from labkit.grade.engines import grade_with_nbgrader, students
+from labkit.grade.export import rows
 from labkit.grade.gradebook import open_gradebook, record
 from labkit.grade.results import Results
 from labkit.grade.synthetic import differences, make_class
@@ -54,7 +57,7 @@ def test_synthetic_class_gets_what_it_deserves(course):
     assert len(done) == 40
     assert not list(differences(course, NAME))
     record(course, NAME, [one.result for one in done])
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
     assert scores == {one.result.student: one.result.score for one in done}
 
@@ -148,7 +151,7 @@ def test_killed_run(part):
 
 
 def test_results_outlive_a_crash_while_writing(part):
-    """A half-written result is no result, and is made again."""
+    """A half-written result is no result, and is made again; what could be read of it is kept."""
     grade_all(part, jobs=2)
     results = Results(part, NAME)
     who = students(part, NAME)[0]
@@ -157,6 +160,7 @@ def test_results_outlive_a_crash_while_writing(part):
     assert results.get(who) is None
     grade_all(part)
     assert results.get(who) is not None
+    assert text[: len(text) // 2] in [x.read_text() for x in (results.folder / "old").iterdir()]
 
 
 @pytest.mark.slow
@@ -193,30 +197,88 @@ def test_manual_grades_and_comments_survive(part):
     done = [one.result for one in grade_all(part, jobs=2)]
     record(part, NAME, done)
     who = next(r for r in done if r.score == r.points)
-    with open_gradebook(part) as (book, _):
+    with open_gradebook(part) as book:
         grade = book.find_grade("circle-check", NAME, NAME, who.student)
         grade.manual_score, grade.extra_credit = 1.5, 0.5
         book.find_comment("circle", NAME, NAME, who.student).manual_comment = "see me"
         book.db.commit()
     record(part, NAME, done)
-    with open_gradebook(part) as (book, _):
+    with open_gradebook(part) as book:
         grade = book.find_grade("circle-check", NAME, NAME, who.student)
         assert (grade.manual_score, grade.auto_score, grade.extra_credit) == (1.5, 4.0, 0.5)
         assert book.find_comment("circle", NAME, NAME, who.student).manual_comment == "see me"
         assert book.find_submission(NAME, who.student).score == 20 - 4 + 1.5 + 0.5
 
 
+def test_a_gradebook_that_is_new_is_told_what_was_released(part, capsys):
+    """Where gradebook.db was deleted, a sentence says how it learns of the assignment again."""
+    (part.root / "gradebook.db").unlink()
+    who = students(part, NAME)[0]
+    arguments = ["--student", who, "--course", str(part.root)]
+    assert main(["grade", NAME, *arguments]) == 2
+    assert f"labkit release {NAME} --seed 7" in capsys.readouterr().err
+    assert main(["release", NAME, "--seed", "7", *arguments[2:]]) == 0
+    assert main(["grade", NAME, *arguments]) == 0
+    assert "as before" in capsys.readouterr().out
+
+
+def test_an_interrupt_is_a_line(part, capsys, monkeypatch):
+    """Who stops the command reads that it stopped, and nothing of Python's."""
+
+    def stopped(*args, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("labkit.grade.batch.grade_class", stopped)
+    assert main(["grade", NAME, "--course", str(part.root)]) == 130
+    assert capsys.readouterr().err == "labkit grade: stopped\n"
+
+
+def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
+    """A disk that is full in the middle leaves every score of before."""
+    done = [one.result for one in grade_all(part, jobs=2)]
+    record(part, NAME, [replace(result, questions=()) for result in done])
+    rooms = iter([True, True, False])
+
+    def save(*args):
+        if not next(rooms):
+            raise OSError("no room")
+
+    monkeypatch.setattr(gradebook, "save", save)
+    with pytest.raises(OSError, match="no room"):
+        record(part, NAME, done)
+    with open_gradebook(part) as book:
+        assert {s.score for s in book.assignment_submissions(NAME)} == {0.0}
+
+
+def test_the_gradebook_has_one_writer(part):
+    """Who grades another assignment in another terminal waits, and fails at nothing."""
+    second = threading.Thread(target=record, args=(part, NAME, []))
+    with open_gradebook(part):
+        second.start()
+        second.join(2.0)
+        assert second.is_alive()
+    second.join(20.0)
+    assert not second.is_alive()
+
+
 def test_late_rules_and_timestamps(part):
     """Times come from the collector's file; an unreadable one is said, and costs nothing."""
-    done = [one.result for one in grade_all(part, jobs=2)]
-    early, odd = done[0].student, done[1].student
-    (part.submitted / early / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
+    done = sorted((one.result for one in grade_all(part, jobs=2)), key=lambda r: -r.score)
+    late, odd = done[0].student, done[1].student
+    (part.submitted / late / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
     (part.submitted / odd / NAME / "timestamp.txt").write_text("yesterday or so")
+    with (part.root / "nbgrader_config.py").open("a") as file:
+        file.write('c.LateSubmissionPlugin.penalty_method = "zero"\n')
+    with open_gradebook(part) as book:
+        book.update_or_create_assignment(NAME, duedate="2029-01-01 10:00:00 UTC")
     notes = record(part, NAME, done)
     assert [note for note in notes if odd in note and "no time" in note]
-    with open_gradebook(part) as (book, _):
-        assert book.find_submission(NAME, early).timestamp.year == 2030
+    with open_gradebook(part) as book:
+        assert book.find_submission(NAME, late).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
+    marks = {row.student: (row.raw, row.score) for row in rows(part, NAME)}
+    assert marks[late] == (20.0, 0.0)
+    assert all(raw == score for student, (raw, score) in marks.items() if student != late)
 
 
 def test_command(part, capsys):
@@ -238,8 +300,9 @@ def test_refuses_without_bubblewrap(part, capsys, monkeypatch):
     folder = Path(sys.executable).parent
     monkeypatch.setenv("PATH", str(folder))
     arguments = ["grade", NAME, "--course", str(part.root)]
-    assert main(arguments) == 2
-    assert "apt-get install bubblewrap" in capsys.readouterr().err
+    for verb in ("grade", "regrade"):
+        assert main([verb, *arguments[1:]]) == 2
+        assert capsys.readouterr().err.count("apt-get install bubblewrap") == 1
     assert not list(Results(part, NAME))
     assert main([*arguments, "--unsafe-no-isolation"]) == 0
     assert {r.isolation for r in Results(part, NAME)} == {

@@ -121,7 +121,7 @@ def grade_with_nbgrader(course):
     nbgrader(course.root, "autograde", NAME, "--create")
     nbgrader(course.root, "generate_feedback", NAME, "--student", fed)
     scores, written = dict.fromkeys(EVERYBODY), dict.fromkeys(EVERYBODY, 0)
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         for kind in EVERYBODY:
             name = "plain" if kind in CONTROLS and CONTROLS[kind].plain else NAME
             file = course.root / "autograded" / student(kind) / name / f"{name}.ipynb"

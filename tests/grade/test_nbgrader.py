@@ -24,7 +24,7 @@ def test_autograde_of_nbgrader_is_safe(course, blank, solved, tmp_path):
     code, said = nbgrader(course.root, "autograde", NAME, "--create")
     assert code == 0, said[-2000:]
     assert not (tmp_path / "files").exists()
-    with open_gradebook(course) as (book, _):
+    with open_gradebook(course) as book:
         scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
     assert scores == {"mallory": 0, "zoe": 20}
     written = json.loads((course.root / "autograded/zoe" / NAME / f"{NAME}.ipynb").read_text())

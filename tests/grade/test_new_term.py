@@ -7,11 +7,13 @@ import pytest
 from courses import copied
 
 from labkit import LabkitError
+from labkit.cli import main
 from labkit.errors import UnknownName
 from labkit.grade import term
-from labkit.grade.course import Course
+from labkit.grade.course import PUBLIC_SEED, Course
 from labkit.grade.release import FORBIDDEN
 from labkit.grade.repositories import export_course
+from labkit.grade.results import Bundle
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -26,8 +28,19 @@ def test_a_term_has_a_seed_of_its_own_and_a_record(course):
     """A new term draws a seed that is not the public one, and keeps each bundle's hash."""
     record = term.new_term(course, None, ("01_paths",))
     bundle = json.loads((course.bundle / "01_paths.json").read_text())
-    assert record["seed"] == bundle["seed"] == term.seed_of(course) != term.PUBLIC_SEED
+    assert record["seed"] == bundle["seed"] == term.seed_of(course) != PUBLIC_SEED
     assert record["bundles"] == {"01_paths": bundle["hash"]}
+
+
+def test_a_correction_keeps_the_seed(course):
+    """Released again without a seed, an assignment has the hidden cases that it had."""
+    arguments = ["release", "01_paths", "--course", str(course.root)]
+    for more, seed in (([], PUBLIC_SEED), (["--seed", "41"], 41), ([], 41)):
+        assert main([*arguments, *more]) == 0
+        assert Bundle.of(course, "01_paths").data["seed"] == seed
+    assert term.seed_for(course, "02_model") == PUBLIC_SEED
+    term.new_term(course, 43, ("02_model",))
+    assert term.seed_for(course, "01_paths") == 43, "not the last term's, which was seen"
 
 
 def test_the_next_term_archives_the_names_and_forgets_them(course):
@@ -40,7 +53,7 @@ def test_the_next_term_archives_the_names_and_forgets_them(course):
     assert not folder.exists()
 
 
-@pytest.mark.parametrize("seed", [term.PUBLIC_SEED])
+@pytest.mark.parametrize("seed", [PUBLIC_SEED])
 def test_a_known_seed_is_refused(course, seed):
     """The public seed makes no secret, and the sentence says so."""
     with pytest.raises(LabkitError, match="may be known; take another"):
@@ -53,6 +66,28 @@ def test_a_name_that_is_unknown_is_told_before_anything_is_archived(course):
     with pytest.raises(UnknownName, match="99_dance"):
         term.new_term(course, None, ("01_paths", "99_dance"))
     assert course.submitted.exists() and not course.release.exists()
+
+
+def test_a_release_that_fails_leaves_the_new_seed(course, monkeypatch):
+    """What is mended and released again has the term's own seed, not the public one."""
+
+    def fails(*args):
+        raise LabkitError("nbgrader could not make it")
+
+    monkeypatch.setattr(term, "release", fails)
+    with pytest.raises(LabkitError, match="could not make it"):
+        term.new_term(course, 41)
+    assert term.seed_of(course) == 41
+
+
+@pytest.mark.parametrize("text", ["", "{}", "[1]", '{"seed": "secret"}'])
+def test_a_damaged_record_is_a_sentence(course, text):
+    """Nothing is released with the public seed because the term's own cannot be read."""
+    file = course.root / "course_private" / "term.json"
+    file.parent.mkdir()
+    file.write_text(text)
+    with pytest.raises(LabkitError, match="holds no seed; restore it"):
+        term.seed_of(course)
 
 
 def test_the_students_repository_holds_no_answer(tmp_path):

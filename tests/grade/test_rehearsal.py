@@ -6,6 +6,7 @@ import csv
 import json
 
 import pytest
+from courses import copied
 from handmade import ROOT
 
 from labkit.cli import main
@@ -76,6 +77,17 @@ def test_a_mark_that_nobody_deserved_is_said(played):
     with pytest.raises(LabkitError, match="not what was deserved"):
         list(rehearse(Course(ROOT), NAME, course.root, COUNT, How(jobs=2)))
     path.write_text(text)
+
+
+def test_a_true_course_is_no_stage(tmp_path):
+    """Where a course lies, nothing is handed in and nobody's submissions go."""
+    course = copied(tmp_path)
+    notebook = course.submitted / "ada" / "01_paths" / "01_paths.ipynb"
+    notebook.parent.mkdir(parents=True)
+    notebook.write_text("work of a week")
+    with pytest.raises(LabkitError, match="new or empty"):
+        next(rehearse(course, NAME, course.root, COUNT, How()))
+    assert notebook.exists() and not course.release.exists()
 
 
 def test_command(played, capsys):

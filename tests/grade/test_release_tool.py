@@ -1,12 +1,14 @@
 """Making notebooks from sources: what is fed in, what comes out, what is refused."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import nbformat
 import pytest
 from courses import copied
 
+from labkit.check import read_question
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.course import Course
@@ -94,6 +96,37 @@ def test_an_answer_that_leaks_stops_the_release(tmp_path):
     assert not (course.release / NAME).exists()
 
 
+def test_a_notebook_without_problems_is_a_sentence(tmp_path):
+    """A source that somebody has begun says which file is still to be written."""
+    course = copied(tmp_path)
+    (tmp_path / "solutions/notebooks/08_dance.py").write_text("# %%\n")
+    with pytest.raises(LabkitError, match=r"write solutions/problems/dance\.py with PROBLEMS"):
+        course.problems("08_dance")
+
+
+def test_a_withheld_name_must_exist(tmp_path, monkeypatch):
+    """A name that is misspelt would withhold nothing; so nothing is released."""
+    course = copied(tmp_path)
+    (first, *others) = PROBLEMS.values()
+    problems = (replace(first, withheld=("labkit.Circel",)), *others)
+    monkeypatch.setattr(Course, "problems", lambda self, name: problems)
+    with pytest.raises(LabkitError, match=r"withholds labkit\.Circel, which does not exist"):
+        release(course, NAME, 1)
+    assert not course.build.exists()
+
+
+def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, capsys):
+    """Where a package of the instructor's is missing, the line that brings it is said."""
+
+    def missing(*args):
+        raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
+
+    monkeypatch.setattr("labkit.grade.release.release", missing)
+    assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
+    said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
+    assert capsys.readouterr().err == said
+
+
 def test_mistakes_of_the_caller_are_one_sentence(capsys):
     """An unknown assignment, a folder without a course: exit code 2 and a way out."""
     assert main(["release", "09_nothing", "--course", str(COURSE.root)]) == 2
@@ -109,5 +142,6 @@ def test_the_public_file_is_small_and_valid():
         assert path.stat().st_size < 300_000
         data = json.loads(path.read_text(encoding="utf-8"))
         assert data["assignment"] == name
-        cases = [c for q in data["questions"] for t in q["tests"] for c in t["cases"]]
-        assert cases and not any(case["hidden"] for case in cases)
+        questions = map(read_question, data["questions"])
+        cases = [case for question in questions for test in question.tests for case in test.cases]
+        assert cases and not any(case.hidden for case in cases)

@@ -41,6 +41,7 @@ def test_answers_from_outside_count(card):
     row = next(row for row in card.rows if row.question == "joint_error")
     problem = next(p for p in COURSE.problems("00_warmup") if p.name == "joint_error")
     assert row.mistakes == len(problem.wrong) + 1 and row.named == len(problem.wrong)
+    assert row.variants == 1 + len(problem.variants) + 2, "though both are called <lambda>"
     assert row.accepted == row.variants - 1
     assert any("a right answer earned only 0" in words for words in row.failures)
     assert row.margin_sigma < 0.0, "what claims to be right lies beyond the tolerance"

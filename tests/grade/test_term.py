@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import os
 import zipfile
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 from handmade import QUICK, ROOT
 
+from labkit.check.codec import encode
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.batch import Graded, How, grade_class
@@ -22,6 +24,7 @@ from labkit.grade.engines import students
 from labkit.grade.export import LAYOUTS, Row, as_csv, left_out, rows
 from labkit.grade.feedback import page
 from labkit.grade.gradebook import record
+from labkit.grade.limits import Limits
 from labkit.grade.lms import FILE, Known, known
 from labkit.grade.regrade import accept, moves
 from labkit.grade.results import Results
@@ -96,9 +99,9 @@ def numbers(data):
 
 def test_feedback_has_no_hidden_case(term, bundle):
     """No hidden input stands in any page, though every page says what class of case failed."""
-    cases = [c for q in bundle.data["questions"] for t in q["tests"] for c in t["cases"]]
-    hidden = {x for c in cases if c["hidden"] for x in numbers(c["args"])}
-    hidden -= {x for c in cases if not c["hidden"] for x in numbers(c["args"])}
+    cases = [case for q in bundle.questions for test in q.tests for case in test.cases]
+    hidden = {x for c in cases if c.hidden for x in numbers(encode(c.args))}
+    hidden -= {x for c in cases if not c.hidden for x in numbers(encode(c.args))}
     assert len(hidden) > 50
     text = "".join(page(r) for r in Results(term, NAME))
     assert not [x for x in hidden if x in text]
@@ -154,11 +157,12 @@ def test_regrade_says_first_and_never_lowers_unasked(course, capsys):
     assert {r.student: r.score for r in Results(course, NAME)} == {
         s: r.score for s, r in before.items()
     }
-    left = accept(course, NAME, moved, lower=False)
+    accepted = {result.student for result in accept(course, NAME, moved, lower=False)}
+    left = [m for m in moved if m.after.student not in accepted]
     assert {m.after.student for m in left} == {m.after.student for m in moved if m.by < 0}
     kept = [one for one in grade_class(course, NAME, who, how) if one.says.startswith("kept")]
     assert len(kept) == len(left)
-    assert not accept(course, NAME, moved, lower=True)
+    assert len(accept(course, NAME, moved, lower=True)) == len(moved)
     assert {r.score for r in Results(course, NAME)} == {m.after.score for m in moved}
     assert list((Results(course, NAME).folder / "old").iterdir())
 
@@ -207,10 +211,62 @@ def test_collect_from_downloads(course, tmp_path):
     assert (course.submitted / "carl" / NAME / "timestamp.txt").read_text().startswith("2026-03-01")
     assert [x for x in said if "late" in x and "hopper" in x]
     assert [x for x in said if "no student can be told" in x]
-    assert [x for x in said if "a later one is there" in x]
+    assert [x for x in said if "notebook.ipynb: not taken; notebook(3).ipynb counts" in x]
     assert [str(x) for x in collect(course, NAME, moodle) if "there already" in str(x)]
     with pytest.raises(LabkitError, match="neither a folder nor a zip"):
         list(collect(course, NAME, Path(__file__)))
+    with pytest.raises(LabkitError, match="there is no"):
+        list(collect(course, NAME, tmp_path / "none.zip"))
+
+
+def test_collect_takes_the_notebook_that_is_called_as_the_assignment(course, tmp_path):
+    """A sketch beside it is not taken for it; what came later is, whatever its number."""
+    file = "Ada_101_assignsubmission_file/{}.ipynb"
+    names = [f"{NAME}", f"{NAME}(2)", "zz-sketch-9", "zz"]
+    zipped = download(tmp_path / "a.zip", [file.format(name) for name in names])
+    said = [str(x) for x in collect(course, NAME, zipped)]
+    taken = course.submitted / "Ada" / NAME / f"{NAME}.ipynb"
+    assert taken.read_text() == file.format(f"{NAME}(2)")
+    assert f"Ada: zz.ipynb: not taken; {NAME}(2).ipynb counts" in said
+
+
+def test_collect_keeps_the_names_of_the_exchange(course, tmp_path):
+    """The exchange hands back under the name that it took; none can lead out of the folder."""
+    for who in ("ada.l@uni.org", "..", ".hidden"):
+        folder = tmp_path / "in" / f"{who}+{NAME}+2026-03-01 10:00:00 UTC"
+        folder.mkdir(parents=True)
+        (folder / f"{NAME}.ipynb").write_text(who)
+    assert [x.student for x in collect(course, NAME, tmp_path / "in")] == ["ada.l@uni.org"]
+    assert [path.name for path in course.submitted.iterdir()] == ["ada.l@uni.org"]
+
+
+def test_collect_waits_for_nothing_and_follows_nobody(course, tmp_path, monkeypatch):
+    """A pipe, a link or a huge file in a download costs its own student, in words."""
+    monkeypatch.setattr("labkit.grade.collect.Limits", lambda: Limits(notebook=1))
+    for who in ("ada", "bob", "carl"):
+        (tmp_path / "in" / f"{who}+{NAME}+2026-03-01 10:00:00 UTC").mkdir(parents=True)
+    pipe, link, huge = (path / f"{NAME}.ipynb" for path in sorted((tmp_path / "in").iterdir()))
+    os.mkfifo(pipe)
+    link.symlink_to("/etc/passwd")
+    huge.write_bytes(b" " * 2**21)
+    said = [str(x) for x in collect(course, NAME, tmp_path / "in")]
+    words = ("is not a file", "is a link or cannot be opened", "has 2 MB, the limit is 1 MB")
+    assert [word in x for word, x in zip(words, said, strict=True)] == [True] * 3
+    path = tmp_path / "big.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("Ada_1_assignsubmission_file/n.ipynb", b" " * 2**21)
+    (one,) = collect(course, NAME, path)
+    assert str(one) == "Ada: n.ipynb: not taken; the file has 2 MB, the limit is 1 MB"
+    assert not course.submitted.exists()
+
+
+def test_a_damaged_download_is_a_sentence(course, tmp_path):
+    """A zip with a broken file in it says so, and nothing of it is taken."""
+    path = download(tmp_path / "a.zip", ["Ada_1_assignsubmission_file/n.ipynb"])
+    path.write_bytes(path.read_bytes().replace(b"n.ipynbAda", b"n.ipynbBda"))
+    with pytest.raises(LabkitError, match="damaged or locked"):
+        list(collect(course, NAME, path))
+    assert not course.submitted.exists()
 
 
 def download(path, names):
@@ -228,7 +284,7 @@ def test_collect_tells_people_of_one_name_apart(course, tmp_path):
     other = [file.format("Kim", 1, "/"), file.format("Kim", 2, "/")]
     for number, names in enumerate((first, later, other)):
         said = [str(x) for x in collect(course, NAME, download(tmp_path / f"{number}.zip", names))]
-    assert any("2 students are called so" in x for x in said)
+    assert "Kim: 2 students are called so; told apart by their number" in said
     folders = {path.name for path in course.submitted.iterdir()}
     assert folders == {"Li-Wei", "Li-Wei-9", "Bob", "Kim-1", "Kim-2"}
     assert known(course, NAME)["Li-Wei-9"] == Known("moodle", "9", "Li Wei")

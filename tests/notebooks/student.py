@@ -80,8 +80,10 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
     """
     checks = json.loads((COURSE.release / name / desk.FILE).read_text(encoding="utf-8"))
     for question in checks["questions"]:
-        question["tests"] = [
-            t for t in question["tests"] if all(case["case"] != "Loop" for case in t["cases"])
+        question["tests"]["items"] = [
+            test
+            for test in question["tests"]["items"]
+            if all(case["$"] != "Loop" for case in test["cases"]["items"])
         ]
     (folder / desk.FILE).write_text(json.dumps(checks), encoding="utf-8")
     monkeypatch.chdir(folder)

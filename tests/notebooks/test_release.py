@@ -13,6 +13,8 @@ import pytest
 from courses import copied
 
 from labkit.check import question_data
+from labkit.check.codec import encode
+from labkit.check.question_codec import KINDS
 from labkit.grade.course import Course
 from labkit.grade.notebook import source_notebook
 from labkit.grade.release import FORBIDDEN, release
@@ -85,10 +87,10 @@ def test_no_hidden_case_leaves(name):
     public = json.dumps([question_data(problem.question(2019).public()) for problem in problems])
     known = np.array([*map(float, long.findall(public)), np.inf])  # but for the last digits
     for problem in problems:
-        for test in question_data(problem.question(2019))["tests"]:
-            for case in test["cases"]:
-                if case["hidden"]:
-                    numbers = set(long.findall(json.dumps(case)))
+        for test in problem.question(2019).tests:
+            for case in test.cases:
+                if case.hidden:
+                    numbers = set(long.findall(json.dumps(encode(case, KINDS))))
                     assert not {
                         x
                         for x in numbers

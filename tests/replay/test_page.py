@@ -6,7 +6,7 @@ from html.parser import HTMLParser
 import pytest
 from samples import swing
 
-from labkit.errors import OutOfRange, UnknownName
+from labkit.errors import OutOfRange, TypeMismatch, UnknownName
 from labkit.replay import (
     Dial,
     Explorer,
@@ -106,3 +106,8 @@ def test_the_widget_sends_the_files_when_asked_and_keeps_them_out_of_its_state()
     assert len(json.dumps(widget.get_state(), default=str)) < 60_000
     widget.motion = swing(1.0)
     assert widget.motion["period"] == pytest.approx(0.04)
+    for other in (motion.to_json(), motion.q):
+        with pytest.raises(TypeMismatch, match=r"what lk\.replay\.motion_of\(log, title\) gives"):
+            show(other)
+        with pytest.raises(TypeMismatch, match="motion is"):
+            widget.motion = other

@@ -1,5 +1,8 @@
 """Many runs: the same rows whoever works them through, tables, verdicts."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from scipy import stats
@@ -37,6 +40,16 @@ def test_a_dask_cluster_gives_the_same_rows_bit_for_bit(rows):
     with LocalCluster(processes=False, **quiet) as cluster:
         again = work_through(report.numbers, SMALL, dask=cluster.scheduler_address)
     assert again == rows
+
+
+def test_a_dask_cluster_that_is_not_there_is_a_sentence():
+    """At an address that is none; from the command line too, which then ends with 2."""
+    with pytest.raises(lk.LabkitError, match="no Dask scheduler at nonsense"):
+        work_through(report.numbers, SMALL, dask="nonsense")
+    command = [sys.executable, "-m", "solutions.campaign", "--dask", "nonsense"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert done.stderr.startswith("no Dask scheduler at nonsense: ")
 
 
 def test_every_way_starts_a_seed_at_the_same_place():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit import plotting
 from labkit.study import maps
 from solutions import maps as makers
 
@@ -24,12 +23,6 @@ def test_the_map_names_its_best_gains_and_says_itself_in_words():
     assert found.best == (2.0, 0.0, 1.0)
     assert "least 1 mm at Kp = 2, Kd = 0" in found.describe()
     assert "1 of 4 pairs lost the arm" in found.describe()
-
-
-def test_the_figure_marks_the_best_gains_and_yours():
-    found = maps.error_map(maps.names()[0])
-    ax = plotting.error_map(found, (3.0, 0.1))
-    assert [text.get_text() for text in ax.get_legend().get_texts()][1] == "yours"
 
 
 def test_an_unknown_map_is_a_sentence():

@@ -9,7 +9,7 @@ import pytest
 
 import labkit as lk
 from labkit import se3
-from labkit.errors import Closed, OutOfRange, UnknownName
+from labkit.errors import Closed, OutOfRange, TypeMismatch, UnknownName
 from labkit.vision.camera import BACKGROUND, CameraBlocked
 from labkit.vision.looks import joint_frames
 
@@ -246,6 +246,14 @@ def test_a_camera_inside_the_robot_says_so(world):
 def test_a_lens_that_cannot_be_is_refused(make, says):
     with pytest.raises(OutOfRange, match=says):
         make()
+
+
+def test_a_camera_is_a_lens_in_a_world():
+    with lk.Arm("left") as arm:
+        with pytest.raises(TypeMismatch, match=r"expected a World; an arm's is arm\.world"):
+            lk.Camera(arm, AWAY)
+        with pytest.raises(TypeMismatch, match=r"intrinsics is \(640, 480\) \(tuple\)"):
+            lk.Camera(arm.world, AWAY, (640, 480))
 
 
 def test_a_closed_world_is_not_photographed():

@@ -87,7 +87,14 @@ def test_the_better_of_the_two_poses_comes_first_and_their_ratio_is_told():
     assert reprojection_error(other, pixels, LENS, 0.1) > 1.0
     found = lk.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 0)
     assert found.ratio > 5.0 and found.error < 0.1
-    assert found.tilt == pytest.approx(0.8, abs=0.08)
+
+
+def test_corners_may_be_a_list_and_must_be_those_of_a_square():
+    pixels = LENS.project(lk.Tag().corners @ tilted(0.8)[:3, :3].T + tilted(0.8)[:3, 3])
+    np.testing.assert_array_equal(tag_pose(pixels.tolist(), LENS, 0.1), tag_pose(pixels, LENS, 0.1))
+    for none in (np.zeros((4, 2)), [[0, 0], [9, 9], [9, 0], [0, 9]]):
+        with pytest.raises(lk.errors.OutOfRange, match="no square has its corners at the pixels"):
+            tag_pose(none, LENS, 0.1)
 
 
 def test_seen_from_the_front_the_tilt_is_a_guess():

@@ -4,13 +4,12 @@ import numpy as np
 import pytest
 
 from labkit import se3
-from labkit.errors import OutOfRange
+from labkit.errors import NotFinite, OutOfRange, ShapeError
 from labkit.vision.estimation import (
     Estimate,
     average_pose,
     first_estimate,
     low_pass,
-    low_pass_noise,
     update,
 )
 
@@ -23,6 +22,15 @@ def test_the_average_of_poses_around_a_pose_is_that_pose():
         found = average_pose(both)
         np.testing.assert_allclose(found[:3, :3], T[:3, :3], atol=1e-12)
     np.testing.assert_allclose(average_pose([T]), T, atol=1e-12)
+
+
+def test_what_is_no_row_of_poses_has_no_average():
+    with pytest.raises(ShapeError, match=r"poses has shape .4, 4., expected .1, 4, 4."):
+        average_pose(np.eye(4))
+    with pytest.raises(OutOfRange, match=r"poses.1.'s last row is"):
+        average_pose([np.eye(4), np.ones((4, 4))])
+    with pytest.raises(NotFinite, match="poses holds nan"):
+        average_pose(np.full((2, 4, 4), np.nan))
 
 
 def test_averaging_helps_by_the_root_of_the_number():
@@ -44,7 +52,7 @@ def test_rotations_that_point_everywhere_have_no_average():
 def test_a_low_pass_helps_by_the_expected_amount(share):
     noise = np.random.default_rng(1).standard_normal((40000, 3))
     quiet = low_pass(noise, share)[200:]
-    np.testing.assert_allclose(quiet.std(axis=0), low_pass_noise(share), rtol=0.06)
+    np.testing.assert_allclose(quiet.std(axis=0), np.sqrt(share / (2.0 - share)), rtol=0.06)
 
 
 def test_a_low_pass_lags_behind_what_moves():

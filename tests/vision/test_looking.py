@@ -35,6 +35,14 @@ def test_a_look_tells_where_the_tag_is_in_the_world(scene):
     assert spread[2] > 3 * spread[0], "the camera looks down, so the height is worst"
 
 
+def test_a_believed_place_of_the_camera_may_be_a_list_and_must_be_a_pose(scene):
+    board, camera = scene
+    believed = look(camera, board.tag, EYE.tolist())
+    np.testing.assert_array_equal(believed.T_wm, look(camera, board.tag).T_wm)
+    with pytest.raises(OutOfRange, match="T_wc's last row"):
+        look(camera, board.tag, np.ones((4, 4)))
+
+
 def test_readings_come_at_the_rate_and_as_late_as_stated(scene):
     board, camera = scene
     readings = polled(lk.Lookups(camera, board.tag, rate=10, delay=0.1), 1.0)

@@ -117,3 +117,12 @@ def test_a_motion_of_joint_angles_moves_no_board():
         board = lk.Board(world, lk.Tag(), turned(0.0))
         with pytest.raises(TypeMismatch, match=r"lk\.PoseSample"):
             board.move(lk.Hold(np.zeros(7), 1.0))
+        with pytest.raises(TypeMismatch, match=r"expected a function of time; board\.place"):
+            board.move(turned(0.0))
+
+
+def test_a_board_is_a_tag_in_a_world():
+    with lk.Arm("left") as arm:
+        for world, tag in ((arm.world, 5), (arm, lk.Tag(5))):
+            with pytest.raises(TypeMismatch, match=r"a World .an arm's is arm.world. and a Tag"):
+                lk.Board(world, tag, turned(0.0))

@@ -67,9 +67,7 @@ def drop_privileges() -> None:
 
 def set_limits(limits: dict[str, Any]) -> None:
     """Limits of the kernel on processor time, memory, files and processes."""
-    memory = resource.RLIM_INFINITY
-    if limits["memory"]:
-        memory = limits["address_space"] + limits["memory"] * _MEGA
+    memory = limits["address_space"] + limits["memory"] * _MEGA
     for what, value in (
         (resource.RLIMIT_CPU, int(limits["wall"]) + 1),
         (resource.RLIMIT_AS, memory),

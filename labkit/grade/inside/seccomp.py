@@ -53,12 +53,6 @@ def supported() -> bool:
     return platform.machine() in _MACHINES
 
 
-def forbidden() -> tuple[str, ...]:
-    """The names of the calls that are refused outright."""
-    _, calls, _ = _MACHINES[platform.machine()]
-    return tuple(f"{calls} {_NEW}".split()[::2])
-
-
 def program() -> bytes:
     """The filter as the kernel's instructions."""
     arch, calls, numbers = _MACHINES[platform.machine()]

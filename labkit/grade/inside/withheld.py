@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterable
 from importlib import import_module
-from inspect import isbuiltin, isclass, isfunction
+from inspect import isclass, isfunction
 from types import FunctionType, ModuleType
 from typing import Any
 
@@ -29,7 +29,7 @@ def withhold(names: Iterable[str], question: str, student: dict[str, Any]) -> No
         student: The student's globals, where a reference may lie already.
     """
     for name in names:
-        owner, target = _find(name)
+        owner, target = find(name)
         if target is None:
             continue
         says = f"the question asks you to write {question} yourself; {name} may not be used here"
@@ -44,6 +44,8 @@ def withhold(names: Iterable[str], question: str, student: dict[str, Any]) -> No
 
 
 def _stop(owner: Any, key: str, target: Any, says: str, student: dict[str, Any]) -> None:
+    if not callable(target):
+        raise AssertionError(key)
     if isclass(target):
         try:
             made = target.__init__
@@ -59,8 +61,6 @@ def _stop(owner: Any, key: str, target: Any, says: str, student: dict[str, Any])
     for name, value in list(student.items()):
         if value is target:
             student[name] = guard
-    if not (isclass(target) or isbuiltin(target) or callable(target)):
-        raise AssertionError(key)
 
 
 def _stop_in_place(function: FunctionType, says: str) -> None:
@@ -90,7 +90,7 @@ def _guarded(function: Callable[..., Any], says: str) -> Callable[..., Any]:
     return guard
 
 
-def _find(name: str) -> tuple[Any, Any]:
+def find(name: str) -> tuple[Any, Any]:
     """What holds a dotted name, and the thing itself; None where there is no such thing."""
     parts = name.split(".")
     for cut in range(len(parts), 0, -1):

@@ -34,7 +34,7 @@ LOADED = (
     "matplotlib.pyplot",
     MAGIC,
 )
-"""What cells import that answers lean on: loaded once, before the forks.
+"""What cells import that answers lean on, loaded once, before the forks.
 
 Not more than that: each fork costs time in proportion to what is loaded.
 """
