@@ -158,7 +158,7 @@ def euler() -> HTML:
 
 def _from_rpy(angles: Sequence[float]) -> np.ndarray:
     """The orientation with this roll, pitch and yaw."""
-    x, y, z = (lk.se3.rotation_about(e, a) for e, a in zip(np.eye(3), angles, strict=True))
+    x, y, z = (lk.se3.rotation(a * e) for a, e in zip(angles, np.eye(3), strict=True))
     return z @ y @ x
 
 

@@ -103,7 +103,7 @@ def test_the_reference_says_what_the_docstrings_say(book):
     assert "Alias for field number" not in told
     assert ">Type<" not in told
     assert "(*args, **kwargs)" not in BeautifulSoup(told, "html.parser").get_text()
-    assert "follows: any function of time" in told
+    assert "are out of control: twelve times" in told
 
 
 def test_downloads_are_the_released_notebooks(book):
