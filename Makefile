@@ -6,7 +6,10 @@ INSTALL = $(BIN)/pip install --quiet --disable-pip-version-check --constraint co
 # What Debian brings, for a student, for whoever grades, for whoever tests.
 FOR_ALL := ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
 FOR_GRADING := $(FOR_ALL) bwrap:bubblewrap
-FOR_TESTS := $(FOR_GRADING) chromium,chromium-browser,google-chrome:chromium node:nodejs libatomic.so.1:libatomic1
+FOR_TESTS := $(FOR_GRADING) node:nodejs libatomic.so.1:libatomic1
+# Ubuntu's Chromium is a snap, which cannot be driven: there Playwright brings its own.
+FOR_TESTS += $(shell grep -qs '^ID=debian' /etc/os-release && echo chromium,google-chrome:chromium)
+AS_ROOT = $(filter 0,$(shell id -u))
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
 
@@ -18,7 +21,7 @@ help: ## list the verbs
 demo: for-grading .venv/.course ## release, grade a small class, build the book, say where to look
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/demo.py
 
-test: for-tests .venv/.dev lint types ## everything: style, types, all tests
+test: for-tests .venv/.dev browser lint types ## everything: style, types, all tests
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
 
 quick: for-tests .venv/.dev ## the quick tests, under two minutes
@@ -39,7 +42,7 @@ book: .venv/.course ## build the book: book/_build/html/index.html
 book-zip: .venv/.course build/campaign.json ## the book as one file to hand out
 	@$(BIN)/python tools/build_book.py --zip
 
-book-pdf: for-tests .venv/.course ## the book to print
+book-pdf: for-tests .venv/.dev browser ## the book to print
 	@$(BIN)/python tools/build_book.py --pdf
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)
@@ -52,7 +55,7 @@ campaign: .venv/.course ## every controller on every task: build/campaign.json
 build/campaign.json: # the book to hand out has the films
 	@$(BIN)/python -m solutions.campaign
 
-bench: .venv/.dev ## measure speeds as ratios: build/bench.json
+bench: for-tests .venv/.dev browser ## measure speeds as ratios: build/bench.json
 	@$(BIN)/python -m bench
 
 tag-bench: .venv/.course ## precision of the tag sensor; SEED=n
@@ -78,7 +81,7 @@ clean: ## forget everything that was made
 
 # Environments: a student's, an instructor's, a developer's, each one more than the one before.
 
-.PHONY: for-all for-grading for-tests
+.PHONY: for-all for-grading for-tests browser
 for-all:
 	@sh tools/need.sh $(FOR_ALL)
 
@@ -87,6 +90,9 @@ for-grading:
 
 for-tests:
 	@sh tools/need.sh $(FOR_TESTS)
+
+browser: .venv/.dev
+	@$(BIN)/python tools/chromium.py >/dev/null 2>&1 || $(BIN)/playwright install $(if $(AS_ROOT),--with-deps) chromium
 
 .venv/.made: | for-all
 	@echo "making .venv with $$(sh tools/find_python.sh)"

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import labkit as lk
 from labkit.replay import Motion, motion_html, shared_files
+from tools.chromium import program
 
 TIMES = 5
 BOOK = Path("book/_build/html/index.html")
-CHROMIUM = ("chromium", "chromium-browser", "google-chrome")
 
 
 def motion():
@@ -41,9 +41,6 @@ def measure():
     """
     from playwright.sync_api import sync_playwright
 
-    program = next(filter(None, map(shutil.which, CHROMIUM)), None)
-    if program is None:
-        raise RuntimeError("chromium is missing: apt-get install chromium")
     flags = [
         "--no-sandbox",
         "--use-gl=angle",
@@ -51,7 +48,7 @@ def measure():
         "--enable-unsafe-swiftshader",
     ]
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=flags)
+        browser = playwright.chromium.launch(executable_path=program(), args=flags)
         motion_ready = _best(
             browser, page(Path(folder)).as_uri(), "[data-ready]", "performance.now()"
         )

@@ -1,13 +1,13 @@
 """What the tests share: hypothesis that repeats itself, states drawn from a seed, a browser."""
 
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
 import labkit as lk
+from tools.chromium import program
 
 settings.register_profile(
     "labkit",
@@ -18,7 +18,6 @@ settings.register_profile(
 )
 settings.load_profile("labkit")
 
-CHROMIUM = "/usr/bin/chromium"
 ARGUMENTS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
@@ -73,9 +72,8 @@ def playwright():
 
 @contextmanager
 def browser(playwright, *flags):
-    """Debian's Chromium, closed at the end."""
-    assert Path(CHROMIUM).exists(), "Chromium is missing: apt-get install chromium"
-    chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=[*ARGUMENTS, *flags])
+    """Chromium, closed at the end."""
+    chromium = playwright.chromium.launch(executable_path=program(), args=[*ARGUMENTS, *flags])
     yield chromium
     chromium.close()
 

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import ast
-import hashlib
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations
 from pathlib import Path
 from statistics import mean, median
@@ -23,8 +22,7 @@ def report(
     assignment: str,
     results: Sequence[Result],
     problems: Mapping[str, Problem],
-    *,
-    names: bool = False,
+    called: Callable[[str], str],
 ) -> str:
     """The report, in Markdown.
 
@@ -32,9 +30,9 @@ def report(
         assignment: Which.
         results: Of the class.
         problems: By name, for what to say in the lecture.
-        names: Whether students are named; otherwise they have pseudonyms.
+        called: What a student is called in it: ``str``, or `pseudonyms`.
     """
-    who = {r.student: r.student if names else pseudonym(r.student) for r in results}
+    who = {r.student: called(r.student) for r in results}
     graded = [r for r in results if not r.rejected]
     lines = [f"# {assignment}: what the class understood", ""]
     lines += _marks(graded, len(results))
@@ -49,18 +47,13 @@ def report(
     return "\n".join(lines) + "\n"
 
 
-def pseudonym(student: str) -> str:
-    """A name that stays the same and says nothing."""
-    return f"S-{hashlib.sha256(student.encode()).hexdigest()[:6]}"
-
-
-def for_jplag(results: Sequence[Result], folder: Path) -> int:
+def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
     """Write the answers as JPlag wants them, a folder for each student; returns how many."""
     count = 0
     for result in results:
         for question in result.questions:
             if question["source"] and question["outcome"] != "not attempted":
-                path = folder / pseudonym(result.student) / f"{question['name']}.py"
+                path = folder / called(result.student) / f"{question['name']}.py"
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(question["source"], encoding="utf-8", errors="replace")
                 count += 1

@@ -66,7 +66,7 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
     size = sum(page.stat().st_size for page in pages) / 1e6
     yield clock.says(f"feedback: {len(pages)} pages, {size:.0f} MB", each=len(pages))
     problems = {p.name: p for p in stage.problems(name)}
-    write(stage.root / "report.md", report(name, results, problems))
+    write(stage.root / "report.md", report(name, results, problems, str))
     yield clock.says(f"class report: report.md, {len(list(common_failures(results)))} to doubt")
     marks = list(rows(stage, name))
     for layout in LAYOUTS_TO_TRY:

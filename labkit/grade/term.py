@@ -10,13 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
-from . import lms
+from . import lms, pseudonyms
 from .course import PUBLIC_SEED, Course
 from .release import release
 from .results import write
 
-NAMED = ("submitted", "autograded", "feedback", "results", "gradebook.db", lms.FILE)
-"""Where students' names stand; all of it is ignored by git."""
+NAMED = (
+    *("submitted", "autograded", "feedback", "results", "gradebook.db"),
+    *(lms.FILE, pseudonyms.FILE),
+)
+"""Where students' names stand, or what leads to them; all of it is ignored by git."""
 
 
 def _private(course: Course) -> Path:

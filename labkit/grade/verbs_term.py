@@ -128,6 +128,7 @@ def regrade(args: argparse.Namespace) -> int:
 def class_report(args: argparse.Namespace) -> int:
     """Write the report."""
     from .class_report import for_jplag, report
+    from .pseudonyms import pseudonyms
     from .results import Results
 
     here = course_with(args)
@@ -135,9 +136,12 @@ def class_report(args: argparse.Namespace) -> int:
     if not results:
         raise nobody(args.name, None)
     problems = {p.name: p for p in here.problems(args.name)}
-    _out(report(args.name, results, problems, names=args.names), args.to)
+    pseudonym = pseudonyms(here)
+    _out(report(args.name, results, problems, str if args.names else pseudonym), args.to)
     if args.jplag:
-        print(f"{for_jplag(results, args.jplag)} answers in {args.jplag}", file=sys.stderr)
+        print(
+            f"{for_jplag(results, args.jplag, pseudonym)} answers in {args.jplag}", file=sys.stderr
+        )
     return 0
 
 

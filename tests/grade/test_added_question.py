@@ -192,4 +192,4 @@ def test_a_question_without_points_is_reported_as_void(marked):
     course, _ = marked
     (one, *_) = Results(course, NAME)
     questions = tuple(dict(q, points=0.0, earned=0.0) for q in one.questions)
-    assert "| voided |" in report(NAME, [replace(one, questions=questions)], {})
+    assert "| voided |" in report(NAME, [replace(one, questions=questions)], {}, str)

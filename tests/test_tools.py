@@ -1,4 +1,4 @@
-"""The tools that look for Python and for Debian's packages, on machines that lack them."""
+"""The tools that look for Python, packages and a browser, on machines that lack them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import sys
 
 import pytest
 from handmade import ROOT
+
+from tools import chromium
 
 
 @pytest.fixture
@@ -69,3 +71,19 @@ def test_what_is_missing_is_installed_for_root_and_named_for_others(machine):
     done = machine(*wanted)
     assert done.returncode == 1
     assert done.stderr.rstrip().endswith("sudo apt-get install -y bubblewrap")
+
+
+def test_chromium_is_the_systems_or_playwrights_but_no_snap(tmp_path, monkeypatch):
+    """A snap is passed over for the one that Playwright brought; without any, the ways are said."""
+    snap = tmp_path / "snap" / "bin" / "chromium"
+    own = tmp_path / "own" / "chromium-1200" / "chrome-linux64" / "chrome"
+    monkeypatch.setenv("PATH", str(snap.parent))
+    monkeypatch.setenv("PLAYWRIGHT_BROWSERS_PATH", str(tmp_path / "own"))
+    for path in (snap, own):
+        path.parent.mkdir(parents=True)
+    snap.write_text("")
+    snap.chmod(0o755)
+    with pytest.raises(SystemExit, match="playwright install"):
+        chromium.program()
+    own.write_text("")
+    assert chromium.program() == str(own)
