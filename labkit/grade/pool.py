@@ -159,7 +159,7 @@ def through_dask(jobs: Sequence[Job], address: str, *, isolated: bool = True) ->
 
     Args:
         jobs: What to grade.
-        address: Of the scheduler, such as "tcp://127.0.0.1:8786"; take loopback or TLS.
+        address: Of the scheduler, such as ``tcp://127.0.0.1:8786``; take loopback or TLS.
         isolated: Whether they use sandboxes.
 
     Raises:

@@ -111,7 +111,7 @@ def dask_client(address: str) -> Any:
     """A client of a Dask scheduler, to be closed after use.
 
     Args:
-        address: Such as "tcp://127.0.0.1:8786"; take loopback or TLS.
+        address: Such as ``tcp://127.0.0.1:8786``; take loopback or TLS.
 
     Raises:
         LabkitError: distributed is missing, or nobody answers there.
