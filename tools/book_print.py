@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import logging
 import re
-import shutil
 import subprocess
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
@@ -19,6 +18,7 @@ from urllib.parse import unquote, urldefrag
 
 from book_pages import BOOK, HTML, ROOT, in_order
 from bs4 import BeautifulSoup, Tag
+from chromium import program
 
 PRINTING = (
     "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
@@ -49,9 +49,7 @@ def print_pdf(
     """
     from pypdf import PdfReader, PdfWriter
 
-    browser = shutil.which("chromium") or shutil.which("google-chrome")
-    if browser is None:
-        raise SystemExit("printing needs Chromium: apt-get install chromium")
+    browser = program()
     logging.getLogger("pypdf").setLevel(logging.ERROR)  # Chromium's own table is one short
     target.parent.mkdir(exist_ok=True)
     pages = list(pages or in_order())
