@@ -32,6 +32,8 @@ first time only, and opens Jupyter in your browser.</li>
 
 STUDENT_TOOLS = ("find_python.sh", "need.sh")
 """What ``tools/start.sh`` calls."""
+GRADER = "labkit/grade"
+"""What students' labkit comes without."""
 
 
 def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
@@ -73,18 +75,17 @@ def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
 
 
 def _wheel(root: Path, to: Path) -> None:
-    command = [
-        sys.executable,
-        "-m",
-        "pip",
-        "wheel",
-        "--quiet",
-        "--no-deps",
-        "-w",
-        str(to),
-        str(root),
-    ]
-    done = subprocess.run(command, capture_output=True, text=True)
+    """Build it from a copy: beside its sources lies what earlier builds left, gone modules too."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder)
+        unwanted = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(root / "labkit", copy / "labkit", ignore=unwanted)
+        shutil.rmtree(copy / GRADER)
+        for name in ("pyproject.toml", "README.md", "LICENSE"):
+            shutil.copy(root / name, copy)
+        words = ["wheel", "--quiet", "--no-deps", "-w", str(to), str(copy)]
+        command = [sys.executable, "-m", "pip", *words]
+        done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
         last = (done.stderr.strip().splitlines() or ["pip gave no reason"])[-1]
         raise LabkitError(f"labkit's wheel could not be built: {last}")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..errors import LabkitError
 from .course import Course
-from .handout import STUDENT_TOOLS
+from .handout import GRADER, STUDENT_TOOLS
 from .release import FORBIDDEN
 
 FOR_STUDENTS = (
@@ -23,7 +23,6 @@ FOR_STUDENTS = (
     "constraints.txt",
     "pyproject.toml",
 )
-NOT_FOR_STUDENTS = ("labkit/grade/",)
 
 README = """\
 # Trajectory tracking with Baxter: the notebooks
@@ -52,7 +51,7 @@ def export_course(course: Course, to: Path) -> tuple[Path, Path]:
     files = _tracked(course.root)
     student, private = to / "student", to / "private"
     for name in files:
-        if name.startswith(FOR_STUDENTS) and not name.startswith(NOT_FOR_STUDENTS):
+        if name.startswith(FOR_STUDENTS) and not name.startswith(f"{GRADER}/"):
             _copy(course.root / name, student / name)
         _copy(course.root / name, private / name)
     (student / "README.md").write_text(README, encoding="utf-8")
