@@ -122,8 +122,6 @@ class Motion:
             "side": self.side,
             "start": round(float(times[0]), 6),
             "period": round(float(times[1] - times[0]), 9),
-            "error_name": "Tip error",
-            "error_unit": "m",
             **packed,
             "ghosts": ghosts,
         }

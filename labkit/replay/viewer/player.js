@@ -146,21 +146,19 @@ export class Player {
   /** Series for the plots: error of every arm, torques of the first. */
   curves() {
     const { motion } = this;
-    const away = (q) => q.map((row, i) => {
+    const away = (q) => q.map((row, i) => {  // in millimetres
       const p = tip(this.robot, motion.side, row).p;
-      return Math.hypot(...p.map((x, k) => x - motion.target[i][k]));
+      return 1000 * Math.hypot(...p.map((x, k) => x - motion.target[i][k]));
     });
-    const metres = motion.error_unit === "m";
-    const scale = metres ? 1000 : 1;
     const found = [];
-    const main = motion.error?.map(([e]) => e) ?? (motion.target && away(motion.q));
+    const main = motion.error?.map(([e]) => 1000 * e) ?? (motion.target && away(motion.q));
     if (main) {
-      const series = [{ name: motion.label, values: main.map((e) => scale * e), colour: "var(--lk-trace)", width: 2.4 }];
-      if (motion.target && metres) Object.entries(motion.ghosts).forEach(([name, q], k) => series.push({
-        name, values: away(q).map((e) => scale * e), dash: DASHES[1 + k], colour: `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}` }));
+      const series = [{ name: motion.label, values: main, colour: "var(--lk-trace)", width: 2.4 }];
+      if (motion.target) Object.entries(motion.ghosts).forEach(([name, q], k) => series.push({
+        name, values: away(q), dash: DASHES[1 + k], colour: `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}` }));
       this.error = series[0].values;
-      found.push({ title: `${motion.error_name} [${metres ? "mm" : motion.error_unit}]`, series, zero: Math.min(...main) >= 0,
-        least: metres ? 0.2 : 0.002 });  // a perfect run shows as a flat line, not as its rounding
+      // At least 0.2 mm high: a perfect run shows as a flat line, not as its rounding.
+      found.push({ title: "Tip error [mm]", series, zero: Math.min(...main) >= 0, least: 0.2 });
     } else this.error = null;
     if (motion.tau) found.push({
       title: "Joint torque [N m]",
@@ -201,7 +199,7 @@ export class Player {
     const words = [`t = ${this.time.toFixed(2)} s`];
     if (this.error) {
       const e = at(motion, this.error.map((x) => [x]), this.time)[0];
-      words.push(`error ${motion.error_unit === "m" ? `${e.toFixed(1)} mm` : `${e.toFixed(3)} ${motion.error_unit}`}`);
+      words.push(`error ${e.toFixed(1)} mm`);
     }
     if (motion.tau) {
       const tau = at(motion, motion.tau, this.time);
