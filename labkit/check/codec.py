@@ -55,7 +55,7 @@ GIVEN = (
     Trials,
     Runner,
 )
-"""What a student's function may be given on top: values, sent as what they are made of."""
+"""What a student's function may be given on top, values that are sent as what they are made of."""
 
 _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
     paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
