@@ -96,15 +96,7 @@ def as_each(x: Any, n: int, name: str) -> Array:
 
 
 def as_gains(x: Any, n: int, name: str) -> Array:
-    """Read ``x`` as ``n`` gains, none of them negative; one number serves all.
-
-    Args:
-        x: A number, or a vector of ``n``.
-        n: How many.
-        name: What to call them in the sentence, if they do not fit.
-
-    Returns:
-        Shape (n,), read-only.
+    """Read ``x`` as ``n`` gains: `as_each`, of which none is negative.
 
     Raises:
         ShapeError: There are too few or too many.

@@ -67,7 +67,11 @@ class Circle:
         lock_vectors(self, 3, "start", "centre")
         as_number(self.turns, "turns")
         if self.radius < 1e-9:
-            raise OutOfRange("the start lies on the circle's axis, so the circle has no radius")
+            x, y = self.centre[:2]
+            raise OutOfRange(
+                f"the start lies on the circle's axis (x = {x:g}, y = {y:g}), so the circle has no "
+                "radius; move the start or the centre sideways"
+            )
 
     @cached_property
     def _spoke(self) -> Array:

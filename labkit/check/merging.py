@@ -100,7 +100,9 @@ def _cells_for(mine: Cells, name: str) -> Cells:
 def _is_stub(source: str) -> bool:
     """Whether a cell holds nothing but functions that say that they are still to be written."""
     try:
-        written = [x for x in ast.parse(source).body if not isinstance(x, ast.Import)]
+        written = [
+            x for x in ast.parse(source).body if not isinstance(x, ast.Import | ast.ImportFrom)
+        ]
     except SyntaxError:
         return False
     return all(isinstance(x, ast.FunctionDef) and _is_to_be_written(x) for x in written)

@@ -68,8 +68,9 @@ def feedback(args: argparse.Namespace) -> int:
         raise nobody(args.name, args.student)
     made = write_feedback(here, args.name, results, comments(here, args.name))
     size = sum(path.stat().st_size for path in made) / 1e6
-    print(f"{len(made)} pages, {size:.1f} MB, in {here.root / 'feedback'}")
-    if sum([for_exchange(here, args.name, page) for page in made]):
+    print(f"pages in {here.root / 'feedback'}: {len(made)}, {size:.1f} MB")
+    came_through = [for_exchange(here, args.name, page) for page in made]
+    if any(came_through):
         print(f"back to the exchange: nbgrader release_feedback {args.name}")
     if args.moodle:
         count = moodle_zip(here, args.name, made, args.moodle)
