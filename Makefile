@@ -13,7 +13,7 @@ AS_ROOT = $(filter 0,$(shell id -u))
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
 
-.PHONY: help demo test quick lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test quick soak lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -25,7 +25,10 @@ test: for-tests .venv/.dev browser lint types ## everything: style, types, all t
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
 
 quick: for-tests .venv/.dev ## the quick tests, under two minutes
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow" --ignore tests/book --ignore tests/replay
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow and not soak" --ignore tests/book --ignore tests/replay
+
+soak: for-tests .venv/.dev ## the long suites, whole: fuzz, attacks, kills, large classes
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup -m "soak or not soak" tests/soak
 
 lab: .venv/.student ## open the students' notebooks
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments

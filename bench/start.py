@@ -11,14 +11,32 @@ imported = perf_counter()
 labkit.Arm()
 print(imported - start, perf_counter() - imported)
 """
+ENGINES = """
+from time import perf_counter
+start = perf_counter()
+import numpy, pybullet, pinocchio
+print(perf_counter() - start)
+"""
 TIMES = 7
 
 
 def measure():
-    """Seconds to import labkit and to make an arm, the best of several."""
-    rows = [
-        subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)
-        for _ in range(TIMES)
-    ]
-    imports, arms = zip(*(map(float, row.stdout.split()) for row in rows), strict=True)
-    return {"import_s": min(imports), "arm_ready_s": min(arms)}
+    """Seconds to import labkit and to make an arm, best of several; the import over its engines."""
+    imports, arms, engines = [], [], []
+    for _ in range(TIMES):
+        imported, arm = _printed(PROGRAM)
+        imports.append(imported)
+        arms.append(arm)
+        engines += _printed(ENGINES)
+    return {
+        "import_s": min(imports),
+        "arm_ready_s": min(arms),
+        "import_vs_engines": min(imports) / min(engines),
+    }
+
+
+def _printed(program):
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+    return [float(word) for word in done.stdout.split()]

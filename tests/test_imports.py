@@ -34,7 +34,6 @@ LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 # What simulates, and what plans and sees for it.
 SIMULATE = {"arm", "body", "world", "scene", "vision.camera", "vision.board", "vision.looks"}
 MODEL = {"kinematics", "model", "baseline"}
-ENGINES = "numpy, pybullet, pinocchio"
 DRAW = {"plotting", "replay", "vision.sensor_plots", "interactive"}
 SEE = {f"vision.{name}" for name in ("camera", "tags", "detection", "calibration", "edges")}
 
@@ -113,7 +112,11 @@ def test_every_name_in_all_exists():
 def python(program):
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, env=environment
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        timeout=600,
+        env=environment,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout
@@ -144,13 +147,3 @@ def test_importing_labkit_loads_no_drawing_nor_notebook_package():
 def test_drawing_a_run_does_not_load_what_analyses_a_loop():
     """python-control takes longer to load than all that draws."""
     assert "control" not in python("import sys, labkit.plotting; print(*sys.modules)").split()
-
-
-def test_importing_labkit_costs_little_more_than_its_engines():
-    """How long it takes in seconds, and how soon an arm is ready, `make bench` says."""
-    clock = "import time; t = time.perf_counter(); import {}; print(time.perf_counter() - t)"
-    pairs = [
-        (float(python(clock.format("labkit"))), float(python(clock.format(ENGINES))))
-        for _ in range(5)
-    ]
-    assert min(ours / theirs for ours, theirs in pairs) <= 1.5

@@ -6,7 +6,6 @@ It shares no process with the student's code; what comes back is plain data, rea
 from __future__ import annotations
 
 import builtins
-import re
 import time
 from collections.abc import Mapping
 from contextlib import suppress
@@ -18,6 +17,7 @@ from ..check.codec import decode_answer, encode
 from ..check.mark import Failed, Outcome, TestResult, Tried, Verdict, mark, try_public
 from ..check.question import Question
 from . import seen
+from .clean import clean_line
 from .inside.wire import Gone, TooLate, TooMuch
 from .limits import Limits
 from .plan import Plan, plan
@@ -91,7 +91,7 @@ def grade(
 
 def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = b"") -> Result:
     """The result of a submission that cannot be graded."""
-    return replace(_ungraded(student, bundle, level, data), rejected=clean(why))
+    return replace(_ungraded(student, bundle, level, data), rejected=clean_line(why))
 
 
 def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
@@ -125,13 +125,6 @@ def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]
     if "cells" not in found:
         return str(found.get("rejected", "the file cannot be read"))
     return list(found["cells"])
-
-
-def clean(text: str, most: int = 500) -> str:
-    """Somebody else's text as one short line without control characters."""
-    return re.sub(
-        r"\s+", " ", re.sub(r"[\x00-\x1f\x7f-\x9f\u2028-\u202e\ud800-\udfff]", " ", text)
-    )[:most].strip()
 
 
 class Ask:
@@ -179,7 +172,7 @@ class Ask:
             raise Failed("SystemExit", "SystemExit: it ended its own process") from None
         if "is" in reply:
             return decode_answer(reply["is"])
-        kind, says = str(reply.get("raised")), clean(str(reply.get("says", "")))
+        kind, says = str(reply.get("raised")), clean_line(str(reply.get("says", "")))
         if kind == "TimeUp":
             self.lost += 1
             kind = "TimeoutError"
@@ -229,13 +222,13 @@ def _verdict(question: Question, verdict: Verdict, todo: Plan) -> dict[str, Any]
                 "name": t.name,
                 "weight": t.weight,
                 "outcome": t.outcome.value,
-                "says": clean(t.says),
+                "says": clean_line(t.says),
                 "hidden": t.hidden,
             }
             for t in verdict.tests
         ],
         "mistake": verdict.mistake and {"name": verdict.mistake.name, "says": verdict.mistake.says},
-        "notes": [clean(note) for note in todo.notes.get(verdict.name, ())],
+        "notes": [clean_line(note) for note in todo.notes.get(verdict.name, ())],
         "source": todo.source(verdict.name),
         **_seen(question, verdict),
     }

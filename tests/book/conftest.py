@@ -41,7 +41,7 @@ def visit(book, chromium):
         context = browser.new_context(viewport=size, **options)
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(20_000)
+        page.set_default_timeout(120_000)  # a guard against hanging only
         page.on("console", lambda m: m.type == "error" and seen.append(m.text))
         page.on("pageerror", lambda e: seen.append(str(e)))
         page.on("requestfailed", lambda r: r.failure == ABORTED or seen.append(f"missing: {r.url}"))

@@ -64,9 +64,9 @@ def test_most_parts_are_used_further_down(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_solved_in_a_kernel(name, tmp_path):
-    """Solved, it gives full marks within 20 s, 1 GB and 1 MB; every picture has words."""
-    notebook, seconds, megabytes = run_kernel(name, solved(name), tmp_path)
-    assert seconds < 20.0 and megabytes < 1024.0
+    """Solved, it returns full marks in 1 GB of memory and a file of 1 MB; pictures have words."""
+    notebook, megabytes = run_kernel(name, solved(name), tmp_path)
+    assert megabytes < 1024.0
     size = len(json.dumps(notebook).encode())
     assert size < 1_000_000
     replays = 0
@@ -87,7 +87,7 @@ def test_solved_in_a_kernel(name, tmp_path):
 @pytest.mark.parametrize("name", NAMES)
 def test_released_in_a_kernel(name, tmp_path):
     """As it is handed out, it runs, earns nothing and writes nothing to stderr."""
-    notebook, _, _ = run_kernel(name, {}, tmp_path)
+    notebook, _ = run_kernel(name, {}, tmp_path)
     for cell in notebook.cells:
         assert not [o.text for o in cell.get("outputs", ()) if o.get("name") == "stderr"]
         if cell.metadata["lab"] == "check":

@@ -32,7 +32,7 @@ def node():
             console.log(JSON.stringify({expression}));"""
         done = subprocess.run(
             ["node", "--input-type=module", "-e", program],
-            input=json.dumps(x), capture_output=True, text=True, timeout=60, check=False,
+            input=json.dumps(x), capture_output=True, text=True, timeout=600, check=False,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
         return json.loads(done.stdout)
