@@ -54,7 +54,8 @@ def nbgrader_api(course: Course, *, own_engine: bool = False) -> Any:
     settings.CourseDirectory.root = str(course.root)
     settings.Application.log_level = logging.CRITICAL
     if own_engine:
-        settings.pop("Autograde", None)
+        for steps in ("sanitize_preprocessors", "autograde_preprocessors"):
+            settings.Autograde.pop(steps, None)
     return NbGraderAPI(CourseDirectory(config=settings), config=settings)
 
 
@@ -82,8 +83,7 @@ def is_name(student: str) -> bool:
 
 
 def _folders(course: Course, name: str) -> list[str]:
-    found = course.submitted.glob(f"*/{name}")
-    return sorted(p.parent.name for p in found if p.is_dir() or p.is_symlink())
+    return sorted(p.name for p in course.submitted.glob("*") if os.path.lexists(p / name))
 
 
 def grade_with_nbgrader(course: Course, name: str, student: str) -> Mark:

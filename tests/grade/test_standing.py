@@ -103,7 +103,7 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
     """Exit 0 and no word on stderr, but for a file that was rejected: its 0 is explained."""
     for layout in LAYOUTS:
-        code, out, err = verb(marked, capsys, "export", "--layout", layout)
+        code, _, err = verb(marked, capsys, "export", "--layout", layout)
         assert code == 0
         assert "carl: rejected: the file is empty" in err.splitlines()
         assert not [x for x in err.splitlines() if x.startswith("no mark")]
