@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import os
 import sys
@@ -24,7 +25,7 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    how well the checks tell right from wrong
 """
-FOR_INSTRUCTORS = ("nbgrader", "jupytext")
+FOR_INSTRUCTORS = ("nbgrader", "jupytext", "msgspec", "sqlalchemy")
 """Packages that a student's environment does without."""
 
 
@@ -65,10 +66,12 @@ def parser() -> argparse.ArgumentParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; a mistake of the caller's ends in one sentence and exit code 2."""
     args = parser().parse_args(argv)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # a sign that a terminal lacks ends no verb
+        sys.stdout.reconfigure(errors="backslashreplace")
     try:
         return int(args.do(args))
     except LabkitError as error:
-        print(f"labkit {args.verb}: {error}", file=sys.stderr)
+        print(f"labkit {args.verb}: {_printable(str(error))}", file=sys.stderr)
         return 2
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
@@ -84,9 +87,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
     except OSError as error:  # a folder that is not there, a disk that is full
-        where = "" if error.filename is None else f"{error.filename}: "
+        where = "" if error.filename is None else _printable(f"{error.filename}: ")
         print(f"labkit {args.verb}: {where}{error.strerror or error}", file=sys.stderr)
         return 2
+
+
+def _printable(text: str) -> str:
+    """A sentence without what a terminal would obey: somebody's file may be called so."""
+    return "".join(x if x.isprintable() or x == "\n" else "\ufffd" for x in text)
 
 
 def _submit_check(args: argparse.Namespace) -> int:

@@ -1,6 +1,8 @@
 """Marks as tables: nbgrader's, one column per question, and what Canvas and Moodle read.
 
 Marks come from the gradebook, so what was changed by hand and what late rules took away counts.
+Where none is there, or where it does not say what the result says, the cell stays empty: nobody is
+given a 0 that nobody earned.
 
 Canvas: the first columns are Student, ID, SIS User ID, SIS Login ID, Section, in this order; a row
 whose first cell holds "Points Possible" gives full marks; a student is known by ID, else by SIS ID,
@@ -21,12 +23,17 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
+from .clean import clean_line
 from .course import Course
-from .gradebook import open_gradebook
+from .each import Failed
+from .engines import students
+from .gradebook import automatic, open_gradebook
 from .lms import Known, known
+from .results import Result
+from .standing import grade_again, standing
 
 
 @dataclass(frozen=True)
@@ -34,18 +41,20 @@ class Row:
     """One student's marks for an assignment.
 
     Attributes:
-        student: The name of his folder.
+        student: The name of the student's folder.
         first: First name, if the gradebook knows it.
         last: Last name.
         email: Address.
-        lms: His number in the learning platform, if the gradebook knows it.
-        known: How the platform knows him from which his work was collected, or None.
+        lms: Number in the learning platform, if the gradebook knows it.
         when: When it came in, as text.
         due: When it was due, as text.
-        questions: Points of each question, with their maximum.
-        raw: Points before late rules.
+        questions: Points of each question, with their maximum; none where no mark counts.
+        raw: Points before late rules; None where no mark counts.
         penalty: What late rules take.
         points: What full marks would be.
+        known: How the platform knows the student from which the work was collected, or None.
+        missing: Why no mark counts, and what to do; empty where one does.
+        remark: What else should be known of the mark, such as that the file was rejected.
     """
 
     student: str
@@ -56,52 +65,100 @@ class Row:
     when: str
     due: str
     questions: dict[str, tuple[float, float]]
-    raw: float
+    raw: float | None
     penalty: float
     points: float
     known: Known | None = None
+    missing: str = ""
+    remark: str = ""
 
     @property
-    def score(self) -> float:
-        """What counts."""
-        return round(max(0.0, self.raw - self.penalty), 4)
+    def score(self) -> float | str:
+        """What counts; an empty cell where nothing does."""
+        return "" if self.raw is None else round(max(0.0, self.raw - self.penalty), 4)
+
+    @property
+    def marks(self) -> tuple[float | str, float | str, float | str]:
+        """Points before late rules, what these take, and what counts; or three empty cells."""
+        return ("", "", "") if self.raw is None else (self.raw, self.penalty, self.score)
 
     @property
     def login(self) -> str:
-        """His login: the name of his folder, unless that was made from a download."""
+        """The login: the name of the folder, unless that was made from a download."""
         return "" if self.known else self.student
 
     def number(self, system: str) -> str:
-        """His number in a platform, empty if it is not known."""
+        """The student's number in a platform, empty if it is not known."""
         return self.known.number if self.known and self.known.system == system else ""
 
 
 def rows(course: Course, assignment: str) -> Iterator[Row]:
-    """Everybody's marks, in order of name."""
-    by_platform = known(course, assignment)
+    """Everybody who handed in, was graded or is in the gradebook, in order of name."""
+    by_platform, handed_in = known(course, assignment), set(students(course, assignment))
+    stand = {one.student: one for one in standing(course, assignment)}
+    full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
-        for submission in sorted(
-            book.assignment_submissions(assignment), key=lambda s: str(s.student.id)
-        ):
-            who = submission.student
-            grades = [grade for notebook in submission.notebooks for grade in notebook.grades]
-            yield Row(
-                student=str(who.id),
-                first=who.first_name or "",
-                last=who.last_name or "",
-                email=who.email or "",
-                lms=who.lms_user_id or "",
-                when=str(submission.timestamp or ""),
-                due=str(submission.assignment.duedate or ""),
-                questions={
-                    grade.name.removesuffix("-check"): (float(grade.score), float(grade.max_score))
-                    for grade in grades
-                },
-                raw=float(submission.score),
-                penalty=float(submission.late_submission_penalty or 0.0),
-                points=float(submission.max_score),
-                known=by_platform.get(str(who.id)),
+        there = {str(s.student.id): s for s in book.assignment_submissions(assignment)}
+        for student in sorted(stand.keys() | there.keys()):
+            submission, one = there.get(student), stand.get(student)
+            row = Row(student, "", "", "", "", "", "", {}, None, 0.0, full)
+            row = row if submission is None else _marked(row, submission)
+            missing, remark = _missing(assignment, student, submission, one), ""
+            if missing:
+                row = replace(row, questions={}, raw=None, penalty=0.0, missing=missing)
+            elif isinstance(one, Result) and one.rejected:
+                remark = f"rejected: {one.rejected}"
+            elif student not in handed_in:
+                remark = "nothing of theirs is in submitted/; the mark stays as it was"
+            yield replace(row, known=by_platform.get(student), remark=remark)
+
+
+def _marked(row: Row, submission: Any) -> Row:
+    """A row with what the gradebook says."""
+    who = submission.student
+    names = (who.first_name, who.last_name, who.email, who.lms_user_id)
+    first, last, email, lms = (clean_line(name or "") for name in names)
+    grades = [grade for notebook in submission.notebooks for grade in notebook.grades]
+    return replace(
+        row,
+        first=first,
+        last=last,
+        email=email,
+        lms=lms,
+        when=str(submission.timestamp or ""),
+        due=str(submission.assignment.duedate or ""),
+        questions={
+            grade.name.removesuffix("-check"): (float(grade.score), float(grade.max_score))
+            for grade in grades
+        },
+        raw=float(submission.score),
+        penalty=float(submission.late_submission_penalty or 0.0),
+        points=float(submission.max_score),
+    )
+
+
+def _missing(assignment: str, student: str, submission: Any, one: Result | Failed | None) -> str:
+    """Why a student has no mark, and what to do; empty where the gradebook has it."""
+    if isinstance(one, Failed):
+        return one.why
+    if submission is None:
+        return f"graded and not in the gradebook; {grade_again(assignment, student)}"
+    grades = [grade for notebook in submission.notebooks for grade in notebook.grades]
+    for grade in grades:
+        score = grade.auto_score if one is None else automatic(one, grade.name)
+        if grade.auto_score != score:
+            return (
+                f"the result gives {_said(score)} for {grade.name.removesuffix('-check')}, the "
+                f"gradebook {_said(grade.auto_score)}; {grade_again(assignment, student)}"
             )
+    none = [g.name for g in grades if g.auto_score is None and g.manual_score is None]
+    if none:
+        return f"no mark for {', '.join(none)}; give it by hand, in formgrader"
+    return ""
+
+
+def _said(score: float | None) -> str:
+    return "nothing" if score is None else f"{score:g}"
 
 
 def nbgrader(assignment: str, marks: Sequence[Row]) -> list[list[Any]]:
@@ -110,22 +167,21 @@ def nbgrader(assignment: str, marks: Sequence[Row]) -> list[list[Any]]:
     table: list[list[Any]] = [[*head.split(), "late_submission_penalty", "score", "max_score"]]
     for r in marks:
         table.append(
-            [assignment, r.due, r.when, r.student, r.last, r.first, r.email]
-            + [r.raw, r.penalty, r.score, r.points]
+            [assignment, r.due, r.when, r.student, r.last, r.first, r.email, *r.marks, r.points]
         )
     return table
 
 
 def questions(assignment: str, marks: Sequence[Row]) -> list[list[Any]]:
-    """One column for each question; the second line says what full marks are."""
+    """One column for each question, and remarks; the second line says what full marks are."""
     names = list(dict.fromkeys(name for r in marks for name in r.questions))
     most = {name: r.questions[name][1] for r in marks for name in r.questions}
-    table: list[list[Any]] = [["student", *names, "penalty", "score"]]
+    table: list[list[Any]] = [["student", *names, "penalty", "score", "remark"]]
     if marks:
-        table.append(["(full marks)", *(most[name] for name in names), "", marks[0].points])
+        table.append(["(full marks)", *(most[name] for name in names), "", marks[0].points, ""])
     for r in marks:
         each = [r.questions.get(name, ("", ""))[0] for name in names]
-        table.append([r.student, *each, r.penalty, r.score])
+        table.append([r.student, *each, *r.marks[1:], r.missing or r.remark])
     return table
 
 
