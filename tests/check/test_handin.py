@@ -9,7 +9,9 @@ import pytest
 
 from labkit import LabkitError
 from labkit.check.handin import look, read_cells
+from labkit.check.mark import Outcome, Verdict
 from labkit.check.merging import merge
+from labkit.check.output import as_metadata
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
 
@@ -17,6 +19,13 @@ ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
 @pytest.fixture
 def folder(tmp_path):
     return Path(shutil.copytree(ASSIGNMENT, tmp_path / "01_paths"))
+
+
+def output(name, outcome, points=2.0, **more):
+    """What a check leaves in its cell."""
+    earned = points if outcome is Outcome.RIGHT else 0.0
+    metadata = as_metadata(Verdict(name, outcome, earned, points, **more))
+    return {"output_type": "display_data", "data": {}, "metadata": metadata}
 
 
 def edited(path, change):
@@ -31,7 +40,8 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     """The release itself has nothing to mend, and says that nothing was run."""
     found = look(folder / "01_paths.ipynb")
     assert found.problems == ()
-    assert set(found.verdicts.values()) >= {"bang_bang: not run"}
+    assert set(found.verdicts.values()) == {None}
+    assert "  bang_bang: not run" in str(found).splitlines()
     assert str(found).endswith("whole; when it was last run, 0 of 6 tasks were right.")
 
 
@@ -41,12 +51,12 @@ def test_what_is_not_yet_right_is_named(folder):
     def change(cells):
         for cell in cells:
             if 'check("witness"' in "".join(cell["source"]):
-                words = "witness: not yet right. 0 of 2 points.\n"
-                cell["outputs"] = [{"output_type": "stream", "name": "stdout", "text": [words]}]
+                cell["outputs"] = [output("witness", Outcome.WRONG)]
         return cells
 
     found = look(edited(folder / "01_paths.ipynb", change))
     assert any(note.startswith("not yet right: witness;") for note in found.notes)
+    assert "  witness: not yet right. 0 of 2 points." in str(found).splitlines()
 
 
 def test_a_verdict_older_than_its_function_is_told(folder):
@@ -101,7 +111,7 @@ def test_a_damaged_file_is_a_sentence(folder, text):
     """What is no notebook is said to be none, with the way out."""
     path = folder / "01_paths.ipynb"
     path.write_text(text)
-    with pytest.raises(LabkitError, match="no notebook, or was cut off"):
+    with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
         look(path)
 
 
@@ -109,7 +119,7 @@ def test_a_damaged_file_is_a_sentence(folder, text):
 def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
     path = folder / "01_paths.ipynb"
     path.write_text(json.dumps({"cells": [cell]}))
-    with pytest.raises(LabkitError, match="no notebook, or was cut off"):
+    with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
         look(path)
 
 

@@ -165,7 +165,8 @@ def test_a_figure_shows_the_evidence(desk):
         "import labkit.check.notebook, IPython.display\n"
         "IPython.display.display = lambda *a, **k: shown.extend(a)\n"
         "check('double', lambda x: x * x)\n"
-        "print(shown[0].format, shown[0].data[1:4], shown[0].alt)\n"
+        "print(shown[0]['text/plain'])\n"
+        "print(shown[1].format, shown[1].data[1:4], shown[1].alt)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk

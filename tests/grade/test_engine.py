@@ -10,6 +10,7 @@ import pytest
 from handmade import QUICK, add, cell_of, put, raw
 
 from labkit.check import Call, Loop, mark, question_data, read_question
+from labkit.check.cells import look
 from labkit.check.judge import Close
 from labkit.check.question import Question, Test
 from labkit.grade.checker import grade
@@ -188,12 +189,12 @@ def test_odd_cells_harm_nobody(cell, marks, solved):
 
 def test_names_that_a_cell_needs():
     """Needed are names from elsewhere: no parameters, no locals, nothing that the cell binds."""
-    found = cells.look("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
+    found = look("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
     assert set(found["uses"]) == {"c", "e", "g"}
     assert found["functions"] == ["f"]
-    assert cells.look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
-    assert cells.look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
-    assert "SyntaxError" in cells.look("def f(:")["broken"]
+    assert look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
+    assert look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
+    assert "SyntaxError" in look("def f(:")["broken"]
 
 
 def test_what_every_submission_imports_is_known(bundle):
