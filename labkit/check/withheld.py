@@ -61,15 +61,20 @@ def withhold(tools: Iterable[str], student: dict[str, Any]) -> Iterator[None]:
 
 
 def _stop_module(tool: str, student: dict[str, Any], undo: ExitStack) -> None:
-    """Everything public that a module or package defines, in whatever part of it is loaded."""
+    """Every public function that a package defines, and class, in whatever part of it is loaded.
+
+    Classes written in C stay: without functions they answer nothing.
+    """
     stopped: set[int] = set()
     for name, module in list(sys.modules.items()):
         if isinstance(module, ModuleType) and (name == tool or name.startswith(f"{tool}.")):
             for key, thing in list(vars(module).items()):
                 home = str(getattr(thing, "__module__", None))
-                if callable(thing) and not key.startswith("_") and home.startswith(tool):
-                    if not isclass(thing) or id(thing) not in stopped:
-                        _stop(tool, module, key, thing, student, undo)
+                public = callable(thing) and not key.startswith("_") and home.startswith(tool)
+                in_c = isclass(thing) and not isfunction(thing.__init__)
+                if public and not in_c and id(thing) not in stopped:
+                    _stop(tool, module, key, thing, student, undo)
+                if isclass(thing) or isfunction(thing):  # stopped wherever it is called
                     stopped.add(id(thing))
 
 
@@ -77,13 +82,14 @@ def _stop(
     tool: str, owner: Any, key: str, target: Any, student: dict[str, Any], undo: ExitStack
 ) -> None:
     if isclass(target) and isfunction(target.__init__):
-        for function in _methods(target):
-            _stop_function(function, _guard(tool, _copied(function), target), undo)
+        for base, name, function in _methods(target):
+            if not function.__closure__:
+                _stop_function(function, _guard(tool, _copied(function), target), undo)
+            elif vars(base)[name] is function:
+                undo.callback(type.__setattr__, base, name, function)
+                type.__setattr__(base, name, _guard(tool, function, target))
     elif isfunction(target) and not target.__closure__:
         _stop_function(target, _guard(tool, _copied(target)), undo)
-    elif isclass(target):  # one written in C
-        undo.callback(type.__setattr__, target, "__init__", target.__init__)
-        type.__setattr__(target, "__init__", _guard(tool, target.__init__))
     else:
         guard = _guard(tool, target)
         undo.callback(setattr, owner, key, target)
@@ -93,16 +99,16 @@ def _stop(
             student[name] = guard
 
 
-def _methods(kind: type) -> Iterator[FunctionType]:
-    """The functions through which a class of labkit's is used, wherever it has them from."""
+def _methods(kind: type) -> Iterator[tuple[type, str, FunctionType]]:
+    """The functions through which a class of labkit's is used, where it has them from."""
     for base in kind.__mro__:
         if not base.__module__.startswith("labkit."):
             continue
-        for key, thing in vars(base).items():
+        for key, thing in list(vars(base).items()):
             function = getattr(thing, "__func__", thing)
             public = not key.startswith("_") or key in ("__init__", "__call__")
-            if public and isinstance(function, FunctionType) and not function.__closure__:
-                yield function
+            if public and isinstance(function, FunctionType):
+                yield base, key, function
 
 
 def _copied(function: FunctionType) -> FunctionType:

@@ -22,7 +22,7 @@ CALLS = {"__import__", "compile", "eval", "exec"}
 ATTRIBUTES = {
     "__bases__", "__closure__", "__code__", "__dict__", "__getattribute__", "__globals__",
     "__init__", "__loader__", "__mro__", "__new__", "__reduce__", "__reduce_ex__", "__setattr__",
-    "__spec__", "__subclasses__", "__wrapped__", "_getframe",
+    "__spec__", "__subclasses__", "__wrapped__", "_getframe", "_pin",
 }  # fmt: skip
 """Attributes by which one gets at what has been put away."""
 INSIDE = ("labkit.check.", "labkit.grade.", "sys.modules.", "sys.meta_path.", "sys.path_hooks.")
