@@ -101,15 +101,16 @@ def _sentence(function: Callable[..., Any], place: int | str, before: Any) -> st
     kind = type(before).__name__
     inner = before.values() if isinstance(before, dict) else before
     flat = kind != "tuple" and not any(isinstance(x, list | dict | tuple) for x in inner)
-    copy = f"{kind}({name})" if flat else f"copy.deepcopy({name})"
+    which = f" `{name}`" if name else ""
+    copy = name and f", {kind if flat else 'copy.deepcopy'}({name})"
     who = getattr(function, "__name__", "it")
-    return f"{who} changes the {kind} `{name}` that it is given; work on a copy, {copy}"
+    return f"{who} changes the {kind}{which} that it is given; work on a copy{copy}"
 
 
 def _parameter(function: Callable[..., Any], place: int) -> str:
-    """What a function calls one of its arguments."""
+    """What a function calls one of its arguments; "" if that cannot be told."""
     with suppress(TypeError, ValueError, IndexError):
         parameter = list(inspect.signature(function).parameters.values())[place]
         if parameter.kind is not inspect.Parameter.VAR_POSITIONAL:
             return parameter.name
-    return f"argument {place + 1}"
+    return ""

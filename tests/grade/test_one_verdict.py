@@ -30,6 +30,7 @@ IN_THE_GATE = ("00_warmup", "01_paths")
 BY_NAME = """
 
 def {name}(*args, **kwargs):
+    import {module}
     {tool}
     return right_{name}(*args, **kwargs)
 """
@@ -43,12 +44,13 @@ def {name}(*args, **kwargs):
 """
 
 
-def part_of(tool):
-    """A tool, or a function of the module that it is."""
-    module = find(tool)[1]
-    inside = {"pinocchio": ".rnea", "labkit.metrics": ".summary"}
-    inside |= {"labkit.vision.detection": ".detect_tags", "labkit.vision.sensing": ".precision"}
-    return tool + inside.get(tool, "") if module is not None else tool
+FUNCTION = {
+    "pinocchio": "pinocchio.rnea",
+    "labkit.metrics": "labkit.metrics.summary",
+    "labkit.vision.detection": "labkit.vision.detection.tag_pose",
+    "labkit.vision.sensing": "labkit.vision.sensing.quality",
+}
+"""One of each module that is withheld."""
 
 
 def answers(problem):
@@ -58,15 +60,17 @@ def answers(problem):
     yield "wrong", inline(problem.wrong[0].function, name)
     yield "wrong too", inline(problem.wrong[-1].function, name)
     yield "right", inline(problem.answer, name)
-    right = inline(problem.answer, f"right_{name}")
     for kind, form in (("by name", BY_NAME), ("by call", BY_CALL)):
-        if problem.withheld:
-            tool = part_of(problem.withheld[0])
-            head = f"import {tool.rpartition('.')[0]}\n" if kind == "by name" else ""
-            text = tool if kind == "by name" else tool[::-1]
-            yield kind, head + right + form.format(name=name, tool=text)
-        else:
-            yield kind, ""
+        yield kind, "\n".join(_using(problem, form)) if problem.withheld else ""
+
+
+def _using(problem, form):
+    """A right answer that also uses a tool, by the form's words."""
+    tool = FUNCTION.get(problem.withheld[-1], problem.withheld[-1])
+    yield inline(problem.answer, f"right_{problem.name}")
+    thing = find(tool)[1]
+    text = tool if form is BY_NAME else tool[::-1]
+    yield form.format(name=problem.name, tool=text, module=getattr(thing, "__module__", tool))
 
 
 def in_a_kernel(assignment, cells, folder):
