@@ -48,7 +48,7 @@ class Eats:
         (pops, ([2.0, 0.5], 1.5), "pops changes the list `durations` {}, list(durations)"),
         (clears, ({"a": 1},), "clears changes the dict `table` {}, dict(table)"),
         (writes_deep, ([[1.0]],), "writes_deep changes the list `rows` {}, copy.deepcopy(rows)"),
-        (writes_deep, (([1.0], 2.0),), "writes_deep changes the tuple `rows` {}, copy.deepcopy(rows)"),
+        (writes_deep, (([1.0],),), "writes_deep changes the tuple `rows` {}, copy.deepcopy(rows)"),
         (Eats(), (0, [1]), "it changes the list {}"),
     ],
 )  # fmt: skip

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from handmade import QUICK, add, put, raw
-from ways import WAYS
+from ways import WAYS, Way
 
 from labkit.grade.checker import grade
+from labkit.grade.class_report import report
 from labkit.grade.feedback import page
 from labkit.grade.results import Bundle
+
+pytestmark = pytest.mark.slow  # a sandbox for each way
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +44,27 @@ def test_every_known_way_is_told(graded, name):
     assert question["withheld"] == ["labkit.BangBang"] or result.tricks
     assert question["outcome"] == ("not counted" if question["withheld"] else question["outcome"])
     assert not result.cells
+
+
+def test_the_class_report_lists_both(graded):
+    """Who used a tool, and what in whose cells needs a look; of the honest it says nothing."""
+    results = [
+        replace(graded(way.answer, way.cell), student=name)
+        for name, way in [
+            ("ada", WAYS["by name"]),
+            ("cleo", Way("return t, 0, 0")),
+            ("bob", WAYS["loading under another name"]),
+        ]
+    ]
+    text = report("01_paths", results, {}, str.upper)
+    lines = text[text.index("## Withheld tools") :].splitlines()
+    assert lines[2:] == [
+        "- ADA, not counted: bang_bang uses lk.BangBang, which this question asks you to write",
+        "- BOB, worth a look: cell 5 imports importlib.util; cell 5 uses labkit.scalings.__file__; "
+        "cell 5 uses sys.modules",
+        "",
+    ]
+    assert "| bang_bang | 1 | 1 | 0 | 1 | 0 |" in text
 
 
 def test_what_is_not_counted_says_why(graded):

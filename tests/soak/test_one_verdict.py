@@ -23,6 +23,7 @@ from labkit.grade.limits import Limits
 from labkit.grade.notebook import source_notebook
 from labkit.grade.release import manifest
 from labkit.grade.results import Bundle
+from labkit.grade.sandbox import Sandbox
 
 COURSE = Course.here(Path(__file__))
 IN_THE_GATE = ("00_warmup", "01_paths")
@@ -73,6 +74,12 @@ def _using(problem, form):
     yield form.format(name=problem.name, tool=text, module=getattr(thing, "__module__", tool))
 
 
+@pytest.fixture(scope="module")
+def sandbox():
+    with Sandbox() as sandbox:
+        yield sandbox
+
+
 def in_a_kernel(assignment, cells, folder):
     """Run cells beside an assignment's questions; the verdict of each, None where there is none."""
     from nbclient import NotebookClient
@@ -95,7 +102,7 @@ def in_a_kernel(assignment, cells, folder):
 @pytest.mark.parametrize(
     "assignment",
     [
-        pytest.param(name, marks=() if name in IN_THE_GATE else pytest.mark.soak)
+        pytest.param(name, marks=pytest.mark.slow if name in IN_THE_GATE else pytest.mark.soak)
         for name in COURSE.names()
     ],
 )
