@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import io
 import json
 import os
 import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
+from io import TextIOWrapper
 from pathlib import Path
 
 from . import __version__
@@ -66,8 +66,9 @@ def parser() -> argparse.ArgumentParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; a mistake of the caller's ends in one sentence and exit code 2."""
     args = parser().parse_args(argv)
-    if isinstance(sys.stdout, io.TextIOWrapper):  # a sign that a terminal lacks ends no verb
-        sys.stdout.reconfigure(errors="backslashreplace")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # names of files may hold anything
     try:
         return int(args.do(args))
     except LabkitError as error:
@@ -113,7 +114,8 @@ def _merge(args: argparse.Namespace) -> int:
     if args.to.exists():
         raise LabkitError(f"{args.to} is there already; give another name with --to")
     notebook = json.loads(args.new.read_text(encoding="utf-8")) | {"cells": merge(mine, new)}
-    args.to.write_text(json.dumps(notebook, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+    args.to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is no text
     print(f"{args.to}: the new release with your work; look it through, then run it all")
     return 0
 

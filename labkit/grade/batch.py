@@ -170,7 +170,7 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
     tried: Counter[str] = Counter()
     for result in graded:
         for question in result.questions:
-            if question["outcome"] == "not attempted":
+            if question["outcome"] in ("not attempted", "not counted"):
                 continue
             tried[question["name"]] += 1
             for one in question["tests"]:

@@ -11,6 +11,7 @@ from itertools import combinations
 from pathlib import Path
 from statistics import mean, median
 
+from ..check.words import uses
 from .batch import common_failures
 from .clean import clean_line
 from .problem import Problem
@@ -43,6 +44,7 @@ def report(
     lines += _marks(graded, len(results) - len(graded), left_out)
     lines += _questions(graded)
     lines += _mistakes(graded, problems)
+    lines += _listed("Withheld tools, and what may be a way around one", _tools(graded, who))
     lines += _listed("Tests to doubt", common_failures(graded))
     rejected = (f"{who[r.student]}: {_as_text(r.rejected)}" for r in results if r.rejected)
     lines += _listed("Rejected", rejected)
@@ -88,10 +90,11 @@ def _questions(graded: Sequence[Result]) -> Iterator[str]:
             outcomes[question["name"]][question["outcome"]] += 1
             if question["points"]:
                 shares[question["name"]].append(question["earned"] / question["points"])
-    yield from ("## Questions", "", "| question | right | wrong | error | not tried | mean |")
-    yield "|---|---:|---:|---:|---:|---:|"
+    yield from ("## Questions", "")
+    yield "| question | right | wrong | error | not counted | not tried | mean |"
+    yield "|---|---:|---:|---:|---:|---:|---:|"
     for name, count in outcomes.items():
-        cells = [count[x] for x in ("right", "wrong", "error", "not attempted")]
+        cells = [count[x] for x in ("right", "wrong", "error", "not counted", "not attempted")]
         share = f"{mean(shares[name]):.0%}" if shares[name] else "voided"
         yield f"| {name} | {' | '.join(map(str, cells))} | {share} |"
     yield ""
@@ -111,6 +114,16 @@ def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iter
         say = next((w.lecture or w.says for w in known if w.name == mistake), "")
         yield f"- **{n} x {name}: {mistake}.** {say}"
     yield ""
+
+
+def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
+    """What each student used that a question withholds, and what in a cell needs a look."""
+    for result in graded:
+        used = [f"{q['name']} {uses(q['withheld'])}" for q in result.questions if q.get("withheld")]
+        if used:
+            yield f"{who[result.student]}, not counted: {'; '.join(used)}"
+        if result.tricks:
+            yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
 
 
 def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:

@@ -9,7 +9,7 @@ from msgspec import Meta
 Points = Annotated[float, Meta(ge=0.0, le=1e6)]
 Name = Annotated[str, Meta(pattern=r"^\w+$")]
 """The name of a function, of which names of files are made."""
-OutcomeName = Literal["not attempted", "error", "wrong", "right"]
+OutcomeName = Literal["not attempted", "not tried", "not counted", "error", "wrong", "right"]
 
 
 class TestData(TypedDict):
@@ -104,6 +104,7 @@ class ResultData(TypedDict):
     notes: list[str]
     cells: list[CellData]
     own: list[OwnCell]
+    tricks: list[str]
     isolation: str
     versions: dict[str, str]
     hashes: Hashes

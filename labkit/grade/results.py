@@ -37,11 +37,13 @@ class Result:
         score: Points; 0 where it was rejected.
         points: What full marks would be.
         rejected: Why it could not be graded, in a sentence; empty where it was.
-        questions: One verdict each, as data: name, outcome, earned, points, tests, mistake, notes,
-            source, and what `seen` adds, which older results lack: runs, numbers.
+        questions: One verdict each, as data: name, outcome, earned, points, tests, the withheld
+            tools that it used, mistake, notes, source, and what `seen` adds, which older results
+            lack: runs, numbers.
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
         own: The student's own cells, where they stood.
+        tricks: What may be a way around a withheld tool, for the instructor, sentences.
         isolation: What kept it apart while it ran.
         versions: Of what graded it.
         hashes: Of the submission, the release and the engine.
@@ -58,6 +60,7 @@ class Result:
     notes: tuple[str, ...] = ()
     cells: tuple[Mapping[str, Any], ...] = ()
     own: tuple[Mapping[str, str], ...] = ()
+    tricks: tuple[str, ...] = ()
     isolation: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
     hashes: Mapping[str, str] = field(default_factory=dict)
@@ -78,7 +81,7 @@ class Result:
         try:
             data = clean_data(json.loads(text, parse_constant=_refuse))
             msgspec.convert(data, ResultData)
-            for name in ("questions", "notes", "cells", "own"):
+            for name in ("questions", "notes", "cells", "own", "tricks"):
                 data[name] = tuple(data[name])
             result = cls(**data)
         except (msgspec.ValidationError, ValueError, TypeError, RecursionError) as error:

@@ -74,13 +74,8 @@ class Shell:
 
     def run_line_magic(self, name: str, line: str, *rest: Any, **options: Any) -> None:
         """``%time x`` runs x; any other magic does nothing."""
-        if name in {"time", "timeit"}:
+        if name == "time":
             exec(compile(line, "<magic>", "exec"), self.user_ns)
-
-    def run_cell_magic(self, name: str, line: str, cell: str) -> None:
-        """``%%time`` and ``%%capture`` run the cell; any other magic does nothing."""
-        if name in {"time", "timeit", "capture"}:
-            exec(compile(cell, "<magic>", "exec"), self.user_ns)
 
     def system(self, command: str) -> None:
         """No commands."""
