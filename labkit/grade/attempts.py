@@ -169,11 +169,14 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
         LabkitError: It cannot be read, or a record is damaged.
     """
     folder = course.submitted / student / assignment
-    if folder.is_symlink() or folder.parent.is_symlink():
-        raise LabkitError(f"{folder} is a link; put a folder in its place")
+    for path in (folder.parent, folder):
+        if path.is_symlink():
+            raise LabkitError(f"{path.relative_to(course.root)} is a link; put a folder there")
     all = attempts(course, student, assignment)
     ours, chosen = {one.sha256 for one in all}, counts(all, assignment)
     for path in sorted(folder.glob("*.ipynb")):
+        if path.is_symlink() or not path.is_file():
+            raise LabkitError(f"{path.relative_to(course.root)} is not a file; move it away")
         data = read_file(path, Limits().notebook)
         if path.name == f"{assignment}.ipynb" and chosen is not None:
             known = digest(data) == chosen.attempt.sha256
@@ -217,6 +220,27 @@ def install(course: Course, student: str, assignment: str) -> HandIn | None:
         _put(path, data)
         os.utime(path, (when.timestamp(), when.timestamp()))
     return chosen
+
+
+def move(course: Course, assignment: str, old: str, new: str) -> str:
+    """Take a student's work to another folder, once it is known whose it is.
+
+    Returns:
+        What stayed where it was and wants a look, in a sentence; empty if nothing did.
+    """
+    if old in {"", new}:
+        return ""
+    for base in (course.root / FOLDER, course.submitted):
+        source, target = base / old / assignment, base / new / assignment
+        if source.exists() and not target.exists():
+            target.parent.mkdir(parents=True, exist_ok=True)
+            source.rename(target)
+    there = (
+        *(base / old / assignment for base in (course.root / FOLDER, course.submitted)),
+        course.results / assignment / f"{old}.json",
+    )
+    left = " and ".join(str(path.relative_to(course.root)) for path in there if path.exists())
+    return f"{left} of the same student stays; look what it is, and move it away" if left else ""
 
 
 def called(file: str, assignment: str) -> bool:

@@ -39,7 +39,7 @@ def safe_name(name: str) -> str:
     It is short, in Unicode's composed form, never empty, never hidden, and no command takes it for
     an option.
     """
-    text = unicodedata.normalize("NFC", name)
+    text = re.sub("['’`]", "", unicodedata.normalize("NFC", name))  # as Moodle, O'Brien
     text = "".join(c if c in "._@" or unicodedata.category(c)[0] in "LMN" else "-" for c in text)
     text = re.sub(r"-+", "-", re.sub(r"\.+", ".", text)).strip("-._@")
     text = text.encode()[:LONGEST].decode(errors="ignore").strip("-._@")

@@ -6,21 +6,19 @@ Whose a file is comes from the platform's own field (`platforms`, `downloads`) a
 
 from __future__ import annotations
 
-import fcntl
 import zipfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from ..errors import LabkitError
-from .attempts import FOLDER, Seen, adopt, attempts, counts, install, keep
+from .attempts import Seen, adopt, attempts, counts, install, keep, move
 from .course import Course
 from .downloads import File, in_exchange, in_zip, open_zip
-from .identity import Place, places
-from .lms import Known, known_all_term, remember
+from .identity import places
+from .lms import Known, alone, known_all_term, remember
 from .platforms import Named
 from .results import digest
 from .roster import Roster, read_roster
@@ -75,7 +73,7 @@ def collect(
     """
     if not source.exists():
         raise LabkitError(f"there is no {source}")
-    with _alone(course):
+    with alone(course):
         if source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
             yield from _take(course, assignment, source, files)
@@ -109,7 +107,8 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
         if place.doubt:
             says = f"{place.doubt}; kept apart from everybody else's, under this name"
             yield Taken(place.folder, "", says, fine=False)
-        yield from _moved(course, assignment, place)
+        if left := move(course, assignment, place.before, place.folder):
+            yield Taken(place.folder, "", left, fine=False)
     remember(course, assignment, {place.folder: people[key] for key, place in found.items()})
     by_student: dict[str, list[_HandedIn]] = {}
     for one in handed_in:
@@ -121,14 +120,14 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
 def _whose(file: File, roster: Roster) -> Named | str:
     """The one reading of a file's name that is right, or why there is none."""
     if file.refused or not file.readings:
-        return f"not taken; {file.refused or 'its name does not say whose it is'}"
+        return file.refused or "not taken; its name does not say whose it is"
     if len(file.readings) == 1:
         return file.readings[0]
     fits = [named for named in file.readings if _is_called_so(named.who, roster)]
     if len(fits) == 1:
         return fits[0]
     people = " or ".join(str(named.who) for named in file.readings)
-    return f"not taken; it is {people}, and the roster does not say which"
+    return f"not taken; it is of {people}; the roster does not say which"
 
 
 def _is_called_so(who: Known, roster: Roster) -> bool:
@@ -146,25 +145,6 @@ def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
     for name, count in called.items():
         if count > 1:
             yield Taken(name, "", f"{count} students are called so; told apart by their number")
-
-
-def _moved(course: Course, assignment: str, place: Place) -> Iterator[Taken]:
-    """Take what was collected before it was known whose it is to where it belongs."""
-    if place.before in {"", place.folder}:
-        return
-    for base in (course.root / FOLDER, course.submitted):
-        old, new = (base / name / assignment for name in (place.before, place.folder))
-        if old.exists() and not new.exists():
-            new.parent.mkdir(parents=True, exist_ok=True)
-            old.rename(new)
-    graded = (course.results / assignment / f"{place.before}.json").exists()
-    yield Taken(
-        place.folder,
-        "",
-        f"now with the work that lay under {place.before}"
-        + (f"; what was graded under {place.before} is still there: delete it" if graded else ""),
-        fine=not graded,
-    )
 
 
 def _keep(
@@ -222,16 +202,3 @@ def _keep_notebooks(
             says = "taken" + (", in place of an earlier one, which is kept" if before else "")
             says += "" if file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
         yield Taken(student, file, says + late)
-
-
-@contextmanager
-def _alone(course: Course) -> Iterator[None]:
-    """Keep a second collection away from the course's records."""
-    lock = course.root / "course_private" / ".collecting"
-    lock.parent.mkdir(exist_ok=True)
-    with open(lock, "w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise LabkitError("somebody else is collecting; wait for it to end") from None
-        yield

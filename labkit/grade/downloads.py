@@ -47,7 +47,7 @@ class File:
         when: When it was handed in, or shown by the platform.
         read: Its bytes; late, as a class's files need not fit into memory together.
         exact: Whether ``when`` is the hand-in's own time, and not only the download's.
-        refused: Why it is not taken; empty if it can be.
+        refused: What is wrong with it, in a sentence; empty if it can be taken.
         secret: What the exchange knows the hand-in by.
     """
 
@@ -96,7 +96,7 @@ def in_zip(archive: zipfile.ZipFile, made: datetime) -> Iterator[File]:
         who = () if refused else readings(name)
         yield File(label, who, when, partial(_read, archive, entry), refused=refused)
         if name in names and not refused:
-            twice = "is in the zip twice; both are kept, look which one counts"
+            twice = "it is in the zip twice; both are kept, so look which one counts"
             yield File(label, (), when, bytes, refused=twice)
         names.add(name)
 
@@ -123,8 +123,8 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
         refused = _not_a_hand_in(path) or _not_theirs(user, path, owners[user], unverified)
         notebooks = [] if refused else sorted(path.glob("*.ipynb"))
         if when is None or not notebooks:
-            refused = refused or ("holds no time" if when is None else "holds no notebook")
-            yield File(label, (), datetime.now(UTC), bytes, refused=refused)
+            refused = refused or ("it states no time" if when is None else "it holds no notebook")
+            yield File(label, (), datetime.now(UTC), bytes, refused=f"not taken; {refused}")
             continue
         who = Known("exchange", person(user), person(user))
         for notebook in notebooks:
@@ -140,8 +140,8 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
 
 def _not_a_hand_in(path: Path) -> str:
     if path.is_symlink() or not path.is_dir():
-        return "is not a folder, but a link or a file"
-    return "" if os.access(path, os.R_OK | os.X_OK) else "cannot be read; change its mode"
+        return "it is a link or a file, and not a folder"
+    return "" if os.access(path, os.R_OK | os.X_OK) else "its mode does not let you read it"
 
 
 def _not_theirs(user: str, path: Path, owners: set[int], unverified: bool) -> str:
@@ -188,11 +188,11 @@ def _name(entry: zipfile.ZipInfo) -> str:
 def _refused(entry: zipfile.ZipInfo, name: str) -> str:
     """What is wrong with an entry, whoever's it is."""
     if stat.S_ISLNK(entry.external_attr >> 16):
-        return "is a link"
+        return "not taken; it is a link"
     if entry.flag_bits & 1:
-        return "is locked with a password"
+        return "not taken; it is locked with a password"
     if "\\" in name or "\0" in name or {"", ".", ".."} & set(name.split("/")):
-        return "leads out of the download"
+        return "not taken; it leads out of the download"
     return ""
 
 

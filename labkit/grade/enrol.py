@@ -8,12 +8,14 @@ name them.  A student keeps the folder in which work of theirs lies.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..errors import LabkitError
+from .attempts import move
 from .clean import safe_name
-from .lms import Known
+from .course import Course
+from .lms import Known, known, remember
 from .roster import Roster, Student, same_name
 from .student_list import Entry
 
@@ -37,14 +39,14 @@ class Enrolled:
 
 
 def enrol(
-    roster: Roster, entries: Sequence[Entry], known: Mapping[str, Mapping[str, Known]]
+    roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, Known]]
 ) -> Enrolled:
     """Take a list into the roster.
 
     Args:
         roster: As it was.
         entries: The list's rows.
-        known: Whose work was collected before, by assignment, then by folder.
+        collected: Whose work was collected before, by assignment, then by folder.
 
     Raises:
         LabkitError: Two rows, or a row and the roster, contradict each other.
@@ -52,7 +54,7 @@ def enrol(
     _refuse_contradictions(entries)
     students = {student.id: student for student in roster.students}
     names = Counter(name for name, *_ in {(same_name(e.name), *_keys(e)) for e in entries})
-    folders = [(folder, one) for people in known.values() for folder, one in people.items()]
+    folders = [(folder, one) for people in collected.values() for folder, one in people.items()]
     rows: list[tuple[Entry, Student]] = []
     new: list[str] = []
     for entry in entries:
@@ -81,6 +83,21 @@ def namesakes(roster: Roster) -> list[tuple[Student, ...]]:
         name = same_name(student.name)
         by_name[name] = (*by_name.get(name, ()), student)
     return [group for name, group in by_name.items() if name and len(group) > 1]
+
+
+def keep_numbers(
+    course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
+) -> list[str]:
+    """Keep whose each participant's number is, and bring earlier work to its owner.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    mine = {s.id: Known("moodle", e.participant, s.name) for e, s in rows if e.participant}
+    before = {one.key: folder for folder, one in known(course, assignment).items()}
+    left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
+    remember(course, assignment, mine)
+    return [sentence for sentence in left if sentence]
 
 
 def _keys(one: Entry | Student) -> tuple[str, ...]:

@@ -67,7 +67,7 @@ def places(
     taken = _Taken(assignment, known, roster, folders)
     names = Counter(_folder(one).casefold() for one in named.values())
     for one in nobody_yet:
-        alone = names[_folder(one).casefold()] == 1
+        alone = names[_folder(one).casefold()] == 1 and not roster.whose(one)
         found[one.key] = Place(taken.free(one, alone), _doubt(one, roster))
     return found
 

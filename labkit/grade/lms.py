@@ -6,9 +6,11 @@ folder.  Git ignores the file, and it goes with the term.
 
 from __future__ import annotations
 
+import fcntl
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 
 from ..errors import LabkitError
@@ -94,6 +96,23 @@ def remember(course: Course, assignment: str, found: Mapping[str, Known]) -> Non
         plain = {name: {k: asdict(v) for k, v in people.items()} for name, people in data.items()}
         text = json.dumps(plain, indent=1, ensure_ascii=False, sort_keys=True)
         write(course.root / FILE, text + "\n")
+
+
+@contextmanager
+def alone(course: Course) -> Iterator[None]:
+    """Keep a second one away from the records of who is who.
+
+    Raises:
+        LabkitError: Somebody else is at it.
+    """
+    lock = course.root / "course_private" / ".identity"
+    lock.parent.mkdir(exist_ok=True)
+    with open(lock, "w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise LabkitError("somebody else is collecting; wait for it to end") from None
+        yield
 
 
 def _known(system: str, number: str, name: str) -> Known:

@@ -76,9 +76,8 @@ class Roster:
             return tuple(s for s in self.students if s.lms_user_id == one.number)
         if one.system == "exchange":
             name = one.number.casefold()
-            return tuple(
-                s for s in self.students if name in {s.login.casefold(), s.email.casefold()}
-            )
+            known = ((s, {s.login.casefold(), s.email.casefold()} - {""}) for s in self.students)
+            return tuple(student for student, names in known if name in names)
         return self._by_name.get(same_name(one.name), ())
 
     @cached_property
@@ -132,25 +131,27 @@ def read_roster(course: Course) -> Roster:
 
 
 def save_roster(course: Course, roster: Roster) -> None:
-    """Write the roster, and the students into nbgrader's gradebook, where formgrader reads names.
-
-    Raises:
-        LabkitError: The gradebook cannot be opened.
-    """
+    """Write the course's roster."""
     out = io.StringIO()
     table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
     table.writeheader()
     table.writerows(asdict(student) for student in roster.students)
     write(course.root / FILE, out.getvalue())
+
+
+def tell_gradebook(course: Course, roster: Roster) -> None:
+    """Write the students into nbgrader's gradebook, where formgrader reads their names."""
     with open_gradebook(course) as book:
+        there = {student.id: student for student in book.students}
         for student in roster.students:
-            book.update_or_create_student(
-                student.id,
-                first_name=student.first_name or None,
-                last_name=student.last_name or None,
-                email=student.email or None,
-                lms_user_id=student.lms_user_id or student.id_number or None,
-            )
+            about = {
+                "first_name": student.first_name or None,
+                "last_name": student.last_name or None,
+                "email": student.email or None,
+                "lms_user_id": student.lms_user_id or student.id_number or None,
+            }
+            if any(getattr(there.get(student.id), k, "") != v for k, v in about.items()):
+                book.update_or_create_student(student.id, **about)
 
 
 def _damaged(path: object, why: str) -> LabkitError:

@@ -24,14 +24,17 @@ def add(verbs: Verbs) -> None:
         help="the file is Moodle's grading worksheet of it, which says whose each number is",
     )
     course_option(verb)
-    verb.epilog = f"{verb.epilog}. Exit code: 0 if the list was taken, 2 if not."
+    verb.epilog = (
+        f"{verb.epilog}. Exit code: 0 if the list was taken, 1 if work "
+        "of somebody lies in two folders, 2 if the list was not taken."
+    )
 
 
 def students(args: argparse.Namespace) -> int:
     """Take a list, and say who is new and who could be mistaken for whom."""
-    from .enrol import enrol, namesakes
-    from .lms import Known, known_all_term, remember
-    from .roster import FILE, read_roster, save_roster
+    from .enrol import enrol, keep_numbers, namesakes
+    from .lms import alone, known_all_term
+    from .roster import FILE, read_roster, save_roster, tell_gradebook
     from .student_list import read_list
 
     here = Course.here(args.course)
@@ -44,21 +47,27 @@ def students(args: argparse.Namespace) -> int:
             f"{args.file} has no column 'Identifier'; give the grading worksheet of "
             f"{args.assignment}, in English: Submissions, Actions, Download grading worksheet"
         )
-    before = read_roster(here)
-    done = enrol(before, entries, known_all_term(here))
-    save_roster(here, done.roster)
+    with alone(here):
+        before = read_roster(here)
+        done = enrol(before, entries, known_all_term(here))
+        save_roster(here, done.roster)
+        tell_gradebook(here, done.roster)
+        left = keep_numbers(here, args.assignment, done.rows) if args.assignment else []
     listed = {student.id for _, student in done.rows}
     absent = [student for student in before.students if student.id not in listed]
-    print(f"{here.root / FILE}: {len(done.roster.students)} students, {len(done.new)} of them new")
+    print(f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new")
     if absent:
         names = ", ".join(map(str, absent))
         print(f"not in this list, and still in the roster: {names}")
     if args.assignment:
-        found = {s.id: Known("moodle", entry.participant, s.name) for entry, s in done.rows}
-        remember(here, args.assignment, {k: v for k, v in found.items() if v.number})
         print(f"participants of {args.assignment}: {len(numbered)}")
-    elif numbered:
-        print("participants' numbers are those of one assignment; to keep them, add --assignment")
+        for sentence in left:
+            print(sentence, file=sys.stderr)
+        return 1 if left else 0
     for group in namesakes(done.roster):
-        print(f"called alike: {', '.join(map(str, group))}", file=sys.stderr)
+        print(
+            f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who "
+            "is who until you import the assignment's grading worksheet, with --assignment",
+            file=sys.stderr,
+        )
     return 0
