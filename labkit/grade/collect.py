@@ -89,7 +89,8 @@ def collect(
 
 def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
     if not files:
-        raise LabkitError(f"nothing in {source} was handed in for {assignment}")
+        kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
+        raise LabkitError(f"nothing in {source} was handed in for {assignment}, read as {kind}")
     roster, known = read_roster(course), known_all_term(course)
     handed_in: list[_HandedIn] = []
     for file in files:
@@ -105,8 +106,7 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
         yield from _namesakes(people.values())
     for place in found.values():
         if place.doubt:
-            says = f"{place.doubt}; kept apart from everybody else's, under this name"
-            yield Taken(place.folder, "", says, fine=False)
+            yield Taken(place.folder, "", place.doubt, fine=False)
         if left := move(course, assignment, place.before, place.folder):
             yield Taken(place.folder, "", left, fine=False)
     remember(course, assignment, {place.folder: people[key] for key, place in found.items()})

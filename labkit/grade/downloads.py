@@ -14,7 +14,7 @@ import stat
 import struct
 import zipfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -34,6 +34,12 @@ from .submission import check_size, read_file
 _DAMAGED = (
     *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
     *(OSError, EOFError, RuntimeError, ValueError, IndexError),
+)
+
+
+_STRANGERS = (
+    "not taken; this machine has no such users, so it cannot be told whether they handed this in "
+    "themselves; if your hub sees to that, add --unverified"
 )
 
 
@@ -118,9 +124,14 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
     owners: dict[str, set[int]] = {}
     for path, (user, *_) in mine.items():
         owners.setdefault(user, set()).add(path.lstat().st_uid)
+    strangers = [user for user in owners if _number(user) is None and not unverified]
+    if strangers:
+        yield File(_some(strangers), (), datetime.now(UTC), bytes, refused=_STRANGERS)
     for path, (user, _, stated, *_) in mine.items():
+        if user in strangers:
+            continue
         label, when = clean_line(path.name), read_time(stated)
-        refused = _not_a_hand_in(path) or _not_theirs(user, path, owners[user], unverified)
+        refused = _not_a_hand_in(path) or _not_theirs(user, path, owners[user])
         notebooks = [] if refused else sorted(path.glob("*.ipynb"))
         if when is None or not notebooks:
             refused = refused or ("it states no time" if when is None else "it holds no notebook")
@@ -144,27 +155,31 @@ def _not_a_hand_in(path: Path) -> str:
     return "" if os.access(path, os.R_OK | os.X_OK) else "its mode does not let you read it"
 
 
-def _not_theirs(user: str, path: Path, owners: set[int], unverified: bool) -> str:
+def _not_theirs(user: str, path: Path, owners: set[int]) -> str:
     """Why a folder is not that of the user whose name it bears; empty if it is."""
-    who, uid = clean_line(user), path.lstat().st_uid
-    try:
-        expected = pwd.getpwnam(user).pw_uid
-    except KeyError:
-        if not unverified:
-            return (
-                f"this machine has no user {who}, so nobody can tell whether it is theirs; if only "
-                "they can have put it there, add --unverified"
-            )
-        if len(owners) == 1:
-            return ""
+    uid, expected = path.lstat().st_uid, _number(user)
+    if expected is not None and uid != expected:
+        return (
+            f"it belongs to {_user(uid)} and not to {clean_line(user)}; possibly an attempt to "
+            "cheat (if you copied the exchange, keep the owners: cp -a)"
+        )
+    if expected is None and len(owners) > 1:
         several = " and ".join(map(_user, sorted(owners)))
-        return f"{several} handed in as {who}; possibly an attempt to cheat"
-    if uid == expected:
-        return ""
-    return (
-        f"it belongs to {_user(uid)} and not to {who}; possibly an attempt to cheat (a copy of the "
-        "exchange must keep the owners: cp -a)"
-    )
+        return f"{several} handed in as {clean_line(user)}; possibly an attempt to cheat"
+    return ""
+
+
+def _some(names: Sequence[str]) -> str:
+    some = ", ".join(clean_line(name, 40) for name in names[:8])
+    return f"{some} and {len(names) - 8} more" if len(names) > 8 else some
+
+
+def _number(user: str) -> int | None:
+    """The number of a user of this machine."""
+    try:
+        return pwd.getpwnam(user).pw_uid
+    except KeyError:
+        return None
 
 
 def _user(uid: int) -> str:

@@ -49,50 +49,29 @@ def places(
         folders: The names of those that are there.
     """
     named = {one.key: one for one in people}
-    before = _before(assignment, known)
+    before = {  # Moodle's numbers are those of one assignment
+        one.key: folder
+        for name in (*known, assignment)
+        for folder, one in known.get(name, {}).items()
+        if name == assignment or one.system != "moodle"
+    }
     everyone = {one.key: one for one in known.get(assignment, {}).values()} | named
     claims = Counter(_claim(one, before.get(key, ""), roster) for key, one in everyone.items())
+    names = Counter(_plain(one).casefold() for one in named.values())
+    owners = _owners(assignment, known, roster, folders)
     found: dict[tuple[str, str], Place] = {}
-    nobody_yet: list[Known] = []
     for key, one in named.items():
         folder, students = before.get(key, ""), roster.whose(one)
         if folder in roster:
             found[key] = Place(folder)
         elif len(students) == 1 and claims[_claim(one, folder, roster)] == 1:
             found[key] = Place(students[0].id, before=folder)
-        elif folder:
-            found[key] = Place(folder, _doubt(one, roster))
         else:
-            nobody_yet.append(one)
-    taken = _Taken(assignment, known, roster, folders)
-    names = Counter(_folder(one).casefold() for one in named.values())
-    for one in nobody_yet:
-        alone = names[_folder(one).casefold()] == 1 and not roster.whose(one)
-        found[one.key] = Place(taken.free(one, alone), _doubt(one, roster))
+            alone = names[_plain(one).casefold()] == 1 and not students
+            folder = folder or _free(one, alone, owners, trusting=not roster.students)
+            owners.setdefault(folder.casefold(), set()).add(key)
+            found[key] = Place(folder, _doubt(one, len(students)) if roster.students else "")
     return found
-
-
-def _doubt(one: Known, roster: Roster) -> str:
-    if not roster.students:
-        return ""
-    students = roster.whose(one)
-    if not students:
-        return f"{one} is not in the roster"
-    if len(students) > 1:
-        return f"{one}: {len(students)} in the roster are called so"
-    return f"{one}: somebody else handed in under this name, which the roster has once"
-
-
-def _before(
-    assignment: str, known: Mapping[str, Mapping[str, Known]]
-) -> dict[tuple[str, str], str]:
-    """The folder that each had; Moodle's numbers are those of one assignment."""
-    return {
-        one.key: folder
-        for name in (*known, assignment)
-        for folder, one in known.get(name, {}).items()
-        if name == assignment or one.system != "moodle"
-    }
 
 
 def _claim(one: Known, folder: str, roster: Roster) -> tuple[str, ...]:
@@ -100,48 +79,51 @@ def _claim(one: Known, folder: str, roster: Roster) -> tuple[str, ...]:
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 
-def _folder(one: Known) -> str:
+def _doubt(one: Known, students: int) -> str:
+    if not students:
+        return f"{one} is not in the roster, so their work is kept apart"
+    until = "their work is kept apart until you import the assignment's grading worksheet"
+    if students > 1:
+        return f"{one} has the name of {students} students of the roster; {until}"
+    return f"{one} has the name of a student, and so has somebody else who handed in; {until}"
+
+
+def _plain(one: Known) -> str:
     name = safe_name(one.name)
     return f"{name}-{one.number}" if one.system == "canvas" else name
 
 
-class _Taken:
-    """Folders that are somebody's."""
-
-    def __init__(
-        self,
-        assignment: str,
-        known: Mapping[str, Mapping[str, Known]],
-        roster: Roster,
-        folders: Iterable[str],
-    ) -> None:
-        self.owners: dict[str, set[tuple[str, ...]]] = {}
-        for name, people in known.items():
-            for folder, one in people.items():
-                self._add(folder, one.key if name == assignment else _all_term(one))
-        for student in roster.students:
-            self._add(student.id, ("roster", student.id))
-        for folder in folders:
-            if folder.casefold() not in self.owners:
-                self._add(folder, ("folder", folder))
-        self.strict = bool(roster.students)
-
-    def free(self, one: Known, alone: bool) -> str:
-        """A folder that is nobody else's, and now this person's."""
-        plain = _folder(one)
-        mine = {one.key, _all_term(one)}
-        if one.system == "exchange" or not self.strict:
-            mine.add(("folder", plain))
-        names = [plain] * alone + [f"{plain}-{one.number}"] * (one.system == "moodle")
-        names += [f"{plain}-{k}" for k in range(2, len(self.owners) + 4)]
-        name = next(x for x in names if self.owners.get(x.casefold(), set()) <= mine)
-        self._add(name, one.key)
-        return name
-
-    def _add(self, folder: str, owner: tuple[str, ...]) -> None:
-        self.owners.setdefault(folder.casefold(), set()).add(owner)
-
-
 def _all_term(one: Known) -> tuple[str, ...]:
     """What stays the same from one assignment to the next."""
-    return ("moodle", "called", *same_name(one.name)) if one.system == "moodle" else one.key
+    return ("called", *same_name(one.name)) if one.system == "moodle" else one.key
+
+
+def _owners(
+    assignment: str,
+    known: Mapping[str, Mapping[str, Known]],
+    roster: Roster,
+    folders: Iterable[str],
+) -> dict[str, set[tuple[str, ...]]]:
+    """Whose each folder is; file systems may not tell capitals from small letters."""
+    owners: dict[str, set[tuple[str, ...]]] = {}
+    for name, people in known.items():
+        for folder, one in people.items():
+            owner = one.key if name == assignment else _all_term(one)
+            owners.setdefault(folder.casefold(), set()).add(owner)
+    for student in roster.students:
+        owners.setdefault(student.id.casefold(), set()).add(("roster", student.id))
+    for folder in folders:
+        owners.setdefault(folder.casefold(), {("folder", folder)})
+    return owners
+
+
+def _free(
+    one: Known, alone: bool, owners: Mapping[str, set[tuple[str, ...]]], *, trusting: bool
+) -> str:
+    """The name of a folder that is nobody else's."""
+    plain, mine = _plain(one), {one.key, _all_term(one)}
+    if trusting or one.system == "exchange":
+        mine.add(("folder", plain))  # somebody put it there for a person of this name
+    names = [plain] * alone + [f"{plain}-{one.number}"] * (one.system == "moodle")
+    names += [f"{plain}-{k}" for k in range(2, len(owners) + 4)]
+    return next(name for name in names if owners.get(name.casefold(), set()) <= mine)

@@ -18,7 +18,7 @@ from .course import Course
 from .gradebook import open_gradebook
 from .lms import Known
 from .results import write
-from .student_list import read_table
+from .student_list import read_table, refuse_long_rows
 
 FILE = "course_private/roster.csv"
 
@@ -115,6 +115,7 @@ def read_roster(course: Course) -> Roster:
         return Roster()
     try:
         heads, rows = read_table(path)
+        refuse_long_rows(path, heads, rows)
     except LabkitError as error:
         raise _damaged(path, str(error)) from None
     if "id" not in heads:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ..errors import LabkitError
 from .platforms import person
-from .submission import read_file
+from .submission import check_size
 
 LARGEST = 20
 """Of a list, in [MiB]."""
@@ -87,6 +87,7 @@ def read_list(path: Path) -> tuple[Entry, ...]:
             f"{', '.join(map(repr, heads))[:300]}; call one of them 'name' or 'login', or two of "
             "them 'first name' and 'last name'"
         )
+    refuse_long_rows(path, heads, rows)
     return tuple(_entries(path, columns, rows))
 
 
@@ -107,18 +108,31 @@ def read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     except csv.Error as error:
         raise LabkitError(f"{path}, line {reader.line_num}: {error}; mend the table") from None
     (_, heads), *others = rows or [(0, [])]
-    for line, row in others:
+    return heads, others
+
+
+def refuse_long_rows(
+    path: Path, heads: Sequence[str], rows: Sequence[tuple[int, list[str]]]
+) -> None:
+    """Refuse a table in which a comma may have moved somebody's cells.
+
+    Raises:
+        LabkitError: A row has more cells than there are columns.
+    """
+    for line, row in rows:
         if any(row[len(heads) :]):
             raise LabkitError(
                 f"{path}, line {line} has {len(row)} cells and the first line has {len(heads)}; "
                 "put quotation marks around what holds a comma"
             )
-    return heads, others
 
 
 def _read_text(path: Path) -> str:
     """A text in any encoding that spreadsheets write."""
-    data = read_file(path, LARGEST)
+    if not path.is_file():
+        raise LabkitError(f"there is no file {path}")
+    check_size(path.stat().st_size, LARGEST)
+    data = path.read_bytes()
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         return data.decode("utf-16", errors="replace")
     if data.startswith(b"PK\x03\x04") or b"\0" in data:

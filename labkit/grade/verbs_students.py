@@ -64,6 +64,8 @@ def students(args: argparse.Namespace) -> int:
         for sentence in left:
             print(sentence, file=sys.stderr)
         return 1 if left else 0
+    if numbered:
+        print("the participants' numbers are those of one assignment; --assignment NAME keeps them")
     for group in namesakes(done.roster):
         print(
             f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who "

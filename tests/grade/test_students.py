@@ -70,6 +70,7 @@ def test_what_columns_hold(tmp_path):
     [
         ("", "does not say who its students are"),
         ("Group,Mark\nA,1\n", "its columns are 'Group', 'Mark'; call one of them 'name'"),
+        ("a:b\nc:d:e,f\n", "its columns are 'a:b'"),
         ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
         ("PK\x03\x04", "is not a text; save the spreadsheet as CSV"),
         ("name,login\nLovelace, Ada,ada\n", "line 2 has 3 cells and the first line has 2"),
@@ -82,6 +83,8 @@ def test_a_list_that_cannot_be_read_is_a_sentence(tmp_path, text, words):
     with pytest.raises(LabkitError) as error:
         listed(tmp_path, text)
     assert words in str(error.value)
+    with pytest.raises(LabkitError, match="there is no file"):
+        read_list(tmp_path / "none.csv")
 
 
 @pytest.mark.parametrize(
