@@ -55,10 +55,11 @@ def parser() -> argparse.ArgumentParser:
 
     if instructors:
         from .grade import verbs as verbs_grading
-        from .grade import verbs_course, verbs_term
+        from .grade import verbs_course, verbs_students, verbs_term
 
         verbs_course.add(verbs)
         verbs_grading.add(verbs)
+        verbs_students.add(verbs)
         verbs_term.add(verbs)
     return top
 

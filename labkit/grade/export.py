@@ -16,12 +16,16 @@ know users by: "Email address" goes to ``useremail``, "ID number" to ``useridnum
 assignment's own grading worksheet needs the columns Identifier, Grade and Last modified (grade);
 the identifier is "Participant" and the number that the download of submissions bears
 (github.com/moodle/moodle, ``mod/assign/feedback/offline/importgradeslib.php``).
+
+Names, addresses and numbers are the roster's, where there is one.
 """
 
 from __future__ import annotations
 
 import csv
 import io
+import re
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -33,6 +37,7 @@ from .engines import students
 from .gradebook import automatic, open_gradebook
 from .lms import Known, known
 from .results import Result
+from .roster import Student, read_roster
 from .standing import grade_again, standing
 
 
@@ -46,6 +51,7 @@ class Row:
         last: Last name.
         email: Address.
         lms: Number in the learning platform, if the gradebook knows it.
+        person: The student as the roster knows them, or None.
         when: When it came in, as text.
         due: When it was due, as text.
         questions: Points of each question, with their maximum; none where no mark counts.
@@ -71,6 +77,7 @@ class Row:
     known: Known | None = None
     missing: str = ""
     remark: str = ""
+    person: Student | None = None
 
     @property
     def score(self) -> float | str:
@@ -84,17 +91,32 @@ class Row:
 
     @property
     def login(self) -> str:
-        """The login: the name of the folder, unless that was made from a download."""
-        return "" if self.known else self.student
+        """Their login: the name of the folder, unless that was made from a download."""
+        if self.person and self.person.login:
+            return self.person.login
+        if self.known:
+            return self.number("exchange")
+        return "" if self.person else self.student
+
+    @property
+    def canvas(self) -> str:
+        """Their number in Canvas, empty if it is not known."""
+        return self.number("canvas") or (self.person.lms_user_id if self.person else self.lms)
+
+    @property
+    def id_number(self) -> str:
+        """The university's number, empty if it is not known."""
+        return self.person.id_number if self.person else self.lms
 
     def number(self, system: str) -> str:
-        """The student's number in a platform, empty if it is not known."""
+        """Their number in a platform, empty if it is not known."""
         return self.known.number if self.known and self.known.system == system else ""
 
 
 def rows(course: Course, assignment: str) -> Iterator[Row]:
     """Everybody who handed in, was graded or is in the gradebook, in order of name."""
     by_platform, handed_in = known(course, assignment), set(students(course, assignment))
+    roster = read_roster(course)
     stand = {one.student: one for one in standing(course, assignment)}
     full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
@@ -110,7 +132,17 @@ def rows(course: Course, assignment: str) -> Iterator[Row]:
                 remark = f"rejected: {one.rejected}"
             elif student not in handed_in:
                 remark = "nothing of theirs is in submitted/; the mark stays as it was"
-            yield replace(row, known=by_platform.get(student), remark=remark)
+            person = roster.get(student)
+            yield replace(
+                _named(row, person), known=by_platform.get(student), person=person, remark=remark
+            )
+
+
+def _named(row: Row, person: Student | None) -> Row:
+    """A row with the name that the roster has."""
+    if person is None:
+        return row
+    return replace(row, first=person.first_name, last=person.last_name, email=person.email)
 
 
 def _marked(row: Row, submission: Any) -> Row:
@@ -191,7 +223,8 @@ def canvas(column: str, marks: Sequence[Row]) -> list[list[Any]]:
     table.append(["    Points Possible", "", "", "", "", marks[0].points if marks else ""])
     for r in marks:
         name = ", ".join(x for x in (r.last, r.first) if x) or r.student
-        table.append([name, r.number("canvas") or r.lms, "", r.login, "", r.score])
+        sis = r.id_number if r.person else ""
+        table.append([name, r.canvas, sis, r.login, "", r.score])
     return table
 
 
@@ -200,7 +233,7 @@ def moodle(column: str, marks: Sequence[Row]) -> list[list[Any]]:
     table: list[list[Any]] = [
         ["First name", "Last name", "ID number", "Username", "Email address", column]
     ]
-    table += [[r.first, r.last, r.lms, r.login, r.email, r.score] for r in marks]
+    table += [[r.first, r.last, r.id_number, r.login, r.email, r.score] for r in marks]
     return table
 
 
@@ -209,22 +242,33 @@ def moodle_worksheet(column: str, marks: Sequence[Row]) -> list[list[Any]]:
     table: list[list[Any]] = [
         ["Identifier", "Full name", "Grade", "Maximum Grade", "Last modified (grade)"]
     ]
+    once = _participants(marks)
     table += [
         [f"Participant {number}", r.known.name if r.known else "", r.score, r.points, ""]
         for r in marks
-        if (number := r.number("moodle"))
+        if (number := r.number("moodle")) in once
     ]
     return table
 
 
+def _participants(marks: Sequence[Row]) -> set[str]:
+    """Moodle's numbers that are one student's alone; others would get two marks."""
+    numbers = Counter(r.number("moodle") for r in marks)
+    return {number for number, count in numbers.items() if number and count == 1}
+
+
 def left_out(layout: str, marks: Sequence[Row]) -> str:
     """Whom a platform will not know by a table, in a sentence; empty if it knows all."""
-    ways = {
-        "canvas": lambda r: r.number("canvas") or r.lms or r.login,
-        "moodle": lambda r: r.email or r.lms or r.login,
-        "moodle-worksheet": lambda r: r.number("moodle"),
+    once = _participants(marks)
+    ways: dict[str, Callable[[Row], str]] = {
+        "canvas": lambda r: r.canvas or r.id_number or r.login,
+        "moodle": lambda r: r.email or r.id_number or r.login,
+        "moodle-worksheet": lambda r: r.number("moodle") if r.number("moodle") in once else "",
     }
-    lost = [r.student for r in marks if layout in ways and not ways[layout](r)]
+    if layout not in ways:
+        return ""
+    way = ways[layout]
+    lost = [r.student for r in marks if not way(r) or _cell(way(r), True) != way(r)]
     some = ", ".join(lost[:5]) + (", ..." if len(lost) > 5 else "")
     return f"{len(lost)} of {len(marks)} cannot be told by this table: {some}" if lost else ""
 
@@ -238,12 +282,28 @@ LAYOUTS: dict[str, Callable[[str, Sequence[Row]], list[list[Any]]]] = {
 }
 
 
+IDENTITIES = frozenset(
+    ("ID", "SIS User ID", "SIS Login ID", "ID number", "Username", "Email address", "Identifier")
+)
+"""Columns by which a platform knows a student."""
+_PLAIN = re.compile(r"[\w.@+-]*")
+
+
 def as_csv(table: Sequence[Sequence[Any]]) -> str:
-    """A table as text; nothing in it can become a formula in a spreadsheet."""
+    """A table as text; nothing in it can become a formula in a spreadsheet.
+
+    What could begin a formula gets a quotation mark in front.  An identity gets one only if it
+    holds more than letters, digits and ``. _ @ + -``, as the platform would not know it any more;
+    `left_out` names such a student.
+    """
+    identity = [head in IDENTITIES for head in table[0]]
+    rows = [[_cell(x, known) for x, known in zip(r, identity, strict=True)] for r in table]
     out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows([[_safe(x) for x in row] for row in table])
+    csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
 
 
-def _safe(x: Any) -> Any:
-    return f"'{x}" if isinstance(x, str) and x[:1] in {"=", "+", "-", "@", "\t", "\r"} else x
+def _cell(x: Any, identity: bool) -> Any:
+    if not isinstance(x, str) or x[:1] not in {"=", "+", "-", "@", "\t", "\r"}:
+        return x
+    return x if identity and _PLAIN.fullmatch(x) else f"'{x}"

@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
-from . import lms, pseudonyms
+from . import attempts, lms, pseudonyms, roster
 from .course import PUBLIC_SEED, Course
 from .release import release
 from .results import write
 
 NAMED = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db"),
-    *(lms.FILE, pseudonyms.FILE),
+    *(attempts.FOLDER, roster.FILE, lms.FILE, pseudonyms.FILE),
 )
 """Where students' names stand, or what leads to them; all of it is ignored by git."""
 

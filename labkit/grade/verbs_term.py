@@ -54,6 +54,16 @@ def add(verbs: Verbs) -> None:
     does = "take downloads from Moodle, Canvas or nbgrader's exchange"
     verb = assignment_verb(verbs, "collect", collect, does, "moodle.zip")
     verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
+    verb.add_argument(
+        "--unverified",
+        action="store_true",
+        help="from the exchange, take also what users handed in whom this machine does not know",
+    )
+    verb.epilog = (
+        f"{verb.epilog}. Nothing that was handed in is lost: all of it is under attempts/. Exit "
+        "code: 0 if all is well, 1 if something was not taken or it is not certain whose it is "
+        "(named at the end), 2 if nothing could be done."
+    )
     does = "play a term through with a class that never was, in a folder"
     verb = assignment_verb(verbs, "rehearse", rehearse, does, "--to trial")
     verb.add_argument("--count", type=whole(1), default=12, help="how many students (default: 12)")
@@ -172,10 +182,18 @@ def collect(args: argparse.Namespace) -> int:
     from .collect import collect as take
 
     here = course_with(args)
-    for source in args.sources:
-        for taken in take(here, args.name, source):
-            print(taken, flush=True)
-    return 0
+    doubtful = []
+    try:
+        for source in args.sources:
+            for taken in take(here, args.name, source, unverified=args.unverified):
+                if taken.fine:
+                    print(taken, flush=True)
+                else:
+                    doubtful.append(taken)
+    finally:
+        for taken in doubtful:
+            print(taken, file=sys.stderr)
+    return 1 if doubtful else 0
 
 
 def rehearse(args: argparse.Namespace) -> int:
