@@ -14,10 +14,10 @@ from pathlib import Path
 from ..errors import LabkitError
 from .checker import hashes
 from .course import Course
+from .launch import NoIsolation
 from .limits import Limits
 from .pool import Done, Job, locally, through_dask
 from .results import Bundle, Result, Results, digest
-from .sandbox import NoIsolation
 from .submission import Submission
 
 LOUD = 0.3
@@ -145,6 +145,7 @@ def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) 
         "folder": str(submission.folder),
         "bundle": str(course.bundle / f"{submission.assignment}.json"),
         "hash": bundle.data["hash"],
+        "hidden": [str(course.root)],
         "limits": limits.data(),
     }
 
