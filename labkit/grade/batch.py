@@ -12,11 +12,11 @@ from ..errors import LabkitError
 from .checker import hashes
 from .course import Course
 from .each import for_student
+from .launch import NoIsolation
 from .limits import Limits
 from .lock import WHOLE, alone
 from .pool import Done, Job, locally, through_dask
 from .results import Bundle, Result, Results, digest
-from .sandbox import NoIsolation
 from .submission import Submission
 
 LOUD = 0.3
@@ -155,6 +155,7 @@ def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) 
         "folder": str(submission.folder),
         "bundle": str(course.bundle / f"{submission.assignment}.json"),
         "hash": bundle.data["hash"],
+        "hidden": [str(course.root)],
         "limits": limits.data(),
     }
 
