@@ -29,7 +29,7 @@ from typing import Any
 from .clean import clean_line
 from .course import Course
 from .each import Failed
-from .engines import students
+from .engines import is_name, plain_name, students
 from .gradebook import automatic, open_gradebook
 from .lms import Known, known
 from .results import Result
@@ -84,8 +84,8 @@ class Row:
 
     @property
     def login(self) -> str:
-        """The login: the name of the folder, unless that was made from a download."""
-        return "" if self.known else self.student
+        """The login: the name of the folder, unless that was made from a download or is not fit."""
+        return "" if self.known or not is_name(self.student) else self.student
 
     def number(self, system: str) -> str:
         """The student's number in a platform, empty if it is not known."""
@@ -98,7 +98,7 @@ def rows(course: Course, assignment: str) -> Iterator[Row]:
     stand = {one.student: one for one in standing(course, assignment)}
     full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
-        there = {str(s.student.id): s for s in book.assignment_submissions(assignment)}
+        there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
         for student in sorted(stand.keys() | there.keys()):
             submission, one = there.get(student), stand.get(student)
             row = Row(student, "", "", "", "", "", "", {}, None, 0.0, full)
