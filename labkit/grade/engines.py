@@ -65,12 +65,12 @@ def students(course: Course, name: str) -> list[str]:
 
 
 def misnamed(course: Course, name: str) -> list[Failed]:
-    """Folders with a name that no database, page or terminal should be given."""
+    """Folders with a name that no database, page or terminal should be given, in plain letters."""
     return [
         Failed(
-            ascii(student),
-            "this name of a folder in submitted/ holds signs that pages or terminals obey; "
-            "rename it and grade again",
+            plain_name(student),
+            "a folder in submitted/ has this name, in which a page would see markup or a terminal "
+            "commands; rename the folder and grade again",
         )
         for student in _folders(course, name)
         if not is_name(student)
@@ -80,6 +80,11 @@ def misnamed(course: Course, name: str) -> list[Failed]:
 def is_name(student: str) -> bool:
     """Whether a student may be called so: one clean line, which is not markup."""
     return clean_line(student) == student and not set(student) & set('<>"\\')
+
+
+def plain_name(student: str) -> str:
+    """A name as it may be shown: one that is not fit, in plain letters."""
+    return student if is_name(student) else ascii(student)
 
 
 def _folders(course: Course, name: str) -> list[str]:

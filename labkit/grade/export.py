@@ -33,7 +33,7 @@ from typing import Any
 from .clean import clean_line
 from .course import Course
 from .each import Failed
-from .engines import students
+from .engines import is_name, plain_name, students
 from .gradebook import automatic, open_gradebook
 from .lms import Known, known
 from .results import Result
@@ -91,12 +91,12 @@ class Row:
 
     @property
     def login(self) -> str:
-        """Their login: the name of the folder, unless that was made from a download."""
+        """Their login: the name of the folder, unless that was made from a download or is unfit."""
         if self.person and self.person.login:
             return self.person.login
         if self.known:
             return self.number("exchange")
-        return "" if self.person else self.student
+        return "" if self.person or not is_name(self.student) else self.student
 
     @property
     def canvas(self) -> str:
@@ -120,7 +120,7 @@ def rows(course: Course, assignment: str) -> Iterator[Row]:
     stand = {one.student: one for one in standing(course, assignment)}
     full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
-        there = {str(s.student.id): s for s in book.assignment_submissions(assignment)}
+        there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
         for student in sorted(stand.keys() | there.keys()):
             submission, one = there.get(student), stand.get(student)
             row = Row(student, "", "", "", "", "", "", {}, None, 0.0, full)

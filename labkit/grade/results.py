@@ -216,14 +216,19 @@ class Bundle:
         """The bundle of an assignment.
 
         Raises:
-            LabkitError: It was not released.
+            LabkitError: It was not released, or its file is damaged.
         """
         path = course.bundle / f"{assignment}.json"
         if not path.exists():
             raise LabkitError(
                 f"{assignment} was not released here; type: labkit release {assignment}"
             )
-        return cls(json.loads(path.read_text(encoding="utf-8")))
+        try:
+            return cls(json.loads(path.read_text(encoding="utf-8")))
+        except ValueError as error:
+            raise LabkitError(
+                f"{path} is damaged: {error}; restore it, or type: labkit release {assignment}"
+            ) from None
 
     @cached_property
     def questions(self) -> tuple[Question, ...]:

@@ -9,7 +9,7 @@ from functools import partial
 from ..errors import LabkitError
 from .course import Course
 from .each import Failed, for_student
-from .engines import misnamed, students
+from .engines import is_name, misnamed, plain_name, students
 from .limits import Limits
 from .results import Result, Results, digest
 from .submission import Submission
@@ -34,7 +34,9 @@ def standing(
     if student is None:
         yield from misnamed(course, assignment)
     for name in sorted(handed_in | set(results.students())):
-        if student in {None, name}:
+        if not is_name(name):
+            yield Failed(plain_name(name), f"a file in {results.folder} has this name; delete it")
+        elif student in {None, name}:
             yield for_student(name, partial(_counts, course, results, name, name in handed_in))
 
 

@@ -196,10 +196,13 @@ def test_no_name_of_a_folder_reaches_a_terminal(marked, capsys, monkeypatch):
         os.makedirs(folder)
         with open(os.path.join(folder, f"{NAME}.ipynb".encode()), "wb") as file:
             file.write(b"{}")
+    with open_gradebook(marked) as book:  # nbgrader's autograde adds whom it then refuses
+        book.update_or_create_student(HOSTILE[0].decode())
+        book.update_or_create_submission(NAME, HOSTILE[0].decode())
     for words in (["grade"], ["feedback"], ["export"], ["class-report", "--names"], ["regrade"]):
         code, out, err = verb(marked, capsys, *words)
         assert code == 1, words
-        assert err.count("rename it and grade again") == len(HOSTILE), words
+        assert err.count("rename the folder and grade again") == len(HOSTILE), words
         assert not [x for x in out + err if not (x.isprintable() or x == "\n")], words
 
 
