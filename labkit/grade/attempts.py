@@ -210,7 +210,8 @@ def install(course: Course, student: str, assignment: str) -> HandIn | None:
     path = folder / f"{assignment}.ipynb"
     same = path.is_file() and path.read_bytes() == data
     secret = read_secret(source.parent)
-    stamp = str(when).encode() if chosen.first.exact else None
+    stated = [x.when for x in (chosen.first, *chosen.attempt.seen) if x.exact]
+    stamp = str(stated[0]).encode() if stated else None
     for name, content in ((TIMESTAMP, stamp), (SECRET, secret)):
         if content is not None:
             _put(folder / name, content)

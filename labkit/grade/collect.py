@@ -1,7 +1,7 @@
 """Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
 
-Whose a file is comes from the platform's own field (`platforms`, `downloads`) and from the roster
-(`identity`); which of a student's notebooks counts is settled in `attempts`.
+Whose a file is comes from the platform's own field (``platforms``, ``downloads``) and from the
+roster (``identity``); which of a student's notebooks counts is settled in ``attempts``.
 """
 
 from __future__ import annotations
@@ -14,9 +14,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from ..errors import LabkitError
-from .attempts import Seen, adopt, attempts, counts, install, keep, move
+from .attempts import Seen, adopt, attempts, counts, install, keep
 from .course import Course
 from .downloads import File, in_exchange, in_zip, open_zip
+from .enrol import settle
 from .identity import places
 from .lms import Known, alone, known_all_term, remember
 from .platforms import Named
@@ -91,7 +92,10 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
         raise LabkitError(f"nothing in {source} was handed in for {assignment}, read as {kind}")
-    roster, known = read_roster(course), known_all_term(course)
+    roster = read_roster(course)
+    for sentence in settle(course, roster):
+        yield Taken("", "", sentence, fine=False)
+    known = known_all_term(course)
     handed_in: list[_HandedIn] = []
     for file in files:
         named = _whose(file, roster)
@@ -107,8 +111,6 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
     for place in found.values():
         if place.doubt:
             yield Taken(place.folder, "", place.doubt, fine=False)
-        if left := move(course, assignment, place.before, place.folder):
-            yield Taken(place.folder, "", left, fine=False)
     remember(course, assignment, {place.folder: people[key] for key, place in found.items()})
     by_student: dict[str, list[_HandedIn]] = {}
     for one in handed_in:

@@ -10,15 +10,18 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain, count
 
 from ..errors import LabkitError
 from .attempts import move
 from .clean import safe_name
 from .course import Course
-from .lms import Known, known, remember
+from .identity import places
+from .lms import Known, known, known_all_term, remember
 from .roster import Roster, Student, same_name
 from .student_list import Entry
 
+_Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number")
 _FIELDS = ("first_name", "last_name", *_KEYS)
 
@@ -52,37 +55,45 @@ def enrol(
         LabkitError: Two rows, or a row and the roster, contradict each other.
     """
     _refuse_contradictions(entries)
-    students = {student.id: student for student in roster.students}
     names = Counter(name for name, *_ in {(same_name(e.name), *_keys(e)) for e in entries})
-    folders = [(folder, one) for people in collected.values() for folder, one in people.items()]
-    rows: list[tuple[Entry, Student]] = []
-    new: list[str] = []
+    students = {student.id: student for student in roster.students}
+    by_mark: dict[_Mark, set[str]] = {}
+    for student in roster.students:
+        _index(student, by_mark)
+    rows: list[tuple[Entry, str]] = []
     for entry in entries:
         alone = names[same_name(entry.name)] == 1
-        student = _find(list(students.values()), entry, alone)
-        if student is None:
-            plain = Student("", **{k: getattr(entry, k) for k in _FIELDS})
-            student = replace(plain, id=_folder(plain, alone, students, folders))
-            new.append(student.id)
-        else:
-            said = {k: getattr(entry, k) for k in _FIELDS if getattr(entry, k)}
-            student = replace(student, **said)
-        students[student.id] = student
-        rows.append((entry, student))
+        id = _find(entry, alone, students, by_mark) or f"\n{entry.line}"  # for want of a folder
+        said = {k: getattr(entry, k) for k in _FIELDS if getattr(entry, k)}
+        students[id] = replace(students.get(id, Student(id)), **said)
+        _index(students[id], by_mark)
+        rows.append((entry, id))
+    new = [id for id in students if id not in roster]
+    folders = _folders(Roster(tuple(students.values())), new, collected)
+    done = {id: replace(s, id=folders.get(id, id)) for id, s in students.items()}
     return Enrolled(
-        Roster(tuple(students.values())),
-        tuple((entry, students[student.id]) for entry, student in rows),
-        tuple(students[id] for id in new),
+        Roster(tuple(done.values())),
+        tuple((entry, done[id]) for entry, id in rows),
+        tuple(done[id] for id in new),
     )
 
 
-def namesakes(roster: Roster) -> list[tuple[Student, ...]]:
-    """Students who have the same name, as far as platforms write it."""
-    by_name: dict[tuple[str, ...], tuple[Student, ...]] = {}
-    for student in roster.students:
-        name = same_name(student.name)
-        by_name[name] = (*by_name.get(name, ()), student)
-    return [group for name, group in by_name.items() if name and len(group) > 1]
+def settle(course: Course, roster: Roster) -> list[str]:
+    """Bring all work to those whom the roster has come to know since it was collected.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    left: list[str] = []
+    collected = known_all_term(course)
+    for assignment, people in collected.items():
+        found = places(people.values(), assignment, collected, roster, ())
+        moved = {
+            folder: to for folder, one in people.items() if (to := found[one.key].folder) != folder
+        }
+        left += [move(course, assignment, folder, to) for folder, to in moved.items()]
+        remember(course, assignment, {to: people[folder] for folder, to in moved.items()})
+    return [sentence for sentence in left if sentence]
 
 
 def keep_numbers(
@@ -136,38 +147,54 @@ def _says(one: Entry, other: Entry) -> str:
     return f"{same} stands in both, with {differ}"
 
 
-def _find(students: Sequence[Student], entry: Entry, alone: bool) -> Student | None:
-    """The student of the roster whom a row means."""
-    found = [student for student in students if any(_shared(student, entry))]
-    if len(found) > 1:
-        raise LabkitError(
-            f"line {entry.line} could be {' or '.join(map(str, found))} of the roster; "
-            "mend the list, or course_private/roster.csv"
-        )
-    called = [s for s in students if same_name(s.name) == same_name(entry.name) != ()]
-    if not found and alone and len(called) == 1 and not _shared(called[0], entry):
-        return called[0]
-    return found[0] if found else None
+def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
+    marks = (*zip(_KEYS, _keys(student), strict=True), ("name", same_name(student.name)))
+    for mark in marks:
+        by_mark.setdefault(mark, set()).add(student.id)
 
 
-def _folder(
-    student: Student,
-    alone: bool,
-    students: Mapping[str, Student],
-    folders: Sequence[tuple[str, Known]],
+def _find(
+    entry: Entry, alone: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
 ) -> str:
-    """A folder for a new student: the one of their earlier work, or a new one."""
-    taken = {id.casefold() for id in students}
-    one = Roster((student,))
-    mine = Counter(
-        folder
-        for folder, known in folders
-        if one.whose(known) and (alone or known.system != "moodle")
-    )
-    used = [folder for folder, _ in mine.most_common() if folder == safe_name(folder)]
-    plain = safe_name(student.login or student.name)
-    others = (student.email.partition("@")[0], student.id_number, student.lms_user_id)
-    names = used + [plain] * bool(student.login or alone)
-    names += [safe_name(f"{plain}-{other}") for other in others if other]
-    names += [f"{plain}-{k}" for k in range(2, len(students) + 3)]
-    return next(name for name in names if name.casefold() not in taken)
+    """The student whom a row means; empty if they are new."""
+    keys = [mark for mark in zip(_KEYS, _keys(entry), strict=True) if mark[1]]
+    found = set().union(*(by_mark.get(mark, set()) for mark in keys))
+    if len(found) > 1:
+        people = " or ".join(str(students[id]) for id in sorted(found))
+        raise LabkitError(
+            f"line {entry.line} could be {people} of the roster; mend the list, or "
+            "course_private/roster.csv"
+        )
+    name = same_name(entry.name)
+    called = by_mark.get(("name", name), set()) if name and alone and not found else set()
+    if len(called) == 1 and not _shared(students[min(called)], entry):
+        return min(called)
+    return min(found, default="")
+
+
+def _folders(
+    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, Known]]
+) -> dict[str, str]:
+    """A folder for each new student: the one of their earlier work, or a new one."""
+    used: dict[str, Counter[str]] = {id: Counter() for id in new}
+    for people in collected.values():
+        for folder, one in people.items():
+            whose = everybody.whose(one)
+            if len(whose) == 1 and whose[0].id in used and folder == safe_name(folder):
+                used[whose[0].id][folder] += 1
+    taken = {student.id.casefold() for student in everybody.students}
+    alike = {student.id for group in everybody.namesakes() for student in group}
+    found: dict[str, str] = {}
+    for student in everybody.students:
+        if student.id in used:
+            plain = safe_name(student.login or student.name)
+            others = (student.email.partition("@")[0], student.id_number, student.lms_user_id)
+            names = chain(
+                (folder for folder, _ in used[student.id].most_common()),
+                [plain] * bool(student.login or student.id not in alike),
+                (safe_name(f"{plain}-{other}") for other in others if other),
+                (f"{plain}-{k}" for k in count(2)),
+            )
+            found[student.id] = next(name for name in names if name.casefold() not in taken)
+            taken.add(found[student.id].casefold())
+    return found

@@ -47,7 +47,8 @@ def for_exchange(course: Course, assignment: str, page: Path) -> bool:
     secret = read_secret(folder)
     if secret is not None:
         (page.parent / SECRET).write_bytes(secret)
-        when = read_file(folder / "timestamp.txt", _LARGEST)
+        stamp = folder / "timestamp.txt"
+        when = read_file(stamp, _LARGEST) if stamp.exists() else b""
         (page.parent / "timestamp.txt").write_bytes(when)
     return secret is not None
 

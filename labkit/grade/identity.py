@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import chain, count
 
 from .clean import safe_name
 from .lms import Known
@@ -24,12 +25,10 @@ class Place:
     Attributes:
         folder: The name of the folder.
         doubt: Why it is not certain whose it is, empty if it is certain.
-        before: The folder that this person's work lay in until it was known whose it is.
     """
 
     folder: str
     doubt: str = ""
-    before: str = ""
 
 
 def places(
@@ -65,7 +64,7 @@ def places(
         if folder in roster:
             found[key] = Place(folder)
         elif len(students) == 1 and claims[_claim(one, folder, roster)] == 1:
-            found[key] = Place(students[0].id, before=folder)
+            found[key] = Place(students[0].id)
         else:
             alone = names[_plain(one).casefold()] == 1 and not students
             folder = folder or _free(one, alone, owners, trusting=not roster.students)
@@ -124,6 +123,6 @@ def _free(
     plain, mine = _plain(one), {one.key, _all_term(one)}
     if trusting or one.system == "exchange":
         mine.add(("folder", plain))  # somebody put it there for a person of this name
-    names = [plain] * alone + [f"{plain}-{one.number}"] * (one.system == "moodle")
-    names += [f"{plain}-{k}" for k in range(2, len(owners) + 4)]
+    numbered = [f"{plain}-{one.number}"] * (one.system == "moodle")
+    names = chain([plain] * alone, numbered, (f"{plain}-{k}" for k in count(2)))
     return next(name for name in names if owners.get(name.casefold(), set()) <= mine)

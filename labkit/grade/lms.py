@@ -84,6 +84,8 @@ def remember(course: Course, assignment: str, found: Mapping[str, Known]) -> Non
     Raises:
         LabkitError: The record is damaged.
     """
+    if not found:
+        return
     data = known_all_term(course)
     mine = data.get(assignment, {})
     now = {one.key for one in found.values()}

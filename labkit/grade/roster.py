@@ -72,24 +72,28 @@ class Roster:
 
     def whose(self, one: Known) -> tuple[Student, ...]:
         """Whom a platform may mean: nobody, one student, or all who have the same name."""
-        if one.system == "canvas":
-            return tuple(s for s in self.students if s.lms_user_id == one.number)
-        if one.system == "exchange":
-            name = one.number.casefold()
-            known = ((s, {s.login.casefold(), s.email.casefold()} - {""}) for s in self.students)
-            return tuple(student for student, names in known if name in names)
-        return self._by_name.get(same_name(one.name), ())
+        key = same_name(one.name) if one.system == "moodle" else one.number.casefold()
+        return self._by_key.get((one.system, key), ())
+
+    def namesakes(self) -> list[tuple[Student, ...]]:
+        """Students who have the same name, as far as platforms write it."""
+        groups = [group for (system, _), group in self._by_key.items() if system == "moodle"]
+        return [group for group in groups if len(group) > 1]
 
     @cached_property
     def _by_id(self) -> dict[str, Student]:
         return {student.id: student for student in self.students}
 
     @cached_property
-    def _by_name(self) -> dict[tuple[str, ...], tuple[Student, ...]]:
-        found: dict[tuple[str, ...], tuple[Student, ...]] = {}
+    def _by_key(self) -> dict[tuple[str, object], tuple[Student, ...]]:
+        """By what each platform calls them."""
+        found: dict[tuple[str, object], tuple[Student, ...]] = {}
         for student in self.students:
-            name = same_name(student.name)
-            found[name] = (*found.get(name, ()), student) if name else ()
+            login, email = student.login.casefold(), student.email.casefold()
+            keys = {("moodle", same_name(student.name)), ("canvas", student.lms_user_id)}
+            for key in keys | {("exchange", login), ("exchange", email)}:
+                if key[1]:
+                    found[key] = (*found.get(key, ()), student)
         return found
 
 

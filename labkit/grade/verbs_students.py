@@ -32,7 +32,7 @@ def add(verbs: Verbs) -> None:
 
 def students(args: argparse.Namespace) -> int:
     """Take a list, and say who is new and who could be mistaken for whom."""
-    from .enrol import enrol, keep_numbers, namesakes
+    from .enrol import enrol, keep_numbers, settle
     from .lms import alone, known_all_term
     from .roster import FILE, read_roster, save_roster, tell_gradebook
     from .student_list import read_list
@@ -52,7 +52,8 @@ def students(args: argparse.Namespace) -> int:
         done = enrol(before, entries, known_all_term(here))
         save_roster(here, done.roster)
         tell_gradebook(here, done.roster)
-        left = keep_numbers(here, args.assignment, done.rows) if args.assignment else []
+        left = settle(here, done.roster)
+        left += keep_numbers(here, args.assignment, done.rows) if args.assignment else []
     listed = {student.id for _, student in done.rows}
     absent = [student for student in before.students if student.id not in listed]
     print(f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new")
@@ -61,15 +62,14 @@ def students(args: argparse.Namespace) -> int:
         print(f"not in this list, and still in the roster: {names}")
     if args.assignment:
         print(f"participants of {args.assignment}: {len(numbered)}")
-        for sentence in left:
-            print(sentence, file=sys.stderr)
-        return 1 if left else 0
-    if numbered:
+    elif numbered:
         print("the participants' numbers are those of one assignment; --assignment NAME keeps them")
-    for group in namesakes(done.roster):
+    for sentence in left:
+        print(sentence, file=sys.stderr)
+    for group in [] if args.assignment else done.roster.namesakes():
         print(
             f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who "
             "is who until you import the assignment's grading worksheet, with --assignment",
             file=sys.stderr,
         )
-    return 0
+    return 1 if left else 0

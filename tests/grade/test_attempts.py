@@ -193,6 +193,19 @@ def test_only_the_exchange_says_when_work_was_handed_in(bare, tmp_path):
     assert timestamp(bare, Result) == (None, "")
 
 
+def test_an_earlier_hand_in_that_is_put_back_keeps_its_time_and_secret(bare, tmp_path):
+    """A lecturer lets the one in time count: it is in time, and its feedback goes back to it."""
+    for day in (1, 2):
+        handed_in(tmp_path / "in", "root", f"of day {day}", f"2026-03-0{day} 10:00:00 UTC")
+    take(bare, tmp_path / "in")
+    place = bare.submitted / "root" / NAME
+    (place / f"{NAME}.ipynb").write_text("of day 1")
+    take(bare, tmp_path / "in")
+    assert counting(bare) == {"root": "of day 1"}
+    assert (place / "timestamp.txt").read_text().startswith("2026-03-01")
+    assert (place / SECRET).read_text() == "secret of of day 1"
+
+
 def test_a_collection_that_was_stopped_is_made_good(bare, tmp_path, monkeypatch):
     """Stopped between keeping and copying, the next one ends where this one would have."""
     take(bare, shown(tmp_path / "1.zip", 1, (f"{NAME}.ipynb", "first")))

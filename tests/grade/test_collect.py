@@ -28,7 +28,7 @@ from test_platforms import FILES, TEXTS
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.collect import collect
-from labkit.grade.enrol import enrol, keep_numbers
+from labkit.grade.enrol import enrol, keep_numbers, settle
 from labkit.grade.handback import SECRET
 from labkit.grade.limits import Limits
 from labkit.grade.lms import FILE, Known, known, known_all_term
@@ -140,7 +140,8 @@ def enrolled(course, path, assignment=None):
     """What `labkit students import` does, but for the gradebook."""
     done = enrol(read_roster(course), read_list(path), known_all_term(course))
     save_roster(course, done.roster)
-    return keep_numbers(course, assignment, done.rows) if assignment else []
+    left = settle(course, done.roster)
+    return left + (keep_numbers(course, assignment, done.rows) if assignment else [])
 
 
 def test_the_same_person_has_one_folder_in_all_assignments(bare, tmp_path):
@@ -221,6 +222,36 @@ def test_one_who_hands_in_before_they_are_in_the_roster_is_brought_there(bare, t
     assert counting(bare) == {"Zoe-Park": "z"}
 
 
+def test_what_was_collected_before_it_was_known_whose_it_is_is_brought_to_them(bare, tmp_path):
+    """Canvas's number comes with a later list: all of the term's work moves to the folder."""
+    roster(bare, "grace,Grace,Hopper,g@uni.org,,,")
+    for name in (NAME, "02_model"):
+        entry = [("hoppergrace_7_99_x.ipynb", name)]
+        assert [
+            x for x in collect(bare, name, zipped(tmp_path / f"{name}.zip", entry)) if not x.fine
+        ]
+    assert counting(bare) == {"hoppergrace-7": NAME}
+    lst = tmp_path / "list.csv"
+    lst.write_text('Student,ID,SIS Login ID,Section\n"Hopper, Grace",7,ghopper,\n')
+    assert not enrolled(bare, lst)
+    assert counting(bare) == {"grace": NAME} and counting(bare, "02_model") == {"grace": "02_model"}
+    assert kept(bare, "grace") == {NAME}
+    assert list(known(bare, NAME)) == ["grace"]
+    assert not troubles(bare, tmp_path / f"{NAME}.zip")
+
+
+def test_what_cannot_be_moved_is_named(bare, tmp_path):
+    """A mark under the old name, or other work under the new one, wants a look."""
+    take(bare, zipped(tmp_path / "1.zip", [("hoppergrace_7_99_x.ipynb", "moodle's")]))
+    (bare.submitted / "grace" / NAME).mkdir(parents=True)
+    (bare.results / NAME).mkdir(parents=True)
+    (bare.results / NAME / "hoppergrace-7.json").write_text("{}")
+    roster(bare, "grace,Grace,Hopper,,7,,")
+    (said,) = troubles(bare, tmp_path / "1.zip")
+    assert f"submitted/hoppergrace-7/{NAME} and results/{NAME}/hoppergrace-7.json" in said
+    assert counting(bare)["hoppergrace-7"] == counting(bare)["grace"] == "moodle's"
+
+
 # The exchange
 
 
@@ -254,11 +285,12 @@ def test_a_user_whom_the_machine_does_not_know_is_taken_only_if_asked(bare, tmp_
 
 def test_names_of_the_exchange_are_names_of_folders(bare, tmp_path):
     """An address stays as it is; no name leads out, hides, or is taken for an option."""
-    for who in ("ada.l@uni.org", "..", ".hidden", "-rf", "CON", "a" * 200):
+    for who in ("ada.l@uni.org", "..", ".hidden", "-rf", "CON", "a" * 200, "RF"):
         handed_in(tmp_path / "in", who, who)
     take(bare, tmp_path / "in", unverified=True)
     assert counting(bare) == {
-        **{"ada.l@uni.org": "ada.l@uni.org", "student": "..", "hidden": ".hidden", "rf": "-rf"},
+        **{"ada.l@uni.org": "ada.l@uni.org", "student": "..", "hidden": ".hidden", "rf-2": "-rf"},
+        "RF-3": "RF",
         **{"student-CON": "CON", "a" * 80: "a" * 200},
     }
 

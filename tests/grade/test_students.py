@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.clean import LONGEST, safe_name
-from labkit.grade.enrol import enrol, namesakes
+from labkit.grade.enrol import enrol
 from labkit.grade.gradebook import open_gradebook
 from labkit.grade.lms import Known
 from labkit.grade.roster import FILE, Roster, Student, read_roster, same_name, save_roster
@@ -116,7 +116,7 @@ def test_the_folder_is_the_login_or_else_the_name(tmp_path):
     text = "name,login,email\nAda Lovelace,ada,\nLi Wei,,li1@x\nLi Wei,,li2@x\nADA,,a@x\nO'Z,,\n"
     roster = enrolled(listed(tmp_path, text))
     assert [s.id for s in roster.students] == ["ada", "Li-Wei-li1", "Li-Wei-li2", "ADA-a", "OZ"]
-    (group,) = namesakes(roster)
+    (group,) = roster.namesakes()
     assert [student.id for student in group] == ["Li-Wei-li1", "Li-Wei-li2"]
 
 
