@@ -188,7 +188,9 @@ class Ask:
 def _public(question: Question, seat: Seat) -> Tried:
     """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
     try:
-        return try_public(question, Ask(question, seat))
+        tried = try_public(question, Ask(question, seat))
+        seat.right += [question.name] if tried.outcome is Outcome.RIGHT else []
+        return tried
     except Exception:
         return Tried(tuple(_lost(question)), {})
     finally:

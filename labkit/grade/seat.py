@@ -28,12 +28,16 @@ class Seat:
         sandbox: Where.
         todo: The cells.
         limits: What may be used.
+
+    Attributes:
+        right: Questions whose public cases it passed; other answers may lean on these.
     """
 
     def __init__(self, sandbox: Sandbox, todo: Plan, limits: Limits) -> None:
         self.sandbox, self.todo, self.limits = sandbox, todo, limits
         self.until = time.monotonic() + limits.wall
         self.spent = 0.0
+        self.right: list[str] = []
         self._reports: dict[int, dict[str, Any]] = {}
         self._deadly: set[int] = set()
         self._entered: AbstractContextManager[Inside] | None = None
@@ -57,8 +61,8 @@ class Seat:
         if self._asked == question.name:
             return False
         inside = self._ready()
-        withheld = list(question.withheld)
-        inside.line.send({"question": question.name, "withheld": withheld})
+        about = {"withheld": list(question.withheld), "right": self.right}
+        inside.line.send({"question": question.name, **about})
         reply = self._read(GRACE + 5.0)
         if "ready" not in reply:
             raise Gone("it did not get ready")

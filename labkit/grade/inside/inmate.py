@@ -25,6 +25,7 @@ from typing import Any
 from labkit.check.cells import plain
 from labkit.check.reply import LONGEST, TimeUp, kind, reply, sentence
 
+from . import standins
 from .wire import Gone, Line
 
 PATIENCE = 3.0  # waiting is cheap, and a busy machine lets everybody wait
@@ -130,6 +131,7 @@ def serve(
                 limit = int(_cpu() + limits["question"]) + 1
                 with suppress(ValueError, OSError):
                     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+                standins.right.update(asked["right"])
                 with withhold(asked["withheld"], notebook.names):
                     notebook.answer(line, asked["question"], limits["call"])
             os._exit(0)
