@@ -112,6 +112,11 @@ class Tried:
     results: tuple[TestResult, ...]
     answers: Mapping[Case, Any]
 
+    @property
+    def outcome(self) -> Outcome:
+        """What they come to together."""
+        return _outcome(self.results)
+
 
 def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
     """Try every test of a question, its public cases before any hidden one.

@@ -86,7 +86,7 @@ class Desk:
         question = self.question(name)
         cells = map(look, cells_run(function))
         used = withheld_tools(cells, name, question.withheld)
-        student = getattr(function, "__globals__", {})
+        student = shell().user_ns if shell() else getattr(function, "__globals__", {})
         try:
             with heard() as out, withhold(question.withheld, student):
                 verdict = (

@@ -226,7 +226,9 @@ class Ask:
 def _public(ask: Ask) -> Tried:
     """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
     try:
-        return try_public(ask.question, ask)
+        tried = try_public(ask.question, ask)
+        ask.session.right += [ask.question.name] if tried.outcome is Outcome.RIGHT else []
+        return tried
     except Exception:
         return Tried(tuple(_lost(ask.question)), {})
     finally:

@@ -87,6 +87,31 @@ def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
     assert "NameError" not in says
 
 
+YOURS = """
+def given_half(): raise AssertionError
+half = use("bang_bang", bang_bang, {given}, yours=lambda: bang_bang(1.0, 2.0)[0])
+"""
+
+
+@pytest.mark.parametrize(
+    ("answer", "given", "points"),
+    [
+        (None, "given_half", 2),  # one's own is right: it is used, as it was wrapped
+        ("def bang_bang(t, duration): return 0.0, 0.0, 0.0", "lambda: 0.5", 2),  # wrong: what is given
+        ("def bang_bang(t, duration): raise NotImplementedError", "lambda: 0.5", 2),
+        ("def bang_bang(t, duration): return 0.5, 0.0, 0.0", "lambda: 1.0", 0),
+    ],
+)  # fmt: skip
+def test_an_answer_leans_on_what_use_chose_in_the_notebook(marks, solved, answer, given, points):
+    """`use` means the same here: one's own function where that is right, else the one given."""
+    if answer:
+        put(solved, "bang_bang", answer)
+    at = solved["cells"].index(cell_of(solved, "bang_bang")) + 1
+    add(solved, YOURS.format(given=given), at)
+    put(solved, "witness", "def witness(theta, duration):\n    return half() * duration")
+    assert earned(marks(solved))["witness"] == points
+
+
 def test_state_survives_between_calls_but_not_between_questions(marks, solved):
     """A function may remember; another question does not see it."""
     put(solved, "witness", "seen = []\ndef witness(theta, duration):\n    seen.append(1)\n"

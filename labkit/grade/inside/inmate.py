@@ -25,6 +25,7 @@ from typing import Any
 from labkit.check.cells import plain
 from labkit.check.reply import LONGEST, TimeUp, kind, reply, sentence
 
+from . import standins
 from .wire import Gone, Line
 
 
@@ -129,6 +130,7 @@ def serve(
                 limit = int(_cpu() + limits["question"]) + 1
                 with suppress(ValueError, OSError):
                     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+                standins.right.update(asked["right"])
                 with withhold(asked["withheld"], notebook.names):
                     notebook.answer(line, asked["question"])
             os._exit(0)

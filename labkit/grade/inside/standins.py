@@ -50,14 +50,23 @@ def also(name: str, packed: str) -> None:
     """Nothing more."""
 
 
-def use(name: str, function: Callable[..., Any], given: Callable[..., Any]) -> Callable[..., Any]:
-    """The student's function while it gives something, else the one given."""
+right: set[str] = set()
+"""Questions whose public cases the student's functions passed, as the checker says."""
+
+
+def use(
+    name: str,
+    function: Callable[..., Any],
+    given: Callable[..., Any],
+    yours: Callable[..., Any] | None = None,
+) -> Callable[..., Any]:
+    """The student's function where it is right, else the one given, as in a notebook.
+
+    The cells run before anything is tried, so that which of them it is must wait for a call.
+    """
 
     def either(*args: Any, **kwargs: Any) -> Any:
-        try:
-            return function(*args, **kwargs)
-        except Exception:
-            return given(*args, **kwargs)
+        return ((yours or function) if name in right else given)(*args, **kwargs)
 
     return either
 
