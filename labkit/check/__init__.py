@@ -6,7 +6,7 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 from __future__ import annotations
 
 from .cases import Call, Choice, Loop, Tuned
-from .judge import AtMost, Close, Gains, Response, Within
+from .judge import AtMost, AtTip, Close, Gains, Response, TipTorque, Within
 from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
 from .question import Mistake, Question, Raised, Test
@@ -14,6 +14,7 @@ from .question_codec import question_data, read_question
 
 __all__ = [
     "AtMost",
+    "AtTip",
     "Call",
     "Choice",
     "Close",
@@ -27,6 +28,7 @@ __all__ = [
     "Response",
     "Test",
     "TestResult",
+    "TipTorque",
     "Tuned",
     "Verdict",
     "Within",
