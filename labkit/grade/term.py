@@ -57,6 +57,16 @@ def seed_for(course: Course, assignment: str) -> int:
     return seed
 
 
+def said_of(seed: int) -> str:
+    """What to say of cases that are made with a seed; nothing if it is no public one."""
+    if seed != PUBLIC_SEED:
+        return ""
+    return (
+        f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute them; "
+        "begin a term with: labkit new-term"
+    )
+
+
 def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
     """Begin a term: archive the last one's, release with a new seed, keep a record.
 
