@@ -8,10 +8,13 @@ from dataclasses import replace
 from typing import Any
 
 from ..check import Call, Outcome, Question, TipTorque, Within, fingerprint, mark
+from ..check.cells import look
 from ..check.codec import encode
 from ..check.judge import Judge
 from ..check.mark import recognise
-from ..check.source import withheld_names
+from ..check.reply import Here
+from ..check.source import withheld_tools
+from ..check.withheld import withhold
 from ..commands import JointTorque
 from . import stand_in
 from .notebook import Notebook
@@ -106,8 +109,11 @@ def _key(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> str:
 
 def _stand_in_earns(question: Question, text: str) -> float:
     """What the stand-in is worth as an answer; withheld tools count nothing."""
+    if withheld_tools([look(text)], question.name, question.withheld):
+        return 0.0
     function = stand_in.run(question.name, text)
-    return 0.0 if withheld_names(function, question.withheld) else _earned(question, function)
+    with withhold(question.withheld, function.__globals__):
+        return _earned(question, Here(function, question.withheld))
 
 
 def _earned(question: Question, function: Callable[..., Any]) -> float:
