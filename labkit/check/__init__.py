@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from .cases import Call, Choice, Loop, Tuned
 from .judge import AtMost, Close, Gains, Response, Within
-from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
+from .mark import Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
 from .question import Mistake, Question, Raised, Test
 from .question_codec import question_data, read_question
+from .reply import Failed
 
 __all__ = [
     "AtMost",

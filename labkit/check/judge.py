@@ -12,7 +12,7 @@ import numpy as np
 
 from ..arrays import Array, as_array, as_gains
 from ..commands import COMMANDS
-from ..errors import LabkitError
+from ..errors import LabkitError, OutOfRange
 from ..motion import PoseSample, Sample
 from ..robot import JOINTS
 
@@ -178,6 +178,10 @@ class AtMost:
         return max(answer[name] / limit for name, limit in expected.items())
 
 
+MOST_COEFFICIENTS = 50
+"""Of a polynomial that is judged."""
+
+
 @dataclass(frozen=True)
 class Ratio:
     """A transfer function as data: two polynomials, highest power first.
@@ -189,6 +193,14 @@ class Ratio:
 
     num: tuple[float, ...]
     den: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        most = max(len(self.num), len(self.den))
+        if most > MOST_COEFFICIENTS:
+            raise OutOfRange(
+                f"a polynomial has {most} coefficients, the limit is {MOST_COEFFICIENTS}; "
+                "cancel what numerator and denominator have in common"
+            )
 
     def __call__(self, s: complex) -> complex:
         """Its value at ``s``."""

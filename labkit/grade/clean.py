@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from typing import Any
 
 _CONTROL = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff"
 _UNSAFE = re.compile(f"[{_CONTROL}]")
@@ -31,6 +32,17 @@ def clean_line(text: str, most: int = 500) -> str:
         most: Characters to keep.
     """
     return re.sub(r"\s+", " ", _UNSAFE.sub(" ", _SURROGATE.sub("\ufffd", text))).strip()[:most]
+
+
+def clean_data(data: Any) -> Any:
+    """Plain data, as JSON gives it, with `clean_text` of every text in it."""
+    if isinstance(data, str):
+        return clean_text(data)
+    if isinstance(data, list):
+        return [clean_data(x) for x in data]
+    if isinstance(data, dict):
+        return {clean_text(key): clean_data(x) for key, x in data.items()}
+    return data
 
 
 def safe_name(name: str) -> str:

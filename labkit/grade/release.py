@@ -19,9 +19,9 @@ import nbformat
 from ..check import Question, question_data
 from ..check.notebook import FILE
 from ..check.question_codec import pack_hidden
+from ..check.withheld import find
 from ..errors import LabkitError
 from .course import Course
-from .inside.withheld import find
 from .notebook import Notebook, source_notebook, without_hidden
 from .room import make_room
 from .solved import solution_notebook
