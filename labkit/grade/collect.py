@@ -180,27 +180,26 @@ def _keep_notebooks(
     adopt(course, student, assignment, now)
     before = counts(attempts(course, student, assignment), assignment)
     shown = max((one.file.when for one in notebooks), default=datetime.now(UTC))
-    kept: list[tuple[_HandedIn, str, bool]] = []
+    kept: list[tuple[Seen, str, bool]] = []
     for one in notebooks:
+        file, named = one.file, one.named
         try:
-            data, secret = one.file.read(), one.file.secret()
+            data, secret = file.read(), file.secret()
         except LabkitError as error:
-            yield Taken(student, one.named.file, f"not taken; {error}", fine=False)
+            yield Taken(student, named.file, f"not taken; {error}", fine=False)
             continue
-        when = one.file.when if one.file.exact else shown  # a download shows them all at once
-        named = one.named
-        seen = Seen(when, *named.who.key, named.file, one.file.exact, named.late, now)
-        kept.append((one, digest(data), keep(course, student, assignment, data, seen, secret)))
-    now_counts = install(course, student, assignment)
-    for one, sha256, new in kept:
-        file, late = one.named.file, ", late" if one.named.late else ""
-        if now_counts is None or now_counts.attempt.sha256 != sha256:
-            counting = now_counts.first.file if now_counts else ""
-            which = "a later one" if counting == file else counting
+        when = file.when if file.exact else shown  # a download shows them all at once
+        seen = Seen(when, *named.who.key, named.file, file.exact, named.late, now)
+        kept.append((seen, digest(data), keep(course, student, assignment, data, seen, secret)))
+    after = install(course, student, assignment)
+    for seen, sha256, new in kept:
+        if after is None or after.attempt.sha256 != sha256:
+            beside = {x.when: x.file for x in after.attempt.seen} if after else {}
+            which = beside.get(seen.when, "a later one")
             says = f"{'kept' if new else 'there already'}, but {which} counts"
         elif before is not None and before.attempt.sha256 == sha256:
             says = "there already"
         else:
             says = "taken" + (", in place of an earlier one, which is kept" if before else "")
-            says += "" if file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
-        yield Taken(student, file, says + late)
+            says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
+        yield Taken(student, seen.file, says + (", late" if seen.late else ""))

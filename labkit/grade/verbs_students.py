@@ -24,9 +24,9 @@ def add(verbs: Verbs) -> None:
         help="the file is Moodle's grading worksheet of it, which says whose each number is",
     )
     course_option(verb)
-    verb.epilog = (
-        f"{verb.epilog}. Exit code: 0 if the list was taken, 1 if work "
-        "of somebody lies in two folders, 2 if the list was not taken."
+    verb.description = (
+        f"{verb.description} Exit code: 0 if the list was taken, 1 if work of somebody is in two "
+        "folders (named at the end), 2 if the list was not taken."
     )
 
 

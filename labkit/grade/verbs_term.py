@@ -59,10 +59,10 @@ def add(verbs: Verbs) -> None:
         action="store_true",
         help="from the exchange, take also what users handed in whom this machine does not know",
     )
-    verb.epilog = (
-        f"{verb.epilog}. Nothing that was handed in is lost: all of it is under attempts/. Exit "
-        "code: 0 if all is well, 1 if something was not taken or it is not certain whose it is "
-        "(named at the end), 2 if nothing could be done."
+    verb.description = (
+        f"{verb.description} Nothing that was handed in is lost: all of it is under attempts/. "
+        "Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it "
+        "is (named at the end), 2 if nothing could be done."
     )
     does = "play a term through with a class that never was, in a folder"
     verb = assignment_verb(verbs, "rehearse", rehearse, does, "--to trial")

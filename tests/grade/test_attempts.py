@@ -71,9 +71,9 @@ def test_in_any_order_the_latest_hand_in_counts(data):
 def test_an_older_download_takes_no_newer_hand_ins_place(bare, tmp_path):
     """The lecturer finds last week's zip and collects it; this week's work still counts."""
     new = shown(tmp_path / "new.zip", 8, (f"{NAME}.ipynb", "new"))
-    old = shown(tmp_path / "old.zip", 1, (f"{NAME}.ipynb", "old"))
+    old = shown(tmp_path / "old.zip", 1, (f"{NAME}(2).ipynb", "old"))
     assert take(bare, new) == [f"Ada-Lovelace: {NAME}.ipynb: taken"]
-    assert take(bare, old) == [f"Ada-Lovelace: {NAME}.ipynb: kept, but a later one counts"]
+    assert take(bare, old) == [f"Ada-Lovelace: {NAME}(2).ipynb: kept, but a later one counts"]
     assert counting(bare) == {"Ada-Lovelace": "new"}
     assert kept(bare, "Ada-Lovelace") == {"new", "old"}
 
