@@ -62,8 +62,8 @@ def said_of(seed: int) -> str:
     if seed != PUBLIC_SEED:
         return ""
     return (
-        f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute them; "
-        "begin a term with: labkit new-term"
+        f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
+        "them; begin a term with: labkit new-term"
     )
 
 

@@ -62,9 +62,7 @@ def speeds_up_all_the_way(
     return _ramps(t, distance, min(v_max, sqrt(2.0 * distance * a_max)), a_max)
 
 
-def _ramps(
-    t: float, distance: float, v_max: float, a_max: float
-) -> tuple[float, float, float]:
+def _ramps(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
     """The trapezoid whose speed is v_max, whether its ramps have room or not."""
     ramp = v_max / a_max
     duration = distance / v_max + ramp

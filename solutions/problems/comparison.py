@@ -340,9 +340,7 @@ CHOOSE_GAINS = Problem(
             "on the line, on its worst seed: at most 6 mm; the same on an arm a third as quick",
             (
                 Choice(held_out.ON_THE_LINE, {"worst_mm": 6.0}),
-                Choice(
-                    held_out.stiffer(held_out.ON_THE_LINE, held_out.SLOW), {"worst_mm": 6.0}
-                ),
+                Choice(held_out.stiffer(held_out.ON_THE_LINE, held_out.SLOW), {"worst_mm": 6.0}),
             ),
             weight=0.0,
         ),
