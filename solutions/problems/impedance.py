@@ -54,7 +54,8 @@ def _at_tip(answer: Callable[..., lk.JointTorque]) -> Callable[..., TipTorque]:
     def expected(state: lk.State, *args: Any, **gains: Any) -> TipTorque:
         model: lk.Model = args[-1]
         M, J = model.mass_matrix(state.q), model.tip_jacobian(state.q)
-        return TipTorque(answer(state, *args, **gains).value, np.asarray(np.linalg.solve(M, J.T).T))
+        accelerates = np.asarray(np.linalg.solve(M, J.T).T, dtype=np.float64)
+        return TipTorque(answer(state, *args, **gains).value, accelerates)
 
     return expected
 
