@@ -23,7 +23,8 @@ GATE = (
     "commands for the terminal",
 )
 CASES = [
-    pytest.param(name, marks=() if name in GATE else pytest.mark.soak, id=name) for name in IMPOSTORS
+    pytest.param(name, marks=() if name in GATE else pytest.mark.soak, id=name)
+    for name in IMPOSTORS
 ]
 FIRST = {
     "moodle": f"Ada Lovelace_{ADA}{MOODLE}{NAME}.ipynb",
@@ -60,7 +61,9 @@ def collect_first(course, impostor, ada, twin, tmp_path, capsys):
         (folder / "timestamp.txt").write_text("2026-01-01 00:00:00 UTC")
         return
     files = {FIRST[impostor.system]: ada} | ({TWIN: twin} if impostor.twin else {})
-    assert labkit(course, capsys, "collect", NAME, str(write_zip(tmp_path / "1.zip", files)))[0] == 0
+    assert (
+        labkit(course, capsys, "collect", NAME, str(write_zip(tmp_path / "1.zip", files)))[0] == 0
+    )
 
 
 def labkit(course, capsys, *words):
@@ -113,7 +116,9 @@ def test_nobody_is_taken_for_another(course, tmp_path, capsys, name):
     assert code in (0, 1, 2)
     assert "Traceback" not in printed
     assert not COMMANDS.search(printed)
-    assert not re.search(r"^Ada-Lovelace: 01_paths.ipynb: taken", printed.partition("x.ipynb")[2], re.M)
+    assert not re.search(
+        r"^Ada-Lovelace: 01_paths.ipynb: taken", printed.partition("x.ipynb")[2], re.M
+    )
     assert {data: places(course, data) for data in (ada, twin)} == before
     assert kept(course, ada)
     assert sorted(tmp_path.iterdir()) == sorted({*around, source})

@@ -58,7 +58,9 @@ def test_nobody_else_is_harmed(graded):
     """Whoever did their work among the attackers has full marks in result, export and page."""
     of = graded.of
     assert not of.failed
-    assert {who: of.results.get(who, {}).get("score") for who in HONEST} == dict.fromkeys(HONEST, FULL)
+    assert {who: of.results.get(who, {}).get("score") for who in HONEST} == dict.fromkeys(
+        HONEST, FULL
+    )
     assert {who: of.marks.get(who) for who in HONEST} == dict.fromkeys(HONEST, str(FULL))
     assert all(f"{FULL:g} of {FULL:g} points" in of.pages.get(who, "") for who in HONEST)
     assert not of.stolen
@@ -78,7 +80,9 @@ def test_honest_students_are_not_suspected(graded):
     """The report names nobody for a withheld tool who used none."""
     of = graded.of
     accused = [line for line in of.report.splitlines() if "BangBang" in line]
-    assert not [line for line in accused for who in HONEST if f"{who}:" in line or f"{who} " in line]
+    assert not [
+        line for line in accused for who in HONEST if f"{who}:" in line or f"{who} " in line
+    ]
 
 
 def test_nothing_is_left(graded):

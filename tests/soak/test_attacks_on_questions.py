@@ -57,7 +57,10 @@ def graded(request, root):
     folder = course.release / name
     notebook = (folder / f"{name}.ipynb").read_text()
     questions = json.loads((folder / "checks.json").read_text())["questions"]
-    made = {"heart": by_heart(json.loads(notebook), questions), "stand-in": standing_in(json.loads(notebook))}
+    made = {
+        "heart": by_heart(json.loads(notebook), questions),
+        "stand-in": standing_in(json.loads(notebook)),
+    }
     for who, data in made.items():
         (course.submitted / who / name).mkdir(parents=True)
         (course.submitted / who / name / f"{name}.ipynb").write_text(json.dumps(data))
@@ -69,7 +72,9 @@ def graded(request, root):
 def by_heart(notebook, questions):
     """Every question of which public calls are known, answered with what they expect."""
     for question in questions:
-        calls = [c for t in question["tests"]["items"] for c in t["cases"]["items"] if c["$"] == "Call"]
+        calls = [
+            c for t in question["tests"]["items"] for c in t["cases"]["items"] if c["$"] == "Call"
+        ]
         if calls:
             known = [{key: call[key] for key in ("args", "kwargs", "expected")} for call in calls]
             within = question["judge"]["$"] == "Within"
@@ -90,7 +95,9 @@ def put(notebook, name, source):
     for k, cell in enumerate(notebook["cells"]):
         about = cell["metadata"].get("nbgrader", {})
         if about.get("grade_id") == name and about.get("solution"):
-            notebook["cells"][k] = cell | code_cell(source, cell["id"]) | {"metadata": cell["metadata"]}
+            notebook["cells"][k] = (
+                cell | code_cell(source, cell["id"]) | {"metadata": cell["metadata"]}
+            )
 
 
 def earned(result):

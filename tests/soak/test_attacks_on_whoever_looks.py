@@ -59,7 +59,10 @@ def live(page):
         for name, value in tag.attrs.items():
             text = "".join(value) if isinstance(value, list) else str(value)
             seen = "GOT" in text or "http://x" in text
-            if seen and (name.startswith("on") or name in ("href", "src", "srcdoc", "data", "action", "formaction", "content")):
+            if seen and (
+                name.startswith("on")
+                or name in ("href", "src", "srcdoc", "data", "action", "formaction", "content")
+            ):
                 found.append(f"{tag.name} {name}")
     return found
 
@@ -105,7 +108,9 @@ FILES = {
     "dataclasses.py": WRITES,
     "nbgrader_config.py": WRITES,
 }
-CASES = [pytest.param(n, marks=() if n in ("json.py", "nbgrader_config.py") else soak) for n in FILES]
+CASES = [
+    pytest.param(n, marks=() if n in ("json.py", "nbgrader_config.py") else soak) for n in FILES
+]
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -129,14 +134,25 @@ def test_no_file_beside_a_notebook_is_run(course, tmp_path, name):
 
 def undefended(folder, name, env):
     """What runs a file that lies in the working folder."""
-    words = ["-m", "nbgrader", "list"] if name.startswith("nbgrader") else ["-c", f"import {name.partition('.')[0].partition('/')[0]}"]
-    subprocess.run([sys.executable, *words], cwd=folder, env=env | {"PYTHONPATH": ""}, capture_output=True)
+    words = (
+        ["-m", "nbgrader", "list"]
+        if name.startswith("nbgrader")
+        else ["-c", f"import {name.partition('.')[0].partition('/')[0]}"]
+    )
+    subprocess.run(
+        [sys.executable, *words], cwd=folder, env=env | {"PYTHONPATH": ""}, capture_output=True
+    )
 
 
-SHOWN = {"beside Python": Path(sys.prefix) / "share", "in /usr/local/share": Path("/usr/local/share")}
+SHOWN = {
+    "beside Python": Path(sys.prefix) / "share",
+    "in /usr/local/share": Path("/usr/local/share"),
+}
 
 
-@pytest.mark.parametrize("where", [pytest.param(n, marks=() if n == "beside Python" else soak) for n in SHOWN])
+@pytest.mark.parametrize(
+    "where", [pytest.param(n, marks=() if n == "beside Python" else soak) for n in SHOWN]
+)
 def test_a_course_in_a_shown_place_is_safe_or_refused(_released, where, capsys):
     """Where the course lies in a place that the sandbox shows, one sentence says so, or it is kept."""
     folder = SHOWN[where] if os.access(SHOWN[where], os.W_OK) else SHOWN["beside Python"]
@@ -150,14 +166,20 @@ def test_a_course_in_a_shown_place_is_safe_or_refused(_released, where, capsys):
         mallory.mkdir(parents=True)
         notebook = json.loads((course.release / NAME / f"{NAME}.ipynb").read_text())
         reads = f"raise Exception(open({str(path)!r}).read()[-40:])"
-        notebook["cells"].insert(0, markdown_cell("x") | {"cell_type": "code", "source": reads, "outputs": [], "execution_count": None})
+        notebook["cells"].insert(
+            0,
+            markdown_cell("x")
+            | {"cell_type": "code", "source": reads, "outputs": [], "execution_count": None},
+        )
         (mallory / f"{NAME}.ipynb").write_text(json.dumps(notebook))
         root.chmod(0o755)
         code = main(["grade", NAME, "--course", str(course.root)])
         said = capsys.readouterr().err
         result = course.results / NAME / "mallory.json"
         if result.exists():
-            assert CANARY not in "".join(json.dumps(c) for c in json.loads(result.read_text())["cells"])
+            assert CANARY not in "".join(
+                json.dumps(c) for c in json.loads(result.read_text())["cells"]
+            )
         else:
             assert code == 2
             assert str(folder) in said or "shown" in said
@@ -172,11 +194,19 @@ def test_nothing_that_links_lead_to_comes_back(_released, tmp_path):
         course = here.course
         folder = course.submitted / "mallory" / NAME
         here.hand_in("mallory", here.notebook())
-        for name, target in {"notes.txt": course.bundle / f"{NAME}.json", "key.txt": course.root / "home/.ssh/id_ed25519"}.items():
+        for name, target in {
+            "notes.txt": course.bundle / f"{NAME}.json",
+            "key.txt": course.root / "home/.ssh/id_ed25519",
+        }.items():
             (folder / name).symlink_to(target)
         program = Path(sys.executable).with_name("nbgrader")
         env = dict(os.environ, PYTHONPATH=str(ROOT), PATH=f"{program.parent}:{os.environ['PATH']}")
         for verb in ("autograde", "generate_feedback"):
-            subprocess.run([program, verb, NAME, "--student", "mallory"], cwd=course.root, env=env, capture_output=True)
+            subprocess.run(
+                [program, verb, NAME, "--student", "mallory"],
+                cwd=course.root,
+                env=env,
+                capture_output=True,
+            )
         given = [p for p in (course.root / "feedback" / "mallory").rglob("*") if p.is_file()]
         assert not [p for p in given if CANARY in p.read_text(errors="replace")]

@@ -97,7 +97,11 @@ def graded(request, tmp_path_factory):
         for verb in ("grade", "feedback", "export", "class-report"):
             codes[verb], printed[verb] = _run(verb, here.course)
         yield SimpleNamespace(
-            course=here.course, attackers=attackers, codes=codes, printed=printed, left=family.left()
+            course=here.course,
+            attackers=attackers,
+            codes=codes,
+            printed=printed,
+            left=family.left(),
         )
 
 
@@ -159,7 +163,10 @@ def test_no_attacker_gains(graded):
 
 def test_a_zero_is_earned(graded):
     """Where there is no result, the table has no number."""
-    rows = {row["student"]: row["score"] for row in csv.DictReader(io.StringIO(graded.printed["export"]))}
+    rows = {
+        row["student"]: row["score"]
+        for row in csv.DictReader(io.StringIO(graded.printed["export"]))
+    }
     results = graded.course.root / "results" / NAME
     missing = [who for who in graded.attackers if not (results / f"{who}.json").exists()]
     assert not [who for who in missing if rows.get(who)]
@@ -168,7 +175,9 @@ def test_a_zero_is_earned(graded):
 def test_verbs_end_as_documented(graded):
     """All is done for all others; 1 says that somebody's part failed, and nothing is a traceback."""
     assert {code in (0, 1) for code in graded.codes.values()} == {True}, graded.codes
-    assert not [v for v, text in graded.printed.items() if "Traceback" in text or COMMANDS.search(text)]
+    assert not [
+        v for v, text in graded.printed.items() if "Traceback" in text or COMMANDS.search(text)
+    ]
 
 
 def test_nothing_is_left(graded):

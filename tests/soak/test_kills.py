@@ -137,7 +137,9 @@ def test_killed_at_a_random_moment(handed_in, undisturbed, tmp_path, whom, how, 
         assert not family.left()
     deserved = json.loads((course.root / "build" / "class" / f"{NAME}.json").read_text())
     rows = {row["student"]: row["score"] for row in csv.DictReader(StringIO(table))}
-    assert {who: float(rows[who]) for who in deserved} == {w: d["score"] for w, d in deserved.items()}
+    assert {who: float(rows[who]) for who in deserved} == {
+        w: d["score"] for w, d in deserved.items()
+    }
 
 
 def test_all_parts_are_killed_by_both_signals():

@@ -25,7 +25,14 @@ from itertools import islice
 from pathlib import Path
 
 SECRET = "canary-5816534691"
-DEVICES = {"null": (1, 3), "zero": (1, 5), "full": (1, 7), "random": (1, 8), "urandom": (1, 9), "tty": (5, 0)}
+DEVICES = {
+    "null": (1, 3),
+    "zero": (1, 5),
+    "full": (1, 7),
+    "random": (1, 8),
+    "urandom": (1, 9),
+    "tty": (5, 0),
+}
 HIDDEN = (0.7, 5.816534)
 CALLS = [(0.5, 2.0), (0.25, 1.0), (1.5, 2.0), (3.0, 4.0), HIDDEN]
 MOST = 300_000  # bytes that are kept of what is said

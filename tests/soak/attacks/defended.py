@@ -90,7 +90,9 @@ def defended(attacks: Mapping[str, Attack], here: Place) -> Class:
         made.left = family.left()
     read(here.course, (*made.attackers, *made.accomplices, *HONEST), made)
     made.loot = sorted(p.name for p in here.loot.iterdir() if p.name != "socket")
-    made.stolen = [who for who, data in solved.items() if _handed_in(here, who).read_bytes() != data]
+    made.stolen = [
+        who for who, data in solved.items() if _handed_in(here, who).read_bytes() != data
+    ]
     return made
 
 
@@ -123,7 +125,9 @@ def _run(verb: str, here: Place, made: Class) -> None:
     made.printed += out.getvalue()
     if verb == "export":
         with suppress(KeyError):
-            made.marks = {row["student"]: row["score"] for row in csv.DictReader(io.StringIO(out.getvalue()))}
+            made.marks = {
+                row["student"]: row["score"] for row in csv.DictReader(io.StringIO(out.getvalue()))
+            }
     if verb == "class-report":
         made.report = out.getvalue()
 

@@ -68,7 +68,9 @@ def descendants(of: int = 0) -> dict[tuple[int, int], str]:
 def words(pid: int) -> str:
     """How a process was started; empty for a dead one."""
     with suppress(OSError):
-        return Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+        return (
+            Path(f"/proc/{pid}/cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+        )
     return ""
 
 

@@ -20,7 +20,9 @@ MEMORY = cells(
     writes_below_etc="open('/etc/labkit-test', 'w').write('x')\nraise Exception('GOT write')",
     writes_beside_python="import numpy\nopen(numpy.__file__ + '.x', 'w').write('x')\nraise Exception('GOT write')",
 )  # fmt: skip
-MEMORY["writes below etc"] = Attack("reads", ("open('{loot}/x', 'w').write('x')\nraise Exception('GOT write')",))
+MEMORY["writes below etc"] = Attack(
+    "reads", ("open('{loot}/x', 'w').write('x')\nraise Exception('GOT write')",)
+)
 MEMORY["writes beside python"] = Attack(
     "reads", ("import os\nos.makedirs('{loot}/y')\nraise Exception('GOT write')",)
 )
@@ -123,7 +125,11 @@ def _printing(notebook):
 
 def _emoji(notebook):
     """One cell answers all questions, with a comment of a million emoji."""
-    names = [c["metadata"]["nbgrader"]["grade_id"] for c in notebook["cells"] if c["metadata"].get("nbgrader", {}).get("solution")]
+    names = [
+        c["metadata"]["nbgrader"]["grade_id"]
+        for c in notebook["cells"]
+        if c["metadata"].get("nbgrader", {}).get("solution")
+    ]
     source = "\n".join(f"def {name}(*args): return 0.0" for name in names)
     notebook["cells"].append(code_cell(source + "\n# " + "\U0001f600" * 900_000, "own-0"))
     return notebook
@@ -158,14 +164,18 @@ def _magics(notebook):
 
 
 def _statements(notebook):
-    notebook["cells"].append(code_cell("x=1\n" * 480_000 + "def bang_bang(t, T): return 0, 0, 0", "own-0"))
+    notebook["cells"].append(
+        code_cell("x=1\n" * 480_000 + "def bang_bang(t, T): return 0, 0, 0", "own-0")
+    )
     return notebook
 
 
 def _pictures(notebook):
     for cell in notebook["cells"]:
         if cell["cell_type"] == "code":
-            cell["outputs"] = [{"output_type": "display_data", "metadata": {}, "data": {"image/png": "A" * 10**6}}]
+            cell["outputs"] = [
+                {"output_type": "display_data", "metadata": {}, "data": {"image/png": "A" * 10**6}}
+            ]
     return notebook
 
 
@@ -196,7 +206,10 @@ FILES = {
     "prints without end": Attack("fills", ("while True: print('x' * 10_000)",)),
     "one line of 20 MB": Attack("fills", ("print('x' * 20_000_000)",)),
     "writes past Python's streams": Attack(
-        "fills", ("import os\nfor _ in range(3000): os.write(1, b'x' * 10_000); os.write(2, b'x' * 10_000)",)
+        "fills",
+        (
+            "import os\nfor _ in range(3000): os.write(1, b'x' * 10_000); os.write(2, b'x' * 10_000)",
+        ),
     ),
 }
 

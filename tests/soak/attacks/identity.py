@@ -57,7 +57,9 @@ def _link_folder(folder: Path, course: Path) -> None:
 
 
 def _link_file(folder: Path, course: Path) -> None:
-    (folder / "01_paths.ipynb").symlink_to(course / "submitted" / "ada" / "01_paths" / "01_paths.ipynb")
+    (folder / "01_paths.ipynb").symlink_to(
+        course / "submitted" / "ada" / "01_paths" / "01_paths.ipynb"
+    )
 
 
 def _hard_link(folder: Path, course: Path) -> None:

@@ -10,7 +10,11 @@ VICTIM = "zoe"
 
 def _twice(notebook):
     """An answer's cell stands there twice, under one name."""
-    place = next(k for k, c in enumerate(notebook["cells"]) if c["metadata"].get("nbgrader", {}).get("solution"))
+    place = next(
+        k
+        for k, c in enumerate(notebook["cells"])
+        if c["metadata"].get("nbgrader", {}).get("solution")
+    )
     notebook["cells"].insert(place, notebook["cells"][place])
     return notebook
 

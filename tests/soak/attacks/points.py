@@ -49,7 +49,9 @@ PATCHES = patched(
     check_in_the_module="import labkit.check\nlabkit.check.check = lambda *a, **k: 2.0",
 )  # fmt: skip
 PATCHES["check in the module"] = Attack("labkit's points", PATCHES["check in the module"].cells)
-PATCHES["code of check replaced"] = Attack("labkit's points", PATCHES["code of check replaced"].cells)
+PATCHES["code of check replaced"] = Attack(
+    "labkit's points", PATCHES["code of check replaced"].cells
+)
 
 SHELL = patched(
     input_becomes_pass="get_ipython().input_transformers_cleanup.append(\n"
@@ -68,7 +70,9 @@ SHELL = patched(
     "hook.__call__ = lambda self, x=None: old(self, 1.0 if isinstance(x, float) else x)",
 )  # fmt: skip
 
-_EQUAL = "class All{base}:\n{body}    __hash__ = None\ndef bang_bang(t, duration):\n    return {value}"
+_EQUAL = (
+    "class All{base}:\n{body}    __hash__ = None\ndef bang_bang(t, duration):\n    return {value}"
+)
 OBJECTS = {
     name: Attack("points", answer=_EQUAL.format(base=base, body=body, value=value))
     for name, base, body, value in [
@@ -184,7 +188,11 @@ def _stolen_name(notebook):
     cell["metadata"]["nbgrader"] = about
     cell["outputs"] = [{"output_type": "execute_result", "data": {"text/plain": "1.0"},
                         "metadata": {}, "execution_count": 1}]  # fmt: skip
-    kept = [c for c in notebook["cells"] if c["metadata"].get("nbgrader", {}).get("grade_id") != "bang_bang-check"]
+    kept = [
+        c
+        for c in notebook["cells"]
+        if c["metadata"].get("nbgrader", {}).get("grade_id") != "bang_bang-check"
+    ]
     return notebook | {"cells": [*kept, cell]}
 
 

@@ -14,7 +14,9 @@ def reads(**paths: str) -> dict[str, Attack]:
     return {
         f"reads {name.replace('_', ' ')}": Attack(
             "reads",
-            (f"text = open({path!r}, 'rb').read()\nif {_WORD}.encode() in text: raise Exception('GOT ' + repr(text[:80]))",),
+            (
+                f"text = open({path!r}, 'rb').read()\nif {_WORD}.encode() in text: raise Exception('GOT ' + repr(text[:80]))",
+            ),
         )
         for name, path in paths.items()
     }
@@ -217,7 +219,8 @@ def restarts(tell: str, hear: str = "") -> Attack:
         "    digits = [int(c) for c in x if c.isdigit()]\n"
         + "\n".join(f"    {line}" for line in tell.strip().splitlines())
         + "\n    os._exit(1)\nthreading.Thread(target=wait, daemon=True).start()\n"
-        "def trapezoid(*args):\n    raise ValueError(f'started {started}')\n" + hear.strip()
+        "def trapezoid(*args):\n    raise ValueError(f'started {started}')\n"
+        + hear.strip()
         + "\nraise Exception(f'started {started}')"
     )
     attack = leaks("import os, time\nos.write(ends[1], format(x, '.6f').encode())\ntime.sleep(2)")

@@ -63,7 +63,9 @@ def _claims(won: Won) -> bool:
     from nbgrader.utils import determine_grade
 
     cells = nbformat.reads(json.dumps(won.notebook), as_version=4).cells
-    marked = [c for c in cells if c.cell_type == "code" and c.metadata.get("nbgrader", {}).get("grade")]
+    marked = [
+        c for c in cells if c.cell_type == "code" and c.metadata.get("nbgrader", {}).get("grade")
+    ]
     return sum(determine_grade(c)[0] or 0.0 for c in marked if c.outputs) > 0.0
 
 
@@ -160,7 +162,12 @@ def plainly(here: Place) -> Place:
     with (course.root / "nbgrader_config.py").open("a") as file:
         file.write("c.pop('Autograde')\nc.Execute.timeout = 15\n")  # nbgrader's own steps
     marks = {"schema_version": 3, "locked": False, "task": False, "grade": False, "solution": False}
-    cells = [code_cell("def bang_bang(t, duration):\n    ### BEGIN SOLUTION\n    return 0\n    ### END SOLUTION", "answer")]
+    cells = [
+        code_cell(
+            "def bang_bang(t, duration):\n    ### BEGIN SOLUTION\n    return 0\n    ### END SOLUTION",
+            "answer",
+        )
+    ]
     cells[0]["metadata"]["nbgrader"] = marks | {"grade_id": "bang_bang", "solution": True}
     for number, source in enumerate(TESTS):
         cell = code_cell(source, f"test-{number}")
@@ -191,7 +198,11 @@ def _points(here: Place, attacks: Mapping[str, Attack], won: dict[str, Won]) -> 
 def _alone(here: Place, attack: Attack, won: Won) -> None:
     """In a run of its own, before an honest student."""
     name = NAME if attack.wins == "labkit's points" else "plain"
-    blank = _short(here) if name == NAME else json.loads((here.course.release / name / f"{name}.ipynb").read_text())
+    blank = (
+        _short(here)
+        if name == NAME
+        else json.loads((here.course.release / name / f"{name}.ipynb").read_text())
+    )
     planted = here.filled(attack).planted(json.loads(json.dumps(blank)))
     if name == NAME:
         planted["cells"].insert(0, code_cell("from labkit.check import check", "first"))
@@ -204,16 +215,27 @@ def _alone(here: Place, attack: Attack, won: Won) -> None:
 
 def _bare(here: Place, attacks: Mapping[str, Attack], won: dict[str, Won], scratch: Path) -> None:
     """Each in a process of its own, beside what is expected."""
-    jobs = [_job(here, name, attack, won[name].notebook) for name, attack in attacks.items() if attack.wins != "spoils"]
+    jobs = [
+        _job(here, name, attack, won[name].notebook)
+        for name, attack in attacks.items()
+        if attack.wins != "spoils"
+    ]
     for name, found in run_bare(here, jobs, scratch).items():
         won[name].bare = found
 
 
 def _job(here: Place, name: str, attack: Attack, notebook: Notebook) -> dict[str, Any]:
-    own = [c for c in notebook["cells"] if str(c["id"]).startswith("own") and c["cell_type"] == "code"]
+    own = [
+        c for c in notebook["cells"] if str(c["id"]).startswith("own") and c["cell_type"] == "code"
+    ]
     sources = [c["source"] for c in own]
     answer = [attack.planted(_short(here))] if attack.answer else []
-    sources += [c["source"] for n in answer for c in n["cells"] if c["metadata"].get("nbgrader", {}).get("grade_id") == "bang_bang"]
+    sources += [
+        c["source"]
+        for n in answer
+        for c in n["cells"]
+        if c["metadata"].get("nbgrader", {}).get("grade_id") == "bang_bang"
+    ]
     return {
         "name": name,
         "cells": [s for s in sources if "\ud800" not in s and "\udfff" not in s],
@@ -231,7 +253,10 @@ def run_bare(here: Place, jobs: Iterable[Mapping[str, Any]], scratch: Path) -> d
     asked.write_text(json.dumps(list(jobs)))
     words = [sys.executable, "-P", str(BARE), str(asked), str(out)]
     done = subprocess.run(
-        [*harmless(here, init=True), *words], env=environment(here), capture_output=True, timeout=1800
+        [*harmless(here, init=True), *words],
+        env=environment(here),
+        capture_output=True,
+        timeout=1800,
     )
     assert out.exists(), done.stderr.decode()[-2000:]
     found = json.loads(out.read_text())
@@ -241,7 +266,18 @@ def run_bare(here: Place, jobs: Iterable[Mapping[str, Any]], scratch: Path) -> d
 
 def _spoils(here: Place, attack: Attack, won: Won, scratch: Path) -> None:
     before = _state(here)
-    run_bare(here, [_job(here, "it", here.filled(attack), won.notebook | {"cells": here.filled(attack).planted(_short(here))["cells"]})], scratch)
+    run_bare(
+        here,
+        [
+            _job(
+                here,
+                "it",
+                here.filled(attack),
+                won.notebook | {"cells": here.filled(attack).planted(_short(here))["cells"]},
+            )
+        ],
+        scratch,
+    )
     after = _state(here)
     won.changed = tuple(name for name in before if before[name] != after[name])
 
