@@ -44,22 +44,12 @@ BATCH = {
          "os.makedirs(folder, exist_ok=True)\n"
          "open(folder + '/00.py', 'w').write('import os\\nos._exit(1)\\n')",),
     ),
-    "another kernel for the next": Attack(
-        "stops",
-        ("import os\nfolder = os.path.expanduser('~/.local/share/jupyter/kernels/python3')\n"
-         "os.makedirs(folder, exist_ok=True)\n"
-         "open(folder + '/kernel.json', 'w').write("
-         "'{\"argv\": [\"false\"], \"display_name\": \"x\", \"language\": \"python\"}')",),
-    ),
-    "settings for the next": Attack(
-        "stops",
-        ("open('{root}/nbgrader_config.py', 'a').write('\\nimport os; os._exit(1)\\n')",),
-    ),
     "the gradebook deleted": Attack("stops", ("import os\nos.remove('{root}/gradebook.db')",)),
     "the gradebook locked": Attack(
         "stops",
-        ("import os, sqlite3, time\nbook = sqlite3.connect('{root}/gradebook.db', timeout=1)\n"
-         "book.execute('begin exclusive')\nif not os.fork():\n    time.sleep(20)\n    os._exit(0)",),
+        ("import os, sqlite3, time\nif not os.fork():\n    os.setsid()\n"
+         "    book = sqlite3.connect('{root}/gradebook.db', timeout=9, isolation_level=None)\n"
+         "    book.execute('begin exclusive')\n    time.sleep(25)\n    os._exit(0)\ntime.sleep(1)",),
     ),
 }  # fmt: skip
 
@@ -74,6 +64,7 @@ FILES = {
         "a classmate's page changed": f"open('{{root}}/feedback/{VICTIM}/01_paths/01_paths.html', 'w').write('x')",
         "a classmate's result changed": f"open('{{root}}/results/01_paths/{VICTIM}.json', 'w').write('x')",
         "a classmate's marked copy changed": f"open('{{root}}/autograded/{VICTIM}/01_paths/01_paths.ipynb', 'w').write('x')",
+        "settings for the next": "open('{root}/nbgrader_config.py', 'a').write('\\nimport os; os._exit(1)\\n')",
         "the bundle changed": "open('{root}/build/course/bundle/01_paths.json', 'a').write('x')",
         "a course moved away": "import os\nos.rename('{root}/submitted', '{root}/submitted-')",
         "found from where it works": f"import os, shutil\nfor up in range(9):\n"

@@ -206,11 +206,11 @@ def _alone(here: Place, attack: Attack, won: Won) -> None:
     planted = here.filled(attack).planted(json.loads(json.dumps(blank)))
     if name == NAME:
         planted["cells"].insert(0, code_cell("from labkit.check import check", "first"))
-    here.hand_in("mallory", planted, name)
+    here.hand_in("eve", planted, name)
     here.hand_in(VICTIM, json.loads(json.dumps(blank)), name)
     nbgrader(here, "autograde", name, "--create")
     scores = marks(here, name)
-    won.score, won.victim = scores.get("mallory"), scores.get(VICTIM)
+    won.score, won.victim = scores.get("eve"), scores.get(VICTIM)
 
 
 def _bare(here: Place, attacks: Mapping[str, Attack], won: dict[str, Won], scratch: Path) -> None:
@@ -291,6 +291,7 @@ def _state(here: Place) -> dict[str, object]:
         f"autograded/{VICTIM}/{NAME}/{NAME}.ipynb",
         f"results/{NAME}/{VICTIM}.json",
         f"build/course/bundle/{NAME}.json",
+        "nbgrader_config.py",
     )
     found: dict[str, object] = {}
     for name in files:
