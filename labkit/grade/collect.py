@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import zipfile
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -109,6 +109,9 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
     found = places(people.values(), assignment, known, roster, there)
     if not roster.students:
         yield from _namesakes(people.values())
+        yield from _known_by_name(
+            assignment, {place.folder: people[key] for key, place in found.items()}, known
+        )
     for place in found.values():
         if place.doubt:
             yield Taken(place.folder, "", place.doubt, fine=False)
@@ -148,6 +151,30 @@ def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
     for name, count in called.items():
         if count > 1:
             yield Taken(name, "", f"{count} students are called so; told apart by their number")
+
+
+def _known_by_name(
+    assignment: str, people: Mapping[str, Known], known: Mapping[str, Mapping[str, Known]]
+) -> Iterator[Taken]:
+    """Who is taken for somebody of an earlier assignment by name alone, which people can change.
+
+    Moodle's numbers are new in each assignment, so without a roster there is nothing else to go by.
+    """
+    pairs = [
+        f"{who.name} ({before.number} for {other}, {who.number} for {assignment})"
+        for folder, who in people.items()
+        for other, there in known.items()
+        if other != assignment and who.system == "moodle"
+        if (before := there.get(folder)) is not None and before.number != who.number
+    ]
+    if pairs:
+        some = ", ".join(pairs[:3]) + (", ..." if len(pairs) > 3 else "")
+        yield Taken(
+            "",
+            "",
+            f"{len(pairs)} are known by their name alone, which people can change: {some}; "
+            "`labkit students import` reads the class list, which knows them for certain",
+        )
 
 
 def _keep(

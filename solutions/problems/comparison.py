@@ -388,13 +388,6 @@ CHOOSE_GAINS = Problem(
             "The best gain on one path is the most fragile one.",
         ),
         Wrong(
-            "a tenth off the lowest point",
-            "A tenth is no margin: a state that is a little older takes more. Take half of the largest "
-            "Kp that was safe.",
-            mistakes.Lowest(0.9),
-            "Say how large your margin is, and against what.",
-        ),
-        Wrong(
             "gains without a try",
             "The same gains for an arm that is a third as quick: what was typed once cannot be right for "
             "both. Ask the runner.",

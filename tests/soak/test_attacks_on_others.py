@@ -49,7 +49,7 @@ def test_each_attack_wins_undefended(won):
 
 
 def test_no_attack_wins_here(graded):
-    """Nothing undeserved and untold, nothing secret said, no result too large, nobody without one."""
+    """Nothing is undeserved and untold, nothing secret said; all have a result, none too large."""
     found = {name: list(wins(name, attack, graded.of)) for name, attack in graded.attacks.items()}
     assert not {name: what for name, what in found.items() if what}
 

@@ -62,7 +62,7 @@ def graded(request, root):
         "stand-in": standing_in(json.loads(notebook)),
     }
     for who, data in made.items():
-        (course.submitted / who / name).mkdir(parents=True)
+        (course.submitted / who / name).mkdir(parents=True, exist_ok=True)
         (course.submitted / who / name / f"{name}.ipynb").write_text(json.dumps(data))
     done = list(grade_class(course, name, sorted(made), How(jobs=2)))
     assert all(isinstance(one, Graded) for one in done), done

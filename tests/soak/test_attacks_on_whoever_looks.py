@@ -83,7 +83,7 @@ def shown(request, _released, tmp_path_factory):
         made = course.root / "autograded" / f"s{number:02d}" / NAME / f"{NAME}.ipynb"
         paths[name] = folder / f"{NAME}.ipynb", made
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
-    off = {"HTMLExporter": {"sanitize_html": False}}
+    off = {"HTMLExporter": {"sanitize_html": False, "filters": {}}}
     return {
         name: (formgrader(course, raw, **off), formgrader(course, made))
         for name, (raw, made) in paths.items()
@@ -154,7 +154,7 @@ SHOWN = {
     "where", [pytest.param(n, marks=() if n == "beside Python" else soak) for n in SHOWN]
 )
 def test_a_course_in_a_shown_place_is_safe_or_refused(_released, where, capsys):
-    """Where the course lies in a place that the sandbox shows, one sentence says so, or it is kept."""
+    """Where the sandbox shows the place of the course, one sentence says so, or it is kept."""
     folder = SHOWN[where] if os.access(SHOWN[where], os.W_OK) else SHOWN["beside Python"]
     root = Path(mkdtemp(prefix="labkit-test-", dir=folder))
     try:
