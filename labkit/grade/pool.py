@@ -107,12 +107,8 @@ class Worker:
             if self.closed:
                 raise EOFError
             if self.process is None:
-                words = [
-                    sys.executable,
-                    "-P",
-                    "-m",
-                    "labkit.grade.worker",
-                ]  # no file of the working folder
+                # -P: no file of the working folder, a submission's perhaps, is imported
+                words = [sys.executable, "-P", "-m", "labkit.grade.worker"]
                 here = str(Path(labkit.__file__).parent.parent)
                 self.process = subprocess.Popen(
                     words if self.isolated else [*words, "--no-isolation"],

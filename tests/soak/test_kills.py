@@ -100,7 +100,7 @@ def _is_bwrap(pid):
 
 
 def _killed(course, whom, how, when):
-    """Kill one of a run's processes; return whether there was one, how the run ended, what it said."""
+    """Kill one of a run's processes; return whether there was one, how it ended, what was said."""
     run = _start(course)
     time.sleep(when)
     while run.poll() is None:
