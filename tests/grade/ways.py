@@ -13,11 +13,14 @@ class Way:
         cell: A cell above the answers.
         body: Of ``bang_bang(t, duration)``.
         counted: Whether it earns points, so that only the list of tricks tells of it.
+        fails: Whether cells fail of it: the forkserver's objects are hidden from `gc`, and without
+            `isinstance` the process that runs the cells reads nothing any more.
     """
 
     body: str
     cell: str = ""
     counted: bool = False
+    fails: bool = False
 
     @property
     def answer(self) -> str:
@@ -49,7 +52,7 @@ WAYS = {
     "getattr, put together": Way("return getattr(lk, 'Bang' + 'Bang')(duration)(t)"),
     "vars": Way("return vars(lk)['BangBang'](duration)(t)"),
     "sys.modules": Way("import sys\nreturn sys.modules['labkit.scalings'].BangBang(duration)(t)"),
-    "gc": Way("return kind(duration)(t)", "import gc\nbase = type(lk.Cubic(1.0)).__mro__[1]\nkind = next(x for x in gc.get_referrers(base) if getattr(x, '__name__', '') == 'BangBang')"),
+    "gc": Way("return kind(duration)(t)", "import gc\nbase = type(lk.Cubic(1.0)).__mro__[1]\nkind = next(x for x in gc.get_referrers(base) if getattr(x, '__name__', '') == 'BangBang')", fails=True),
     "a thread": Way("import threading\nout = []\nf = lambda: out.append(getattr(lk, 'Bang' + 'Bang')(duration)(t))\nx = threading.Thread(target=f)\nx.start(); x.join()\nreturn out[0]"),
     "codec.decode": Way("from labkit.check.codec import decode\nreturn decode({'$': 'BangBang', 'duration': duration})(t)"),
     "exec with another name": Way("return f(t, duration)", "names = {'__name__': 'numpy', 'lk': lk}\nexec('def f(t, T): return lk.BangBang(T)(t)', names)\nf = names['f']"),
@@ -59,5 +62,5 @@ WAYS = {
     "reading the file": Way("return names['BangBang'](duration)(t)", "names = {'__package__': 'labkit', '__name__': 'labkit.scalings'}\nexec(open(lk.scalings.__file__).read(), names)", counted=True),
     "patching who is trusted": Way("return getattr(lk, 'Bang' + 'Bang')(duration)(t)", "import labkit.check.withheld as w\nw._student_asks = lambda: False", counted=True),
     "patching what is found": Way("return getattr(lk, 'Bang' + 'Bang')(duration)(t)", "import labkit.check.withheld as w\nw.find = lambda name: (None, None)", counted=True),
-    "patching isinstance": Way(SCALED.format("unit(t / duration)"), f"import builtins\nbuiltins.isinstance = lambda *a: False\n{MADE}"),
+    "patching isinstance": Way(SCALED.format("unit(t / duration)"), f"import builtins\nbuiltins.isinstance = lambda *a: False\n{MADE}", fails=True),
 }  # fmt: skip
