@@ -124,7 +124,8 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
     owners: dict[str, set[int]] = {}
     for path, (user, *_) in mine.items():
         owners.setdefault(user, set()).add(path.lstat().st_uid)
-    strangers = [user for user in owners if _number(user) is None and not unverified]
+    unknown = [user for user in owners if person(user) == user and _number(user) is None]
+    strangers = [] if unverified else unknown
     if strangers:
         yield File(_some(strangers), (), datetime.now(UTC), bytes, refused=_STRANGERS)
     for path, (user, _, stated, *_) in mine.items():
@@ -137,7 +138,7 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
             refused = refused or ("it states no time" if when is None else "it holds no notebook")
             yield File(label, (), datetime.now(UTC), bytes, refused=f"not taken; {refused}")
             continue
-        who = Known("exchange", person(user), person(user))
+        who = Known("exchange", user, user)
         for notebook in notebooks:
             yield File(
                 clean_line(notebook.name),
@@ -157,6 +158,8 @@ def _not_a_hand_in(path: Path) -> str:
 
 def _not_theirs(user: str, path: Path, owners: set[int]) -> str:
     """Why a folder is not that of the user whose name it bears; empty if it is."""
+    if not user or person(user) != user:
+        return "nobody can have such a name"
     uid, expected = path.lstat().st_uid, _number(user)
     if expected is not None and uid != expected:
         return (

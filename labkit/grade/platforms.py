@@ -23,14 +23,14 @@ from .clean import clean_line
 from .lms import Known
 
 _MOODLE = re.compile(
-    r"(?P<name>[^_/]*)_(?P<number>[0-9]+)_assignsubmission_"
+    r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
     r"(?P<kind>[a-z]+)(?:_?/(?:[^/]+/)*|_)(?P<file>[^/]+)"
 )
 _CANVAS = re.compile(
-    r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<number>[1-9][0-9]*)_(?P<attachment>[1-9][0-9]*)_"
-    r"(?P<file>[^/]+)"
+    r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<number>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>[^/]+)"
 )
-_NUMBER_FIRST = re.compile(r"[1-9][0-9]*_(?=[^/])")
+_NUMBER_FIRST = re.compile(r"([0-9]+)_([^/]+)")
+_ID = re.compile(r"[1-9][0-9]{0,18}")
 
 
 @dataclass(frozen=True)
@@ -62,13 +62,14 @@ def readings(entry: str) -> tuple[Named, ...]:
     match = _CANVAS.fullmatch(entry)
     if match is None or "assignsubmission" in match["name"] or match["name"] == "anon":
         return ()
-    name, number, file = match["name"], match["number"], match["file"]
-    found = [(name, number, file)]
-    if not match["late"] and _NUMBER_FIRST.match(file):
-        found.append((f"{name}_{number}", match["attachment"], file.partition("_")[2]))
+    name, number, attachment = match["name"], match["number"], match["attachment"]
+    found = [(name, number, attachment, match["file"])]
+    if not match["late"] and (more := _NUMBER_FIRST.fullmatch(match["file"])):
+        found.append((f"{name}_{number}", attachment, more[1], more[2]))
     return tuple(
-        Named(Known("canvas", user, person(called)), clean_line(rest), bool(match["late"]))
-        for called, user, rest in found
+        Named(Known("canvas", user, person(called)), clean_line(file), bool(match["late"]))
+        for called, user, number, file in found
+        if _ID.fullmatch(user) and _ID.fullmatch(number)
     )
 
 

@@ -294,6 +294,17 @@ def test_a_user_whom_the_machine_does_not_know_is_taken_only_if_asked(bare, tmp_
     assert counting(bare) == {"grace": "1"}
 
 
+@pytest.mark.parametrize("who", [" grace ", "grace\x1b", "grace\u202e", "Zoe\u0308", ""])
+def test_a_name_that_only_looks_like_anothers_is_nobodys(bare, tmp_path, who):
+    """Cleaned it would be another's: white space, what a terminal obeys, another composed form."""
+    looks_like = {"Zoe\u0308": "Zoë", "": "x"}.get(who, "grace")
+    handed_in(tmp_path / "in", looks_like, "right", owner=NOBODY)
+    handed_in(tmp_path / "in", who, "forged", "2026-03-05 10:00:00 UTC", owner=NOBODY + 1)
+    (said,) = troubles(bare, tmp_path / "in", unverified=True)
+    assert "nobody can have such a name" in said
+    assert counting(bare) == {looks_like: "right"}
+
+
 def test_names_of_the_exchange_are_names_of_folders(bare, tmp_path):
     """An address stays as it is; no name leads out, hides, or is taken for an option."""
     for who in ("ada.l@uni.org", "..", ".hidden", "-rf", "CON", "a" * 200, "RF"):
@@ -317,7 +328,7 @@ def test_what_is_not_a_hand_in_is_named(bare, tmp_path):
     said = " ".join(troubles(bare, inbound))
     for words in ("it states no time", "it holds no notebook", "it is a link or a file"):
         assert words in said
-    assert "\ufffd: not taken; this machine has no such users" in said
+    assert "\ufffd+01_paths+2026-03-02 10:00:00 UTC+d: not taken; nobody can have such a" in said
     assert counting(bare) == {"root": "1"}
 
 

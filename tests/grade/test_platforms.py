@@ -60,11 +60,17 @@ def test_a_file_from_canvas_is_nobody_elses(name, user, attachment, file, late):
         ("anon_12345_3_x.ipynb", []),
         ("anon_aB3x5_3_x.ipynb", []),
         ("../x_7_99_x.ipynb", []),
+        ("eve_0_80_lovelaceada_7_99_x.ipynb", []),  # the first numbers, or none
+        ("a_01_77_99_x.ipynb", ["77"]),
         ("Ada_Lovelace_7_assignsubmission_file_x.ipynb", []),  # no underscore is Moodle's here
         ("Team_assignsubmission_file_x_42_assignsubmission_file_y.ipynb", []),
         ("Team_assignsubmission_file_5_6_x.ipynb", []),
         ("Ada Lovelace_7_assignsubmission_file_/sub/x.ipynb", ["7"]),
         ("essay.ipynb", []),
+        ("Eve_000101_assignsubmission_file/x.ipynb", []),  # 101 is another's
+        ("Eve_１０１_assignsubmission_file/x.ipynb", []),
+        ("Eve_" + "9" * 20 + "_assignsubmission_file/x.ipynb", []),
+        ("Eve_0_assignsubmission_file/x.ipynb", ["0"]),
     ],
 )
 def test_names_as_platforms_write_them(entry, users):
