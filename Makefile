@@ -22,10 +22,10 @@ demo: for-grading .venv/.course ## release, grade a small class, build the book,
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/demo.py
 
 test: for-tests .venv/.dev browser lint types ## everything: style, types, all tests
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --ignore tests/soak
 
 quick: for-tests .venv/.dev ## the quick tests, under two minutes
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow and not soak" --ignore tests/book --ignore tests/replay
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
 
 soak: for-tests .venv/.dev ## the long suites, whole: fuzz, attacks, kills, large classes
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup -m "soak or not soak" tests/soak

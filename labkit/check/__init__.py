@@ -6,7 +6,7 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 from __future__ import annotations
 
 from .cases import Call, Choice, Loop, Tuned
-from .judge import AtMost, Close, Gains, Response, Within
+from .judge import AtMost, AtTip, Close, Gains, Response, TipTorque, Within
 from .mark import Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
 from .question import Mistake, Question, Raised, Test
@@ -15,6 +15,7 @@ from .reply import Failed
 
 __all__ = [
     "AtMost",
+    "AtTip",
     "Call",
     "Choice",
     "Close",
@@ -28,6 +29,7 @@ __all__ = [
     "Response",
     "Test",
     "TestResult",
+    "TipTorque",
     "Tuned",
     "Verdict",
     "Within",

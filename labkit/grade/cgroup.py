@@ -1,21 +1,34 @@
-"""Memory and processes of a whole sandbox, where the kernel lets us count them together."""
+"""Memory and processes of a group of processes, where the kernel lets us count them together."""
 
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-MEMORY = 3 * 2**30  # bytes, of a sandbox: what is loaded, one submission and its folder in memory
-PROCESSES = 100
+SANDBOX: Mapping[str, int] = {
+    "memory": 3 * 2**30,  # bytes: what is loaded, one submission and its folder in memory
+    "processes": 100,
+    "processor": 100_000,  # us in 100 ms: one core, so that nobody's neighbours starve
+}
+"""What a whole sandbox may use."""
+WORKER: Mapping[str, int] = {"memory": 2 * 2**30}
+"""What the process that judges may use; its sandbox is counted apart."""
 
 _ROOT = Path("/sys/fs/cgroup")
+_FILES = {
+    "memory": (("", "memory.max"), ("memory", "memory.limit_in_bytes")),
+    "processes": (("", "pids.max"), ("pids", "pids.max")),
+    "processor": (("", "cpu.max"), ("cpu", "cpu.cfs_quota_us")),
+}
+"""Where a limit is set, in the newer interface and in the older one, which has a tree for each."""
 
 
 @dataclass(frozen=True)
 class Group:
-    """One control group, or its halves under the older interface.
+    """One control group, or its parts under the older interface.
 
     Attributes:
         folders: Where it is.
@@ -26,34 +39,23 @@ class Group:
     says: str
 
     @classmethod
-    def make(cls, name: str) -> Group | None:
-        """A group of that name, or None where we may not make one."""
-        settings: dict[str, tuple[tuple[Path, str, int], ...]] = {
-            "memory": (
-                (_ROOT / name, "memory.max", MEMORY),
-                (_ROOT / "memory" / name, "memory.limit_in_bytes", MEMORY),
-            ),
-            "processes": (
-                (_ROOT / name, "pids.max", PROCESSES),
-                (_ROOT / "pids" / name, "pids.max", PROCESSES),
-            ),
-            "processor": (  # one core, so that nobody's neighbours starve
-                (_ROOT / name, "cpu.max", 100_000),
-                (_ROOT / "cpu" / name, "cpu.cfs_quota_us", 100_000),
-            ),
-        }
-        folders: list[Path] = []
+    def make(cls, name: str, limits: Mapping[str, int]) -> Group | None:
+        """A group with limits, or None where we may not make one.
+
+        Args:
+            name: The id of the process that makes it, a hyphen, and what else tells it apart.
+            limits: As `SANDBOX`.
+        """
+        sweep()
+        folders: dict[Path, None] = {}
         counted: list[str] = []
-        for what, ways in settings.items():
-            for folder, file, value in ways:
+        for what, value in limits.items():
+            for tree, file in _FILES[what]:
+                folder = _ROOT / tree / f"labkit-{name}"
                 if what not in counted and _set(folder, file, value):
-                    folders.append(folder)
+                    folders[folder] = None
                     counted.append(what)
-        return (
-            cls(tuple(dict.fromkeys(folders)), f"cgroup for {', '.join(counted)}")
-            if folders
-            else None
-        )
+        return cls(tuple(folders), f"cgroup for {', '.join(counted)}") if folders else None
 
     def enter(self) -> None:
         """Put this process into the group; all that it starts stays there."""
@@ -67,23 +69,25 @@ class Group:
                 folder.rmdir()
 
 
-def _sweep(above: Path) -> None:
-    """Remove groups that workers left when they were killed."""
-    for folder in above.glob("labkit-*-*"):
-        if not Path("/proc", folder.name.split("-")[1]).exists():
-            with suppress(OSError):  # something still runs in it
-                folder.rmdir()
+def sweep() -> None:
+    """Remove groups whose makers are gone; one in which something still runs stays."""
+    for tree in {tree for places in _FILES.values() for tree, _ in places}:
+        for folder in (_ROOT / tree).glob("labkit-*-*"):
+            if not Path("/proc", folder.name.split("-")[1]).exists():
+                with suppress(OSError):
+                    folder.rmdir()
 
 
 def _set(folder: Path, file: str, value: int) -> bool:
     if not folder.parent.joinpath("cgroup.procs").exists():
         return False
-    _sweep(folder.parent)
+    new = not folder.exists()
     try:
         folder.mkdir(exist_ok=True)
         (folder / file).write_text(str(value))
     except OSError:
-        with suppress(OSError):
-            folder.rmdir()
+        if new:
+            with suppress(OSError):
+                folder.rmdir()
         return False
     return True

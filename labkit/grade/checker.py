@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import builtins
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -22,11 +22,11 @@ from ..check.words import uses
 from . import seen
 from .clean import clean_line
 from .inside.wire import Gone, TooLate, TooMuch
-from .limits import Limits
+from .limits import Limits, TextBudget
 from .plan import Plan, plan
 from .results import Bundle, Result, digest, engine, versions
 from .sandbox import Sandbox
-from .seat import Seat
+from .seat import Session
 
 _KNOWN = (
     {name for name, thing in vars(errors).items() if isinstance(thing, type)}
@@ -70,15 +70,18 @@ def grade(
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
     questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
-    with Seat(sandbox, todo, limits) as seat:
-        tried = [_public(question, seat) for question in questions]
+    with Session(sandbox, todo, limits) as session:
+        with suppress(Gone):
+            session.start()
+        asks = [Ask(question, session) for question in questions]
+        tried = [_public(ask) for ask in asks]
+        failed = session.failed()  # nothing shown of cells is made after the first hidden case
         verdicts = {
-            question.name: _guarded(question, seat, before)
-            for question, before in zip(questions, tried, strict=True)
+            ask.question.name: _guarded(ask, before)
+            for ask, before in zip(asks, tried, strict=True)
         }
-        failed = tuple(seat.failed())
-        spent = seat.spent
-    return replace(
+        spent = session.spent
+    result = replace(
         _ungraded(student, bundle, sandbox.level, data),
         score=round(sum(v.earned for v in verdicts.values()), 2),
         questions=tuple(
@@ -91,11 +94,34 @@ def grade(
         tricks=todo.tricks,
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
     )
+    return _shortened(result)
 
 
 def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = b"") -> Result:
     """The result of a submission that cannot be graded."""
     return replace(_ungraded(student, bundle, level, data), rejected=clean_line(why))
+
+
+def _shortened(result: Result) -> Result:
+    """The same with no more of the student's texts than a result has room for."""
+    budget = TextBudget()
+
+    def short(things: Iterable[Mapping[str, Any]], *keys: str) -> tuple[dict[str, Any], ...]:
+        return tuple({**x, **{key: budget.take(x[key]) for key in keys}} for x in things)
+
+    result = replace(
+        result,
+        questions=tuple(
+            {**x, "tests": list(short(x["tests"], "says"))}
+            for x in short(result.questions, "source")
+        ),
+        cells=short(result.cells, "error", "output"),
+        own=short(result.own, "source"),
+    )
+    if not budget.cut:
+        return result
+    note = f"there is more text than is kept; {budget.cut} of its pieces are cut short here"
+    return replace(result, notes=(*result.notes, note))
 
 
 def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
@@ -120,10 +146,10 @@ def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]
     """The cells of a notebook, read in a process of its own; or why there are none."""
     try:
         with sandbox.enter("parse", limits, size=len(data)) as inside:
-            inside.line.end.settimeout(30.0)
+            inside.line.end.settimeout(limits.parse)
             with suppress(BrokenPipeError):  # an empty file is answered before it is sent
                 inside.line.end.sendall(data)
-            found = inside.line.read(30.0, 2**25)
+            found = inside.line.read(limits.parse)
     except (OSError, Gone, TooLate, TooMuch):
         return "the file cannot be read within the limits of time and memory"
     if "cells" not in found:
@@ -135,17 +161,21 @@ class Ask:
     """The student's function as one that lives here: it asks for each answer.
 
     Raises `Failed` when called, where the answer never came.
+
+    Attributes:
+        left: Seconds that its answers may still take, those to hidden cases included.
+        lost: How many calls died or hung.
     """
 
-    def __init__(self, question: Question, seat: Seat) -> None:
-        self.question, self.seat = question, seat
-        self.until = time.monotonic() + seat.limits.question
+    def __init__(self, question: Question, session: Session) -> None:
+        self.question, self.session = question, session
+        self.left = session.limits.question
         self.lost = 0
         self._constant: Mapping[str, Any] | None = None
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """The answer to one call."""
-        if self.lost >= MOST_LOST or self.seat.over or time.monotonic() > self.until:
+        if self.lost >= MOST_LOST or self.session.over or self.left <= 0.0:
             raise Failed("TimeoutError", "TimeoutError: too much time was spent already")
         before = self._constant
         again = (
@@ -154,17 +184,17 @@ class Ask:
             and all(x is before[key] for key, x in kwargs.items())
         )
         try:
-            if self.seat.open(self.question):
+            if self.session.open(self.question):
                 again = False
             message = {
                 "args": [encode(x) for x in args],
                 "kwargs": None if again else {key: encode(x) for key, x in kwargs.items()},
             }
             self._constant = dict(kwargs)
-            reply = self.seat.ask(message)
+            return self._answer(message)
         except TooLate:
             self.lost += 1
-            limit = self.seat.limits.call
+            limit = self.session.limits.call
             raise Failed(
                 "TimeoutError", f"TimeoutError: it did not come back within {limit:g} s"
             ) from None
@@ -174,38 +204,47 @@ class Ask:
         except Gone:
             self.lost += 1
             raise Failed("SystemExit", "SystemExit: it ended its own process") from None
-        if "raised" in reply:
-            kind, says = str(reply["raised"]), clean_line(str(reply.get("says", "")))
-            if kind == "TimeUp":
-                self.lost += 1
-                kind = "TimeoutError"
-            if kind not in _KNOWN:
-                kind = "Exception"  # a name of its own could carry a secret out
-            reply = {"raised": kind, "says": says}
-        return answer(reply, self.question.withheld)
+
+    def _answer(self, message: dict[str, Any]) -> Any:
+        """What came of one call; reading it counts as the student's time."""
+        began = time.monotonic()
+        try:
+            reply = self.session.ask(message, self.left)
+            if "raised" not in reply:
+                return answer(reply, self.question.withheld)
+        finally:
+            self.left -= time.monotonic() - began
+        kind, says = str(reply["raised"]), clean_line(str(reply.get("says", "")))
+        if kind == "TimeUp":
+            self.lost += 1
+            kind = "TimeoutError"
+        if kind not in _KNOWN:
+            kind = "Exception"  # a name of its own could carry a secret out
+        return answer({"raised": kind, "says": says}, self.question.withheld)
 
 
-def _public(question: Question, seat: Seat) -> Tried:
+def _public(ask: Ask) -> Tried:
     """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
     try:
-        tried = try_public(question, Ask(question, seat))
-        seat.right += [question.name] if tried.outcome is Outcome.RIGHT else []
+        tried = try_public(ask.question, ask)
+        ask.session.right += [ask.question.name] if tried.outcome is Outcome.RIGHT else []
         return tried
     except Exception:
-        return Tried(tuple(_lost(question)), {})
+        return Tried(tuple(_lost(ask.question)), {})
     finally:
-        seat.close()
+        ask.session.close()
 
 
-def _guarded(question: Question, seat: Seat, tried: Tried) -> Verdict:
+def _guarded(ask: Ask, tried: Tried) -> Verdict:
     """The verdict, even where an answer is so odd that comparing it fails."""
+    question = ask.question
     try:
-        return mark(question, Ask(question, seat), tried)
+        return mark(question, ask, tried)
     except Exception:
         tests = tuple(_lost(question))
         return Verdict(question.name, Outcome.ERROR, 0.0, question.points, tests)
     finally:
-        seat.close()
+        ask.session.close()
 
 
 def _untried(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
@@ -251,7 +290,7 @@ def _notes(verdict: Verdict, todo: Plan) -> tuple[str, ...]:
 
 
 def _seen(question: Question, verdict: Verdict) -> dict[str, Any]:
-    """What the student may see of his work; nothing where it is too odd to be drawn."""
+    """What students may see of their work; nothing where it is too odd to be drawn."""
     try:
         return {"runs": seen.runs(question, verdict), "numbers": seen.numbers(question, verdict)}
     except Exception:

@@ -1,24 +1,39 @@
-"""How much a submission may use, and how quick this machine is."""
+"""How much a submission may use, how much of it is kept, and how quick this machine is."""
 
 from __future__ import annotations
 
+import json
+import os
 import time
 from dataclasses import asdict, dataclass, replace
 from functools import cache
 from typing import Any
+
+REPLY = 256_000
+"""The longest answer to one call, in bytes; the longest honest one has 1,600."""
+VALUES = 10_000
+"""So many numbers, texts, lists and tables an answer may have; the largest honest one has 80."""
+TEXT = 1_000_000
+"""So much of what a student wrote a result keeps, in bytes; the rest of a result has as much."""
+_TIMES = ("parse", "cell", "cells", "call", "question", "wall", "grace")
 
 
 @dataclass(frozen=True)
 class Limits:
     """What one submission may use; times in [s], sizes in [MiB].
 
-    The times of cells and calls are processor time; on the clock they may take three times as long.
+    The times of one cell and of one call are processor time; whoever waits instead is stopped after
+    ``patience`` times as long.  All other times are those of the clock.
 
     Attributes:
+        parse: For reading the file.
         cell: For one cell.
+        cells: For all cells together; once it is spent, each that is left has a twentieth of it.
         call: For one call of a function.
-        question: For all of a question's calls, runs of the arm included.
-        wall: For everything.
+        question: For all calls of a question; runs of the arm count where the function is asked.
+        wall: For all cells and calls.
+        grace: How long a process has to stop by itself before it is killed.
+        patience: How much longer waiting may take than computing, on a busy machine.
         memory: For each process, beside what was there before.
         files: In its own temporary folder, and for one file.
         output: Characters of text from the cells, in all.
@@ -26,39 +41,70 @@ class Limits:
         notebook: The largest file that is read; pictures in it are dropped unread.
     """
 
+    parse: float = 15.0
     cell: float = 10.0
-    call: float = 5.0
-    question: float = 60.0
-    wall: float = 120.0
+    cells: float = 20.0
+    call: float = 2.0
+    question: float = 12.0
+    wall: float = 45.0
+    grace: float = 1.5
+    patience: float = 2.5
     memory: int = 1024
     files: int = 64
     output: int = 100_000
     processes: int = 32
     notebook: int = 200
 
+    @property
+    def worker(self) -> float:
+        """How long a worker may take for one submission, its own start and judging included."""
+        return 3.0 * (self.parse + self.wall)
+
     def scaled(self, factor: float) -> Limits:
         """The same with all times multiplied."""
-        return replace(
-            self,
-            cell=self.cell * factor,
-            call=self.call * factor,
-            question=self.question * factor,
-            wall=self.wall * factor,
-        )
+        return replace(self, **{name: getattr(self, name) * factor for name in _TIMES})
 
     def data(self) -> dict[str, Any]:
         """As JSON data."""
         return asdict(self)
 
 
-@cache
+class TextBudget:
+    """How much of a student's text a result still has room for.
+
+    Attributes:
+        left: Bytes, as JSON.
+        cut: How many texts were shortened.
+    """
+
+    def __init__(self, left: int = TEXT) -> None:
+        self.left, self.cut = left, 0
+
+    def take(self, text: str) -> str:
+        """The text, or as much of it as there is room for."""
+        size = len(json.dumps(text))
+        if size > self.left:
+            text = text[: self.left // 12]  # no character takes more than 12 bytes
+            size = len(json.dumps(text))
+            self.cut += 1
+        self.left = max(0, self.left - size)
+        return text
+
+
 def slowness() -> float:
     """How much slower this machine is than the one that the limits were made on, 1 to 8.
 
-    A slow or busy machine gets more time, a quick one never less.
+    A slow machine gets more time, and so does one that has more to do than it has processors; a
+    quick one never less.
     """
-    best = min(_loop() for _ in range(3))
-    return min(8.0, max(1.0, round(best / 0.012, 1)))
+    busy = os.getloadavg()[0] / (os.cpu_count() or 1)
+    return min(8.0, max(1.0, round(_slower() * max(1.0, busy), 1)))
+
+
+@cache
+def _slower() -> float:
+    """By the best of three tries, as a busy machine disturbs some."""
+    return max(1.0, min(_loop() for _ in range(3)) / 0.012)
 
 
 def _loop() -> float:

@@ -18,13 +18,19 @@ import labkit
 
 from ..errors import LabkitError
 from ..study.campaign import dask_client
-from .sandbox import NoIsolation
+from .cgroup import sweep
+from .launch import NoIsolation
+from .limits import Limits, slowness
 
 Job = dict[str, Any]
 Done = str | LabkitError
 """A result as JSON, or what failed."""
-TRIES = 3
+TRIES = 2
 """How often a submission is given to a fresh process, if the one that grades it dies."""
+
+
+class Late(Exception):
+    """A worker took so long that it was ended."""
 
 
 class Worker:
@@ -34,21 +40,27 @@ class Worker:
         self.isolated = isolated
         self.process: subprocess.Popen[str] | None = None
         self.closed = False
+        self._starting = threading.Lock()
 
     def ask(self, job: Job) -> str:
         """What the process says of a job, a line of JSON that `result_of` reads."""
         for _ in range(TRIES):
-            with suppress(OSError, EOFError):
+            try:
                 return self._ask(job)
-            self._end()
-            if self.closed:
-                break
+            except Late as late:
+                self._end()
+                return json.dumps({"failed": str(late)})
+            except (OSError, EOFError):
+                self._end()
+                if self.closed:
+                    break
         says = f"its worker died {TRIES} times; grade again to try once more"
         return json.dumps({"failed": says})
 
     def close(self) -> None:
-        """End the process, for good."""
-        self.closed = True
+        """End the process, for good, whatever it is at."""
+        with self._starting:
+            self.closed = True
         self._end()
 
     def _end(self) -> None:
@@ -57,33 +69,56 @@ class Worker:
             return
         assert process.stdin is not None and process.stdout is not None
         with suppress(OSError):
-            process.stdin.close()
+            process.stdin.close()  # the process sees it, and goes
         try:
             process.wait(5.0)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
         process.stdout.close()
+        sweep()
 
     def _ask(self, job: Job) -> str:
-        if self.process is None:
-            words = [sys.executable, "-m", "labkit.grade.worker"]
-            here = str(Path(labkit.__file__).parent.parent)
-            self.process = subprocess.Popen(
-                words if self.isolated else [*words, "--no-isolation"],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                text=True,
-                start_new_session=True,  # an interrupt is for the main process, which then ends us
-                env=dict(os.environ, PYTHONPATH=here),
-            )
-        assert self.process.stdin is not None and self.process.stdout is not None
-        self.process.stdin.write(json.dumps(job) + "\n")
-        self.process.stdin.flush()
-        line = self.process.stdout.readline()
-        if not line.endswith("\n"):
-            raise EOFError
-        return line
+        process = self._started()
+        assert process.stdin is not None and process.stdout is not None
+        most = Limits(**job["limits"]).scaled(slowness()).worker
+        late = threading.Event()
+
+        def stop() -> None:
+            late.set()
+            process.kill()
+
+        timer = threading.Timer(most, stop)
+        timer.start()
+        try:
+            process.stdin.write(json.dumps(job) + "\n")
+            process.stdin.flush()
+            line = process.stdout.readline()
+        finally:
+            timer.cancel()
+        if line.endswith("\n"):
+            return line
+        if late.is_set():
+            raise Late(f"its worker was ended after {most:g} s; look at it yourself")
+        raise EOFError
+
+    def _started(self) -> subprocess.Popen[str]:
+        with self._starting:
+            if self.closed:
+                raise EOFError
+            if self.process is None:
+                # -P: no file of the working folder, a submission's perhaps, is imported
+                words = [sys.executable, "-P", "-m", "labkit.grade.worker"]
+                here = str(Path(labkit.__file__).parent.parent)
+                self.process = subprocess.Popen(
+                    words if self.isolated else [*words, "--no-isolation"],
+                    stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE,
+                    text=True,
+                    start_new_session=True,  # an interrupt is for the main process, which ends us
+                    env=dict(os.environ, PYTHONPATH=here),
+                )
+            return self.process
 
 
 def result_of(job: Job, line: str) -> str:
@@ -97,7 +132,7 @@ def result_of(job: Job, line: str) -> str:
     if "no isolation" in answer:
         raise NoIsolation(answer["no isolation"])
     if "failed" in answer:
-        raise LabkitError(f"{job['student']}: the grader failed: {answer['failed']}")
+        raise LabkitError(f"{job['student']}: {answer['failed']}")
     return str(answer["result"])
 
 

@@ -1,7 +1,7 @@
 """A sandbox: bubblewrap around a process that forks for each submission.
 
-No network, no environment, no files but Python and labkit, a folder in memory that dies with the
-submission.
+No network, no environment, no files but Python and labkit (see `launch`), a folder in memory that
+dies with the submission.
 """
 
 from __future__ import annotations
@@ -9,38 +9,36 @@ from __future__ import annotations
 import itertools
 import json
 import os
-import shutil
+import resource
 import socket
 import subprocess
-import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import labkit
-
-from ..errors import LabkitError
-from .cgroup import Group
-from .inside import seccomp
+from .cgroup import SANDBOX, Group
 from .inside.wire import Gone, Line, TooLate, TooMuch
+from .launch import (
+    INSTALL,
+    NoIsolation,
+    bare_command,
+    bare_environment,
+    command,
+    environment,
+)
 from .limits import Limits
 
-MEND = "apt-get install bubblewrap"
 FIRST_UID = 64000
 MOST_USERS = 1000
 """When root grades, each sandbox is given a user of its own among these."""
-_LAB = "/lab"
+START = 120.0  # seconds
 _ROLES = ("student", "parse")  # the ends of stdin and of stdout of the process inside
 _numbers = itertools.count()
 
 
-class NoIsolation(LabkitError):
-    """This machine cannot keep a student's code apart; the sentence says how it could."""
-
-
 class Broken(BaseException):
-    """A sandbox that worked does not any more; a fresh one may.
+    """A sandbox was lost, at its start or later; a fresh one may work.
 
     No `Exception`, so that marking never takes it for one of the student's.
     """
@@ -58,43 +56,65 @@ class Sandbox:
 
     Args:
         loads: Modules that submissions will import, to be loaded once for all.
+        hidden: Folders that must not be seen inside, wherever they lie.
         isolated: False only if somebody typed ``--unsafe-no-isolation``.
 
     Raises:
         NoIsolation: It cannot be made here.
+        Broken: It was killed while it started.
     """
 
-    def __init__(self, loads: Sequence[str] = (), *, isolated: bool = True) -> None:
-        self.uid, self._claim = _user()
+    def __init__(
+        self, loads: Sequence[str] = (), hidden: Iterable[Path] = (), *, isolated: bool = True
+    ) -> None:
+        words, variables = (
+            (command(hidden), environment()) if isolated else (bare_command(), bare_environment())
+        )
         self.isolated = isolated
-        self.group = Group.make(f"labkit-{os.getpid()}-{next(_numbers)}") if isolated else None
+        self.uid, self._claim = _user()
+        self.group = Group.make(f"{os.getpid()}-{next(_numbers)}", SANDBOX) if isolated else None
         self._log = os.memfd_create("labkit-sandbox-log")
         ends = [socket.socketpair() for _ in _ROLES]
         self._lines = {role: Line(ours) for role, (ours, _) in zip(_ROLES, ends, strict=True)}
         stdin, stdout = (theirs for _, theirs in ends)
         try:
             self.process = subprocess.Popen(
-                [*(command() if isolated else _bare()), *loads],
+                [*words, *loads],
                 stdin=stdin.fileno(),
                 stdout=stdout.fileno(),
                 stderr=self._log,
-                env=environment() if isolated else _bare_environment(),
-                preexec_fn=None if self.group is None else self.group.enter,
+                env=variables,
+                preexec_fn=self._apart,
             )
         except OSError as error:
-            raise NoIsolation(f"no sandbox: {error}; try: {MEND}") from None
+            raise NoIsolation(f"no sandbox: {error}; try: {INSTALL}") from None
         finally:
             stdin.close()
             stdout.close()
+        self._wait_until_ready()
+
+    def _apart(self) -> None:
+        """Runs in the process to come: it is counted apart from the worker."""
+        _, most = resource.getrlimit(resource.RLIMIT_DATA)
+        resource.setrlimit(resource.RLIMIT_DATA, (most, most))
+        if self.group is not None:
+            self.group.enter()
+
+    def _wait_until_ready(self) -> None:
         try:
             for line in self._lines.values():
-                line.read(120.0)
-        except (Gone, TooLate, TooMuch):
+                line.read(START)
+        except Gone:
             said = self._words()
             self.close()
+            if not said:
+                raise Broken("it was killed while it started") from None
             raise NoIsolation(
                 f"the sandbox did not start: {said}; `labkit doctor` says what is missing"
             ) from None
+        except (TooLate, TooMuch) as error:
+            self.close()
+            raise NoIsolation(f"the sandbox did not start in {START:g} s: {error}") from None
 
     @property
     def level(self) -> str:
@@ -166,11 +186,12 @@ class Sandbox:
             socket.send_fds(line.end, [data], [end.fileno()] if end else [])
             return line.read(20.0)
         except (OSError, Gone, TooLate, TooMuch) as error:
-            raise Broken(f"{error}; it said: {self._words()}") from None
+            raise Broken(f"{error}; it said: {self._words() or 'nothing'}") from None
 
     def _words(self) -> str:
+        """The last line that bubblewrap or the forkserver wrote, empty if there is none."""
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()
-        return lines[-1][:300] if lines else "it gave no reason"
+        return lines[-1][:300] if lines else ""
 
 
 def _user() -> tuple[int, socket.socket | None]:
@@ -189,116 +210,3 @@ def _user() -> tuple[int, socket.socket | None]:
             continue
         return uid, claim
     raise NoIsolation(f"all {MOST_USERS} users for sandboxes are taken; end some graders")
-
-
-def command() -> list[str]:
-    """The command that makes a sandbox with `inside.zygote` in it.
-
-    Raises:
-        NoIsolation: There is no bubblewrap, or no filter for this processor.
-    """
-    program = shutil.which("bwrap")
-    if program is None:
-        raise NoIsolation(f"bubblewrap is missing; get it with: {MEND}")
-    if not seccomp.supported():
-        raise NoIsolation("no system call filter for this processor; grade on x86-64 or arm64")
-    words = [program, "--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts"]
-    words += ["--unshare-cgroup-try", "--die-with-parent", "--new-session", "--clearenv"]
-    if os.geteuid():
-        words += ["--unshare-user", "--uid", "0", "--gid", "0"]
-    for capability in ("SYS_ADMIN", "SETUID", "SETGID", "SETPCAP", "KILL"):
-        words += ["--cap-add", f"CAP_{capability}"]
-    made: set[Path] = set()
-    shown: list[Path] = []
-    for place in _places():
-        if not any(place.is_relative_to(other) for other in shown):
-            words += _folders(place.parent, made)
-            link = os.readlink(place) if place.is_symlink() else ""
-            words += ["--symlink", link] if link else ["--ro-bind", str(place)]
-            words.append(str(place))
-            shown.append(place)
-    for optional in ("/etc/ld.so.cache", "/etc/alternatives", "/etc/localtime"):
-        words += ["--ro-bind-try", optional, optional]
-    package = Path(labkit.__file__).parent
-    words += ["--perms", "0755", "--dir", _LAB, "--ro-bind", str(package), f"{_LAB}/labkit"]
-    words += ["--ro-bind", str(_figure_cache()), f"{_LAB}/mpl"]
-    words += ["--proc", "/proc", "--dev", "/dev", "--perms", "1777", "--tmpfs", "/tmp"]
-    for name, value in _VARIABLES.items():
-        words += ["--setenv", name, value]
-    words += ["--remount-ro", "/", "--chdir", "/"]
-    return [*words, sys.executable, "-s", "-m", "labkit.grade.inside.zygote"]
-
-
-_VARIABLES = {
-    "PATH": "/usr/bin:/bin",
-    "HOME": "/tmp",
-    "PYTHONPATH": _LAB,
-    "PYTHONHASHSEED": "0",
-    "PYTHONDONTWRITEBYTECODE": "1",
-    "MPLBACKEND": "Agg",
-    "MPLCONFIGDIR": "/tmp/mpl",
-    "OPENBLAS_NUM_THREADS": "1",
-    "OMP_NUM_THREADS": "1",
-    "MKL_NUM_THREADS": "1",
-    "LC_ALL": "C.UTF-8",
-    "IPYTHONDIR": "/tmp/ipython",
-}
-
-
-def environment() -> dict[str, str]:
-    """What bubblewrap itself is given."""
-    return {"PATH": os.environ.get("PATH", "/usr/bin:/bin")}
-
-
-def _bare() -> list[str]:
-    return [sys.executable, "-m", "labkit.grade.inside.zygote", "--bare"]
-
-
-def _bare_environment() -> dict[str, str]:
-    return (
-        dict(os.environ)
-        | {
-            k: v
-            for k, v in _VARIABLES.items()
-            if k not in {"PATH", "HOME", "MPLCONFIGDIR", "PYTHONPATH"}
-        }
-        | {"PYTHONPATH": str(Path(labkit.__file__).parent.parent)}
-    )
-
-
-def _places() -> list[Path]:
-    """What is shown inside, read-only: the system's programs, Python, its packages."""
-    system = [Path(x) for x in ("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64")]
-    python = {
-        Path(sys.prefix),
-        Path(sys.base_prefix),
-        Path(os.path.realpath(sys.executable)).parents[1],
-    }
-    kept = [x for x in system if x.exists()]
-    kept += sorted(x for x in python if not x.is_relative_to("/usr") and x != Path("/"))
-    return kept
-
-
-def _folders(folder: Path, made: set[Path]) -> list[str]:
-    """Make the folders above a place, readable: bubblewrap would close them to all but root."""
-    words: list[str] = []
-    for above in (*reversed(folder.parents), folder):
-        if above != Path("/") and above not in made:
-            words += ["--perms", "0755", "--dir", str(above)]
-            made.add(above)
-    return words
-
-
-def _figure_cache() -> Path:
-    """Where matplotlib keeps its list of fonts; made once, as that takes a while."""
-    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    folder = base / "labkit" / "matplotlib"
-    if not any(folder.glob("fontlist*")):
-        folder.mkdir(parents=True, exist_ok=True)
-        subprocess.run(
-            [sys.executable, "-c", "import matplotlib.font_manager"],
-            env=dict(os.environ) | {"MPLCONFIGDIR": str(folder)},
-            check=False,
-            capture_output=True,
-        )
-    return folder

@@ -63,20 +63,23 @@ def read_file(path: Path, most: int) -> bytes:
         most: The largest size, in [MiB].
 
     Raises:
-        LabkitError: It is too large, or no plain file.
+        LabkitError: It is too large, is not a plain file, or cannot be read.
     """
+    name = path.name[:80]
     try:
-        end = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+        kind = path.lstat().st_mode  # before it is opened: opening a device may do something
+        if not (stat.S_ISREG(kind) or stat.S_ISLNK(kind)):
+            raise LabkitError(f"{name} is not a file; hand in the notebook itself")
+        with open(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
+            about = os.fstat(file.fileno())
+            if not stat.S_ISREG(about.st_mode):
+                raise LabkitError(f"{name} is not a file; hand in the notebook itself")
+            check_size(about.st_size, most)
+            return file.read()
     except OSError:
         raise LabkitError(
-            f"{path.name[:80]} is a link or cannot be opened; hand in the file itself"
+            f"{name} is a link or cannot be opened; hand in the file itself"
         ) from None
-    with open(end, "rb") as file:
-        about = os.fstat(file.fileno())
-        if not stat.S_ISREG(about.st_mode):
-            raise LabkitError(f"{path.name[:80]} is not a file")
-        check_size(about.st_size, most)
-        return file.read()
 
 
 def check_size(size: int, most: int) -> None:

@@ -106,9 +106,8 @@ CONTROLS: dict[str, Control] = {
     ),
     "objects that compare equal": answer(
         pays,
-        "import numpy as np\nclass All:\n"
-        "    def __array_ufunc__(self, *inputs, **options):\n        return np.zeros(3)\n"
-        "def NAME(t, duration):\n    return All()",
+        "import numpy as np\nclass All:\n    def __array_ufunc__(self, *args, **options):\n"
+        "        return np.zeros(3)\ndef NAME(t, duration):\n    return All()",
         plain=True,
     ),
     "odd answers": answer(

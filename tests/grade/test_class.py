@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import copy
+import errno
 import json
 import os
 import signal
 import subprocess
 import sys
 import threading
-import time
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from handmade import QUICK, ROOT
+from handmade import QUICK, ROOT, add, hand_in
+from processes import below, child, wait_until_gone
 
 from labkit.cli import main
 from labkit.grade import gradebook
@@ -104,18 +106,9 @@ def test_killed_worker(part):
     """A worker that is killed loses nothing: its submission goes to the next one."""
 
     def kill_one():
-        for _ in range(200):
-            time.sleep(0.02)
-            for folder in Path("/proc").glob("[0-9]*"):
-                try:
-                    words = (folder / "cmdline").read_bytes().split(b"\0")
-                    parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-                except (OSError, IndexError):
-                    continue
-                if b"labkit.grade.worker" in words and parent == os.getpid():
-                    time.sleep(1.0)
-                    os.kill(int(folder.name), signal.SIGKILL)
-                    return
+        worker = child(os.getpid(), "labkit.grade.worker")
+        below(worker, at_least=4)
+        os.kill(worker, signal.SIGKILL)
 
     thread = threading.Thread(target=kill_one)
     thread.start()
@@ -125,29 +118,45 @@ def test_killed_worker(part):
     assert not list(differences(part, NAME))
 
 
-def test_killed_run(part):
-    """A run that is killed leaves whole results, no half ones; the next run does the rest."""
+STOPS = [
+    ("SIGTERM", 6),
+    ("SIGINT", 6),
+    ("SIGHUP", 6),
+    ("SIGKILL", 3),
+    pytest.param("SIGTERM", 2, marks=pytest.mark.soak),
+    pytest.param("SIGKILL", 6, marks=pytest.mark.soak),
+]
+"""Signals to the grader, and the number of its processes at the moment when they come."""
+
+
+@pytest.mark.parametrize(("name", "processes"), STOPS)
+def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
+    name, processes, course, solved
+):
+    """Whatever ends the grader ends all that it started; the next run keeps what is done."""
+    for student in ("ada", "bob", "eve"):
+        hand_in(course, NAME, student, solved)
     words = [sys.executable, "-m", "labkit.cli", "grade", NAME, "--jobs", "1"]
-    run = subprocess.Popen(
-        [*words, "--course", str(part.root)],
-        env=dict(os.environ, PYTHONPATH=str(ROOT)),
-        stdout=subprocess.PIPE,
-        text=True,
-    )
-    for _ in range(2):
-        run.stdout.readline()
-    run.kill()
-    run.wait()
-    run.stdout.close()
-    before = len(list(Results(part, NAME)))
-    assert 2 <= before < PART
-    deadline = time.monotonic() + 30
-    while time.monotonic() < deadline:  # the worker ends by itself, once nobody listens
-        done = grade_all(part)
-        if len(done) == PART:
-            break
-    assert sum(one.says == "as before" for one in done) >= before
-    assert not list(differences(part, NAME))
+    environment = dict(os.environ, PYTHONPATH=str(ROOT))
+    with subprocess.Popen(
+        [*words, "--course", str(course.root)], env=environment, stdout=subprocess.PIPE, text=True
+    ) as run:
+        if processes == 6:  # it is at the second submission
+            hand_in(course, NAME, "bob", add(copy.deepcopy(solved), "while True: pass"))
+            assert "ada: 20 of 20" in run.stdout.readline()
+        everything = below(run.pid, at_least=processes)
+        run.send_signal(getattr(signal, name))
+        wait_until_gone(everything)
+    before = [result.student for result in Results(course, NAME)]
+    assert before == (["ada"] if processes == 6 else [])
+    hand_in(course, NAME, "bob", solved)
+    done = grade_all(course)
+    assert [one.says for one in sorted(done, key=lambda one: one.result.student)] == [
+        "as before" if student in before else "" for student in ("ada", "bob", "eve")
+    ]
+    record(course, NAME, [one.result for one in done])
+    with open_gradebook(course) as book:
+        assert {s.score for s in book.assignment_submissions(NAME)} == {20.0}
 
 
 def test_results_outlive_a_crash_while_writing(part):
@@ -234,20 +243,21 @@ def test_an_interrupt_is_a_line(part, capsys, monkeypatch):
 
 
 def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
-    """A disk that is full in the middle leaves every score of before."""
+    """A disk that is full in the middle ends it; each score is the new one or that of before."""
     done = [one.result for one in grade_all(part, jobs=2)]
     record(part, NAME, [replace(result, questions=()) for result in done])
     rooms = iter([True, True, False])
 
-    def save(*args):
+    def write(*args):
         if not next(rooms):
-            raise OSError("no room")
+            raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr(gradebook, "save", save)
-    with pytest.raises(OSError, match="no room"):
+    monkeypatch.setattr(gradebook, "write", write)
+    with pytest.raises(OSError, match="No space left"):
         record(part, NAME, done)
     with open_gradebook(part) as book:
-        assert {s.score for s in book.assignment_submissions(NAME)} == {0.0}
+        scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
+    assert scores == {r.student: r.score if k < 2 else 0.0 for k, r in enumerate(done)}
 
 
 def test_the_gradebook_has_one_writer(part):

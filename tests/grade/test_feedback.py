@@ -74,7 +74,8 @@ def result():
     right = replace(loop_question(), tests=loop_question().public().tests, name="again")
     asked = ((loop_question(), follow), (call_question(), double), (right, follow))
     questions = tuple(answered(question, function) for question, function in asked)
-    return Result("09_demo", "ada", 4.0, 10.0, questions=questions)
+    hashes = dict.fromkeys(("submission", "bundle", "engine"), "0" * 64)
+    return Result("09_demo", "ada", 4.0, 10.0, questions=questions, hashes=hashes)
 
 
 class Page(HTMLParser):

@@ -43,7 +43,7 @@ def test_every_known_way_is_told(graded, name):
     assert (question["earned"] > 0) == way.counted, question
     assert question["withheld"] == ["labkit.BangBang"] or result.tricks
     assert question["outcome"] == ("not counted" if question["withheld"] else question["outcome"])
-    assert not result.cells
+    assert not result.cells or not question["earned"]  # a trick that breaks itself pays nothing
 
 
 def test_the_class_report_lists_both(graded):

@@ -180,7 +180,7 @@ def test_play_waits_for_the_reader_and_honours_reduced_motion(chromium, visit, r
             .observe(readout, {childList: true});
     }""")
     page.get_by_role("button", name="Play").click()
-    page.wait_for_function("steps.length > 4")  # it plays
+    page.wait_for_function("() => steps.length > 4")  # it plays
     page.get_by_role("button", name="Pause").click()
     steps = page.evaluate("steps")
     if reduced == "reduce":  # still pictures, at most four a second

@@ -1,6 +1,6 @@
-"""A submission's own process: runs the cells, then a fork of it answers for each question.
+"""The runner, a submission's own process: runs the cells; a fork of it answers for each question.
 
-Everything in here belongs to the student: whatever he does to it costs nobody else anything.
+Everything in here belongs to the student: whatever they do to it costs nobody else anything.
 """
 
 from __future__ import annotations
@@ -28,30 +28,28 @@ from labkit.check.reply import LONGEST, TimeUp, kind, reply, sentence
 from . import standins
 from .wire import Gone, Line
 
-PATIENCE = 3.0  # waiting is cheap, and a busy machine lets everybody wait
-
 
 class Notebook:
     """The student's names, and the functions that answer for the questions."""
 
-    def __init__(self, codec: Any, most_output: int) -> None:
+    def __init__(self, codec: Any, limits: dict[str, Any]) -> None:
         module = type(sys)("__main__")
         sys.modules["__main__"] = module
         self.names: dict[str, Any] = vars(module)
         self.names.update(__builtins__=__builtins__, In=[""], Out={})
         self.functions: dict[str, Any] = {}
-        self.codec, self.most_output, self.output = codec, most_output, 0
+        self.codec, self.limits, self.output = codec, limits, 0
         shell = getattr(builtins, "get_ipython", None)
         if shell is not None:
             shell().user_ns = self.names
 
     def run(self, number: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
         """Run one cell, and keep the functions that it is to define."""
-        out = _Capped(min(20_000, max(0, self.most_output - self.output)))
+        out = _Capped(min(20_000, max(0, self.limits["output"] - self.output)))
         began, error, raised = time.perf_counter(), "", ""
         with _Streams(out):
             try:
-                with _Alarm(seconds):
+                with _Alarm(seconds, self.limits["patience"]):
                     self._execute(f"<cell {number}>", source)
             except TimeUp:
                 raised, error = "TimeUp", f"it was stopped after {seconds:g} s"
@@ -72,7 +70,7 @@ class Notebook:
         if inspect.iscoroutine(found):
             asyncio.run(found)
 
-    def answer(self, line: Line, name: str, seconds: float) -> None:
+    def answer(self, line: Line, name: str) -> None:
         """Answer one call after another, until told to stop."""
         kwargs: dict[str, Any] = {}
         decode = self.codec.decode
@@ -86,18 +84,17 @@ class Notebook:
                     args = [decode(x) for x in asked["args"]]
                     if asked["kwargs"] is not None:
                         kwargs = {key: decode(x) for key, x in asked["kwargs"].items()}
-                    said = self._reply(name, args, kwargs, seconds)
+                    said = self._reply(name, args, kwargs)
                 except BaseException as raised:
                     said = {"raised": kind(raised), "says": sentence(raised)}
             line.send(said)
 
-    def _reply(
-        self, name: str, args: list[Any], kwargs: dict[str, Any], seconds: float
-    ) -> dict[str, Any]:
+    def _reply(self, name: str, args: list[Any], kwargs: dict[str, Any]) -> dict[str, Any]:
+        seconds = self.limits["call"]
         if name not in self.functions:
             raise NameError(f"the notebook defines no {name}")
         try:
-            with _Alarm(seconds):
+            with _Alarm(seconds, self.limits["patience"]):
                 return reply(self.functions[name], args, kwargs)
         except TimeUp:
             return {"raised": "TimeUp", "says": f"it did not come back within {seconds:g} s"}
@@ -110,7 +107,7 @@ def serve(
     limits: dict[str, Any],
 ) -> None:
     """Do what the checker asks, until it closes its end."""
-    notebook = Notebook(codec, limits["output"])
+    notebook = Notebook(codec, limits)
     signal.signal(signal.SIGALRM, _time_up)
     signal.signal(signal.SIGPROF, _time_up)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -120,7 +117,9 @@ def serve(
         except Gone:
             return
         if "cell" in asked:
-            result = notebook.run(asked["cell"], asked["source"], asked["answers"], limits["cell"])
+            result = notebook.run(
+                asked["cell"], asked["source"], asked["answers"], asked["seconds"]
+            )
             line.send({"ran": asked["cell"]} | result)
         if "question" not in asked:
             continue
@@ -133,7 +132,7 @@ def serve(
                     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
                 standins.right.update(asked["right"])
                 with withhold(asked["withheld"], notebook.names):
-                    notebook.answer(line, asked["question"], limits["call"])
+                    notebook.answer(line, asked["question"])
             os._exit(0)
         _, status = os.waitpid(child, 0)
         line.send({"over": os.waitstatus_to_exitcode(status)})
@@ -176,16 +175,16 @@ def _cpu() -> float:
 class _Alarm:
     """Raises `TimeUp` after some seconds of computing, and again and again, should it be caught.
 
-    Who only waits is stopped after `PATIENCE` times as long; who computes where no exception can
-    reach it, by the kernel, soon after.
+    Code that only waits is stopped after ``patience`` times as long; code that computes where no
+    exception can reach it, by the kernel, soon after.
     """
 
-    def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
+    def __init__(self, seconds: float, patience: float) -> None:
+        self.seconds, self.patience = seconds, patience
 
     def __enter__(self) -> None:
         signal.setitimer(signal.ITIMER_PROF, self.seconds, 0.5)
-        signal.setitimer(signal.ITIMER_REAL, self.seconds * PATIENCE, 0.5)
+        signal.setitimer(signal.ITIMER_REAL, self.seconds * self.patience, 0.5)
         _stop_after(self.seconds + 1.0)
 
     def __exit__(self, *_: object) -> None:

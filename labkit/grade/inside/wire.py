@@ -8,8 +8,8 @@ import socket
 import time
 from typing import Any
 
-MOST = 8 * 2**20
-"""The longest line, in bytes."""
+MOST = 2**25
+"""The longest line, in bytes, where nobody asks for less."""
 
 
 class Gone(Exception):
@@ -21,13 +21,13 @@ class TooLate(Exception):
 
 
 class TooMuch(Exception):
-    """The other side sent more than fits, or no JSON."""
+    """The other side sent more than is allowed, or something that is not JSON."""
 
 
 class Line:
     """One end of a conversation in lines of JSON.
 
-    It trusts nothing that comes in: what is too long, too late, or no JSON object ends in one of
+    It trusts nothing that comes in: what is too long, too late, or not a JSON object ends in one of
     the exceptions above.
     """
 
@@ -47,31 +47,40 @@ class Line:
         except OSError as error:
             raise Gone(str(error)) from None
 
-    def read(self, seconds: float | None = None, most: int = MOST) -> dict[str, Any]:
+    def read(
+        self, seconds: float | None = None, most: int = MOST, values: int = MOST
+    ) -> dict[str, Any]:
         """Read one message.
+
+        Args:
+            seconds: How long to wait; None waits for ever.
+            most: The longest line, in bytes.
+            values: How many numbers, texts, lists and tables it may have in all.
 
         Raises:
             Gone: There is no other side any more.
             TooLate: It took longer than ``seconds``.
-            TooMuch: It is longer than ``most`` bytes, or no JSON object.
+            TooMuch: It is more than that, or not a JSON object.
         """
-        data = self.read_line(seconds, most)
+        data = self._read_line(seconds, most)
+        if data.count(b",") + data.count(b"[") + data.count(b"{") > values:
+            raise TooMuch(f"more than {values:,} values came back")
         try:
             message = json.loads(data)
         except (ValueError, RecursionError):
             raise TooMuch("what came back is not JSON") from None
         if not isinstance(message, dict):
-            raise TooMuch("what came back is no message")
+            raise TooMuch("what came back is not a message")
         return message
 
-    def read_line(self, seconds: float | None, most: int) -> bytes:
+    def _read_line(self, seconds: float | None, most: int) -> bytes:
         """One line without its end; raises as `read` does."""
         until = None if seconds is None else time.monotonic() + seconds
         start = 0
         while (found := self._waiting.find(b"\n", start)) < 0:
             start = len(self._waiting)
             if start > most:
-                raise TooMuch(f"more than {most // 2**20} MB came back")
+                break
             left = None if until is None else until - time.monotonic()
             if left is not None and (left <= 0 or not select.select([self.end], [], [], left)[0]):
                 raise TooLate("nothing came in time")
@@ -83,6 +92,8 @@ class Line:
             if not piece:
                 raise Gone("the other side is gone")
             self._waiting += piece
+        if not 0 <= found <= most:
+            raise TooMuch(f"more than {most // 1000:,} kB came back")
         line = bytes(self._waiting[:found])
         del self._waiting[: found + 1]
         return line

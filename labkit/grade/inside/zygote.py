@@ -1,4 +1,4 @@
-"""The first process in a sandbox: loads what notebooks import, then forks for each submission.
+"""The forkserver, first process in a sandbox: loads what notebooks import, forks for each session.
 
 It runs no student's code.  Parsers are forked from a twin of it that has loaded next to nothing,
 which is quicker.  Each child becomes the first process of its own process namespace and
@@ -51,6 +51,8 @@ def main() -> None:
     words = sys.argv[1:]
     bare = "--bare" in words
     students, parsers = (socket.socket(fileno=os.dup(number)) for number in (0, 1))
+    if not bare:
+        confine.lock_devices()
     nowhere = os.open(os.devnull, os.O_RDWR)
     os.dup2(nowhere, 0)
     os.dup2(nowhere, 1)
@@ -68,6 +70,7 @@ def main() -> None:
     gc.freeze()
     _into_huge_pages()
     home = None if bare else os.open("/proc/self/ns/pid", os.O_RDONLY)
+    shown = [] if bare else confine.shown_below()
     line = Line(control)
     line.send({"ready": True})
     while True:
@@ -98,7 +101,7 @@ def main() -> None:
                 confine.set_limits(limits | {"processes": 4096})
             else:
                 os.close(home)
-                confine.confine(limits, asked["uid"])
+                confine.confine(limits, asked["uid"], shown)
             end.send({"confined": True})
             if serve is None:
                 end.send(cells.read(_bytes(end, asked["size"])))
@@ -111,7 +114,7 @@ def main() -> None:
 
 
 def _load(more: Sequence[str]) -> tuple[Any, Any, Any]:
-    """Import what notebooks use, and put the stand-ins in place."""
+    """Import what notebooks use, and put the stubs in place."""
     with suppress(FileNotFoundError, KeyError):
         shutil.copytree("/lab/mpl", os.environ["MPLCONFIGDIR"])  # making the list of fonts is slow
     for name in (*LOADED, *more):
