@@ -40,7 +40,10 @@ def head(verdict: Verdict) -> str:
 
 def uses(withheld: Iterable[str]) -> str:
     """Why an answer that uses withheld tools is not counted."""
-    return f"uses {' and '.join(map(spoken, withheld))}, which this question asks you to write"
+    names = [spoken(tool) for tool in withheld]
+    own = all("." in name for name in names)  # nobody is asked to write a whole package
+    why = "this question asks you to write" if own else "may not be used in this answer"
+    return f"uses {' and '.join(names)}, which {why}"
 
 
 def tell(

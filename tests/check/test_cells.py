@@ -1,38 +1,44 @@
 """What a cell's text does: magics as a notebook understands them, and the names it defines."""
 
+import ast
+import json
+import subprocess
+import sys
+
 import pytest
-from IPython.core.interactiveshell import InteractiveShell
 
 from labkit.check.cells import dotted, look, plain
 
 BODY = "def answer(x):\n    return 2 * x\n"
-
-
-@pytest.fixture(scope="module")
-def shell(tmp_path_factory):
-    """A notebook's shell."""
-    shell = InteractiveShell()
-    yield shell
-    shell.history_manager.end_session()
-
-
-@pytest.mark.parametrize(
-    "head",
-    [
-        "", "%%time\n", "%%time \n", "\n\n%%time\n", "%%capture\n", "%%capture out --no-stderr\n",
-        "%%prun -q\n", "%%time\n%%capture\n", "%%capture\n%%time\n", "%%timeit -n1 -r1\n",
-        "%%bash\n", "%%html\n", "%%writefile {folder}/x.py\n", "%%no_such_magic\n",
-    ],
-)  # fmt: skip
-def test_a_magic_defines_here_what_it_defines_in_a_notebook(shell, tmp_path, head, capsys):
-    """IPython itself is asked: an answer is found just where a notebook has it."""
-    source = head.format(folder=tmp_path) + BODY
+HEADS = [
+    "", "%%time\n", "%%time \n", "\n\n%%time\n", "%%capture\n", "%%capture out --no-stderr\n",
+    "%%prun -q\n", "%%time\n%%capture\n", "%%capture\n%%time\n", "%%timeit -n1 -r1\n",
+    "%%bash\n", "%%html\n", "%%writefile x.py\n", "%%no_such_magic\n",
+]  # fmt: skip
+SHELL = """
+import json, sys
+from IPython.core.interactiveshell import InteractiveShell
+shell, defined = InteractiveShell.instance(), []
+for cell in json.load(sys.stdin):
     shell.user_ns.pop("answer", None)
-    shell.run_cell(source)
-    capsys.readouterr()
-    found = look(source)
-    assert ("answer" in found["binds"]) == ("answer" in shell.user_ns)
-    assert bool(found["magic"]) == ("answer" not in shell.user_ns)
+    shell.run_cell(cell)
+    defined.append("answer" in shell.user_ns)
+print()
+print(json.dumps(defined))
+"""
+
+
+def test_a_magic_defines_here_what_it_defines_in_a_notebook(tmp_path):
+    """IPython itself is asked: an answer is found just where a notebook has it."""
+    cells = [head + BODY for head in HEADS]
+    done = subprocess.run(
+        [sys.executable, "-c", SHELL],
+        input=json.dumps(cells), capture_output=True, text=True, check=True, cwd=tmp_path,
+    )  # fmt: skip
+    defined = json.loads(done.stdout.splitlines()[-1])
+    assert [("answer" in look(cell)["binds"]) for cell in cells] == defined
+    assert [not look(cell)["magic"] for cell in cells] == defined
+    assert len(set(defined)) == 2
 
 
 def test_lines_keep_their_numbers():
@@ -71,8 +77,6 @@ def test_no_text_is_too_odd(source):
 
 def test_dotted_names():
     """What a call gives is taken for what is called; a constant getattr is an attribute."""
-    import ast
-
     for text, name in [
         ("lk.Model('left').gravity(q)", "lk.Model.gravity"),
         ("getattr(lk, 'Circle')(s)", "lk.Circle"),

@@ -69,6 +69,7 @@ def test_tools_are_found(cells, tools):
         ["def f(s): return Schedule()(s)"],  # a cell may hold more than what an answer needs of it
         ["def f(s): return g(s)", "ring = lk.Circle(0)", "def g(s, ring=2): return s * ring"],
         ["def f(T): return T.inverse()"],
+        ["class Circle: pass", "def f(s): return Circle()(s)"],
         ["def f(links): return links.gravity"],
         ["def f(s): return s", "def f(s): raise NotImplementedError"],
         ["def f(s: return lk.Circle(s)"],

@@ -81,6 +81,9 @@ def test_a_withheld_tool_is_an_outcome_of_its_own():
         "write. 0 of 4 points. "
     )
     assert "write it yourself" in words and "passed" not in words
+    assert head(not_counted(DOUBLE, ("pinocchio",))) == (
+        "double: not counted: uses pinocchio, which may not be used in this answer. 0 of 4 points."
+    )
 
 
 def test_prints_are_shown_in_part():

@@ -37,6 +37,13 @@ def test_no_answer_of_the_course_is_suspected(assignment):
             assert (found, tricks(text)) == ((), []), text
 
 
+class Unmarked(Draft):
+    """A submission of which nobody asks what it deserves."""
+
+    def answer_with(self, question, function):
+        self.answer(question, inline(function, question), 0.0)
+
+
 def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blank):
     """Odd files, broken cells, magics and prints are no tricks."""
     problems = {p.name: p for p in released.problems("01_paths")}
@@ -44,7 +51,7 @@ def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blan
     suspected = set()
     for kind, make in synthetic_kinds.KINDS.items():
         cells = json.loads(json.dumps(blank["cells"]))
-        draft = Draft("01_paths", problems, questions, np.random.default_rng(1), cells)
+        draft = Unmarked("01_paths", problems, questions, np.random.default_rng(1), cells)
         make(draft)
         found = read(draft.bytes())
         if "cells" in found:

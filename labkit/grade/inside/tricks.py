@@ -34,7 +34,7 @@ _WORTH_A_LOOK = re.compile(
     r"__|\b(_\w|eval|exec|compile|getattr|setattr|vars|sys|labkit|pinocchio)"
     rf"|\b({'|'.join(MODULES)})\b|\b(lk|np|numpy)(\.\w+)+\s*(=[^=]|,)"
 )
-"""What no cell without one of these has."""
+"""What every cell with a trick has; with it a look at a notebook takes half the time."""
 
 
 def tricks(source: str) -> list[str]:
