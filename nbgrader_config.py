@@ -14,8 +14,16 @@ c.ClearSolutions.code_stub = {
 }
 c.Execute.timeout = 120
 
+# What students wrote is shown to teachers without anything in it that runs.
+c.HTMLExporter.sanitize_html = True
+c.HTMLExporter.filters = {
+    "markdown2html": "labkit.grade.markup.markdown",
+    "clean_html": "labkit.grade.markup.clean",
+}
+
 # Students' code never runs in nbgrader's own process: a submission is brought into the release's
 # form and graded in a sandbox.  `labkit grade --engine nbgrader` takes nbgrader's steps instead.
+c.Autograde.pre_convert_hook = "labkit.grade.autograde.unlink_foreign"
 c.Autograde.sanitize_preprocessors = [
     "labkit.grade.autograde.Repair",
     "nbgrader.preprocessors.ClearOutput",

@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
+from io import TextIOWrapper
 from pathlib import Path
 
 from . import __version__
@@ -24,7 +25,7 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    how well the checks tell right from wrong
 """
-FOR_INSTRUCTORS = ("nbgrader", "jupytext")
+FOR_INSTRUCTORS = ("nbgrader", "jupytext", "msgspec", "sqlalchemy")
 """Packages that a student's environment does without."""
 
 
@@ -54,10 +55,11 @@ def parser() -> argparse.ArgumentParser:
 
     if instructors:
         from .grade import verbs as verbs_grading
-        from .grade import verbs_course, verbs_term
+        from .grade import verbs_course, verbs_students, verbs_term
 
         verbs_course.add(verbs)
         verbs_grading.add(verbs)
+        verbs_students.add(verbs)
         verbs_term.add(verbs)
     return top
 
@@ -65,10 +67,13 @@ def parser() -> argparse.ArgumentParser:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; a mistake of the caller's ends in one sentence and exit code 2."""
     args = parser().parse_args(argv)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # names of files may hold anything
     try:
         return int(args.do(args))
     except LabkitError as error:
-        print(f"labkit {args.verb}: {error}", file=sys.stderr)
+        print(f"labkit {args.verb}: {_printable(str(error))}", file=sys.stderr)
         return 2
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
@@ -84,9 +89,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return 1
     except OSError as error:  # a folder that is not there, a disk that is full
-        where = "" if error.filename is None else f"{error.filename}: "
+        where = "" if error.filename is None else _printable(f"{error.filename}: ")
         print(f"labkit {args.verb}: {where}{error.strerror or error}", file=sys.stderr)
         return 2
+
+
+def _printable(text: str) -> str:
+    """A sentence without what a terminal would obey: somebody's file may be called so."""
+    return "".join(x if x.isprintable() or x == "\n" else "\ufffd" for x in text)
 
 
 def _submit_check(args: argparse.Namespace) -> int:
@@ -105,7 +115,8 @@ def _merge(args: argparse.Namespace) -> int:
     if args.to.exists():
         raise LabkitError(f"{args.to} is there already; give another name with --to")
     notebook = json.loads(args.new.read_text(encoding="utf-8")) | {"cells": merge(mine, new)}
-    args.to.write_text(json.dumps(notebook, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+    args.to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is no text
     print(f"{args.to}: the new release with your work; look it through, then run it all")
     return 0
 

@@ -6,14 +6,16 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 from __future__ import annotations
 
 from .cases import Call, Choice, Loop, Tuned
-from .judge import AtMost, Close, Gains, Response, Within
-from .mark import Failed, Outcome, TestResult, Verdict, fingerprint, mark
+from .judge import AtMost, AtTip, Close, Gains, Response, TipTorque, Within
+from .mark import Outcome, TestResult, Verdict, fingerprint, mark
 from .notebook import also, check, hint, use
 from .question import Mistake, Question, Raised, Test
 from .question_codec import question_data, read_question
+from .reply import Failed
 
 __all__ = [
     "AtMost",
+    "AtTip",
     "Call",
     "Choice",
     "Close",
@@ -27,6 +29,7 @@ __all__ = [
     "Response",
     "Test",
     "TestResult",
+    "TipTorque",
     "Tuned",
     "Verdict",
     "Within",

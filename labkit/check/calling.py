@@ -1,4 +1,4 @@
-"""Call somebody else's code without letting its prints and warnings through.
+"""Call somebody else's code without letting its prints and warnings through, nor its writes.
 
 nbgrader takes anything on stderr for a failure, and PyBullet writes to the C streams, so both kinds
 of stream are caught.
@@ -6,12 +6,18 @@ of stream are caught.
 
 from __future__ import annotations
 
+import inspect
 import tempfile
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager, redirect_stderr, redirect_stdout, suppress
 from io import StringIO
+from typing import Any
 
+import numpy as np
+
+from ..arrays import locked
+from ..errors import LabkitError
 from ..quiet import diverted
 
 
@@ -39,3 +45,72 @@ def heard() -> Iterator[Heard]:
                 file.seek(0)
                 below = file.read(100_000).decode(errors="replace")
                 result.text = "".join([*words, below])
+
+
+class ArgumentChanged(LabkitError):
+    """A function wrote to a list or a dict that it was given."""
+
+
+def call(function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str, Any]) -> Any:
+    """A function's answer to arguments that it cannot spoil for the next call.
+
+    It is given copies of lists and dicts, and read-only arrays.
+
+    Raises:
+        ArgumentChanged: It changed a list or a dict all the same.
+    """
+    given, named = [_copied(x) for x in args], {key: _copied(x) for key, x in kwargs.items()}
+    answer = function(*given, **named)
+    places: list[int | str] = [*range(len(args)), *kwargs]
+    befores, afters = [*args, *kwargs.values()], [*given, *named.values()]
+    for place, before, after in zip(places, befores, afters, strict=True):
+        if before is not after and not _same(before, after):
+            raise ArgumentChanged(_sentence(function, place, before))
+    return answer
+
+
+def _copied(x: Any) -> Any:
+    """The same value in containers of its own, its arrays read-only; itself if it has none."""
+    if isinstance(x, np.ndarray):
+        return locked(x.copy()) if x.flags.writeable else x
+    if type(x) is list:
+        return [_copied(item) for item in x]
+    if type(x) is dict:
+        return {key: _copied(item) for key, item in x.items()}
+    if isinstance(x, tuple):
+        items = [_copied(item) for item in x]
+        if all(a is b for a, b in zip(x, items, strict=True)):
+            return x
+        return type(x)(*items) if hasattr(x, "_fields") else tuple(items)
+    return x
+
+
+def _same(before: Any, after: Any) -> bool:
+    """Whether a copy still holds what it was made of; nobody's ``==`` is asked."""
+    if isinstance(before, np.ndarray):
+        return True  # it cannot be written to
+    if isinstance(before, list | tuple):
+        return len(before) == len(after) and all(map(_same, before, after))
+    if isinstance(before, dict):
+        return list(before) == list(after) and all(map(_same, before.values(), after.values()))
+    return before is after
+
+
+def _sentence(function: Callable[..., Any], place: int | str, before: Any) -> str:
+    name = place if isinstance(place, str) else _parameter(function, place)
+    kind = type(before).__name__
+    inner = before.values() if isinstance(before, dict) else before
+    flat = kind != "tuple" and not any(isinstance(x, list | dict | tuple) for x in inner)
+    which = f" `{name}`" if name else ""
+    copy = name and f", {kind if flat else 'copy.deepcopy'}({name})"
+    who = getattr(function, "__name__", "it")
+    return f"{who} changes the {kind}{which} that it is given; work on a copy{copy}"
+
+
+def _parameter(function: Callable[..., Any], place: int) -> str:
+    """What a function calls one of its arguments; "" if that cannot be told."""
+    with suppress(TypeError, ValueError, IndexError):
+        parameter = list(inspect.signature(function).parameters.values())[place]
+        if parameter.kind is not inspect.Parameter.VAR_POSITIONAL:
+            return parameter.name
+    return ""

@@ -22,6 +22,7 @@ from ..plant import IDEAL, Plant
 from ..run import run
 from ..study.trials import Runner, Trials
 from ..world import Thing, World
+from .calling import call
 from .judge import in_brief
 
 
@@ -43,7 +44,7 @@ class Call:
 
     def ask(self, function: Callable[..., Any]) -> Any:
         """The function's answer."""
-        return function(*self.args, **self.kwargs)
+        return call(function, self.args, self.kwargs)
 
     def shown(self, name: str) -> str:
         """The call as a student would type it."""
@@ -90,7 +91,7 @@ class Loop:
         """The run that the function makes."""
 
         def controller(state: Any, target: Any) -> Any:
-            return function(state, target, **self.kwargs)
+            return call(function, (state, target), self.kwargs)
 
         arm = Arm(self.side, self.plant, self.seed, world=World(things=self.things))
         arm.reset(arm.robot.ready if self.q0 is None else self.q0)
@@ -168,7 +169,7 @@ class Tuned:
 
     def ask(self, function: Callable[..., Any]) -> Log:
         """The run that the function's gains make."""
-        kp, kd = function(*self.args)
+        kp, kd = call(function, self.args, {})
         return self.loop.ask(springs(kp, kd))
 
     def measured(self, answer: Log) -> dict[str, float]:

@@ -31,7 +31,7 @@ def evidence(question: Question, verdict: Verdict) -> Evidence | None:
     for call, answer in zip(question.calls, verdict.answers, strict=True):
         try:
             expected, given = numbers(call.expected), numbers(answer)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             continue
         same_form = expected.shape == given.shape and np.isfinite(given).all()
         if same_form and question.judge(answer, call.expected) is not None:

@@ -16,10 +16,17 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
+from .cells import look as look_at
+from .codec import decode
+from .mark import Outcome, Verdict
 from .notebook import read_checks
+from .output import last_verdict
+from .source import withheld_tools
+from .words import head
 
 LARGEST = 10.0
 """Above this many megabytes a notebook may not pass a learning platform's upload."""
+Cell = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -30,19 +37,24 @@ class HandIn:
         assignment: Which.
         problems: What to mend before handing in, sentences.
         notes: What is worth knowing.
-        verdicts: The last verdict in the file for each question, or "not run".
+        verdicts: The last verdict in the file for each question, None where it was not run.
     """
 
     assignment: str
     problems: tuple[str, ...]
     notes: tuple[str, ...]
-    verdicts: Mapping[str, str]
+    verdicts: Mapping[str, Verdict | None]
+
+    @property
+    def lines(self) -> list[str]:
+        """Each question's verdict in words."""
+        return [head(v) if v else f"{name}: not run" for name, v in self.verdicts.items()]
 
     def __str__(self) -> str:
         lines = [f"[mend] {text}" for text in self.problems]
         lines += [f"[note] {text}" for text in self.notes]
-        lines += [f"  {verdict}" for verdict in self.verdicts.values()]
-        right = sum(": right." in verdict for verdict in self.verdicts.values())
+        lines += [f"  {line}" for line in self.lines]
+        right = sum(v is not None and v.outcome is Outcome.RIGHT for v in self.verdicts.values())
         end = (
             "mend the above first."
             if self.problems
@@ -56,7 +68,7 @@ class HandIn:
             f"{name} {version(name)}" for name in ("labkit", "numpy", "pybullet", "pin")
         )
         lines = [f"{self.assignment}; {tools}; Python {platform.python_version()}"]
-        return "\n".join(["```", *lines, *self.verdicts.values(), "```"])
+        return "\n".join(["```", *lines, *self.lines, "```"])
 
 
 def look(path: Path) -> HandIn:
@@ -66,11 +78,11 @@ def look(path: Path) -> HandIn:
         path: The notebook; the assignment's ``checks.json`` must lie beside it.
 
     Raises:
-        LabkitError: The file is missing or no notebook, or its questions are not there.
+        LabkitError: The file is missing or not a notebook, or its questions are not there.
     """
     cells = read_cells(path)
     data = read_checks(path.resolve().parent)
-    name, questions = data["assignment"], [q["name"] for q in data["questions"]]
+    name, questions = data["assignment"], data["questions"]
     problems, notes = [], []
     if path.name != f"{name}.ipynb":
         problems.append(f"the file is called {path.name}; rename it to {name}.ipynb")
@@ -79,44 +91,59 @@ def look(path: Path) -> HandIn:
         problems.append(
             f"it has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
         )
-    ids = Counter(cell["metadata"].get("nbgrader", {}).get("grade_id") for cell in cells)
-    verdicts = {}
     for question in questions:
-        if not any(defines(cell, question) for cell in cells):
-            problems.append(f"no cell defines {question}; bring it back with: labkit merge")
-        for grade_id in (question, f"{question}-check"):
-            if not ids[grade_id]:
-                notes.append(
-                    f"the cell of {grade_id} is gone or damaged; it is marked all the same"
-                )
-            elif ids[grade_id] > 1:
-                problems.append(
-                    f"the cell of {grade_id} is there {ids[grade_id]} times; keep one, for the "
-                    "last one counts"
-                )
-        verdicts[question] = _verdict(cells, question)
-    stale = [name for name in questions if _changed_since(cells, name)]
+        more, worth_knowing = _cells_of(cells, question["name"])
+        problems += more
+        notes += worth_knowing
+    verdicts = {question["name"]: _verdict(cells, question) for question in questions}
+    problems += [
+        f"{head(verdict)} Write it yourself."
+        for verdict in verdicts.values()
+        if verdict is not None and verdict.withheld
+    ]
+    stale = [name for name in verdicts if _changed_since(cells, name)]
     if stale:
         notes.append(
             f"changed since it was checked: {', '.join(stale)}; the verdicts below are old, run "
             "the notebook from the top and save it"
         )
-    unrun = [name for name, verdict in verdicts.items() if verdict.endswith("not run")]
+    unrun = [name for name, verdict in verdicts.items() if verdict is None]
     if unrun:
         notes.append(f"not run since it was opened: {', '.join(unrun)}; marking runs them again")
-    wrong = [
-        name for name, says in verdicts.items() if name not in unrun and ": right." not in says
-    ]
+    wrong = [name for name, v in verdicts.items() if v and v.outcome is not Outcome.RIGHT]
     if wrong:
         notes.append(f"not yet right: {', '.join(wrong)}; what is right counts all the same")
     return HandIn(name, tuple(problems), tuple(notes), verdicts)
+
+
+def _cells_of(cells: list[dict[str, Any]], question: str) -> tuple[list[str], list[str]]:
+    """What is to be mended in the cells of a question, and what is worth knowing of them."""
+    problems, notes = [], []
+    ids = Counter(map(grade_id, cells))
+    if not any(defines(cell, question) for cell in cells):
+        homes = [cell for cell in cells if grade_id(cell) == question]
+        magic = next((x for x in (look_at(cell["source"])["magic"] for cell in homes) if x), "")
+        problems.append(
+            f"the cell of {question} begins with %%{magic}, which keeps what it defines to itself; "
+            "take that line away"
+            if magic
+            else f"no cell defines {question}; bring it back with: labkit merge"
+        )
+    for each in (question, f"{question}-check"):
+        if not ids[each]:
+            notes.append(f"the cell of {each} is gone or damaged; it is marked all the same")
+        elif ids[each] > 1:
+            problems.append(
+                f"the cell of {each} is there {ids[each]} times; keep one, for the last one counts"
+            )
+    return problems, notes
 
 
 def read_cells(path: Path) -> list[dict[str, Any]]:
     """The cells of a notebook file.
 
     Raises:
-        LabkitError: It is not there, or is no notebook.
+        LabkitError: It is not there, or is not a notebook.
     """
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
@@ -131,17 +158,28 @@ def read_cells(path: Path) -> list[dict[str, Any]]:
         ]
     except FileNotFoundError:
         raise LabkitError(f"there is no file {path}") from None
-    except (ValueError, KeyError, TypeError, UnicodeDecodeError):
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise LabkitError(
-            f"{path.name} is no notebook, or was cut off while saving; open it in Jupyter, or "
+            f"{path.name} is not a notebook, or was cut off while saving; open it in Jupyter, or "
             "restore an older version"
         ) from None
 
 
-def defines(cell: Mapping[str, Any], name: str) -> bool:
+def grade_id(cell: Cell) -> str:
+    """What a cell was made for: a question's name, that with "-check", or ""."""
+    nbgrader = cell["metadata"].get("nbgrader")
+    return str(nbgrader.get("grade_id", "")) if isinstance(nbgrader, dict) else ""
+
+
+def defines(cell: Cell, name: str) -> bool:
     """Whether a code cell defines a function, a class or a value of that name."""
-    pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
-    return cell["cell_type"] == "code" and bool(re.search(pattern, cell["source"], re.MULTILINE))
+    if cell["cell_type"] != "code":
+        return False
+    found = look_at(cell["source"])
+    if found["broken"]:
+        pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
+        return bool(re.search(pattern, cell["source"], re.MULTILINE))
+    return name in found["binds"]
 
 
 def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:
@@ -150,15 +188,16 @@ def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:
     checked = [
         cell.get("execution_count") for cell in cells if f'check("{question}"' in cell["source"]
     ]
-    ran = [count for count in checked if count]
-    return bool(ran) and any(not count or count > max(ran) for count in defined)
+    ran = [count for count in checked if isinstance(count, int)]
+    return bool(ran) and any(not isinstance(count, int) or count > max(ran) for count in defined)
 
 
-def _verdict(cells: list[dict[str, Any]], question: str) -> str:
-    """The first line that the question's check printed last."""
-    for cell in reversed(cells):
-        for output in cell.get("outputs", ()):
-            text = "".join(output.get("text", ()))
-            if match := re.search(rf"^{question}: .*points\.$", text, re.MULTILINE):
-                return match.group()
-    return f"{question}: not run"
+def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdict | None:
+    """What the question's check said last, or what the answer's text says by now."""
+    name = question["name"]
+    found = [look_at(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    tools = withheld_tools(found, name, decode(question["withheld"]))
+    if tools:
+        points = float(question["points"])
+        return Verdict(name, Outcome.NOT_COUNTED, 0.0, points, withheld=tools)
+    return last_verdict(cells, name)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array, as_array, as_gains
-from ..commands import COMMANDS
+from ..commands import COMMANDS, JointTorque
 from ..errors import LabkitError, OutOfRange
 from ..motion import PoseSample, Sample
 from ..robot import JOINTS
@@ -38,9 +38,18 @@ class Close:
         return self._differ(answer, expected, "")
 
     def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers, right or wrong, are the same one; 1.96 is 1.959964 here."""
+        """Whether two answers, right or wrong, are the same one; 1.96 is 1.959964 here.
+
+        NaN is NaN here, for some mistakes give it.
+        """
         alike = replace(self, rtol=max(self.rtol, 1e-4))
         try:
+            a, b = numbers(answer), numbers(other)
+        except (LabkitError, TypeError, ValueError):
+            a = b = np.empty(0)
+        try:
+            if np.isnan(b).any():
+                return np.allclose(a, b, alike.rtol, alike.atol, equal_nan=True)
             return alike(answer, other) is None
         except (LabkitError, TypeError, ValueError):
             return False
@@ -221,6 +230,8 @@ class Response:
 
     def __call__(self, answer: Any, expected: Any) -> str | None:
         """None if they agree, else where they do not."""
+        if not hasattr(answer, "num"):
+            return f"it should be a transfer function, not {_shown(answer)}"
         try:
             pairs = [(w, complex(answer(1j * w)), complex(expected(1j * w))) for w in self.omega]
         except (TypeError, ValueError):
@@ -284,7 +295,54 @@ class Gains:
         return np.concatenate([as_gains(kp, JOINTS, "kp"), as_gains(kd, JOINTS, "kd")])
 
 
-Judge = Close | Within | AtMost | Response | Gains
+@dataclass(frozen=True, eq=False)
+class TipTorque:
+    """A torque as far as the tip feels it: the expected answer that `AtTip` compares with.
+
+    Attributes:
+        value: One such torque, shape (7,) in [N m].
+        accelerates: J M^-1, what a torque adds to the tip's acceleration, shape (6, 7).
+    """
+
+    value: Array
+    accelerates: Array
+
+
+@dataclass(frozen=True)
+class AtTip:
+    """A `JointTorque` judged by what it does: it must accelerate the tip as the expected one does.
+
+    Seven joints can move in one way that the tip does not feel, so that many torques are right.
+
+    Attributes:
+        rtol: Tolerance relative to the expected torque.
+        atol: Tolerance of the tip's acceleration, in [m/s^2] and [rad/s^2].
+    """
+
+    rtol: float = 1e-6
+    atol: float = 1e-6
+
+    def __call__(self, answer: Any, expected: TipTorque) -> str | None:
+        """None if the tip moves alike, else how the torques differ."""
+        if self.distance(answer, expected) <= 1.0:
+            return None
+        differ = Close(self.rtol, self.atol)(answer, JointTorque(expected.value)) or ""
+        return differ.replace(", got ", ", or any that moves the tip alike, got ")
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two torques, right or wrong, are the same."""
+        return Close(self.rtol, self.atol).same(answer, other)
+
+    def distance(self, answer: Any, expected: TipTorque) -> float:
+        """How far the tip's acceleration is off, in tolerances; infinite for any other command."""
+        if type(answer) is not JointTorque:
+            return float("inf")
+        off = np.abs(expected.accelerates @ (answer.value - expected.value))
+        scale = np.abs(expected.accelerates) @ np.abs(expected.value)
+        return float(np.max(off / (self.atol + self.rtol * scale)))
+
+
+Judge = Close | Within | AtMost | Response | Gains | AtTip
 
 
 def numbers(value: Any) -> Array:
@@ -297,7 +355,7 @@ def numbers(value: Any) -> Array:
 
 
 def _flat(value: Any) -> list[Array]:
-    if isinstance(value, COMMANDS):
+    if isinstance(value, (*COMMANDS, TipTorque)):
         value = value.value
     if isinstance(value, dict):
         value = list(value.values())

@@ -16,28 +16,19 @@ from .cases import Call, Case, Choice, Loop, Tuned
 from .judge import AtMost, Judge
 from .question import Mistake, Question, Raised, Test
 from .raised import told
+from .reply import Failed
+from .withheld import Withheld
 
 
 class Outcome(Enum):
-    """What came of a question."""
+    """What came of a question, or of one of its tests."""
 
     NOT_ATTEMPTED = "not attempted"
+    NOT_TRIED = "not tried"  # of a test without a case
+    NOT_COUNTED = "not counted"
     ERROR = "error"
     WRONG = "wrong"
     RIGHT = "right"
-
-
-class Failed(LabkitError):
-    """A function in another process did not answer.
-
-    Attributes:
-        kind: The type of the exception there.
-    """
-
-    def __init__(self, kind: str, sentence: str) -> None:
-        """What happened there."""
-        self.kind = kind
-        super().__init__(sentence)
 
 
 @dataclass(frozen=True)
@@ -50,6 +41,7 @@ class TestResult:
         outcome: Never partly right.
         says: Why not right; empty where it is.
         hidden: Whether a hidden case decided; ``says`` then names its class only.
+        tool: The withheld tool that was used, if that decided.
     """
 
     __test__ = False
@@ -59,6 +51,7 @@ class TestResult:
     outcome: Outcome
     says: str = ""
     hidden: bool = False
+    tool: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +77,12 @@ class Verdict:
 
     Attributes:
         name: The question's.
-        outcome: Right only if every test is.
+        outcome: Right only if every test is that was tried.
         earned: Points.
         points: What full marks would be.
         tests: One result each.
+        withheld: The tools that it used and that the question asks to write.
+        complete: Whether no hidden case is left that could change it.
         mistake: The known mistake that gives the same answers, if there is one.
         answers: What came back from each public call, for figures.
         runs: The public runs of the arm, for replays.
@@ -97,7 +92,9 @@ class Verdict:
     outcome: Outcome
     earned: float
     points: float
-    tests: tuple[TestResult, ...]
+    tests: tuple[TestResult, ...] = ()
+    withheld: tuple[str, ...] = ()
+    complete: bool = True
     mistake: Mistake | None = None
     answers: tuple[Any, ...] = ()
     runs: tuple[Ran, ...] = ()
@@ -115,6 +112,11 @@ class Tried:
     results: tuple[TestResult, ...]
     answers: Mapping[Case, Any]
 
+    @property
+    def outcome(self) -> Outcome:
+        """What they come to together."""
+        return _outcome(self.results)
+
 
 def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
     """Try every test of a question, its public cases before any hidden one.
@@ -131,11 +133,11 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
     tried = tried or try_public(question, function)
     results = tuple(
         result
-        if result.outcome is not Outcome.RIGHT
-        else _try(test, [c for c in test.cases if c.hidden], question, function, {})
+        if result.outcome not in (Outcome.RIGHT, Outcome.NOT_TRIED)
+        else _try(test, [c for c in test.cases if c.hidden], question, function, {}, result)
         for test, result in zip(question.tests, tried.results, strict=True)
     )
-    outcome, mistake = _outcome(question, results), None
+    outcome, mistake = _outcome(results), None
     answers = [tried.answers.get(call) for call in question.calls]
     asked = all(call in tried.answers for call in question.calls)
     if outcome in (Outcome.WRONG, Outcome.ERROR) and asked:
@@ -143,13 +145,22 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
     return Verdict(
         name=question.name,
         outcome=outcome,
-        earned=_earned(question, results),
+        earned=_earned(question, outcome, results),
         points=question.points,
         tests=results,
+        withheld=tuple(dict.fromkeys(result.tool for result in results if result.tool)),
+        complete=question.complete,
         mistake=mistake,
         answers=tuple(answers),
         runs=tuple(_runs(question, tried)),
     )
+
+
+def not_counted(question: Question, tools: tuple[str, ...]) -> Verdict:
+    """The verdict on an answer whose text uses withheld tools; it is not tried."""
+    tests = tuple(TestResult(t.name, t.weight, Outcome.NOT_COUNTED) for t in question.tests)
+    outcome = Outcome.NOT_COUNTED
+    return Verdict(question.name, outcome, 0.0, question.points, tests, withheld=tools)
 
 
 def _runs(question: Question, tried: Tried) -> Iterator[Ran]:
@@ -171,20 +182,24 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
         _try(test, [c for c in test.cases if not c.hidden], question, function, answers)
         for test in question.tests
     )
-    if _outcome(question, results) in (Outcome.WRONG, Outcome.ERROR):
+    if _outcome(results) in (Outcome.WRONG, Outcome.ERROR):
         for call in question.calls:
             if call not in answers:
                 answers[call] = _answer(call, function)
     return Tried(results, answers)
 
 
-def _outcome(question: Question, results: tuple[TestResult, ...]) -> Outcome:
-    """What the tests come to together; one without cases has nothing to say."""
-    tried = zip(question.tests, results, strict=True)
-    outcomes = {result.outcome for test, result in tried if test.cases}
+def _outcome(results: Iterable[TestResult]) -> Outcome:
+    """What the tests come to together; one that was not tried has nothing to say."""
+    outcomes = {result.outcome for result in results}
+    if len(outcomes) > 1:
+        outcomes.discard(Outcome.NOT_TRIED)
     if len(outcomes) == 1:
         return outcomes.pop()
-    return Outcome.WRONG if Outcome.WRONG in outcomes else Outcome.ERROR
+    for worst in (Outcome.NOT_COUNTED, Outcome.WRONG):
+        if worst in outcomes:
+            return worst
+    return Outcome.ERROR
 
 
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
@@ -213,6 +228,7 @@ class _Failure(Raised):
 
     sentence: str
     log: Log | None = None
+    tool: str = ""
 
 
 def _answer(case: Case, function: Callable[..., Any]) -> Any:
@@ -229,7 +245,11 @@ def _failure(error: BaseException) -> _Failure:
     known = isinstance(error, Failed) or (isinstance(error, LabkitError) and error.__cause__)
     sentence = str(error) if known else told(error)
     log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
-    return _Failure(kind, sentence, log)
+    return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
+
+
+_OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Outcome.WRONG}
+"""Of exceptions that are no error."""
 
 
 def _try(
@@ -238,8 +258,9 @@ def _try(
     question: Question,
     function: Callable[..., Any],
     answers: dict[Case, Any],
+    before: TestResult | None = None,
 ) -> TestResult:
-    """Put some cases of one test, until one fails."""
+    """Put some cases of one test, until one fails; without any, what came of it before stays."""
     for case in cases:
         answer = _answer(case, function)
         if not case.hidden:
@@ -247,27 +268,32 @@ def _try(
         hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
         where = hidden if case.hidden else case.shown(question.name)
         if isinstance(answer, _Failure):
-            stub = answer.kind == "NotImplementedError"
-            outcome = Outcome.NOT_ATTEMPTED if stub else Outcome.ERROR
-            says = f"{where} raised {answer.kind if case.hidden else answer.sentence}"
-            return TestResult(test.name, test.weight, outcome, says, case.hidden)
+            changed = answer.kind == "ArgumentChanged"
+            what = answer.kind if case.hidden else answer.sentence
+            says = f"{where}: {what}" if changed else f"{where} raised {what}"
+            outcome = Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind)
+            outcome = outcome or Outcome.ERROR
+            return TestResult(test.name, test.weight, outcome, says, case.hidden, answer.tool)
         found = _difference(question, case, answer)
         if found is not None:
             says = where if case.hidden else f"{where}: {found}"
             return TestResult(test.name, test.weight, Outcome.WRONG, says, case.hidden)
-    return TestResult(test.name, test.weight, Outcome.RIGHT)
+        before = TestResult(test.name, test.weight, Outcome.RIGHT)
+    return before or TestResult(test.name, test.weight, Outcome.NOT_TRIED)
 
 
 def _difference(question: Question, case: Case, answer: Any) -> str | None:
     """How an answer differs from what is expected; None if it does not."""
     if answer is None and isinstance(case, Call | Choice):
         return "it gave nothing back (None); does every way through it end in a return?"
-    if isinstance(case, Call):
-        return question.judge(answer, case.expected)
     try:
+        if isinstance(case, Call):
+            return question.judge(answer, case.expected)
         return AtMost()(case.measured(answer), case.expected)
     except LabkitError as error:
         return str(error)
+    except Exception:  # there is no end to what an answer can be
+        return "the answer cannot be compared with what is expected"
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:
@@ -275,11 +301,17 @@ def _same(judge: Judge, answer: Any, known: Any) -> bool:
         return (
             isinstance(answer, Raised) and isinstance(known, Raised) and answer.kind == known.kind
         )
-    return judge.same(answer, known)
+    try:
+        return judge.same(answer, known)
+    except Exception:
+        return False
 
 
-def _earned(question: Question, results: tuple[TestResult, ...]) -> float:
-    if any(r.weight == 0.0 and r.outcome is not Outcome.RIGHT for r in results):
+def _earned(question: Question, outcome: Outcome, results: tuple[TestResult, ...]) -> float:
+    if outcome is Outcome.RIGHT:
+        return float(question.points)
+    failed = {r.outcome for r in results if not r.weight} - {Outcome.RIGHT, Outcome.NOT_TRIED}
+    if failed or outcome is Outcome.NOT_COUNTED:
         return 0.0
     whole = sum(r.weight for r in results)
     share = sum(r.weight for r in results if r.outcome is Outcome.RIGHT) / whole

@@ -5,7 +5,9 @@ The questions lie in a file ``checks.json`` beside the notebook.
 
 from __future__ import annotations
 
+import inspect
 import json
+import linecache
 import sys
 from collections.abc import Callable
 from io import BytesIO
@@ -15,12 +17,16 @@ from typing import Any
 from ..errors import LabkitError, UnknownName
 from . import words
 from .calling import heard
+from .cells import look
 from .evidence import evidence
-from .mark import Outcome, Verdict, mark
+from .mark import Outcome, Verdict, mark, not_counted
+from .output import as_metadata
 from .question import Question
 from .question_codec import read_question, with_hidden
 from .raised import line_of
-from .source import withheld_names
+from .reply import Here
+from .source import withheld_tools
+from .withheld import withhold
 
 FILE = "checks.json"
 
@@ -77,9 +83,17 @@ class Desk:
         Raises:
             KeyboardInterrupt: The student stopped it; says in which line.
         """
+        question = self.question(name)
+        cells = map(look, cells_run(function))
+        used = withheld_tools(cells, name, question.withheld)
+        student = shell().user_ns if shell() else getattr(function, "__globals__", {})
         try:
-            with heard() as out:
-                verdict = mark(self.question(name), function)
+            with heard() as out, withhold(question.withheld, student):
+                verdict = (
+                    not_counted(question, used)
+                    if used
+                    else mark(question, Here(function, question.withheld))
+                )
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""
@@ -98,6 +112,27 @@ class Desk:
             for other in dict.fromkeys(called)
             if other in seen and seen[other].outcome is not Outcome.RIGHT
         )
+
+
+def shell() -> Any:
+    """The shell of the notebook that runs here; None where there is none."""
+    if "IPython" not in sys.modules:
+        return None
+    from IPython.core.getipython import get_ipython
+
+    return get_ipython()
+
+
+def cells_run(function: Callable[..., Any]) -> list[str]:
+    """The text of all cells that ran in this notebook; elsewhere, of the function's own file."""
+    notebook = shell()
+    if notebook is not None:
+        return list(notebook.history_manager.input_hist_raw)
+    try:
+        file = inspect.getsourcefile(inspect.unwrap(function)) or ""
+    except (TypeError, ValueError):
+        return []
+    return ["".join(linecache.getlines(file))]
 
 
 _desks: dict[Path, Desk] = {}
@@ -126,8 +161,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
     """
     question = desk().question(name)
     verdict, printed = desk().verdict(name, function)
-    used = tuple(withheld_names(function, question.withheld))
-    print(words.tell(question, verdict, printed, used, desk().leaning(name, function)))
+    _say(words.tell(question, verdict, printed, desk().leaning(name, function)), verdict)
     if verdict.mistake is not None:
         _show_evidence(question, verdict)
     return float(verdict.earned)
@@ -177,22 +211,30 @@ def use(
     return given
 
 
+def _say(text: str, verdict: Verdict) -> None:
+    """Print a verdict; in a notebook its output also keeps it as data, for `handin`."""
+    if shell() is None:
+        print(text)
+        return
+    from IPython.display import display
+
+    display({"text/plain": text}, metadata=as_metadata(verdict), raw=True)
+
+
 def _show_evidence(question: Question, verdict: Verdict) -> None:
     """A small figure of the answers that gave a known mistake away, where there is a notebook."""
     found = evidence(question, verdict)
-    if found is None or "IPython" not in sys.modules:
+    if found is None or shell() is None:
         return
-    from IPython.core.getipython import get_ipython
     from IPython.display import Image, display
 
-    if get_ipython() is not None:
-        from .. import plotting
+    from .. import plotting
 
-        picture = BytesIO()  # a notebook draws figures only once pyplot has made one
-        plotting.answers(*found).savefig(picture, format="png")
-        call, expected, given = found
-        alt = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
-        display(Image(picture.getvalue(), format="png", alt=alt))
+    picture = BytesIO()  # a notebook draws figures only once pyplot has made one
+    plotting.answers(*found).savefig(picture, format="png")
+    call, expected, given = found
+    alt = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
+    display(Image(picture.getvalue(), format="png", alt=alt))
 
 
 def _list(numbers: Any) -> str:

@@ -88,6 +88,13 @@ class Question:
         cases = (case for test in self.tests for case in test.cases)
         return tuple(case for case in cases if isinstance(case, Call | Choice) and not case.hidden)
 
+    @property
+    def complete(self) -> bool:
+        """Whether all its cases are here; a student's copy lacks the hidden ones."""
+        if any(case.hidden for test in self.tests for case in test.cases):
+            return True
+        return all(test.cases and not test.also for test in self.tests)
+
     def public(self) -> Question:
         """The same question without its hidden cases."""
         return replace(

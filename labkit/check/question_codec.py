@@ -13,10 +13,10 @@ from typing import Any, get_args
 
 from .cases import Case
 from .codec import TRUSTED, Kinds, decode, encode
-from .judge import Judge
+from .judge import Judge, TipTorque
 from .question import Mistake, Question, Raised, Test
 
-_PARTS = (Question, Test, Mistake, Raised, *get_args(Case), *get_args(Judge))
+_PARTS = (Question, Test, Mistake, Raised, TipTorque, *get_args(Case), *get_args(Judge))
 KINDS: Kinds = {**TRUSTED, **{kind.__name__: kind for kind in _PARTS}}
 """What a question is made of."""
 

@@ -15,13 +15,23 @@ _MINE = str(Path(__file__).parents[1])
 _LIBRARIES = tuple({_MINE, *(sysconfig.get_path(p) for p in ("stdlib", "purelib", "platlib"))})
 
 
+def in_labkit(file: str) -> bool:
+    """Whether a line of code, by its file, is labkit's own."""
+    return file.startswith(_MINE)
+
+
+def in_library(file: str) -> bool:
+    """Whether a line of code, by its file, is labkit's, Python's or an installed package's."""
+    return file.startswith(_LIBRARIES)
+
+
 def line_of(error: BaseException) -> str:
     """The last line outside labkit and all libraries that the exception came through, or ""."""
     found = ""
     step: TracebackType | None = error.__traceback__
     while step is not None:
         file = step.tb_frame.f_code.co_filename
-        if not file.startswith(_LIBRARIES):
+        if not in_library(file):
             line = linecache.getline(file, step.tb_lineno, step.tb_frame.f_globals).strip()
             found = line or found  # code that a dataclass writes has no line
         step = step.tb_next

@@ -1,95 +1,97 @@
-"""Does a function lean on a name that the question asks to write?
+"""Which tools that a question withholds does an answer use, as far as its text tells?
 
-It reads the function's source, and that of the functions beside it that it calls.
+It reads the answer's definition, and those of the names that it leans on, in whatever cell.
 """
 
 from __future__ import annotations
 
-import ast
-import inspect
-import textwrap
-from collections.abc import Callable, Iterable
-from importlib import import_module
+import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import ModuleType
 from typing import Any
 
+from .cells import Look
+from .withheld import find
 
-def withheld_names(function: Callable[..., Any], withheld: Iterable[str]) -> list[str]:
-    """The withheld names that a function uses.
+
+def withheld_tools(cells: Iterable[Look], name: str, withheld: Sequence[str]) -> tuple[str, ...]:
+    """The withheld tools that an answer uses.
+
+    What is reached through an instance, such as ``model.gravity``, only a call can tell; see
+    `withheld.withhold`.
 
     Args:
-        function: A student's function.
-        withheld: Dotted names, such as "labkit.Circle" or "labkit.Model.gravity".
+        cells: What `cells.look` found in each cell, in the order in which they run.
+        name: The answer's name.
+        withheld: Dotted names, such as "labkit.Circle" or "pinocchio".
 
     Returns:
-        Those that occur, in the order given; empty if the source cannot be read.
+        Those that are used, in the order given.
     """
-    names = tuple(withheld)
-    found: set[str] = set()
-    seen: set[int] = set()
-    waiting: list[Any] = [function]
+    if not withheld:
+        return ()
+    used = set(_used(_last_definitions(cells), name))
+    return tuple(tool for tool in withheld if any(_is(tool, other) for other in used))
+
+
+def _last_definitions(cells: Iterable[Look]) -> dict[str, Mapping[str, Any]]:
+    """What each name means at the end; an empty stub takes no answer's place."""
+    means: dict[str, Mapping[str, Any]] = {}
+    for cell in cells:
+        for definition in cell["definitions"]:
+            for name in definition["binds"]:
+                if not definition["stub"] or name not in means:
+                    means[name] = definition
+    return means
+
+
+def _used(means: Mapping[str, Mapping[str, Any]], name: str) -> Iterator[str]:
+    """Everything that a name's definition uses, directly or through others, by its full name."""
+    imports = {key: d["mean"][key] for key, d in means.items() if key in d["mean"]}
+    waiting, seen = [name], {name}
     while waiting:
-        f = inspect.unwrap(waiting.pop())
-        if id(f) in seen or not hasattr(f, "__globals__"):
+        definition = means.get(waiting.pop())
+        if definition is None:
             continue
-        seen.add(id(f))
-        try:
-            tree = ast.parse(textwrap.dedent(inspect.getsource(f)))
-        except (OSError, TypeError, SyntaxError):
-            continue
-        here = f.__module__
-        for node in ast.walk(tree):
-            thing = _thing(node, f.__globals__)
-            found |= {name for name in names if _is(name, node, thing)}
-            if inspect.isfunction(thing) and thing.__module__ == here:
-                waiting.append(thing)
-    return [name for name in names if name in found]
+        for chain in definition["uses"]:
+            root, dot, rest = chain.partition(".")
+            home = definition["mean"].get(root, imports.get(root))
+            if home is None and root not in means and "*" in imports:
+                home = imports["*"].removesuffix("*") + root
+            if home is not None:
+                yield f"{home}{dot}{rest}"
+            elif root not in seen:
+                seen.add(root)
+                waiting.append(root)
 
 
-def _thing(node: ast.AST, names: dict[str, Any]) -> Any:
-    """What a name or a dotted name stands for, as far as the function's globals tell."""
-    if isinstance(node, ast.Name):
-        return names.get(node.id)
-    if isinstance(node, ast.Attribute):
-        owner = _thing(node.value, names)
-        return getattr(owner, node.attr, None) if isinstance(owner, ModuleType | type) else None
-    return None
-
-
-def _is(name: str, node: ast.AST, thing: Any) -> bool:
-    module, _, last = name.rpartition(".")
-    if isinstance(node, ast.Import):
-        return any(_within(alias.name, name) for alias in node.names)
-    if isinstance(node, ast.ImportFrom):
-        source = node.module or ""
-        return _within(source, name) or any(
-            f"{source}.{alias.name}" == name
-            or (source.split(".")[0] == module.split(".")[0] and alias.name == last)
-            for alias in node.names
-        )
-    target = _resolved(name)
-    if inspect.isfunction(target) and "." in target.__qualname__:  # a method: any owner will do
-        return isinstance(node, ast.Attribute) and node.attr == last
-    if thing is None or target is None:
+def _is(tool: str, other: str) -> bool:
+    """Whether a dotted name is a withheld tool's, or a part of it, or another name of it."""
+    if _within(other, tool):
+        return True
+    if other.partition(".")[0] != tool.partition(".")[0]:
         return False
-    if isinstance(target, ModuleType):
-        return thing is target or _within(getattr(thing, "__module__", "") or "", name)
-    return thing is target
+    target = find(tool)[1]
+    for thing in _loaded(other):
+        if isinstance(target, ModuleType):
+            home = getattr(thing, "__module__", None)
+            if isinstance(home, str) and _within(home, tool):
+                return True
+        elif thing is not None and thing is target:
+            return True
+    return False
 
 
-def _within(module: str, package: str) -> bool:
-    return module == package or module.startswith(f"{package}.")
+def _within(name: str, whole: str) -> bool:
+    return name == whole or name.startswith(f"{whole}.")
 
 
-def _resolved(name: str) -> Any:
-    """The thing of that dotted name, or None."""
-    parts = name.split(".")
-    for cut in range(len(parts), 0, -1):
-        try:
-            thing: Any = import_module(".".join(parts[:cut]))
-        except ImportError:
-            continue
-        for part in parts[cut:]:
-            thing = getattr(thing, part, None)
-        return thing
-    return None
+def _loaded(name: str) -> Iterator[Any]:
+    """The things along a dotted name; no module is imported for it."""
+    first, *parts = name.split(".")
+    thing: Any = sys.modules.get(first)
+    for part in parts:
+        if not isinstance(thing, ModuleType | type):
+            return
+        thing = getattr(thing, part, None)
+        yield thing

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterable, Iterator
 
 from .mark import Outcome, Verdict
 from .question import Question, Test
+from .withheld import spoken
 
 WIDTH = 79
 """Of a line, in characters."""
 
 HEADS = {
     Outcome.NOT_ATTEMPTED: "not attempted yet",
+    Outcome.NOT_TRIED: "not tried here",
+    Outcome.NOT_COUNTED: "not counted",
     Outcome.ERROR: "it stopped with an error",
     Outcome.WRONG: "not yet right",
     Outcome.RIGHT: "right",
@@ -19,20 +23,28 @@ HEADS = {
 """What each outcome is called."""
 
 
+_SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
+"""Of tests of which no more is to be said."""
+
+
 def head(verdict: Verdict) -> str:
     """The verdict in a line."""
-    return (
-        f"{verdict.name}: {HEADS[verdict.outcome]}. "
-        f"{verdict.earned:g} of {verdict.points:g} points."
-    )
+    points = f"{verdict.points:g} point{'' if verdict.points == 1 else 's'}"
+    says = HEADS[verdict.outcome]
+    if verdict.withheld:
+        says += f": {uses(verdict.withheld)}"
+    elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
+        return f"{verdict.name}: {says} on all public cases; {points} if the hidden ones agree."
+    return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
+
+
+def uses(withheld: Iterable[str]) -> str:
+    """Why an answer that uses withheld tools is not counted."""
+    return f"uses {' and '.join(map(spoken, withheld))}, which this question asks you to write"
 
 
 def tell(
-    question: Question,
-    verdict: Verdict,
-    printed: str = "",
-    used: tuple[str, ...] = (),
-    leans_on: tuple[str, ...] = (),
+    question: Question, verdict: Verdict, printed: str = "", leans_on: tuple[str, ...] = ()
 ) -> str:
     """Everything that a student is told.
 
@@ -40,7 +52,6 @@ def tell(
         question: What was asked.
         verdict: What came of it.
         printed: What the student's code wrote while it was tried.
-        used: Withheld names that it uses.
         leans_on: Other answers that it uses, and that are not right.
 
     Returns:
@@ -50,11 +61,9 @@ def tell(
     if verdict.outcome is Outcome.NOT_ATTEMPTED:
         lines.append(f"  To do: {question.asks}")
     elif verdict.outcome is Outcome.RIGHT:
-        also = dict.fromkeys(test.also for test in question.tests if test.also)
-        if also and not any(case.hidden for test in question.tests for case in test.cases):
-            lines.append(f"  The teacher also tries: {'; '.join(also)}.")
-            unseen = [test.name for test in question.tests if not test.cases]
-            lines += [f"  Not tried here, and points hang on it: {name}." for name in unseen]
+        lines += [] if verdict.complete else _unseen(question)
+    elif verdict.outcome is Outcome.NOT_COUNTED:
+        lines.append("  Elsewhere in the notebook you may use it; here write it yourself.")
     else:
         lines += _results(question, verdict)
         if verdict.mistake is not None:
@@ -63,13 +72,20 @@ def tell(
     if leans_on and verdict.outcome is not Outcome.RIGHT:
         names = ", ".join(leans_on)
         lines.append(f"  Note: it uses your {names}, which is not right yet; mend that first.")
-    if used:
-        names = ", ".join(used)
-        lines.append(f"  Note: the question is to write this yourself, and your code uses {names}.")
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         lines.append(f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees it.')
     return "\n".join(wrapped(line) for line in lines)
+
+
+def _unseen(question: Question) -> Iterator[str]:
+    """What a student's copy of a question leaves to the teacher's."""
+    also = dict.fromkeys(test.also for test in question.tests if test.also)
+    if also:
+        yield f"  The teacher also tries: {'; '.join(also)}."
+    for test in question.tests:
+        if not test.cases:
+            yield f"  Not tried here, and points hang on it: {test.name}."
 
 
 def hint(question: Question, level: int) -> str:
@@ -96,8 +112,8 @@ def _results(question: Question, verdict: Verdict) -> list[str]:
     said: set[str] = set()
     for test, result in zip(question.tests, verdict.tests, strict=True):
         gate = "" if result.weight else " (needed before anything counts)"
-        if result.outcome is Outcome.RIGHT:
-            lines.append(f"  [passed] {result.name}{gate}")
+        if result.outcome in _SHORT:
+            lines.append(f"  [{_SHORT[result.outcome]}] {result.name}{gate}")
             continue
         where, why = _split(question, test, result.says)
         short = f"  [failed] {result.name}{gate}: {where}{why}"

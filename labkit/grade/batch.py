@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
-import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass, field
-from pathlib import Path
+from functools import partial
 
 from ..errors import LabkitError
 from .checker import hashes
 from .course import Course
+from .each import for_student
 from .launch import NoIsolation
 from .limits import Limits
+from .lock import WHOLE, alone
 from .pool import Done, Job, locally, through_dask
 from .results import Bundle, Result, Results, digest
 from .submission import Submission
@@ -42,7 +41,7 @@ class How:
     jobs: int = 1
     isolated: bool = True
     dask: str | None = None
-    shard: tuple[int, int] = (1, 1)
+    shard: tuple[int, int] = WHOLE
     again: bool = False
     limits: Limits = field(default_factory=Limits)
 
@@ -90,7 +89,7 @@ def grade_class(
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
-    with _alone(results.folder, how.shard):
+    with alone(results.folder, how.shard):
         for student in students:
             if not in_shard(student, how.shard):
                 continue
@@ -101,7 +100,11 @@ def grade_class(
                 continue
             todo.append(submission)
         for result in grade_aside(course, bundle, todo, how):
-            yield result if isinstance(result, LabkitError) else _keep(results, result)
+            yield (
+                result
+                if isinstance(result, LabkitError)
+                else for_student(result.student, partial(_keep, results, result))
+            )
 
 
 def grade_aside(
@@ -124,7 +127,14 @@ def grade_aside(
     for text in done:
         if isinstance(text, NoIsolation):
             raise text  # it would be so for all of them
-        yield text if isinstance(text, LabkitError) else Result.read(text)
+        yield text if isinstance(text, LabkitError) else _read(text)
+
+
+def _read(text: str) -> Result | LabkitError:
+    try:
+        return Result.read(text)
+    except LabkitError as error:
+        return error
 
 
 def _keep(results: Results, result: Result) -> Graded:
@@ -161,7 +171,7 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
     tried: Counter[str] = Counter()
     for result in graded:
         for question in result.questions:
-            if question["outcome"] == "not attempted":
+            if question["outcome"] in ("not attempted", "not counted"):
                 continue
             tried[question["name"]] += 1
             for one in question["tests"]:
@@ -187,21 +197,3 @@ def _still_good(
         return None
     data, _, _ = submission.read(how.limits.notebook)
     return before if before.hashes == hashes(data, bundle) else None
-
-
-@contextmanager
-def _alone(folder: Path, shard: tuple[int, int]) -> Iterator[None]:
-    """Keep a second run on the same part of the class away."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / f".running-{shard[0]}-of-{shard[1]}", "w") as file:
-        for attempt in range(20):
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                break
-            except OSError:
-                if attempt == 19:
-                    raise LabkitError(
-                        f"another run is grading {folder.name}; wait for it to end"
-                    ) from None
-                time.sleep(0.1)
-        yield

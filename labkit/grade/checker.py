@@ -13,9 +13,12 @@ from dataclasses import replace
 from typing import Any
 
 from .. import errors
-from ..check.codec import decode_answer, encode
-from ..check.mark import Failed, Outcome, TestResult, Tried, Verdict, mark, try_public
+from ..check.codec import encode
+from ..check.mark import Outcome, TestResult, Tried, Verdict, mark, not_counted, try_public
 from ..check.question import Question
+from ..check.reply import Failed, answer
+from ..check.source import withheld_tools
+from ..check.words import uses
 from . import seen
 from .clean import clean_line
 from .inside.wire import Gone, TooLate, TooMuch
@@ -25,10 +28,9 @@ from .results import Bundle, Result, digest, engine, versions
 from .sandbox import Sandbox
 from .seat import Session
 
-_LABKIT = {name for name, thing in vars(errors).items() if isinstance(thing, type)} | {"Withheld"}
 _KNOWN = (
-    _LABKIT
-    | {"LinAlgError"}
+    {name for name, thing in vars(errors).items() if isinstance(thing, type)}
+    | {"ArgumentChanged", "LinAlgError"}
     | {
         name
         for name, thing in vars(builtins).items()
@@ -66,7 +68,8 @@ def grade(
     todo = plan(cells, bundle.data["cells"])
     absent = bundle.added - todo.places.keys()
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
-    questions = [question for question in bundle.questions if question.name not in absent]
+    tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
+    questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
     with Session(sandbox, todo, limits) as session:
         with suppress(Gone):
             session.start()
@@ -82,12 +85,13 @@ def grade(
         _ungraded(student, bundle, sandbox.level, data),
         score=round(sum(v.earned for v in verdicts.values()), 2),
         questions=tuple(
-            _verdict(question, verdicts.get(question.name) or _absent(question), todo)
+            _verdict(question, verdicts.get(question.name) or _untried(question, tools), todo)
             for question in bundle.questions
         ),
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
         cells=failed,
         own=todo.own,
+        tricks=todo.tricks,
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
     )
     return _shortened(result)
@@ -202,26 +206,29 @@ class Ask:
             raise Failed("SystemExit", "SystemExit: it ended its own process") from None
 
     def _answer(self, message: dict[str, Any]) -> Any:
-        """What came of one call."""
+        """What came of one call; reading it counts as the student's time."""
         began = time.monotonic()
         try:
             reply = self.session.ask(message, self.left)
-            if "is" in reply:
-                return decode_answer(reply["is"])
+            if "raised" not in reply:
+                return answer(reply, self.question.withheld)
         finally:
             self.left -= time.monotonic() - began
-        kind, says = str(reply.get("raised")), clean_line(str(reply.get("says", "")))
+        kind, says = str(reply["raised"]), clean_line(str(reply.get("says", "")))
         if kind == "TimeUp":
             self.lost += 1
             kind = "TimeoutError"
-        kind = kind if kind in _KNOWN else "Exception"  # a name of its own could carry a secret out
-        raise Failed(kind, says if kind in _LABKIT else f"{kind}: {says}")
+        if kind not in _KNOWN:
+            kind = "Exception"  # a name of its own could carry a secret out
+        return answer({"raised": kind, "says": says}, self.question.withheld)
 
 
 def _public(ask: Ask) -> Tried:
     """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
     try:
-        return try_public(ask.question, ask)
+        tried = try_public(ask.question, ask)
+        ask.session.right += [ask.question.name] if tried.outcome is Outcome.RIGHT else []
+        return tried
     except Exception:
         return Tried(tuple(_lost(ask.question)), {})
     finally:
@@ -240,7 +247,10 @@ def _guarded(ask: Ask, tried: Tried) -> Verdict:
         ask.session.close()
 
 
-def _absent(question: Question) -> Verdict:
+def _untried(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
+    """Of a question that was not asked: it uses what is withheld, or is not in the notebook."""
+    if tools[question.name]:
+        return not_counted(question, tools[question.name])
     tests = tuple(TestResult(t.name, t.weight, Outcome.NOT_ATTEMPTED) for t in question.tests)
     return Verdict(question.name, Outcome.NOT_ATTEMPTED, 0.0, question.points, tests)
 
@@ -266,11 +276,17 @@ def _verdict(question: Question, verdict: Verdict, todo: Plan) -> dict[str, Any]
             }
             for t in verdict.tests
         ],
+        "withheld": list(verdict.withheld),
         "mistake": verdict.mistake and {"name": verdict.mistake.name, "says": verdict.mistake.says},
-        "notes": [clean_line(note) for note in todo.notes.get(verdict.name, ())],
+        "notes": [clean_line(note) for note in _notes(verdict, todo)],
         "source": todo.source(verdict.name),
         **_seen(question, verdict),
     }
+
+
+def _notes(verdict: Verdict, todo: Plan) -> tuple[str, ...]:
+    why = (f"it {uses(verdict.withheld)}",) if verdict.withheld else ()
+    return (*why, *todo.notes.get(verdict.name, ()))
 
 
 def _seen(question: Question, verdict: Verdict) -> dict[str, Any]:

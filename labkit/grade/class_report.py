@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import ast
+import re
+import warnings
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations
 from pathlib import Path
 from statistics import mean, median
 
+from ..check.words import uses
 from .batch import common_failures
+from .clean import clean_line
 from .problem import Problem
 from .results import Result
 
@@ -23,6 +27,7 @@ def report(
     results: Sequence[Result],
     problems: Mapping[str, Problem],
     called: Callable[[str], str],
+    left_out: int = 0,
 ) -> str:
     """The report, in Markdown.
 
@@ -31,18 +36,21 @@ def report(
         results: Of the class.
         problems: By name, for what to say in the lecture.
         called: What a student is called in it: ``str``, or `pseudonyms`.
+        left_out: How many more have no result that counts.
     """
-    who = {r.student: called(r.student) for r in results}
+    who = {r.student: _as_text(called(r.student)) for r in results}
     graded = [r for r in results if not r.rejected]
     lines = [f"# {assignment}: what the class understood", ""]
-    lines += _marks(graded, len(results))
+    lines += _marks(graded, len(results) - len(graded), left_out)
     lines += _questions(graded)
     lines += _mistakes(graded, problems)
+    lines += _listed("Withheld tools, and what may be a way around one", _tools(graded, who))
     lines += _listed("Tests to doubt", common_failures(graded))
-    lines += _listed("Rejected", (f"{who[r.student]}: {r.rejected}" for r in results if r.rejected))
-    slow = sorted((r for r in graded if r.seconds["all"] > SLOW), key=lambda r: -r.seconds["all"])
-    times = (f"{who[r.student]}: {r.seconds['all']:.0f} s" for r in slow)
-    lines += _listed(f"Slower than {SLOW:g} s", times)
+    rejected = (f"{who[r.student]}: {_as_text(r.rejected)}" for r in results if r.rejected)
+    lines += _listed("Rejected", rejected)
+    times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
+    slow = (f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW)
+    lines += _listed(f"Slower than {SLOW:g} s", slow)
     lines += _listed("Look-alikes", _alike(graded, who))
     return "\n".join(lines) + "\n"
 
@@ -60,8 +68,11 @@ def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], s
     return count
 
 
-def _marks(graded: Sequence[Result], handed_in: int) -> Iterator[str]:
-    yield f"{handed_in} handed in, {len(graded)} graded."
+def _marks(graded: Sequence[Result], rejected: int, left_out: int) -> Iterator[str]:
+    more = f", {rejected} rejected" if rejected else ""
+    more += f", {left_out} left out, without a result that counts" if left_out else ""
+    handed_in = len(graded) + rejected + left_out
+    yield f"{handed_in} handed in, {len(graded)} graded{more}."
     if graded:
         scores = sorted(r.score for r in graded)
         yield (
@@ -79,10 +90,11 @@ def _questions(graded: Sequence[Result]) -> Iterator[str]:
             outcomes[question["name"]][question["outcome"]] += 1
             if question["points"]:
                 shares[question["name"]].append(question["earned"] / question["points"])
-    yield from ("## Questions", "", "| question | right | wrong | error | not tried | mean |")
-    yield "|---|---:|---:|---:|---:|---:|"
+    yield from ("## Questions", "")
+    yield "| question | right | wrong | error | not counted | not tried | mean |"
+    yield "|---|---:|---:|---:|---:|---:|---:|"
     for name, count in outcomes.items():
-        cells = [count[x] for x in ("right", "wrong", "error", "not attempted")]
+        cells = [count[x] for x in ("right", "wrong", "error", "not counted", "not attempted")]
         share = f"{mean(shares[name]):.0%}" if shares[name] else "voided"
         yield f"| {name} | {' | '.join(map(str, cells))} | {share} |"
     yield ""
@@ -102,6 +114,16 @@ def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iter
         say = next((w.lecture or w.says for w in known if w.name == mistake), "")
         yield f"- **{n} x {name}: {mistake}.** {say}"
     yield ""
+
+
+def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
+    """What each student used that a question withholds, and what in a cell needs a look."""
+    for result in graded:
+        used = [f"{q['name']} {uses(q['withheld'])}" for q in result.questions if q.get("withheld")]
+        if used:
+            yield f"{who[result.student]}, not counted: {'; '.join(used)}"
+        if result.tricks:
+            yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
 
 
 def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
@@ -134,11 +156,17 @@ def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
 def _shape(source: str) -> frozenset[str]:
     """The structure of an answer, without names and texts: triples of neighbouring nodes."""
     try:
-        nodes = [type(node).__name__ for node in ast.walk(ast.parse(source))]
+        with warnings.catch_warnings(action="ignore"):
+            nodes = [type(node).__name__ for node in ast.walk(ast.parse(source))]
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return frozenset()
     windows = ["".join(nodes[k : k + 5]) for k in range(len(nodes) - 4)]
     return frozenset(f"{w}{windows[:k].count(w)}" for k, w in enumerate(windows[:400]))
+
+
+def _as_text(text: str) -> str:
+    """A line in which Markdown sees no markup."""
+    return re.sub(r"([\\`*\[\]<>|&])", r"\\\1", clean_line(text))
 
 
 def _listed(title: str, items: Iterator[str]) -> Iterator[str]:

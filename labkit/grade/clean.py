@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import re
+import unicodedata
+from typing import Any
 
 _CONTROL = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff"
 _UNSAFE = re.compile(f"[{_CONTROL}]")
 _SURROGATE = re.compile("[\ud800-\udfff]")
+_RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+LONGEST = 80
+"""Bytes of a folder's name: results, pages and attempts are called after it."""
 
 
 def clean_text(text: str) -> str:
@@ -27,3 +32,27 @@ def clean_line(text: str, most: int = 500) -> str:
         most: Characters to keep.
     """
     return re.sub(r"\s+", " ", _UNSAFE.sub(" ", _SURROGATE.sub("\ufffd", text))).strip()[:most]
+
+
+def clean_data(data: Any) -> Any:
+    """Plain data, as JSON gives it, with `clean_text` of every text in it."""
+    if isinstance(data, str):
+        return clean_text(data)
+    if isinstance(data, list):
+        return [clean_data(x) for x in data]
+    if isinstance(data, dict):
+        return {clean_text(key): clean_data(x) for key, x in data.items()}
+    return data
+
+
+def safe_name(name: str) -> str:
+    """A name as a folder's: letters and marks of any script, digits, and ``. _ @ -`` within.
+
+    It is short, in Unicode's composed form, never empty, never hidden, and no command takes it for
+    an option.
+    """
+    text = re.sub("['’`]", "", unicodedata.normalize("NFC", name))  # as Moodle, O'Brien
+    text = "".join(c if c in "._@" or unicodedata.category(c)[0] in "LMN" else "-" for c in text)
+    text = re.sub(r"-+", "-", re.sub(r"\.+", ".", text)).strip("-._@")
+    text = text.encode()[:LONGEST].decode(errors="ignore").strip("-._@")
+    return f"student-{text}".rstrip("-") if not text or _RESERVED.fullmatch(text) else text

@@ -1,41 +1,28 @@
 """Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
 
-Names and times come from the download, never from within a student's file.  Moodle puts
-``NAME_PARTICIPANT_assignsubmission_file_`` before each file, as a folder or not; Canvas calls each
-``NAME_[LATE_]USER_ATTACHMENT_FILE`` (its ``lib/content_zipper.rb``).  The numbers are kept for the
-export; see `lms`.
+Whose a file is comes from the platform's own field (``platforms``, ``downloads``) and from the
+roster (``identity``); which of a student's notebooks counts is settled in ``attempts``.
 """
 
 from __future__ import annotations
 
-import re
-import shutil
 import zipfile
-import zlib
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 
 from ..errors import LabkitError
+from .attempts import Seen, adopt, attempts, counts, install, keep
 from .course import Course
-from .handback import SECRET, read_secret
-from .limits import Limits
-from .lms import Known, folders, known, remember
-from .submission import check_size, read_file
-
-_MOODLE = re.compile(
-    r"^(?P<name>[^/]+)_(?P<id>\d+)_assignsubmission_file(?:_?/|_)(?:[^/]+/)*(?P<file>[^/]+)$"
-)
-_CANVAS = re.compile(
-    r"^(?P<name>[^/_]+)_(?P<late>LATE_)?(?P<id>\d+)_(?P<number>\d+)_(?P<file>[^/]+)$"
-)
-_EXCHANGE = re.compile(
-    r"^(?P<name>[^.+/][^+/]*)\+(?P<assignment>[^+/]+)\+(?P<when>[^+/]+?)(\+[^/]*)?$"
-)
-_REPEATED = re.compile(r" ?[(-](\d+)\)?\.ipynb$")
+from .downloads import File, in_exchange, in_zip, open_zip
+from .enrol import settle
+from .identity import places
+from .lms import Known, alone, known_all_term, remember
+from .platforms import Named
+from .results import digest
+from .roster import Roster, read_roster
 
 
 @dataclass(frozen=True)
@@ -46,169 +33,173 @@ class Taken:
         student: Whose, as the folder is called; empty if nobody's.
         file: Its name in the download; empty if it is of none in particular.
         says: What was done.
+        fine: Whether nobody need look at it.
     """
 
     student: str
     file: str
     says: str
+    fine: bool = True
 
     def __str__(self) -> str:
         return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
 @dataclass(frozen=True)
-class _Found:
-    student: str
-    file: str
-    read: Callable[[], bytes]  # late, as a class's files need not fit into memory together
-    when: str = ""
-    late: bool = False
-    known: Known | None = None
-    beside: Path | None = None  # the folder in the exchange, with its secret
+class _HandedIn:
+    """A file with its one owner."""
+
+    file: File
+    named: Named
 
 
-def collect(course: Course, assignment: str, source: Path) -> Iterator[Taken]:
-    """Take notebooks from a download.
+def collect(
+    course: Course, assignment: str, source: Path, *, unverified: bool = False
+) -> Iterator[Taken]:
+    """Take notebooks from a download; the same once more changes nothing.
 
     Args:
         course: The course.
         assignment: Which.
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
+        unverified: Whether users of the exchange whom this machine does not know are taken at
+            their word.
 
     Yields:
-        What was done with each file; of several of one student the last counts, of several that he
-        handed in together the one that is called as the assignment.
+        What was done with each file.
 
     Raises:
-        LabkitError: It is neither, it is damaged, or it holds nothing.
+        LabkitError: It is neither, it is damaged, or it holds nothing; or a record of the course
+            is damaged.
     """
     if not source.exists():
         raise LabkitError(f"there is no {source}")
-    if source.is_dir():
-        yield from _take(course, assignment, source, list(_from_exchange(source, assignment)))
-    elif not zipfile.is_zipfile(source):
-        raise LabkitError(
-            f"{source} is neither a folder nor a zip file; give the download as it is"
-        )
-    else:
-        try:
-            with zipfile.ZipFile(source) as archive:
-                yield from _take(course, assignment, source, list(_from_zip(archive)))
-        except (zipfile.BadZipFile, zlib.error, EOFError, RuntimeError) as error:
+    with alone(course):
+        if source.is_dir():
+            files = list(in_exchange(source, assignment, unverified=unverified))
+            yield from _take(course, assignment, source, files)
+        elif not zipfile.is_zipfile(source):
             raise LabkitError(
-                f"{source} is damaged or locked: {error}; download it again"
-            ) from None
+                f"{source} is neither a folder nor a zip file; give the download as it is"
+            )
+        else:
+            with open_zip(source) as archive:
+                made = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
+                yield from _take(course, assignment, source, list(in_zip(archive, made)))
 
 
-def _take(
-    course: Course, assignment: str, source: Path, found: Sequence[_Found]
-) -> Iterator[Taken]:
-    if not found:
-        raise LabkitError(f"nothing in {source} was handed in for {assignment}")
-    before = known(course, assignment)
-    people = {one.known: one.student for one in found if one.known is not None}
-    places = folders(people, before)
-    for name, count in Counter(people.values()).items():
+def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
+    if not files:
+        kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
+        raise LabkitError(f"nothing in {source} was handed in for {assignment}, read as {kind}")
+    roster = read_roster(course)
+    for sentence in settle(course, roster):
+        yield Taken("", "", sentence, fine=False)
+    known = known_all_term(course)
+    handed_in: list[_HandedIn] = []
+    for file in files:
+        named = _whose(file, roster)
+        if isinstance(named, str):
+            yield Taken("", file.label, named, fine=False)
+        else:
+            handed_in.append(_HandedIn(file, named))
+    people = {one.named.who.key: one.named.who for one in handed_in}
+    there = [path.name for path in course.submitted.glob("*")]
+    found = places(people.values(), assignment, known, roster, there)
+    if not roster.students:
+        yield from _namesakes(people.values())
+    for place in found.values():
+        if place.doubt:
+            yield Taken(place.folder, "", place.doubt, fine=False)
+    remember(course, assignment, {place.folder: people[key] for key, place in found.items()})
+    by_student: dict[str, list[_HandedIn]] = {}
+    for one in handed_in:
+        by_student.setdefault(found[one.named.who.key].folder, []).append(one)
+    for student, mine in sorted(by_student.items()):
+        yield from _keep(course, assignment, student, mine)
+
+
+def _whose(file: File, roster: Roster) -> Named | str:
+    """The one reading of a file's name that is right, or why there is none."""
+    if file.refused or not file.readings:
+        return file.refused or "not taken; its name does not say whose it is"
+    if len(file.readings) == 1:
+        return file.readings[0]
+    fits = [named for named in file.readings if _is_called_so(named.who, roster)]
+    if len(fits) == 1:
+        return fits[0]
+    people = " or ".join(str(named.who) for named in file.readings)
+    return f"not taken; it is of {people}; the roster does not say which"
+
+
+def _is_called_so(who: Known, roster: Roster) -> bool:
+    """Whether the roster has this user of Canvas, under this name."""
+    names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
+    return _letters(who.name) in map(_letters, names)
+
+
+def _letters(name: str) -> str:
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
+    called = Counter(one.name for one in people if one.system == "moodle")
+    for name, count in called.items():
         if count > 1:
             yield Taken(name, "", f"{count} students are called so; told apart by their number")
-    remember(course, assignment, {folder: one for one, folder in places.items()})
-    by_student: dict[str, list[_Found]] = {}
-    for one in found:
-        one = one if one.known is None else replace(one, student=places[one.known])
-        if not one.student:
-            yield Taken("", one.file, "not taken; no student can be told from its name")
-        elif not one.file.endswith(".ipynb"):
-            yield Taken(one.student, one.file, "not taken; it is no notebook")
+
+
+def _keep(
+    course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
+) -> Iterator[Taken]:
+    """Keep one student's notebooks, and let the right one count."""
+    notebooks = [one for one in mine if not _no_notebook(one.named)]
+    for one in mine:
+        if one not in notebooks:
+            says = f"not taken; {_no_notebook(one.named)}"
+            yield Taken(student, one.named.file, says, fine=bool(notebooks))
+    try:
+        yield from _keep_notebooks(course, assignment, student, notebooks)
+    except (LabkitError, OSError) as error:
+        yield Taken(student, "", f"not taken; {error}", fine=False)
+
+
+def _no_notebook(named: Named) -> str:
+    file = named.file.lower()
+    if named.kind != "file":
+        return f"it came as Moodle's {named.kind} and not as a file"
+    if file.endswith(".zip"):
+        return "it is a zip; ask for the notebook itself"
+    return "" if file.endswith(".ipynb") else "it is not a notebook"
+
+
+def _keep_notebooks(
+    course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
+) -> Iterator[Taken]:
+    now = str(datetime.now(UTC))
+    adopt(course, student, assignment, now)
+    before = counts(attempts(course, student, assignment), assignment)
+    shown = max((one.file.when for one in notebooks), default=datetime.now(UTC))
+    kept: list[tuple[Seen, str, bool]] = []
+    for one in notebooks:
+        file, named = one.file, one.named
+        try:
+            data, secret = file.read(), file.secret()
+        except LabkitError as error:
+            yield Taken(student, named.file, f"not taken; {error}", fine=False)
+            continue
+        when = file.when if file.exact else shown  # a download shows them all at once
+        seen = Seen(when, *named.who.key, named.file, file.exact, named.late, now)
+        kept.append((seen, digest(data), keep(course, student, assignment, data, seen, secret)))
+    after = install(course, student, assignment)
+    for seen, sha256, new in kept:
+        if after is None or after.attempt.sha256 != sha256:
+            beside = {x.when: x.file for x in after.attempt.seen} if after else {}
+            which = beside.get(seen.when, "a later one")
+            says = f"{'kept' if new else 'there already'}, but {which} counts"
+        elif before is not None and before.attempt.sha256 == sha256:
+            says = "there already"
         else:
-            by_student.setdefault(one.student, []).append(one)
-    for student, files in sorted(by_student.items()):
-        files.sort(key=lambda one: (one.when, _called(one.file, assignment), _number(one.file)))
-        *others, counts = files
-        for one in others:
-            which = "a later one" if one.file == counts.file else counts.file
-            yield Taken(student, one.file, f"not taken; {which} counts")
-        yield _put(course, assignment, counts)
-
-
-def _put(course: Course, assignment: str, one: _Found) -> Taken:
-    folder = course.submitted / one.student / assignment
-    path = folder / f"{assignment}.ipynb"
-    try:
-        data = one.read()
-        secret = None if one.beside is None else read_secret(one.beside)
-    except LabkitError as error:
-        return Taken(one.student, one.file, f"not taken; {error}")
-    if path.is_file() and path.read_bytes() == data:
-        if secret is not None:  # handed in once more: the newer one is asked about
-            (folder / SECRET).write_bytes(secret)
-        return Taken(one.student, one.file, "there already")
-    again = folder.exists()
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
-    path.write_bytes(data)
-    if one.when:
-        (folder / "timestamp.txt").write_text(one.when, encoding="utf-8")
-    if secret is not None:
-        (folder / SECRET).write_bytes(secret)
-    says = "taken, in place of an earlier one" if again else "taken"
-    says += "" if one.file == path.name else f", as {path.name}"
-    return Taken(one.student, one.file, says + (", late" if one.late else ""))
-
-
-def _from_zip(archive: zipfile.ZipFile) -> Iterator[_Found]:
-    for entry in archive.infolist():
-        if entry.is_dir():
-            continue
-        read = partial(_read, archive, entry)
-        moodle = _MOODLE.match(entry.filename)
-        match = moodle or _CANVAS.match(entry.filename)
-        if match is None:
-            yield _Found("", entry.filename[-80:], read)
-            continue
-        parts = match.groupdict()
-        who = Known("moodle" if moodle else "canvas", parts["id"], parts["name"])
-        late = bool(parts.get("late"))
-        yield _Found(_slug(who.name), parts["file"], read, late=late, known=who)
-
-
-def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    check_size(entry.file_size, Limits().notebook)
-    return archive.read(entry)
-
-
-def _from_exchange(folder: Path, assignment: str) -> Iterator[_Found]:
-    for inside in sorted(folder.iterdir()):
-        match = _EXCHANGE.match(inside.name)
-        if match is None or inside.is_symlink() or not inside.is_dir():
-            continue
-        if match["assignment"] != assignment:
-            continue
-        for path in sorted(inside.glob("*.ipynb")):
-            read = partial(read_file, path, Limits().notebook)
-            yield _Found(match["name"], path.name, read, _time(match["when"]), beside=inside)
-
-
-def _time(text: str) -> str:
-    """The exchange's time in the form of ``timestamp.txt``; now, if it cannot be read."""
-    from dateutil.parser import parse
-
-    try:
-        return str(parse(text))
-    except (ValueError, OverflowError):
-        return str(datetime.now(UTC))
-
-
-def _slug(name: str) -> str:
-    """A name as a folder's: letters of any script, digits, and hyphens."""
-    return re.sub(r"[^\w.]+", "-", name).strip("-._")[:60] or "nobody"
-
-
-def _number(name: str) -> int:
-    """The number that a browser or platform put on a repeated file: notebook(3), notebook-3."""
-    match = _REPEATED.search(name)
-    return int(match[1]) if match else 0
-
-
-def _called(name: str, assignment: str) -> bool:
-    """Whether a file is called as the assignment, whatever number it has."""
-    return _REPEATED.sub(".ipynb", name) == f"{assignment}.ipynb"
+            says = "taken" + (", in place of an earlier one, which is kept" if before else "")
+            says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
+        yield Taken(student, seen.file, says + (", late" if seen.late else ""))

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from .clean import clean_line
 from .course import Course
+from .each import Failed
 
 
 @dataclass(frozen=True)
@@ -52,13 +54,41 @@ def nbgrader_api(course: Course, *, own_engine: bool = False) -> Any:
     settings.CourseDirectory.root = str(course.root)
     settings.Application.log_level = logging.CRITICAL
     if own_engine:
-        settings.pop("Autograde", None)
+        for steps in ("sanitize_preprocessors", "autograde_preprocessors"):
+            settings.Autograde.pop(steps, None)
     return NbGraderAPI(CourseDirectory(config=settings), config=settings)
 
 
 def students(course: Course, name: str) -> list[str]:
-    """Who handed in an assignment, in order."""
-    return sorted(p.parent.name for p in course.submitted.glob(f"*/{name}") if p.is_dir())
+    """Who handed in an assignment, in order; of folders with a name that is fit."""
+    return [student for student in _folders(course, name) if is_name(student)]
+
+
+def misnamed(course: Course, name: str) -> list[Failed]:
+    """Folders with a name that no database, page or terminal should be given, in plain letters."""
+    return [
+        Failed(
+            plain_name(student),
+            "a folder in submitted/ has this name, in which a page would see markup or a terminal "
+            "commands; rename the folder and grade again",
+        )
+        for student in _folders(course, name)
+        if not is_name(student)
+    ]
+
+
+def is_name(student: str) -> bool:
+    """Whether a student may be called so: one clean line, which is not markup."""
+    return clean_line(student) == student and not set(student) & set('<>"\\')
+
+
+def plain_name(student: str) -> str:
+    """A name as it may be shown: one that is not fit, in plain letters."""
+    return student if is_name(student) else ascii(student)
+
+
+def _folders(course: Course, name: str) -> list[str]:
+    return sorted(p.name for p in course.submitted.glob("*") if os.path.lexists(p / name))
 
 
 def grade_with_nbgrader(course: Course, name: str, student: str) -> Mark:
@@ -89,4 +119,4 @@ def reason(result: dict[str, Any]) -> str:
     """Why nbgrader failed: the last exception in its log, or else the log's last line."""
     lines = [x for x in f"{result.get('log', '')}\n{result.get('error', '')}".splitlines() if x]
     errors = [x.strip() for x in lines if re.match(r"\s*[\w.]+(Error|Exception)\b", x)]
-    return (errors or lines or ["nbgrader gave no reason"])[-1]
+    return clean_line((errors or lines or ["nbgrader gave no reason"])[-1])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterable, Mapping
-from functools import cache
+from functools import cache, partial
 from hashlib import sha256
 from html import escape
 from pathlib import Path
@@ -19,6 +19,7 @@ from ..check import Outcome
 from ..check.words import HEADS
 from ..replay import viewer_scripts
 from .course import Course
+from .each import Failed, for_student
 from .own_work import has_replay, own_work
 from .results import Result, write
 
@@ -55,7 +56,8 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
     ]
     if result.rejected:
         lines.append(
-            f'<p class="total"><strong>Not graded:</strong> {escape(result.rejected)}.</p>'
+            f'<p class="total"><strong>0 of {result.points:g} points:</strong> '
+            f"it could not be graded; {escape(result.rejected)}.</p>"
             "<p>Mend this and hand it in again, or talk to your teacher.</p>"
         )
     else:
@@ -79,7 +81,7 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
 
 def write_feedback(
     course: Course, assignment: str, results: Iterable[Result], comments: Mapping[str, Any]
-) -> list[Path]:
+) -> list[Path | Failed]:
     """Write the pages where ``nbgrader release_feedback`` looks for them.
 
     Args:
@@ -89,14 +91,15 @@ def write_feedback(
         comments: Written by hand: by student, then by question.
 
     Returns:
-        The files.
+        The files; and for whom no page could be made.
     """
-    made = []
-    for result in results:
+
+    def make(result: Result) -> Path:
         path = course.root / "feedback" / result.student / assignment / f"{assignment}.html"
         write(path, page(result, comments.get(result.student)))
-        made.append(path)
-    return made
+        return path
+
+    return [for_student(result.student, partial(make, result)) for result in results]
 
 
 @cache

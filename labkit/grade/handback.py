@@ -7,6 +7,7 @@ a participant by the number in the name of a folder, ``NAME_PARTICIPANT_assignfe
 
 from __future__ import annotations
 
+import re
 import zipfile
 from collections.abc import Iterable
 from pathlib import Path
@@ -46,7 +47,8 @@ def for_exchange(course: Course, assignment: str, page: Path) -> bool:
     secret = read_secret(folder)
     if secret is not None:
         (page.parent / SECRET).write_bytes(secret)
-        when = read_file(folder / "timestamp.txt", _LARGEST)
+        stamp = folder / "timestamp.txt"
+        when = read_file(stamp, _LARGEST) if stamp.exists() else b""
         (page.parent / "timestamp.txt").write_bytes(when)
     return secret is not None
 
@@ -80,6 +82,7 @@ def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path)
     to.parent.mkdir(parents=True, exist_ok=True)
     with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
         for who, page in mine:
-            folder = f"{who.name.replace('_', ' ')}_{who.number}_assignfeedback_file"
+            name = re.sub(r"[_/\\]", " ", who.name)  # the number comes after the first underscore
+            folder = f"{name}_{who.number}_assignfeedback_file"
             archive.write(page, f"{folder}/{page.name}")
     return len(mine)

@@ -201,7 +201,8 @@ def names_defined(node: ast.stmt) -> list[str]:
         return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
     targets = node.targets if isinstance(node, ast.Assign) else []
     targets = [node.target] if isinstance(node, ast.AnnAssign) else targets
-    return [target.id for target in targets if isinstance(target, ast.Name)]
+    parts = [x for target in targets for x in ast.walk(target) if isinstance(x, ast.Name)]
+    return [x.id for x in parts if isinstance(x.ctx, ast.Store)]
 
 
 class _Renamed(ast.NodeTransformer):

@@ -95,8 +95,8 @@ def _amount(value: float | None, factor: float, unit: str) -> str:
 
 
 def _plain(x: float) -> str:
-    """Three digits without an exponent, however large."""
-    return f"{x:.3g}" if abs(x) < 1000.0 else f"{x:.0f}"
+    """Three digits or more, without an exponent up to a billion."""
+    return f"{x:.0f}" if 1e3 <= abs(x) < 1e9 else f"{x:.3g}"
 
 
 def _numbers(found: Mapping[str, Any]) -> Iterator[str]:

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from .inside.cells import plain
+from ..check.cells import look, plain
 
 Cell = Mapping[str, Any]
 
@@ -41,12 +41,16 @@ class Plan:
         notes: What was unusual, by question; under "" what concerns the whole notebook.
         own: The student's own cells: the released cell ``after`` which each stands, its ``type``
             and ``source``.
+        looks: What each step does with names, see `labkit.check.cells.look`.
+        tricks: What in the student's own cells may be a way around a withheld tool, sentences.
     """
 
     steps: tuple[Step, ...]
     places: Mapping[str, int]
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     own: tuple[Mapping[str, str], ...] = ()
+    looks: tuple[Cell, ...] = ()
+    tricks: tuple[str, ...] = ()
 
     def source(self, question: str) -> str:
         """The text of the cell that answers a question; empty if there is none."""
@@ -81,12 +85,20 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         notes.setdefault("", []).append("the cells stand in another order than in the release")
     needed = _needed(code, places.values())
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
+    looks: list[Cell] = [look(source) for source in setup]
     for k, cell in code.items():
         if (k in own and k not in spare) or (k in needed and _same(cell["source"]) in walk):
             answers = tuple(name for name, place in places.items() if place == k)
             steps.append(Step(k, cell["source"], answers))
-    told = {name: tuple(said) for name, said in notes.items() if said}
-    return Plan(tuple(steps), places, told, tuple(_own(cells, manifest, set(places.values()))))
+            looks.append(cell)
+    return Plan(
+        tuple(steps),
+        places,
+        notes={name: tuple(said) for name, said in notes.items() if said},
+        own=tuple(_own(cells, manifest, set(places.values()))),
+        looks=tuple(looks),
+        tricks=tuple(f"cell {k + 1} {what}" for k, cell in own.items() for what in cell["tricks"]),
+    )
 
 
 def imports(manifest: Sequence[Cell]) -> tuple[str, ...]:
@@ -135,9 +147,14 @@ def _answer(
             notes.append(f"{name} was found by its name, outside its own cell")
         return place, lonely
     broken = [own[k]["broken"] for k in sorted(at_home) if own[k]["broken"]]
+    magic = [own[k]["magic"] for k in sorted(at_home) if own[k]["magic"]]
     if stubs:
         return max(stubs), set()
-    why = f"its cell cannot be read by Python: {broken[0]}" if broken else "no cell defines it"
+    why = "no cell defines it"
+    if broken:
+        why = f"its cell cannot be read by Python: {broken[0]}"
+    elif magic:
+        why = f"its cell begins with %%{magic[0]}, which keeps what it defines to itself"
     notes.append(f"{name}: {why}")
     return None, set()
 

@@ -79,6 +79,8 @@ class Problem:
         wrong: Known mistakes.
         variants: Right answers written otherwise; every one must pass.
         expected: What to compare with, where that is not the answer's own output.
+        free_share: Share of the points that the notebook's stand-in, or the public cases learnt by
+            heart, may earn.  Say why where it is above 0.
     """
 
     name: str
@@ -92,6 +94,7 @@ class Problem:
     wrong: tuple[Wrong, ...] = ()
     variants: tuple[Callable[..., Any], ...] = ()
     expected: Callable[..., Any] | None = None
+    free_share: float = 0.0
 
     def question(self, seed: int) -> Question:
         """The question with hidden cases drawn from a seed; the mistakes as fingerprints."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from ..errors import LabkitError
 from .batch import How, grade_aside
 from .course import Course
+from .each import Failed, for_student
 from .results import Bundle, Result, Results
 from .submission import Submission
 
@@ -58,7 +60,9 @@ def moves(
             yield Move(now.get(result.student), result)
 
 
-def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: bool) -> list[Result]:
+def accept(
+    course: Course, assignment: str, moved: Sequence[Move], *, lower: bool
+) -> list[Result | Failed]:
     """Let new results count; the old ones are kept beside them.
 
     Args:
@@ -68,10 +72,13 @@ def accept(course: Course, assignment: str, moved: Sequence[Move], *, lower: boo
         lower: Whether marks may fall; otherwise those keep their old result.
 
     Returns:
-        Those that count now.
+        Those that count now; and for whom the new one could not be written.
     """
     results = Results(course, assignment)
-    accepted = [move.after for move in moved if lower or move.by >= 0]
-    for result in accepted:
+
+    def keep(result: Result) -> Result:
         results.keep(result)
-    return accepted
+        return result
+
+    accepted = [move.after for move in moved if lower or move.by >= 0]
+    return [for_student(result.student, partial(keep, result)) for result in accepted]

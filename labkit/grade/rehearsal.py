@@ -9,22 +9,26 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..errors import LabkitError
-from .batch import Graded, How, common_failures, grade_class
+from .batch import How, common_failures, grade_class
 from .class_report import report
 from .collect import collect
 from .course import PUBLIC_SEED, Course
+from .each import Failed, Failures
 from .engines import students
 from .export import LAYOUTS, as_csv, rows
 from .feedback import write_feedback
 from .gradebook import comments, record
 from .release import release
-from .results import Results, write
+from .results import write
+from .standing import standing
 from .synthetic import differences, make_class
 
 LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 
 
-def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Iterator[str]:
+def rehearse(
+    course: Course, name: str, to: Path, count: int, how: How
+) -> Iterator[str | LabkitError]:
     """Play a term through in a folder of its own; what is done already is not done again.
 
     Args:
@@ -35,7 +39,7 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
         how: How to grade.
 
     Yields:
-        What was done, a sentence each, with its time.
+        What was done, a sentence each, with its time; and what failed for somebody.
 
     Raises:
         LabkitError: The folder holds something else, or a mark is not what the submission deserves.
@@ -53,25 +57,27 @@ def rehearse(course: Course, name: str, to: Path, count: int, how: How) -> Itera
     yield clock.says(
         f"collected: {sum(t.says.startswith('taken') for t in taken)} of {len(taken)} are new"
     )
+    failures = Failures()
     who = students(stage, name)
-    graded = [one for one in grade_class(stage, name, who, how) if isinstance(one, Graded)]
+    graded = list(failures.sift(grade_class(stage, name, who, how), "not graded"))
     new = sum(one.says != "as before" for one in graded)
     yield clock.says(f"graded: {new} of {len(graded)} anew", each=new)
-    if len(graded) < len(who):
-        raise LabkitError(f"{len(who) - len(graded)} of {len(who)} were not graded; run it again")
-    results = list(Results(stage, name))
-    notes = record(stage, name, results)
+    results = list(failures.sift(standing(stage, name), "left out"))
+    notes = list(failures.sift(record(stage, name, results), "not in the gradebook"))
     yield clock.says(f"in the gradebook: {len(results)}, {len(notes)} to look at")
-    pages = write_feedback(stage, name, results, comments(stage, name))
+    written = write_feedback(stage, name, results, comments(stage, name))
+    pages = list(failures.sift(written, "no page"))
     size = sum(page.stat().st_size for page in pages) / 1e6
     yield clock.says(f"feedback: {len(pages)} pages, {size:.0f} MB", each=len(pages))
     problems = {p.name: p for p in stage.problems(name)}
     write(stage.root / "report.md", report(name, results, problems, str))
     yield clock.says(f"class report: report.md, {len(list(common_failures(results)))} to doubt")
     marks = list(rows(stage, name))
+    failures.add("no mark", (Failed(row.student, row.missing) for row in marks if row.missing))
     for layout in LAYOUTS_TO_TRY:
         write(stage.root / f"marks-{layout}.csv", as_csv(LAYOUTS[layout](name, marks)))
     yield clock.says(f"exported: {', '.join(f'marks-{x}.csv' for x in LAYOUTS_TO_TRY)}")
+    yield from map(LabkitError, failures.sentences)
     wrong = list(differences(stage, name))
     if wrong:
         raise LabkitError(f"{len(wrong)} marks are not what was deserved: {'; '.join(wrong[:3])}")

@@ -19,12 +19,13 @@ import nbformat
 from ..check import Question, question_data
 from ..check.notebook import FILE
 from ..check.question_codec import pack_hidden
+from ..check.withheld import find
 from ..errors import LabkitError
 from .course import Course
-from .inside.withheld import find
 from .notebook import Notebook, source_notebook, without_hidden
 from .room import make_room
 from .solved import solution_notebook
+from .unearned import refusals
 
 FORBIDDEN = ("BEGIN SOLUTION", "BEGIN HIDDEN", "from solutions", "import solutions")
 
@@ -68,7 +69,8 @@ def release(course: Course, name: str, seed: int) -> Released:
     Raises:
         UnknownName: No such assignment.
         LabkitError: nbgrader refused, an answer would have leaked, a question withholds what there
-            is not, or marks given by hand would have been lost.
+            is not, pays without work or takes one mistake for another, or marks given by hand would
+            have been lost.
     """
     problems = {problem.name: problem for problem in course.problems(name)}
     questions = {key: problem.question(seed) for key, problem in problems.items()}
@@ -77,6 +79,8 @@ def release(course: Course, name: str, seed: int) -> Released:
             if find(withheld)[1] is None:
                 raise LabkitError(f"{question.name} withholds {withheld}, which does not exist")
     source = source_notebook(course.notebook_source(name), questions)
+    if reasons := refusals(source, problems, questions):
+        raise LabkitError("\n".join([f"{name} is not released:", *reasons]))
     solved = solution_notebook(source, problems)
     public = _checks(name, [q.public() for q in questions.values()])
     added = make_room(course, name, source)  # once nothing of the author's can be refused any more

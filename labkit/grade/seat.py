@@ -30,6 +30,7 @@ class Session:
 
     Attributes:
         spent: Seconds that its cells and answers took.
+        right: Questions whose public cases it passed; other answers may lean on these.
     """
 
     def __init__(self, sandbox: Sandbox, todo: Plan, limits: Limits) -> None:
@@ -38,6 +39,7 @@ class Session:
         self._until = time.monotonic() + limits.wall
         self._cells = limits.cells
         self._output = limits.output
+        self.right: list[str] = []
         self._reports: dict[int, dict[str, Any]] = {}
         self._deadly: set[int] = set()
         self._entered: AbstractContextManager[Inside] | None = None
@@ -80,8 +82,8 @@ class Session:
             return False
         inside = self.start()
         try:
-            asked = {"question": question.name, "withheld": list(question.withheld)}
-            inside.line.send(asked, self.limits.grace)
+            about = {"withheld": list(question.withheld), "right": self.right}
+            inside.line.send({"question": question.name, **about}, self.limits.grace)
             if "ready" not in inside.line.read(2 * self.limits.grace, REPLY):
                 raise Gone("it did not get ready")
         except (Gone, TooLate, TooMuch) as error:

@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
-from . import lms, pseudonyms
+from . import attempts, lms, pseudonyms, roster
 from .course import PUBLIC_SEED, Course
 from .release import release
 from .results import write
 
 NAMED = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db"),
-    *(lms.FILE, pseudonyms.FILE),
+    *(attempts.FOLDER, roster.FILE, lms.FILE, pseudonyms.FILE),
 )
 """Where students' names stand, or what leads to them; all of it is ignored by git."""
 
@@ -55,6 +55,16 @@ def seed_for(course: Course, assignment: str) -> int:
     if seed == PUBLIC_SEED and bundle.exists():
         seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
     return seed
+
+
+def said_of(seed: int) -> str:
+    """What to say of cases that are made with a seed; nothing if it is no public one."""
+    if seed != PUBLIC_SEED:
+        return ""
+    return (
+        f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
+        "them; begin a term with: labkit new-term"
+    )
 
 
 def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:

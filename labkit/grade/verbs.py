@@ -7,12 +7,14 @@ import json
 import sys
 from collections.abc import Iterable
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
 from ..verbs import Verbs, add_verb, whole
 from .course import PUBLIC_SEED, Course
+from .each import Failed, Failures, for_student
 from .verbs_course import assignment_verb, course_option, course_with
 
 
@@ -108,49 +110,51 @@ def grade(args: argparse.Namespace) -> int:
     """Grade a class, and say what came of it."""
     from .batch import How, common_failures, grade_class, workers
     from .gradebook import record
+    from .lock import WHOLE
     from .results import Result, Results
 
     here = course_with(args)
-    who = in_part(here, args.name, args.student)
-    if args.engine == "nbgrader":
-        return _with_nbgrader(here, args, who)
-    how = How(
-        jobs=args.jobs or workers(),
-        isolated=not args.unsafe_no_isolation,
-        dask=args.dask,
-        shard=args.shard,
-        again=args.again,
-    )
-    graded: list[Result] = []
-    failed = 0
-    for number, one in enumerate(grade_class(here, args.name, who, how), start=1):
-        if isinstance(one, LabkitError):
-            failed += 1
-            print(f"not graded: {one}", file=sys.stderr, flush=True)
-            continue
-        graded.append(one.result)
-        if args.json:
-            print(json.dumps(asdict(one.result)), flush=True)
-        else:
-            says = f" ({one.says})" if one.says else ""
-            print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
-    say = sys.stderr if args.json else sys.stdout
-    if how.shard == (1, 1):
-        _tell(record(here, args.name, graded), say)
-        loud = list(common_failures(graded if args.student else list(Results(here, args.name))))
-        _tell([f"ATTENTION: {sentence}" for sentence in loud], say)
-    if graded and not args.json:
-        print(f"isolation: {graded[-1].isolation}\nresults: {here.results / args.name}")
-    return 1 if failed else 0
+    with Failures() as failures:
+        who = in_part(here, args.name, args.student, failures)
+        if args.engine == "nbgrader":
+            _with_nbgrader(here, args, who, failures)
+            return failures.code
+        how = How(
+            jobs=args.jobs or workers(),
+            isolated=not args.unsafe_no_isolation,
+            dask=args.dask,
+            shard=args.shard,
+            again=args.again,
+        )
+        graded: list[Result] = []
+        done = failures.sift(grade_class(here, args.name, who, how), "not graded")
+        for number, one in enumerate(done, start=1):
+            graded.append(one.result)
+            if args.json:
+                print(json.dumps(asdict(one.result)), flush=True)
+            else:
+                says = f" ({one.says})" if one.says else ""
+                print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
+        say = sys.stderr if args.json else sys.stdout
+        if how.shard == WHOLE:
+            recorded = record(here, args.name, graded)
+            _tell(failures.sift(recorded, "not in the gradebook"), say)
+            everybody = graded if args.student else list(Results(here, args.name))
+            _tell((f"ATTENTION: {says}" for says in common_failures(everybody)), say)
+        if graded and not args.json:
+            print(f"isolation: {graded[-1].isolation}\nresults: {here.results / args.name}")
+    return failures.code
 
 
-def in_part(here: Course, name: str, student: str | None) -> list[str]:
-    """Who handed in, or the one asked for."""
-    from .engines import students
+def in_part(here: Course, name: str, student: str | None, failures: Failures) -> list[str]:
+    """Who handed in, or the one asked for; folders with a name that is not fit are failures."""
+    from .engines import misnamed, students
 
     found = students(here, name)
     who = [student] if student else found
-    if not who or set(who) - set(found):
+    if student is None:
+        failures.add("not graded", misnamed(here, name))
+    if set(who) - set(found) or not (who or failures.code):
         raise LabkitError(
             f"nothing of {student or 'anybody'} lies in submitted/*/{name}; "
             "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
@@ -171,20 +175,21 @@ def _shard(text: str) -> tuple[int, int]:
     return int(first), int(last)
 
 
-def _with_nbgrader(here: Course, args: argparse.Namespace, who: list[str]) -> int:
+def _with_nbgrader(
+    here: Course, args: argparse.Namespace, who: list[str], failures: Failures
+) -> None:
     from .engines import grade_with_nbgrader
 
-    failed = 0
-    for number, student in enumerate(who, start=1):
-        mark = grade_with_nbgrader(here, args.name, student)
-        failed += mark.score is None
+    steps = ((student, partial(grade_with_nbgrader, here, args.name, student)) for student in who)
+    marks = failures.sift((for_student(*step) for step in steps), "not graded")
+    for number, mark in enumerate(marks, start=1):
+        if mark.score is None:
+            failures.add("not graded", [Failed(mark.student, mark.says)])
         if args.json:
             print(json.dumps(vars(mark)), flush=True)
-            continue
-        got = "not graded" if mark.score is None else f"{mark.score:g} of {mark.points:g}"
-        says = f"; {mark.says}" if mark.says else ""
-        print(f"[{number}/{len(who)}] {student}: {got}{says}", flush=True)
-    return 1 if failed else 0
+        elif mark.score is not None:
+            says = f"{mark.student}: {mark.score:g} of {mark.points:g}"
+            print(f"[{number}/{len(who)}] {says}", flush=True)
 
 
 def _tell(sentences: Iterable[str], where: Any) -> None:

@@ -69,13 +69,17 @@ def add(verbs: Verbs) -> None:
 def release(args: argparse.Namespace) -> int:
     """Make assignments."""
     from .release import release
-    from .term import seed_for
+    from .term import said_of, seed_for
 
     course = Course.here(args.course)
+    seeds = set()
     for name in args.names or course.names():
         course.notebook_source(name)
         seed = seed_for(course, name) if args.seed is None else args.seed
         print(release(course, name, seed), flush=True)
+        seeds.add(seed)
+    for warning in filter(None, map(said_of, seeds)):
+        print(warning)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
     return 0
 

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from ..errors import LabkitError
 from ..verbs import Verbs, whole
+from .each import Failures, for_student
 from .verbs import in_part, nobody
 from .verbs_course import assignment_verb, course_with
+
+if TYPE_CHECKING:
+    from .regrade import Move
 
 
 def add(verbs: Verbs) -> None:
@@ -48,6 +54,16 @@ def add(verbs: Verbs) -> None:
     does = "take downloads from Moodle, Canvas or nbgrader's exchange"
     verb = assignment_verb(verbs, "collect", collect, does, "moodle.zip")
     verb.add_argument("sources", nargs="+", type=Path, metavar="ZIP|DIR")
+    verb.add_argument(
+        "--unverified",
+        action="store_true",
+        help="from the exchange, take also what users handed in whom this machine does not know",
+    )
+    verb.description = (
+        f"{verb.description} Nothing that was handed in is lost: all of it is under attempts/. "
+        "Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it "
+        "is (named at the end), 2 if nothing could be done."
+    )
     does = "play a term through with a class that never was, in a folder"
     verb = assignment_verb(verbs, "rehearse", rehearse, does, "--to trial")
     verb.add_argument("--count", type=whole(1), default=12, help="how many students (default: 12)")
@@ -60,23 +76,26 @@ def feedback(args: argparse.Namespace) -> int:
     from .feedback import write_feedback
     from .gradebook import comments
     from .handback import for_exchange, moodle_zip
-    from .results import Results
+    from .standing import standing
 
     here = course_with(args)
-    results = [r for r in Results(here, args.name) if args.student in {None, r.student}]
-    if not results:
-        raise nobody(args.name, args.student)
-    made = write_feedback(here, args.name, results, comments(here, args.name))
-    size = sum(path.stat().st_size for path in made) / 1e6
-    print(f"pages in {here.root / 'feedback'}: {len(made)}, {size:.1f} MB")
-    came_through = [for_exchange(here, args.name, page) for page in made]
-    if any(came_through):
-        print(f"back to the exchange: nbgrader release_feedback {args.name}")
-    if args.moodle:
-        count = moodle_zip(here, args.name, made, args.moodle)
-        size = args.moodle.stat().st_size / 1e6
-        print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {args.moodle}")
-    return 0
+    with Failures() as failures:
+        results = list(failures.sift(standing(here, args.name, args.student), "no page"))
+        if not results and not failures.code:
+            raise nobody(args.name, args.student)
+        pages = write_feedback(here, args.name, results, comments(here, args.name))
+        made = list(failures.sift(pages, "no page"))
+        size = sum(path.stat().st_size for path in made) / 1e6
+        print(f"pages in {here.root / 'feedback'}: {len(made)}, {size:.1f} MB")
+        steps = [partial(for_exchange, here, args.name, page) for page in made]
+        sent = [for_student(p.parents[1].name, s) for p, s in zip(made, steps, strict=True)]
+        if any(failures.sift(sent, "not for the exchange")):
+            print(f"back to the exchange: nbgrader release_feedback {args.name}")
+        if args.moodle:
+            count = moodle_zip(here, args.name, made, args.moodle)
+            size = args.moodle.stat().st_size / 1e6
+            print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {args.moodle}")
+    return failures.code
 
 
 def export(args: argparse.Namespace) -> int:
@@ -87,24 +106,44 @@ def export(args: argparse.Namespace) -> int:
     marks = list(rows(here, args.name))
     if not marks:
         raise nobody(args.name, None)
+    for row in marks:
+        if row.missing or row.remark:
+            says = f"no mark: {row.student}: {row.missing}" if row.missing else ""
+            print(says or f"{row.student}: {row.remark}", file=sys.stderr)
     lost = left_out(args.layout, marks)
     if lost:
         print(lost, file=sys.stderr)
     _out(as_csv(LAYOUTS[args.layout](args.column or args.name, marks)), args.to)
-    return 0
+    return int(any(row.missing for row in marks))
 
 
 def regrade(args: argparse.Namespace) -> int:
     """Say whose mark moves; without ``--diff``, let it."""
     from .batch import How, workers
     from .gradebook import record
-    from .regrade import Move, accept, moves
+    from .lock import alone
+    from .regrade import accept, moves
+    from .results import Results
 
     here = course_with(args)
-    who = in_part(here, args.name, args.student)
-    found = list(moves(here, args.name, who, How(jobs=args.jobs or workers())))
-    moved = [m for m in found if isinstance(m, Move)]
-    failed = [error for error in found if isinstance(error, LabkitError)]
+    with Failures() as failures, alone(Results(here, args.name).folder):
+        who = in_part(here, args.name, args.student, failures)
+        found = moves(here, args.name, who, How(jobs=args.jobs or workers()))
+        moved = list(failures.sift(found, "not graded"))
+        _tell_moves(moved)
+        if not args.diff:
+            counts = accept(here, args.name, moved, lower=args.lower)
+            accepted = list(failures.sift(counts, "not kept"))
+            left = len(moved) - len(counts)
+            if left:
+                print(f"{left} marks would fall and stay as they are; --lower lets them")
+            recorded = record(here, args.name, accepted)
+            for sentence in failures.sift(recorded, "not in the gradebook"):
+                print(sentence)
+    return failures.code
+
+
+def _tell_moves(moved: Sequence[Move]) -> None:
     for move in sorted(moved, key=lambda m: m.by):
         if move.by or move.before is None:
             print(move)
@@ -114,36 +153,28 @@ def regrade(args: argparse.Namespace) -> int:
     if before:
         full = ", ".join(f"{points:g}" for points in sorted(before))
         print(f"full marks were {full} and are {moved[0].after.points:g} now")
-    for error in failed:
-        print(f"not graded: {error}", file=sys.stderr)
-    if not args.diff:
-        accepted = accept(here, args.name, moved, lower=args.lower)
-        if len(accepted) < len(moved):
-            left = len(moved) - len(accepted)
-            print(f"{left} marks would fall and stay as they are; --lower lets them")
-        for sentence in record(here, args.name, accepted):
-            print(sentence)
-    return 1 if failed else 0
 
 
 def class_report(args: argparse.Namespace) -> int:
     """Write the report."""
     from .class_report import for_jplag, report
     from .pseudonyms import pseudonyms
-    from .results import Results
+    from .standing import standing
 
     here = course_with(args)
-    results = list(Results(here, args.name))
-    if not results:
-        raise nobody(args.name, None)
-    problems = {p.name: p for p in here.problems(args.name)}
-    pseudonym = pseudonyms(here)
-    _out(report(args.name, results, problems, str if args.names else pseudonym), args.to)
-    if args.jplag:
-        print(
-            f"{for_jplag(results, args.jplag, pseudonym)} answers in {args.jplag}", file=sys.stderr
-        )
-    return 0
+    with Failures() as failures:
+        results = list(failures.sift(standing(here, args.name), "left out"))
+        if not results:
+            raise nobody(args.name, None)
+        problems = {p.name: p for p in here.problems(args.name)}
+        pseudonym = pseudonyms(here)
+        called = str if args.names else pseudonym
+        left_out = len(failures.sentences)
+        _out(report(args.name, results, problems, called, left_out), args.to)
+        if args.jplag:
+            written = for_jplag(results, args.jplag, pseudonym)
+            print(f"{written} answers in {args.jplag}", file=sys.stderr)
+    return failures.code
 
 
 def collect(args: argparse.Namespace) -> int:
@@ -151,10 +182,18 @@ def collect(args: argparse.Namespace) -> int:
     from .collect import collect as take
 
     here = course_with(args)
-    for source in args.sources:
-        for taken in take(here, args.name, source):
-            print(taken, flush=True)
-    return 0
+    doubtful = []
+    try:
+        for source in args.sources:
+            for taken in take(here, args.name, source, unverified=args.unverified):
+                if taken.fine:
+                    print(taken, flush=True)
+                else:
+                    doubtful.append(taken)
+    finally:
+        for taken in doubtful:
+            print(taken, file=sys.stderr)
+    return 1 if doubtful else 0
 
 
 def rehearse(args: argparse.Namespace) -> int:
@@ -163,9 +202,11 @@ def rehearse(args: argparse.Namespace) -> int:
     from .rehearsal import rehearse as play
 
     here = course_with(args)
-    for sentence in play(here, args.name, args.to, args.count, How(jobs=args.jobs or workers())):
-        print(sentence, flush=True)
-    return 0
+    how = How(jobs=args.jobs or workers())
+    with Failures() as failures:
+        for sentence in failures.sift(play(here, args.name, args.to, args.count, how), "failed"):
+            print(sentence, flush=True)
+    return failures.code
 
 
 def _out(text: str, where: Path | None) -> None:

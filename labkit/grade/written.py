@@ -6,8 +6,8 @@ nbgrader's formgrader opens it; its metadata is the release's, whatever the stud
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import nbformat
@@ -16,7 +16,7 @@ from ..check import Outcome
 from ..check.words import HEADS
 from .course import Course
 from .notebook import Notebook, without_hidden
-from .results import Result, write
+from .results import Result
 
 
 def in_release_form(source: Notebook, result: Result) -> Notebook:
@@ -32,7 +32,8 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
     for number, own in enumerate(result.own):
         code = own["type"] == "code"
         make: Any = nbformat.v4.new_code_cell if code else nbformat.v4.new_markdown_cell
-        extra.setdefault(own["after"], []).append(make(own["source"], id=f"own-{number:04d}"))
+        text = own["source"] if code else _as_typed(own["source"])
+        extra.setdefault(own["after"], []).append(make(text, id=f"own-{number:04d}"))
     for cell in notebook.cells:
         if cell.metadata.get("lab") == "answer":
             cell.source = answers.get(cell.metadata["nbgrader"]["grade_id"], "")
@@ -66,6 +67,12 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
     return notebook
 
 
+def _as_typed(source: str) -> str:
+    """A student's Markdown as a block of text, in which no page finds markup to obey."""
+    fence = "`" * (max(map(len, re.findall("`+", source)), default=0) + 3)
+    return f"{fence}markdown\n{source}\n{fence}"
+
+
 def _told(question: Mapping[str, Any]) -> list[str]:
     """A question's verdict, the verdict first, then why."""
     outcome = Outcome(question["outcome"])
@@ -89,6 +96,12 @@ def release_source(course: Course, assignment: str) -> Notebook:
     return nbformat.read(path, as_version=4)
 
 
-def save(notebook: Notebook, path: Path) -> None:
-    """Write a notebook, whole or not at all."""
-    write(path, nbformat.writes(notebook) + "\n")
+def as_text(notebook: Notebook) -> str:
+    """A notebook as the text of its file.
+
+    Raises:
+        UnicodeEncodeError: It holds what no file can hold.
+    """
+    text: str = nbformat.writes(notebook) + "\n"
+    text.encode()
+    return text

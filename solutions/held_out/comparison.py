@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,26 +12,49 @@ import numpy as np
 import labkit as lk
 from labkit.check import Call, Choice
 from labkit.grade.problem import call
-from labkit.study.trials import LINE, read_trials
+from labkit.study.trials import LINE, Trials, read_trials
 
 Random = np.random.Generator
 MODEL = lk.Model("left")
+RIGHT = lk.Model("right")
 
 ON_THE_LINE = read_trials(LINE)
-UNSEEN = Path(__file__).with_name("trials.json")
+UNSEEN = read_trials(Path(__file__).with_name("trials.json"))
 UNSEEN_LIMIT = 3.9
-"""Worst error allowed on unseen cases, in [mm]: gains of 14 to 34 reach it, soft and tight ones do
-not."""
+"""Worst error allowed on unseen cases, in [mm]: without D gains of 12.4 to 38 reach it."""
+RESERVE = 1.5
+"""So many times the chosen Kp must reach it too, which leaves 12.4 to 25."""
 
 
-def drawn_log(random: Random, rows: int, error: Any, *, moving: bool) -> lk.Log:
+def stiffer(trials: Trials, factor: float) -> Trials:
+    """The same trials where each Kp does what so many times Kp did.
+
+    On an arm that takes `factor` times as long for everything, its path included, gains per second
+    do just that.  What lies beyond the recorded gains is lost.
+    """
+    if factor == 1.0:
+        return trials
+    Kp = tuple(x / factor for x in trials.Kp)
+    lost = [None] * len(trials.Kd)
+    return replace(
+        trials, Kp=(*Kp, trials.Kp[-1]), rms_mm=tuple([*rows, lost] for rows in trials.rms_mm)
+    )
+
+
+SLOW = 3.0
+"""How much slower the arm is that a student may try: too slow for any gains to serve both."""
+
+
+def drawn_log(
+    random: Random, rows: int, error: Any, *, moving: bool, model: lk.Model = MODEL
+) -> lk.Log:
     """A short log whose tip misses its target by a given error, (3,) in [m].
 
     An arm that moves is tilted as well, which is no error of position.
     """
-    q0 = MODEL.robot.ready
+    q0 = model.robot.ready
     q = q0 + (random.uniform(-0.2, 0.2, (rows, 7)) if moving else np.zeros((rows, 7)))
-    T_wd = np.array([MODEL.pose(x) for x in q])
+    T_wd = np.array([model.pose(x) for x in q])
     T_wd[:, :3, 3] += error
     if moving:
         T_wd[:, :3, :3] @= lk.se3.rotation([0.1, -0.2, 0.05])
@@ -47,7 +71,7 @@ def drawn_log(random: Random, rows: int, error: Any, *, moving: bool) -> lk.Log:
         command_type=lk.JointVelocity,
         controller="drawn",
         plant=lk.IDEAL,
-        side="left",
+        side=model.robot.side,
     )
 
 
@@ -63,9 +87,10 @@ def moving_logs(random: Random) -> Iterator[Call]:
 
 
 def uneven_logs(random: Random) -> Iterator[Call]:
-    """An arm that moves, with errors that change from row to row."""
-    for _ in range(2):
-        yield call(drawn_log(random, 7, random.uniform(-0.02, 0.02, (7, 3)), moving=True), MODEL)
+    """Either arm in motion, with errors that change from row to row."""
+    for model in (MODEL, RIGHT):
+        error = random.uniform(-0.02, 0.02, (7, 3))
+        yield call(drawn_log(random, 7, error, moving=True, model=model), model)
 
 
 def loops(random: Random) -> Iterator[Call]:
@@ -74,6 +99,12 @@ def loops(random: Random) -> Iterator[Call]:
         yield call(
             random.uniform(1.0, 20.0), random.uniform(0.01, 0.08), random.uniform(0.005, 0.03)
         )
+
+
+def lagging(random: Random) -> Iterator[Call]:
+    """Other gains and lags, no delay."""
+    for _ in range(2):
+        yield call(random.uniform(1.0, 20.0), random.uniform(0.01, 0.08), 0.0)
 
 
 def pure_integrators(random: Random) -> Iterator[Call]:
@@ -95,8 +126,20 @@ def no_delay(random: Random) -> Iterator[Call]:
 
 
 def unseen_cases(random: Random) -> Iterator[Choice]:
-    """Another path, twice the speed, a payload, an older state; five seeds each."""
-    yield Choice(ON_THE_LINE, {"worst_mm": UNSEEN_LIMIT}, read_trials(UNSEEN))
+    """Another path, twice the speed, a payload, an older state; five seeds each, on two arms."""
+    yield from _unseen(random, 1.0)
+
+
+def with_reserve(random: Random) -> Iterator[Choice]:
+    """The same, with a larger Kp than the one chosen."""
+    yield from _unseen(random, RESERVE)
+
+
+def _unseen(random: Random, reserve: float) -> Iterator[Choice]:
+    """For the arm whose line may be tried, and for one about a third as quick."""
+    for slow in (1.0, random.uniform(2.7, 3.2)):
+        line, unseen = stiffer(ON_THE_LINE, slow), stiffer(UNSEEN, slow * reserve)
+        yield Choice(line, {"worst_mm": UNSEEN_LIMIT}, unseen)
 
 
 def _pairs(random: Random, n: int, shift: float) -> tuple[list[float], list[float]]:
@@ -123,11 +166,13 @@ def tables(random: Random) -> Iterator[Call]:
                 [y + z for y, z in zip(b, noise, strict=True)],
             ]
         yield call(table)
-    yield call({f"claim {k}": _apart(random, t) for k, t in enumerate((-4.0, -2.6, 2.6, 4.0))})
+    for n, edge in ((5, 2.78), (3, 4.30), (10, 2.26)):  # so many standard errors decide
+        errors = (-1.3 * edge, -0.93 * edge, 0.93 * edge, 1.3 * edge)
+        yield call({f"claim {k}": _apart(random, n, t) for k, t in enumerate(errors)})
 
 
-def _apart(random: Random, t: float) -> list[list[float]]:
-    """Two rows of five whose difference is t standard errors; 2.78 are needed to decide."""
-    seeds, noise = random.uniform(1.0, 9.0, 5), random.normal(0.0, 0.5, 5)
-    shift = t * noise.std(ddof=1) / np.sqrt(5.0) - noise.mean()
+def _apart(random: Random, n: int, t: float) -> list[list[float]]:
+    """Two rows of n whose difference is t standard errors."""
+    seeds, noise = random.uniform(1.0, 9.0, n), random.normal(0.0, 0.5, n)
+    shift = t * noise.std(ddof=1) / np.sqrt(n) - noise.mean()
     return [(seeds + noise + shift).tolist(), seeds.tolist()]

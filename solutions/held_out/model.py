@@ -15,8 +15,9 @@ from labkit.grade.problem import call
 Random = np.random.Generator
 MODEL = lk.Model("left")
 FRICTION = np.array([3.0, 3.0, 2.0, 2.0, 0.3, 0.3, 0.3])
-ROUGH = lk.Plant(name="rough", viscous=FRICTION)
+ROUGH = lk.Plant(name="rough", armature=0.05, viscous=FRICTION)
 """A plant with friction, for the power balance to find."""
+ROUGH_MODEL = lk.Model("left", ROUGH)
 
 TIRED = 0.55
 """The share of their torque that hot motors still give, so that quick lifts meet the limits."""
@@ -57,6 +58,12 @@ def jacobians(random: Random) -> Iterator[Call]:
         yield call(*joints(anywhere(random)))
 
 
+def points_of_mass(random: Random) -> Iterator[Call]:
+    """Links without inertia of their own, in any pose."""
+    masses, inertias, rotations, jacobians = bodies(anywhere(random))
+    yield call(masses, 0.0 * inertias, rotations, jacobians)
+
+
 def mass_matrices(random: Random) -> Iterator[Call]:
     """Any poses."""
     for _ in range(4):
@@ -77,40 +84,44 @@ def coriolis_any(random: Random) -> Iterator[Call]:
 
 def lifts(random: Random) -> Iterator[Call]:
     """A lift of another height and speed, cut by the torque limits."""
-    yield call(lift(random.uniform(0.5, 0.6), random.uniform(0.38, 0.44), 400.0), MODEL)
+    yield call(lift(random.uniform(0.5, 0.6), random.uniform(0.38, 0.44), 400.0), ROUGH_MODEL)
 
 
 def gentle_lifts(random: Random) -> Iterator[Call]:
-    """A slower lift within the limits."""
-    yield call(lift(random.uniform(0.3, 0.4), random.uniform(0.75, 0.85), 400.0), MODEL)
+    """A slower lift within the limits, helped or hindered by a hand."""
+    way, duration = random.uniform(0.3, 0.4), random.uniform(0.75, 0.85)
+    hand = random.choice((-1.0, 1.0)) * random.uniform(8.0, 12.0)
+    yield call(lift(way, duration, 400.0, hand), ROUGH_MODEL)
 
 
 @cache
-def lift(way: float, duration: float, kp: float, rows: int = 71) -> lk.Log:
+def lift(way: float, duration: float, kp: float, hand: float = 0.0, rows: int = 71) -> lk.Log:
     """A torque-controlled lift of the rough arm, computed from the equations of motion.
 
     Args:
         way: How far shoulder and elbow turn, in [rad].
         duration: Of the motion wanted, in [s]; the arm is given as long again to settle.
         kp: Position gain, in [1/s^2].
+        hand: The largest torque of somebody's hand on the shoulder meanwhile, in [N m].
         rows: Of the log.
     """
-    q = q0 = MODEL.robot.ready
-    turn = way * np.array([0.3, 1.0, 0.0, -1.2, 0.0, 0.2, 0.0])
+    q = q0 = ROUGH_MODEL.robot.ready
+    turn = way * np.array([0.3, 1.0, 0.0, -1.2, 0.0, 0.2, 1.35])
     target = lk.Trajectory(lk.Line(q0, q0 + turn), lk.Quintic(duration))
-    limits, dq, steps = TIRED * MODEL.robot.effort, np.zeros(7), 20
+    limits, dq, steps = TIRED * ROUGH_MODEL.robot.effort, np.zeros(7), 20
     dt = 2.0 * duration / (rows - 1) / steps
 
     def wanted(t: float, q: Any, dq: Any) -> Any:
         x = target(t)
         pull = x.acceleration + kp * (x.position - q) + 2.0 * np.sqrt(kp) * (x.velocity - dq)
-        return MODEL.mass_matrix(q) @ pull + MODEL.bias(q, dq)
+        return ROUGH_MODEL.mass_matrix(q) @ pull + ROUGH_MODEL.bias(q, dq)
 
     def slope(t: float, y: Any) -> Any:
         q, dq = y
         tau = np.clip(wanted(t, q, dq), -limits, limits)
-        force = tau - FRICTION * dq - MODEL.bias(q, dq)
-        return np.array([dq, np.linalg.solve(MODEL.mass_matrix(q), force)])
+        push = hand * np.sin(np.pi * min(t / duration, 1.0)) ** 2
+        force = tau + push * np.eye(7)[1] - FRICTION * dq - ROUGH_MODEL.bias(q, dq)
+        return np.array([dq, np.linalg.solve(ROUGH_MODEL.mass_matrix(q), force)])
 
     table, y = [], np.array([q, dq])
     for k in range((rows - 1) * steps + 1):

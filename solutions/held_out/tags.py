@@ -78,11 +78,11 @@ def noises(random: Random) -> Iterator[Call]:
     yield call(*scattered(random, 12, random.uniform(-0.02, 0.02, 6), 0.004))
 
 
-def _sample(random: Random, speed: float, push: float) -> Sample:
+def _sample(random: Random, speed: float, push: float, n: int = 3) -> Sample:
     return Sample(
-        random.uniform(-0.5, 0.5, 3),
-        random.uniform(-speed, speed, 3),
-        random.uniform(-push, push, 3),
+        random.uniform(-0.5, 0.5, n),
+        random.uniform(-speed, speed, n),
+        random.uniform(-push, push, n),
     )
 
 
@@ -102,6 +102,10 @@ def blends_in_motion(random: Random) -> Iterator[Call]:
         turning = b._replace(acceleration=random.uniform(-0.5, 0.5, 3))
         for x in (random.uniform(0.2, 0.9), 1.5):  # not 1: at the end itself both are right
             yield call(float(x * T), a, turning, T)
+    for n in (7, 1):
+        a, b = _sample(random, 0.3, 0.5, n), _sample(random, 0.3, 0.5, n)
+        for x in (random.uniform(0.2, 0.9), 1.5):
+            yield call(float(x), a, b, 1.0)
 
 
 def believed(random: Random) -> tuple[Array, Array]:

@@ -174,6 +174,27 @@ def tuned(random: Random, side: Any, payload: float) -> Tuned:
     return Tuned((model,), loop, limits)
 
 
+AT_REST = {"max_mm": 20.0, "rms_velocity_mm_s": 15.0}
+"""Of an arm that was let go 0.1 rad off in every joint, 0.8 s later and from then on."""
+
+
+def back(model: lk.Model, off: Any) -> Loop:
+    """Back to a place from ``off``, (7,) in [rad]."""
+    q = model.robot.ready
+    return Loop(
+        lk.Hold(q, 2.0), side=model.robot.side, plant=lk.BAXTER, q0=q + off, settle=0.8, seed=1
+    )
+
+
+def returns(random: Random) -> Iterator[Case]:
+    """From another side, of either arm."""
+    model = _model(random)
+    q = model.robot.ready + random.uniform(-0.15, 0.15, 7)
+    off = 0.1 * random.choice([-1.0, 1.0], 7)
+    loop = replace(back(model, off), target=lk.Hold(q, 2.0), q0=q + off)
+    yield Tuned((model,), loop, AT_REST)
+
+
 def quick_tours(random: Random) -> Iterator[Case]:
     """A quicker tour of one arm or the other."""
     yield tuned(random, random.choice(["left", "right"]), 0.0)

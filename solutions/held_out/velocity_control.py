@@ -101,6 +101,12 @@ def inverses_plain(random: Random) -> Iterator[Call]:
     yield call(MODEL.tip_jacobian(near(random)), 0.0)
 
 
+def inverses_stretched(random: Random) -> Iterator[Call]:
+    """Other poses with the elbow almost straight."""
+    q = STRETCHED + random.uniform(-0.03, 0.03, 7)
+    yield call(MODEL.tip_jacobian(q), random.uniform(2e-3, 5e-3))
+
+
 def inverses(random: Random) -> Iterator[Call]:
     """Any poses and dampings."""
     for q in (near(random), STRETCHED + random.uniform(-0.03, 0.03, 7)):
@@ -119,14 +125,17 @@ def pose_turns(random: Random) -> Iterator[Call]:
         q = near(random)
         x = pose_sample(q, turn=random.choice((-1, 1)) * random.uniform(0.05, 0.3) * axis)
         yield call(state(q), x, MODEL, kp=random.uniform(1.0, 5.0, 6), damping=0.003)
+    q = near(random)
+    x = pose_sample(q, turn=random.uniform(1.9, 2.6) * np.eye(3)[random.integers(3)])
+    yield call(state(q), x, MODEL, kp=2.0, damping=0.003)
 
 
 def pose_moves(random: Random) -> Iterator[Call]:
-    """Other twists, beside the target and turned against it."""
-    for most in (0.0, 0.3):
+    """Other twists, beside the target and turned against it, a little and more than 90 degrees."""
+    for off, least, most in ((0.0, 0.0, 0.0), (0.03, 0.0, 0.3), (0.03, 1.2, 1.4)):
         q = near(random)
-        off, turn = random.uniform(-0.1, 0.1, 3) * most, random.uniform(-most, most, 3)
-        x = pose_sample(q, off, turn, random.uniform(-0.2, 0.2, 6))
+        turn = random.uniform(least, most, 3) * random.choice((-1.0, 1.0), 3)
+        x = pose_sample(q, off * random.uniform(-1.0, 1.0, 3), turn, random.uniform(-0.2, 0.2, 6))
         yield call(state(q), x, MODEL, kp=3.0, damping=0.004)
 
 

@@ -34,6 +34,8 @@ def errors(random: Random) -> Iterator[Call]:
     """Any targets and states."""
     for _ in range(3):
         yield call(sample(random), state(random))
+    wrist = random.uniform(2.6, 3.0) * np.eye(7)[random.choice((4, 6))]
+    yield call(sample(random)._replace(position=wrist), state(random)._replace(q=-wrist))
 
 
 def points_aligned(random: Random) -> Iterator[Call]:
@@ -41,6 +43,17 @@ def points_aligned(random: Random) -> Iterator[Call]:
     for _ in range(2):
         T = lk.se3.pose(np.eye(3), random.uniform(-0.8, 0.8, 3))
         yield call(T, random.uniform(-0.5, 0.5, 3))
+
+
+def _yawed(random: Random) -> Any:
+    yaw = random.choice((-1.0, 1.0)) * random.uniform(0.4, 2.5)
+    return lk.se3.pose(lk.se3.rotation([0.0, 0.0, yaw]), random.uniform(-0.8, 0.8, 3))
+
+
+def points_yawed(random: Random) -> Iterator[Call]:
+    """Frames that are shifted and turned about the vertical."""
+    for _ in range(2):
+        yield call(_yawed(random), random.uniform(-0.5, 0.5, 3))
 
 
 def points(random: Random) -> Iterator[Call]:
@@ -55,6 +68,12 @@ def poses_aligned(random: Random) -> Iterator[Call]:
         yield call(lk.se3.pose(np.eye(3), random.uniform(-0.8, 0.8, 3)))
 
 
+def poses_yawed(random: Random) -> Iterator[Call]:
+    """Poses that are shifted and turned about the vertical."""
+    for _ in range(2):
+        yield call(_yawed(random))
+
+
 def poses(random: Random) -> Iterator[Call]:
     """Any poses."""
     for _ in range(4):
@@ -62,10 +81,12 @@ def poses(random: Random) -> Iterator[Call]:
 
 
 def turns_about_z(random: Random) -> Iterator[Call]:
-    """A level tool, turned about the vertical."""
+    """A level tool, turned about the vertical, and an orientation that is right already."""
     for angle in random.uniform(0.1, 0.6, 2):
         start = random.uniform(-1.0, 1.0)
         yield call(*(lk.se3.rotation([0.0, 0.0, a]) for a in (start + angle, start)))
+    there = np.diag(random.choice([[-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]]))
+    yield call(there, there)
 
 
 def _tilts(random: Random, axis: int) -> Iterator[Call]:

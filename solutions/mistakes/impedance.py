@@ -52,6 +52,13 @@ def force_not_acceleration(
     return m * right.msd(state, target, force, m=m, b=b, k=k)
 
 
+def spring_to_the_origin(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """The spring tied to the origin, the damper to the target."""
+    return right.msd(state, (0.0, *target[1:]), force, m=m, b=b, k=k)
+
+
 @dataclass(frozen=True)
 class OneMass:
     """The mass with its parts weighed: 1 is right, 0 left out, -1 turned round.
@@ -245,7 +252,6 @@ class TipLaw:
         pinv: Whether the pseudo-inverse takes the place of the transpose.
         body: Whether the Jacobian is the tool's.
         tool: Whether the error of orientation is in the tool's axes; 2 is that of position too.
-        elbow: Of a damper in the null space.
     """
 
     e: float = 1.0
@@ -260,7 +266,6 @@ class TipLaw:
     pinv: bool = False
     body: bool = False
     tool: int = 0
-    elbow: float = 0.0
 
     def __call__(
         self,
@@ -283,9 +288,8 @@ class TipLaw:
         a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq
         F = np.linalg.matrix_power(inertia, self.power) @ a + D * de + K * e
         tau = (np.linalg.pinv(J) if self.pinv else J.T) @ F
-        free = np.eye(7) - J.T @ inertia @ J @ np.linalg.inv(model.mass_matrix(q))
         tau = tau + self.coriolis * model.coriolis(q, dq) @ dq + self.weight * model.gravity(q)
-        return lk.JointTorque(tau - self.elbow * free @ dq)
+        return lk.JointTorque(tau)
 
 
 @dataclass(frozen=True)

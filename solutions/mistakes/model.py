@@ -121,11 +121,26 @@ def motors_minus_energy(log: lk.Log, model: lk.Model) -> Array:
     return -power_balance(log, model)
 
 
+def absolute(log: lk.Log, model: lk.Model) -> Array:
+    """The difference without its sign."""
+    return np.abs(power_balance(log, model))
+
+
+def friction_alone(log: lk.Log, model: lk.Model) -> Array:
+    """What friction takes, by its formula."""
+    return np.asarray(-np.sum(np.asarray(log.plant.viscous) * log.dq**2, axis=1))
+
+
 def steps_not_seconds(log: lk.Log, model: lk.Model) -> Array:
     """The growth per row, not per second."""
     power = np.sum(log.tau * log.dq, axis=1)
     dt = float(log.t[1] - log.t[0])
     return np.asarray((power_balance(log, model) + power) * dt - power)
+
+
+def without_the_last_joint(log: lk.Log, model: lk.Model) -> Array:
+    """The motors' power without the last one's."""
+    return np.asarray(power_balance(log, model) + log.tau[:, 6] * log.dq[:, 6])
 
 
 def arm_of_the_tip(axes: Any, origins: Any, tip: Any) -> Array:

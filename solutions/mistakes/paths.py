@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, cos, pi, sin
+from math import atan2, cos, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -52,6 +52,18 @@ def always_cruises(
     t: float, distance: float, v_max: float, a_max: float
 ) -> tuple[float, float, float]:
     """No triangular case: a short way still has the ramps of a long one."""
+    return _ramps(t, distance, v_max, a_max)
+
+
+def speeds_up_all_the_way(
+    t: float, distance: float, v_max: float, a_max: float
+) -> tuple[float, float, float]:
+    """On a short way the speed that it would have if it never braked."""
+    return _ramps(t, distance, min(v_max, sqrt(2.0 * distance * a_max)), a_max)
+
+
+def _ramps(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
+    """The trapezoid whose speed is v_max, whether its ramps have room or not."""
     ramp = v_max / a_max
     duration = distance / v_max + ramp
     if t < 0.0:

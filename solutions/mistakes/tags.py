@@ -293,6 +293,11 @@ def the_ends_mixed(t: float, reference: Sample, goal: Sample, duration: float) -
     return Sample(*((1.0 - s) * a + s * b for a, b in zip(reference, goal, strict=True)))
 
 
+def three_alone(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """The first three coordinates, as if every reference were a point."""
+    return blend(t, Sample(*(x[:3] for x in reference)), Sample(*(x[:3] for x in goal)), duration)
+
+
 def rates_not_scaled(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
     """Solves in x = t/T with the rates of t: they come out T times too small, or too large."""
     T = duration

@@ -413,19 +413,22 @@ def ratio_of_sums(tau_hold: Any, gravity_model: Any) -> float:
     return float(np.sum(tau_hold) / np.sum(gravity_model))
 
 
-def _swings(model: lk.Model, w: float) -> tuple[Any, Any]:
-    inertia = np.diag(model.mass_matrix(model.robot.ready))
-    return w**2 * inertia, 2.0 * w * inertia
+@dataclass(frozen=True)
+class Swings:
+    """Gains with which every joint swings alike.
 
+    Attributes:
+        w: How fast, in [rad/s].
+        zeta: Damping ratio.
+    """
 
-def tuned_on_the_slow_line(model: lk.Model) -> Any:
-    """Good enough for a slow line, too soft for anything else."""
-    return _swings(model, 6.0)
+    w: float = 12.0
+    zeta: float = 1.0
 
-
-def too_stiff(model: lk.Model) -> Any:
-    """Quicker than the news of the arm's own state."""
-    return _swings(model, 25.0)
+    def __call__(self, model: lk.Model) -> tuple[Any, Any]:
+        """The gains."""
+        inertia = np.diag(model.mass_matrix(model.robot.ready))
+        return self.w**2 * inertia, 2.0 * self.zeta * self.w * inertia
 
 
 def same_for_every_joint(model: lk.Model) -> Any:
@@ -435,7 +438,7 @@ def same_for_every_joint(model: lk.Model) -> Any:
 
 def pair_turned_round(model: lk.Model) -> Any:
     """Gives (kd, kp): hardly a spring, and a damper stiffer than anything."""
-    kp, kd = _swings(model, 12.0)
+    kp, kd = Swings()(model)
     return kd, kp
 
 

@@ -212,6 +212,13 @@ def sine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
     return np.asarray(0.5 * np.cross(R_wt.T, R_wd.T).sum(axis=0))
 
 
+def arcsine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
+    """The axis times the arcsine of its sine: right up to 90 degrees."""
+    v = lk.se3.vee(R_wd @ R_wt.T)
+    n = float(np.linalg.norm(v))
+    return np.asarray(v / n * np.arcsin(min(n, 1.0))) if n else v
+
+
 def turned_back_in_tool_axes(R_wd: Array, R_wt: Array) -> Array:
     """The turn from the target to the tip, in the target's axes."""
     return lk.se3.rotation_log(R_wd.T @ R_wt)

@@ -31,6 +31,11 @@ def of_the_speeds(target: lk.Sample, state: lk.State) -> Array:
     return target.velocity - state.dq
 
 
+def wrapped(target: lk.Sample, state: lk.State) -> Array:
+    """The error wrapped into half a turn, as if joints had no stops."""
+    return np.asarray((target.position - state.q + np.pi) % (2.0 * np.pi) - np.pi)
+
+
 def from_a_to_b(T_ab: Any, p_b: Any) -> Array:
     """The other direction: answers p_b from p_a."""
     return np.asarray(T_ab[:3, :3].T @ (p_b - T_ab[:3, 3]))
@@ -133,3 +138,11 @@ def logarithms_subtracted(R_wd: Any, R_wt: Any) -> Array:
 def backwards_in_tool_axes(R_wd: Any, R_wt: Any) -> Array:
     """Transposes the wrong one: the turn backwards, and in the desired tool's axes."""
     return lk.se3.rotation_log(R_wd.T @ R_wt)
+
+
+def zero_by_zero(R_wd: Any, R_wt: Any) -> Array:
+    """Angle over sine times the skew part: not a number where nothing is turned."""
+    E = R_wd @ R_wt.T
+    with np.errstate(invalid="ignore"):
+        angle = np.arccos((np.trace(E) - 1.0) / 2.0)
+        return np.asarray(angle / np.sin(angle) * lk.se3.vee(E))

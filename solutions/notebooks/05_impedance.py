@@ -183,7 +183,9 @@ for axis, name in enumerate("xyz"):
 #   turn evenly; the motors only have to bring up the rest.
 # - A force $F$ at the tip takes the joint torques $J^T F$. No inverse, no pseudo-inverse.
 #
-# There are seven joints and six springs: nothing holds the elbow, and nothing needs to.
+# There are seven joints and six springs: nothing holds the elbow, and here nothing needs to, for its
+# friction brakes it. On an arm with less of it one adds a damper that the tip does not feel. You may, too:
+# many torques make the tip move alike, and yours is judged by that.
 #
 # No force is measured. This is often told the other way, in the report too ("impedance needs a force
 # sensor"): as long as the arm keeps its own inertia, it does not.
@@ -411,13 +413,12 @@ def ten_pushes(controller, newtons=8.0, seed=5):
     return np.array(force), np.array(gone)
 
 
-def strongest_axis_only(force, displacement):
-    """A stand-in: along each axis the two pushes that go that way, and nothing else."""
-    push, gone = force[:3] - force[3:6], displacement[:3] - displacement[3:6]
-    return np.diag(np.diag(push) / np.diag(gone))
+def same_in_all_directions(force, displacement):
+    """A stand-in: one stiffness, from the lengths of pushes and displacements."""
+    return np.linalg.norm(force) / np.linalg.norm(displacement) * np.eye(3)
 
 
-my_apparent_stiffness = use("apparent_stiffness", apparent_stiffness, strongest_axis_only)
+my_apparent_stiffness = use("apparent_stiffness", apparent_stiffness, same_in_all_directions)
 
 
 def in_the_joints(state, target):

@@ -14,6 +14,10 @@ from ..variants import comparison as variants
 
 _RANDOM = np.random.default_rng(7)
 _SEEDS = [3.0, 1.1, 4.9, 2.05, 3.9]
+_TEN_PAIRS = [
+    [4.0, 0.5, 6.0, 5.0, 5.5, 2.0, 7.5, 4.5, 4.0, 2.0],
+    [3.0, 1.0, 4.0, 2.0, 5.0, 3.0, 6.0, 2.0, 4.0, 1.0],
+]
 _345 = np.array([0.003, 0.004, 0.012])
 
 RMS_ERROR = Problem(
@@ -38,15 +42,21 @@ RMS_ERROR = Problem(
             "other motions",
         ),
         Trial(
-            "errors that change from row to row",
+            "errors that change from row to row, of the left arm and of the right",
             (
                 call(
-                    held_out.drawn_log(_RANDOM, 5, np.outer([1, 2, 0, 3, 1], _345), moving=True),
+                    held_out.drawn_log(_RANDOM, 5, np.outer([1, -2, 0, 3, 1], _345), moving=True),
                     held_out.MODEL,
+                ),
+                call(
+                    held_out.drawn_log(
+                        _RANDOM, 4, np.outer([2, 1, -1, 1], _345), moving=True, model=held_out.RIGHT
+                    ),
+                    held_out.RIGHT,
                 ),
             ),
             held_out.uneven_logs,
-            "uneven errors",
+            "uneven errors, either arm",
             weight=2.0,
         ),
     ),
@@ -117,6 +127,20 @@ RMS_ERROR = Problem(
             mistakes.one_row_late,
             "Same instant, same row.",
         ),
+        Wrong(
+            "the length of the mean error",
+            "Errors to the left and to the right cancel in a mean. Square the length of each row "
+            "first, then take the mean.",
+            mistakes.length_of_the_mean,
+            "A mean of signed numbers hides how large they are.",
+        ),
+        Wrong(
+            "always the left arm",
+            "The log of the right arm is compared with tips of the left one. Ask the `model` that "
+            "you are given.",
+            mistakes.always_the_left_arm,
+            "Use what you are given, not what happens to lie about.",
+        ),
     ),
     variants=(variants.rms_vectorised,),
 )
@@ -136,15 +160,16 @@ OPEN_LOOP = Problem(
             held_out.pure_integrators,
             weight=0.0,
         ),
-        Trial("with a lag", (call(4.0, 0.05, 0.0),)),
+        Trial("with a lag", (call(4.0, 0.05, 0.0),), held_out.lagging, "other lags"),
         Trial(
             "with lag and delay",
-            (call(4.0, 0.03, 0.015), call(12.0, 0.05, 0.02)),
+            (call(4.0, 0.03, 0.015), call(12.0, 0.05, 0.03)),
             held_out.loops,
             "other gains, lags and delays",
             weight=2.0,
         ),
     ),
+    withheld=("labkit.study.analysis",),
     hints=(
         "Three things stand one after another: a speed that follows its command with a lag, an "
         "integrator from speed to angle, a delay. Transfer functions in a row multiply.",
@@ -175,8 +200,9 @@ OPEN_LOOP = Problem(
             "A delay is not a slow lag.",
         ),
         Wrong(
-            "no delay",
-            "The controller sees an angle of a while ago: control.pade comes close to that.",
+            "no delay, or next to none",
+            "The controller sees an angle of a while ago: control.pade comes close to that. `delay` is "
+            "in seconds.",
             mistakes.LoopWithout(delay=0.0),
             "The age of the state is part of the loop.",
         ),
@@ -204,6 +230,13 @@ OPEN_LOOP = Problem(
             "Phase is lost as if the state were twice as old.",
             mistakes.LoopWithout(delay=2.0),
             "Name every part of the loop before you multiply.",
+        ),
+        Wrong(
+            "a delay of first order",
+            "control.pade(delay, 1) is right for slow signals only. At 25 rad/s and 30 ms its phase is "
+            "2 degrees off; order 4 is not.",
+            mistakes.LoopWithout(order=1),
+            "An approximation has a range; know it.",
         ),
     ),
     variants=(variants.loop_from_s,),
@@ -298,13 +331,17 @@ CHOOSE_GAINS = Problem(
     points=4,
     asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 tries: `runner(Kp, Kd, seed)` "
     "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
-    f"where you could not try them, and all points hang on that: at most {held_out.UNSEEN_LIMIT:g} mm "
-    "on the worst seed there.",
+    f"where you could not try them, and so is {held_out.RESERVE:g} times your Kp, your margin: at most "
+    f"{held_out.UNSEEN_LIMIT:g} mm on the worst seed there. And you are asked twice: the second arm is "
+    "about a third as quick as the first, so other gains are right for it.",
     answer=answers.choose_gains,
     trials=(
         Trial(
-            "on the line, on its worst seed: at most 6 mm",
-            (Choice(held_out.ON_THE_LINE, {"worst_mm": 6.0}),),
+            "on the line, on its worst seed: at most 6 mm; the same on an arm a third as quick",
+            (
+                Choice(held_out.ON_THE_LINE, {"worst_mm": 6.0}),
+                Choice(held_out.stiffer(held_out.ON_THE_LINE, held_out.SLOW), {"worst_mm": 6.0}),
+            ),
             weight=0.0,
         ),
         Trial(
@@ -312,6 +349,13 @@ CHOOSE_GAINS = Problem(
             (),
             held_out.unseen_cases,
             "another path, twice the speed, a payload, an older state",
+        ),
+        Trial(
+            f"the same with {held_out.RESERVE:g} times the chosen Kp",
+            (),
+            held_out.with_reserve,
+            "the same, on an arm that is slower",
+            weight=2.0,
         ),
     ),
     hints=(
@@ -336,8 +380,29 @@ CHOOSE_GAINS = Problem(
             mistakes.as_soft_as_possible,
             "A margin is bought with error; buy what you need.",
         ),
+        Wrong(
+            "the lowest error of all seeds, and no step back",
+            "The lowest point of the curve lies beside the cliff: with half as much gain again the arm "
+            "is lost. Take half of the largest Kp that was safe.",
+            mistakes.Lowest(),
+            "The best gain on one path is the most fragile one.",
+        ),
+        Wrong(
+            "a tenth off the lowest point",
+            "A tenth is no margin: a state that is a little older takes more. Take half of the largest "
+            "Kp that was safe.",
+            mistakes.Lowest(0.9),
+            "Say how large your margin is, and against what.",
+        ),
+        Wrong(
+            "gains without a try",
+            "The same gains for an arm that is a third as quick: what was typed once cannot be right for "
+            "both. Ask the runner.",
+            mistakes.Typed(20.0, 1.0),
+            "A procedure can be carried to another arm; a number cannot.",
+        ),
     ),
-    variants=(variants.cautious,),
+    variants=(variants.by_doubling, variants.by_bisection),
 )
 
 PAIRED = Problem(
@@ -451,15 +516,15 @@ VERDICTS = Problem(
             (
                 call(
                     {
-                        "A is worse than B": [[4.0, 5.0, 6.0], [2.0, 3.1, 3.9]],
-                        "C is worse than D": [[2.0, 3.1, 3.9], [4.0, 5.0, 6.0]],
+                        "A is worse than B": [[4.0, 5.0, 6.0], [0.0, 1.1, 1.9]],
+                        "C is worse than D": [[0.0, 1.1, 1.9], [4.0, 5.0, 6.0]],
                     }
                 ),
             ),
             weight=0.0,
         ),
         Trial(
-            "one that flips with the seed, and two that are near the edge",
+            "one that flips with the seed, some near the edge, and three and ten seeds",
             (
                 call({"A is worse than B": [[4.0, 5.0, 6.0, 2.0], [3.0, 6.2, 5.1, 2.6]]}),
                 call(
@@ -467,6 +532,13 @@ VERDICTS = Problem(
                         "C is worse than D": [[3.1, 2.7, 5.2, 3.45, 4.4], _SEEDS],
                         "E is worse than F": [[3.5, 2.7, 5.7, 3.45, 4.5], _SEEDS],
                         "G is worse than H": [[3.5, 1.7, 5.3, 2.65, 4.5], _SEEDS],
+                    }
+                ),
+                call({"I is worse than J": [[4.0, 3.5, 5.5], [3.0, 2.0, 5.0]]}),
+                call(
+                    {
+                        "K is worse than L": _TEN_PAIRS,
+                        "M is worse than N": [[3.1, 1.22, 5.0, 2.16, 4.0], _SEEDS],
                     }
                 ),
             ),
@@ -515,6 +587,33 @@ VERDICTS = Problem(
             "as the seeds do. Subtract pair by pair first.",
             mistakes.VerdictsBy(mistakes.unpaired),
             "Same seeds: pair them.",
+        ),
+        Wrong(
+            "always undecided",
+            "Undecided is right only where the interval holds 0. Where it does not, say which way.",
+            mistakes.never_decided,
+            "Undecided is a result, not a way out.",
+        ),
+        Wrong(
+            "a threshold instead of an interval",
+            "Ten percent more is much where the seeds hardly differ, and nothing where they do. Ask the "
+            "interval of the differences.",
+            mistakes.ten_percent,
+            "How sure is a matter of the spread, not of the size.",
+        ),
+        Wrong(
+            "the rows sorted first",
+            "Sorted, each error has another partner, and the differences shrink to next to nothing. "
+            "The pairs are the seeds: leave them as they are.",
+            mistakes.sorted_first,
+            "Same seeds: pair them.",
+        ),
+        Wrong(
+            "Student's t of five pairs for any number",
+            "2.776 belongs to five pairs. Three pairs need 4.303, ten need 2.262: ask "
+            "scipy.stats.t.ppf(0.975, n - 1).",
+            mistakes.VerdictsBy(mistakes.t_of_five),
+            "A number in a program should say where it comes from.",
         ),
     ),
     variants=(variants.verdicts_by_comprehension,),

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call, Close, Loop
+from labkit.check import AtTip, Call, Close, Loop, TipTorque
 from labkit.grade.problem import Problem, Trial, Wrong, call
 
 from .. import impedance as answers
@@ -25,7 +28,6 @@ TWIST = np.array([0.2, -0.1, 0.3, 0.4, -0.2, 0.5])
 DTWIST = np.array([1.0, -2.0, 1.5, 2.0, 1.0, -1.0])
 PUSH = np.array([8.0, -5.0, 10.0, 0.5, 0.4, -0.3])
 SIX = np.delete(np.arange(7), 2)
-TORQUE = Close(rtol=1e-6, atol=1e-6)
 
 
 def _target(shift: object, turn: object, moving: float) -> lk.PoseSample:
@@ -44,6 +46,18 @@ def _shaped(inertia: object, wrench: object, *, moving: float = 0.0) -> Call:
     state = lk.State(0.0, BENT, moving * SPEED)
     target = _target([0.03, -0.02, 0.04], [0.1, -0.2, 0.1], moving)
     return call(state, target, wrench, MODEL, inertia=inertia, stiffness=K, damping=D)
+
+
+def _at_tip(answer: Callable[..., lk.JointTorque]) -> Callable[..., TipTorque]:
+    """The torque that an answer gives, with what a torque does to the tip there."""
+
+    def expected(state: lk.State, *args: Any, **gains: Any) -> TipTorque:
+        model: lk.Model = args[-1]
+        M, J = model.mass_matrix(state.q), model.tip_jacobian(state.q)
+        accelerates = np.asarray(np.linalg.solve(M, J.T).T, dtype=np.float64)
+        return TipTorque(answer(state, *args, **gains).value, accelerates)
+
+    return expected
 
 
 NOWHERE = [0.0, 0.0, 0.0]
@@ -73,7 +87,7 @@ MSD = Problem(
         ),
         Trial(
             "pushed while it follows a moving target",
-            (call((0.05, 0.1), (0.02, 0.3, 0.5), 6.0, m=2.0, b=8.0, k=100.0),),
+            (call((0.05, 0.1), (0.03, 0.3, 0.5), 6.0, m=2.0, b=8.0, k=100.0),),
             held_out.everything_of_one_mass,
             "targets that move and speed up",
             weight=2.0,
@@ -163,6 +177,12 @@ MSD = Problem(
             "Without error and without push the mass must move as its target does.",
             mistakes.OneMass(feed=-1.0),
             "Draw the mass to the right of its target.",
+        ),
+        Wrong(
+            "a spring tied to the origin",
+            "The spring pulls to the target's place, not to x = 0: k (x_d - x).",
+            mistakes.spring_to_the_origin,
+            "What do the two ends of the spring hold?",
         ),
         Wrong(
             "the hand forgotten",
@@ -283,9 +303,10 @@ WORKSPACE_IMPEDANCE = Problem(
     asks="Give the `lk.JointTorque` that makes the tip answer a push as if it were tied to its target "
     "by springs `stiffness` and dampers `damping`, one for each of x, y, z and the three rotations, in "
     "world axes, with the inertia Λ that the tip has anyway. The arm does not carry its own weight: add "
-    "g(q).",
+    "g(q). What the tip does not feel of a torque is left to you.",
     answer=answers.workspace_impedance,
-    judge=TORQUE,
+    expected=_at_tip(answers.workspace_impedance),
+    judge=AtTip(),
     trials=(
         Trial(
             "at rest, off in position",
@@ -487,16 +508,14 @@ WORKSPACE_IMPEDANCE = Problem(
             mistakes.TipLaw(turn=0.0),
             "A gain of zero hides a wrong sign.",
         ),
-        Wrong(
-            "a damper for the elbow",
-            "A brake in the null space, which the tip does not feel. On a real arm a good idea; "
-            "but the law asked for has no other torque than those of the tip's springs, dampers "
-            "and inertia.",
-            mistakes.TipLaw(elbow=2.0),
-            "Seven joints, six springs: who brakes the elbow?",
-        ),
     ),
-    variants=(variants.impedance_by_terms, variants.impedance_by_parts),
+    variants=(
+        variants.impedance_by_terms,
+        variants.impedance_by_parts,
+        variants.impedance_by_khatib,
+        variants.impedance_by_pseudo_inverse,
+        variants.impedance_with_braked_elbow,
+    ),
 )
 
 SHAPED_IMPEDANCE = Problem(
@@ -506,7 +525,8 @@ SHAPED_IMPEDANCE = Problem(
     "For that the law is told the measured `wrench` of the hand on the arm, shape (6,), world "
     "axes.",
     answer=answers.shaped_impedance,
-    judge=TORQUE,
+    expected=_at_tip(answers.shaped_impedance),
+    judge=AtTip(),
     trials=(
         Trial(
             "nobody pushes",
@@ -648,7 +668,7 @@ SHAPED_IMPEDANCE = Problem(
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
     ),
-    variants=(variants.shaped_by_factor,),
+    variants=(variants.shaped_by_factor, variants.shaped_by_pseudo_inverse),
 )
 
 _random = np.random.default_rng(5)
@@ -731,9 +751,9 @@ APPARENT_STIFFNESS = Problem(
             "Rows of data: F = x Kᵀ.",
         ),
         Wrong(
-            "the regression the other way round",
-            "This fits the displacement to the force. The noise is in the force, so the force stands on "
-            "the left.",
+            "the regression the other way round, or of both",
+            "This puts the noise into the displacement, by a fit of the displacement to the force or by "
+            "total least squares. It is in the force, so the force stands on the left, alone.",
             mistakes.other_regression,
             "Least squares is not symmetric: errors belong to the left side.",
         ),

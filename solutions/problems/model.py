@@ -9,7 +9,7 @@ from labkit.grade.problem import Problem, Trial, Wrong, call
 
 from .. import model as answers
 from ..held_out import model as held_out
-from ..held_out.model import MODEL, bodies, joints, lift, weights
+from ..held_out.model import MODEL, ROUGH_MODEL, bodies, joints, lift, weights
 from ..mistakes import model as mistakes
 from ..variants import model as variants
 
@@ -29,9 +29,14 @@ JACOBIAN = Problem(
         Trial(
             "the ready pose: six rows, seven columns, the angular rows below",
             (call(*joints(READY)),),
+            held_out.jacobians,
             weight=0.0,
         ),
-        Trial("two bent poses", (call(*joints(BENT)), call(*joints(REACHING)))),
+        Trial(
+            "two bent poses",
+            (call(*joints(BENT)), call(*joints(REACHING))),
+            held_out.jacobians,
+        ),
         Trial("any pose", (call(*joints(np.zeros(7))),), held_out.jacobians, "any poses"),
     ),
     withheld=(
@@ -97,9 +102,10 @@ MASS_MATRIX = Problem(
         Trial(
             "links that are points: no inertia of their own",
             (call(*(0.0 * x if k == 1 else x for k, x in enumerate(bodies(READY)))),),
+            held_out.points_of_mass,
             weight=0.0,
         ),
-        Trial("a bent elbow", (call(*bodies(BENT)),)),
+        Trial("a bent elbow", (call(*bodies(BENT)),), held_out.mass_matrices),
         Trial(
             "any pose",
             (call(*bodies(READY)), call(*bodies(REACHING))),
@@ -264,10 +270,11 @@ CORIOLIS = Problem(
             "C dq does not fix C; Christoffel's choice does.",
         ),
         Wrong(
-            "the one half forgotten",
-            "Twice too big: Christoffel's symbols carry a factor one half.",
+            "twice too large",
+            "Either Christoffel's one half is missing, or a difference between q + h and q - h was "
+            "divided by h: it spans 2h.",
             mistakes.without_the_half,
-            "The half comes from the kinetic energy.",
+            "The half comes from the kinetic energy; the 2h from a difference taken both ways.",
         ),
         Wrong(
             "the minus at the wrong term",
@@ -296,15 +303,15 @@ POWER_BALANCE = Problem(
     judge=Close(rtol=0.0, atol=1.5),
     trials=(
         Trial(
-            "a slow lift with friction",
-            (call(lift(0.35, 0.8, 400.0), MODEL),),
+            "a slow lift with friction, and a hand that helps",
+            (call(lift(0.35, 0.8, 400.0, 10.0), ROUGH_MODEL),),
             held_out.gentle_lifts,
-            "other lifts",
+            "other lifts, helped or hindered",
             weight=0.0,
         ),
         Trial(
             "a quick lift, cut by the torque limits",
-            (call(lift(0.55, 0.42, 400.0), MODEL),),
+            (call(lift(0.55, 0.42, 400.0), ROUGH_MODEL),),
             held_out.lifts,
             "quick lifts",
         ),
@@ -334,7 +341,7 @@ POWER_BALANCE = Problem(
         Wrong(
             "the other way round",
             "The sign: growth of the energy minus what the motors put in. Friction then shows as a "
-            "loss, below zero.",
+            "loss, below zero, and a helping hand above it.",
             mistakes.motors_minus_energy,
             "Say in words what a positive number means.",
         ),
@@ -343,6 +350,26 @@ POWER_BALANCE = Problem(
             "The slope is taken per row of the log. Give np.gradient the times as well.",
             mistakes.steps_not_seconds,
             "J and W differ by seconds.",
+        ),
+        Wrong(
+            "without its sign",
+            "An absolute value hides whether energy came or went: friction is a loss, below zero, a "
+            "helping hand lies above it.",
+            mistakes.absolute,
+            "Say in words what a positive number means.",
+        ),
+        Wrong(
+            "what friction takes",
+            "That is the power of the plant's friction, not what the energies and the motors leave. "
+            "A hand that helps is missing in it.",
+            mistakes.friction_alone,
+            "A balance finds what nobody told you of.",
+        ),
+        Wrong(
+            "the power of some joints",
+            "The wrist turns too, and its motor works: sum torque times speed over all seven joints.",
+            mistakes.without_the_last_joint,
+            "Count the motors.",
         ),
     ),
     variants=(variants.balance_in_loops, variants.balance_from_theory),

@@ -107,8 +107,8 @@ TRAPEZOID = Problem(
             weight=0.0,
         ),
         Trial(
-            "a way too short to reach v_max: 0.05 m",
-            tuple(call(t, 0.05, 0.2, 0.4) for t in (0.2, 0.4, 0.6)),
+            "a way too short to reach v_max: 0.03 m",
+            tuple(call(t, 0.03, 0.2, 0.4) for t in (0.1, 0.3, 0.5)),
             held_out.trapezoid_short,
             "a move of one centimetre",
         ),
@@ -116,7 +116,7 @@ TRAPEZOID = Problem(
             "whole motions",
             (
                 *(call(float(t), 0.3, 0.2, 0.4) for t in np.linspace(-0.3, 2.5, 8)),
-                *(call(float(t), 0.05, 0.2, 0.4) for t in np.linspace(-0.1, 1.0, 8)),
+                *(call(float(t), 0.03, 0.2, 0.4) for t in np.linspace(-0.1, 0.8, 8)),
             ),
             held_out.trapezoid_all,
             "times outside the motion",
@@ -152,6 +152,13 @@ TRAPEZOID = Problem(
             "by the distance.",
             mistakes.way_for_s,
             "s has no unit.",
+        ),
+        Wrong(
+            "a triangle that is too high",
+            "√(2·distance·a_max) is the speed after speeding up all the way. Half of it is there to "
+            "speed up, and half to brake: √(distance·a_max).",
+            mistakes.speeds_up_all_the_way,
+            "A triangle has two halves.",
         ),
     ),
     variants=(variants.trapezoid_by_phases,),

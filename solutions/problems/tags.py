@@ -21,6 +21,8 @@ _THERE = Sample(np.array([0.4, 0.1, 0.3]), _ZERO, _ZERO)
 _MOVING = Sample(np.array([0.1, 0.2, 0.3]), np.array([0.1, 0.0, -0.05]), np.array([0.2, -0.1, 0.0]))
 _GOING = Sample(np.array([0.3, 0.25, 0.2]), np.array([0.0, 0.1, 0.02]), _ZERO)
 _TURNING = _GOING._replace(acceleration=np.array([0.1, 0.0, -0.3]))
+_SEVEN = np.random.default_rng(7).uniform(-0.4, 0.4, (2, 3, 7)).round(2)
+_JOINTS, _THEIR_GOAL = Sample(*_SEVEN[0]), Sample(*_SEVEN[1])
 _BELIEF = held_out.believed(_RANDOM)
 
 TAG_CORNERS = Problem(
@@ -306,13 +308,14 @@ BLEND = Problem(
             weight=0.0,
         ),
         Trial(
-            "from motion to motion",
+            "from motion to motion, of a point and of seven joints",
             (
                 *(call(t, _MOVING, _GOING, 1.6) for t in (0.0, 0.5, 1.1, 1.6, 2.2)),
                 *(call(t, _MOVING, _TURNING, 1.6) for t in (1.1, 2.2)),  # at 1.6 both are right
+                *(call(t, _JOINTS, _THEIR_GOAL, 1.6) for t in (0.5, 2.2)),
             ),
             held_out.blends_in_motion,
-            "other durations, and after the end",
+            "other durations, after the end, seven joints and a single number",
         ),
     ),
     hints=(
@@ -415,6 +418,13 @@ BLEND = Problem(
             "Mixed in proportion to time, place and velocity no longer belong together.",
             mistakes.the_ends_mixed,
             "Velocity is the slope of position, or somebody lies.",
+        ),
+        Wrong(
+            "three coordinates, however many there are",
+            "A sample may hold a point, seven joint angles or a single number: shape (n,). Take as many "
+            "as come.",
+            mistakes.three_alone,
+            "Read the shape in the docstring; then try another n.",
         ),
     ),
     variants=(variants.blend_by_bernstein,),

@@ -18,8 +18,8 @@ from ..variants import torque_control as variants
 MODEL = lk.Model("left", lk.BAXTER)
 READY = MODEL.robot.ready
 TORQUE = Close(rtol=1e-6, atol=1e-6)
-KP = np.array([100.0, 100.0, 60.0, 60.0, 20.0, 20.0, 10.0])
-KD = np.array([20.0, 20.0, 12.0, 12.0, 4.0, 4.0, 2.0])
+KP = np.array([40.0, 40.0, 25.0, 25.0, 8.0, 8.0, 4.0])
+KD = np.array([10.0, 10.0, 6.0, 6.0, 2.0, 2.0, 1.0])
 OFF = np.array([0.1, -0.1, 0.1, 0.1, -0.1, 0.1, -0.1])
 SPEED = np.array([0.8, -0.5, 0.4, 1.0, -1.2, 0.9, 1.5])
 WANTED = np.array([0.2, 0.6, -0.7, 0.3, 1.0, -0.4, 0.5])
@@ -707,7 +707,8 @@ CHOOSE_GAINS = Problem(
     points=3,
     asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each a number or seven, for springs and dampers at "
     "the joints of the `lk.BAXTER` arm (`lk.controllers.springs`, 200 Hz). They must serve on a slow line, "
-    "on quicker tours, and with up to a kilogram in the gripper that the model does not know of.",
+    "on quicker tours, and with up to a kilogram in the gripper that the model does not know of; and an "
+    "arm that is let go beside its target must come to rest there.",
     answer=answers.choose_gains,
     expected=lambda model: None,
     judge=Gains(),
@@ -729,6 +730,13 @@ CHOOSE_GAINS = Problem(
             ),
             held_out.quick_tours,
             "other tours and speeds, both arms",
+        ),
+        Trial(
+            "back to a place from 0.1 rad off, at rest after 0.8 s",
+            (Tuned((MODEL,), held_out.back(MODEL, OFF), held_out.AT_REST),),
+            held_out.returns,
+            "other places, both arms",
+            weight=3.0,
         ),
         Trial(
             "a kilogram in the gripper",
@@ -757,14 +765,14 @@ CHOOSE_GAINS = Problem(
             "tuned on the slow line only",
             "Good enough while little is asked. Friction, the quicker circle and the load stretch soft "
             "springs three times as far as need be.",
-            mistakes.tuned_on_the_slow_line,
+            mistakes.Swings(6.0),
             "Gains that were tried on one motion are tuned to that motion.",
         ),
         Wrong(
             "too stiff for an old state",
             "The arm buzzes: it reacts to where it was 14 ms ago. Look at the error of the speed. A "
             "loop must be slower than its news.",
-            mistakes.too_stiff,
+            mistakes.Swings(25.0),
             "Delay times bandwidth must stay well below one.",
         ),
         Wrong(
@@ -787,6 +795,19 @@ CHOOSE_GAINS = Problem(
             "The report's figures show just that.",
             mistakes.the_reports_gains,
             "Their plateaus are friction over kp.",
+        ),
+        Wrong(
+            "hardly a damper",
+            "Let go beside its target the arm swings for seconds; on a smooth tour nobody notices. "
+            "Critical damping is kd = 2 m ω, and less than half of that rings.",
+            mistakes.Swings(zeta=0.1),
+            "Test a damper with a jolt, not with a tour.",
+        ),
+        Wrong(
+            "no damper at all",
+            "A spring without a damper swings for ever, and with an old state it swings up.",
+            mistakes.Swings(zeta=0.0),
+            "Test a damper with a jolt, not with a tour.",
         ),
     ),
     variants=(variants.ByFrequency(11.0, 0.8), variants.ByFrequency(13.0, 0.7), variants.by_hand),

@@ -235,6 +235,7 @@ DAMPED_INVERSE = Problem(
         Trial(
             "damping 0.0025 with the elbow almost straight",
             (call(MODEL.tip_jacobian(STRETCHED), 0.0025),),
+            held_out.inverses_stretched,
         ),
         Trial(
             "any pose and damping",
@@ -311,15 +312,13 @@ WORKSPACE_VELOCITY_PD = Problem(
             weight=0.0,
         ),
         Trial(
-            "roll, pitch and yaw offsets, one by one",
+            "roll, pitch and yaw offsets, one by one, and a turn of 120 degrees",
             tuple(
-                call(
-                    state(READY), pose_sample(READY, turn=0.2 * axis), MODEL, kp=2.0, damping=0.003
-                )
-                for axis in np.eye(3)
+                call(state(READY), pose_sample(READY, turn=turn), MODEL, kp=2.0, damping=0.003)
+                for turn in (*0.2 * np.eye(3), np.radians(120.0) * np.eye(3)[1])
             ),
             held_out.pose_turns,
-            "turns at other poses",
+            "turns at other poses, small ones and large ones",
             weight=2.0,
         ),
         Trial(
@@ -459,6 +458,13 @@ WORKSPACE_VELOCITY_PD = Problem(
             "nought. The logarithm gives the angle.",
             mistakes.WorkspaceLaw(turn=mistakes.sine_of_the_turn),
             "sin x is x only for small x.",
+        ),
+        Wrong(
+            "the arcsine of the turn",
+            "The sine does not tell 120 degrees from 60, so its arcsine is right up to 90 degrees and "
+            "falls again beyond. The logarithm gives the angle up to 180.",
+            mistakes.WorkspaceLaw(turn=mistakes.arcsine_of_the_turn),
+            "sin x is the same for x and 180° - x.",
         ),
         Wrong(
             "the transpose for the inverse",

@@ -38,12 +38,13 @@ JOINT_ERROR = Problem(
             weight=0.0,
         ),
         Trial(
-            "seven different errors, on a moving arm",
+            "seven different errors, on a moving arm; a wrist from one stop to the other",
             (
                 call(
                     _sample(READY + 0.01 * np.arange(-3, 4), 0.2 * np.ones(7)),
                     _state(READY, 0.1 * np.ones(7)),
                 ),
+                call(_sample(2.9 * np.eye(7)[4]), _state(-2.9 * np.eye(7)[4])),
             ),
             held_out.errors,
             "any targets and states",
@@ -81,6 +82,13 @@ JOINT_ERROR = Problem(
             mistakes.of_the_speeds,
             "A sample holds a value and its derivatives.",
         ),
+        Wrong(
+            "wrapped to half a turn",
+            "A joint has stops. From -2.9 to 2.9 rad the only way is back through zero, 5.8 rad; the "
+            "short way round ends at the stop. So the error of a joint is not wrapped.",
+            mistakes.wrapped,
+            "Wrap what can go round and round; a joint with stops cannot.",
+        ),
     ),
     variants=(variants.error_list,),
 )
@@ -106,6 +114,8 @@ TRANSFORM_POINT = Problem(
         Trial(
             "a frame shifted and turned by 90 degrees of yaw",
             (call(YAW, np.array([0.1, 0.0, 0.0])), call(YAW, np.array([0.0, 0.3, 0.2]))),
+            held_out.points_yawed,
+            "any yaw",
         ),
         Trial(
             "a frame turned about all axes",
@@ -170,7 +180,7 @@ INVERSE_TRANSFORM = Problem(
             held_out.poses_aligned,
             weight=0.0,
         ),
-        Trial("a shift and 90 degrees of yaw", (call(YAW),)),
+        Trial("a shift and 90 degrees of yaw", (call(YAW),), held_out.poses_yawed, "any yaw"),
         Trial("a turn about all axes", (call(TILTED),), held_out.poses, "any poses"),
     ),
     withheld=("labkit.se3.inverse",),
@@ -234,10 +244,10 @@ ORIENTATION_ERROR = Problem(
     judge=Close(rtol=1e-5, atol=1e-5),
     trials=(
         Trial(
-            "a level tool turned about the vertical by 20 degrees",
-            (call(_turned(30.0, 2), _turned(10.0, 2)),),
+            "a level tool turned about the vertical by 20 degrees, and a gripper not turned at all",
+            (call(_turned(30.0, 2), _turned(10.0, 2)), call(DOWN, DOWN)),
             held_out.turns_about_z,
-            "other angles",
+            "other angles, and none",
             weight=0.0,
         ),
         Trial(
@@ -316,6 +326,13 @@ ORIENTATION_ERROR = Problem(
             "The actual one is undone, R_wtᵀ, and stands on the right.",
             mistakes.backwards_in_tool_axes,
             "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
+        ),
+        Wrong(
+            "0/0 where nothing is turned",
+            "Angle over sine is 0/0 as soon as the arm has arrived, and every command after it is not "
+            "a number. Without a turn the answer is zero; lk.se3.rotation_log knows that.",
+            mistakes.zero_by_zero,
+            "Try a formula where the error is zero: there the arm should spend its life.",
         ),
     ),
     variants=(variants.OrientationError(), variants.by_quaternion),

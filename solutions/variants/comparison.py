@@ -48,10 +48,22 @@ def margin_by_search(lag: float, delay: float, margin_deg: float) -> float:
     return low
 
 
-def cautious(runner: Callable[..., float]) -> list[float]:
-    """Tries a moderate gain on every seed and takes it."""
-    tried = {Kp: max(runner(Kp, 0.0, seed) for seed in range(5)) for Kp in (8.0, 14.0, 22.0)}
-    return [min(tried, key=lambda Kp: tried[Kp]), 0.0]
+def by_doubling(runner: Callable[..., float]) -> list[float]:
+    """Doubles Kp while that does not hurt, and gives half of the last one."""
+    Kp = 4.0
+    while runner(2.0 * Kp, 0.0, 0) < 1.2 * runner(Kp, 0.0, 0):
+        Kp *= 2.0
+    return [Kp / 2.0, 0.0]
+
+
+def by_bisection(runner: Callable[..., float]) -> Any:
+    """Bisects for the edge on two seeds, and gives two fifths of it."""
+    low, high = 4.0, 100.0
+    for _ in range(8):
+        middle = sqrt(low * high)
+        safe = max(runner(middle, 0.0, seed) for seed in (0, 1)) < 4.0
+        low, high = (middle, high) if safe else (low, middle)
+    return np.array([0.4 * low, 0.0])
 
 
 def paired_by_scipy(errors_a: Sequence[float], errors_b: Sequence[float]) -> Any:

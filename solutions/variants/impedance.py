@@ -65,6 +65,54 @@ def impedance_by_parts(
     return lk.JointTorque(model.bias(q, dq) + J.T @ F)
 
 
+def impedance_by_khatib(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> Any:
+    """All of the tip's equation of motion, its Coriolis part included, brought over by J^T."""
+    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    L = np.linalg.inv(J @ np.linalg.inv(M) @ J.T)
+    mu = L @ (J @ np.linalg.solve(M, c) - drift)
+    F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
+    return lk.JointTorque(J.T @ (L @ target.dtwist + mu + F) + g)
+
+
+def impedance_by_pseudo_inverse(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> Any:
+    """The shortest joint acceleration for the tip's, through M; springs and dampers by J^T."""
+    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
+    ddq = np.linalg.pinv(J) @ (target.dtwist - drift)
+    return lk.JointTorque(M @ ddq + J.T @ F + c + g)
+
+
+def impedance_with_braked_elbow(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> Any:
+    """With a damper in the null space, which the tip does not feel."""
+    tau = impedance_by_parts(state, target, model, stiffness=stiffness, damping=damping).value
+    J, M = model.tip_jacobian(state.q), model.mass_matrix(state.q)
+    felt = J.T @ model.operational_inertia(state.q) @ J @ np.linalg.inv(M)
+    return lk.JointTorque(tau - 2.0 * (np.eye(7) - felt) @ state.dq)
+
+
+def shaped_by_pseudo_inverse(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> Any:
+    """The shortest joint acceleration for the tip's, through M, and the hand's share taken off."""
+    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
+    a = target.dtwist + np.linalg.solve(inertia, F + wrench) - drift
+    return lk.JointTorque(M @ np.linalg.pinv(J) @ a - J.T @ wrench + c + g)
+
+
 def shaped_by_factor(
     state: lk.State,
     target: lk.PoseSample,

@@ -41,17 +41,20 @@ def test_every_command_of_the_instructors_guide_works(tmp_path):
     notebook = ROOT / "assignments/01_paths/01_paths.ipynb"
     with zipfile.ZipFile(course / "downloads/moodle.zip", "w") as archive:
         archive.write(notebook, "Ada Lovelace_101_assignsubmission_file/01_paths.ipynb")
+    people = "First name,Last name,Email address\nAda,Lovelace,ada@uni.org\nBob,Hope,bob@uni.org\n"
+    (course / "downloads/participants.csv").write_text(people)
     commands = shown("instructor_guide")
     assert {words[0] for words in commands} == {"labkit"}
     verbs = {words[1] for words in commands}
-    assert verbs >= {"doctor", "new-term", "release", "student-bundle", "make-class", "collect",
-                     "grade", "feedback", "export", "class-report", "regrade", "export-course",
-                     "forget"}  # fmt: skip
+    assert verbs >= {"doctor", "new-term", "release", "student-bundle", "make-class", "students",
+                     "collect", "grade", "feedback", "export", "class-report", "regrade",
+                     "export-course", "forget"}  # fmt: skip
     for words in commands:
         works(words, course)
     assert len(list((course / "results/01_paths").glob("*.json"))) == 9
     assert len(list((course / "feedback").glob("*/01_paths/01_paths.html"))) == 9
     assert len((course / "marks.csv").read_text().splitlines()) == 10
+    assert "Ada,Lovelace,,,ada@uni.org," in (course / "marks.csv").read_text()
     assert (course / "report.md").read_text().strip()
     assert "01_paths" in json.loads((course / "course_private/term.json").read_text())["bundles"]
     assert not (course / "dist/course/student/solutions").exists()

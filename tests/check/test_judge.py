@@ -1,12 +1,29 @@
 """Judges: the same, or how it differs."""
 
+import json
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import labkit as lk
-from labkit.check import AtMost, Close, Within
+from labkit.check import (
+    AtMost,
+    AtTip,
+    Call,
+    Close,
+    Outcome,
+    Question,
+    Response,
+    Test,
+    TipTorque,
+    Within,
+    mark,
+    question_data,
+    read_question,
+)
+from labkit.check.judge import Ratio
 
 CLOSE = Close(rtol=1e-6, atol=1e-9)
 V = np.array([1.0, 2.0, 3.0])
@@ -124,3 +141,59 @@ def test_at_most():
         "the largest error of the tip is 2 mm, allowed 1.5 mm"
     )
     assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None
+
+
+def test_a_mistake_that_is_not_a_number_is_known_by_it():
+    """NaN where the known mistake has NaN; a right answer is no such mistake."""
+    nan = np.array([1.0, np.nan, 3.0])
+    assert CLOSE.same(nan, nan) and CLOSE(nan, V) is not None
+    assert not CLOSE.same(V, nan) and not CLOSE.same(nan, V)
+
+
+def test_a_transfer_function_is_no_plain_function():
+    """What cannot be multiplied and plotted is told so, though it gives the right numbers."""
+    judge, right = Response((1.0, 10.0)), Ratio((2.0,), (1.0, 0.0))
+    assert judge(right, right) is None
+    assert "it should be a transfer function, not <function" in judge(lambda s: 2.0 / s, right)
+
+
+def at_tip():
+    """An arm's torque as the tip feels it, and a joint acceleration that it does not feel."""
+    model = lk.Model("left", lk.BAXTER)
+    q = model.robot.ready + 0.1
+    M, J = model.mass_matrix(q), model.tip_jacobian(q)
+    unfelt = np.linalg.svd(J)[2][-1]
+    tau = np.linspace(-20.0, 30.0, 7)
+    return TipTorque(tau, np.linalg.solve(M, J.T).T), M @ unfelt
+
+
+def test_torques_are_judged_by_what_the_tip_does():
+    """Any torque with the expected acceleration of the tip is right, and none with another."""
+    judge, (expected, unfelt) = AtTip(), at_tip()
+    assert np.linalg.norm(unfelt) > 0.05, "a torque of which the joints feel a good deal"
+    for share in (0.0, 1.0, -30.0):
+        answer = lk.JointTorque(expected.value + share * unfelt)
+        assert judge(answer, expected) is None and judge.distance(answer, expected) < 1.0
+    for joint in np.eye(7):
+        answer = lk.JointTorque(expected.value + 0.01 * joint)
+        assert judge.distance(answer, expected) > 1.0
+        words = judge(answer, expected)
+        assert words.startswith("expected [") and "or any that moves the tip alike, got [" in words
+
+
+@pytest.mark.parametrize("answer", [np.zeros(7), None, lk.JointVelocity(np.zeros(7))])
+def test_a_torque_is_asked_for_by_name(answer):
+    """What is no torque has no acceleration to be judged by, and is told what it should be."""
+    judge, (expected, _) = AtTip(), at_tip()
+    assert "it should be a JointTorque" in judge(answer, expected)
+    assert judge.distance(answer, expected) == np.inf
+
+
+def test_a_question_of_torques_travels():
+    """Its expected answers come out of JSON as they went in."""
+    expected, unfelt = at_tip()
+    test = Test("torques", (Call((1.0,), expected=expected),))
+    question = Question("torque", 1.0, "Give a torque.", AtTip(), (test,))
+    again = read_question(json.loads(json.dumps(question_data(question))))
+    answer = lk.JointTorque(expected.value + unfelt)
+    assert mark(again, lambda x: answer).outcome is Outcome.RIGHT

@@ -1,5 +1,6 @@
 """What a notebook says: check, hint and use."""
 
+import ast
 import json
 import os
 import subprocess
@@ -13,6 +14,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
+import labkit
 from labkit.check import Test, also, check, hint, notebook, question_data, use
 from labkit.check.question_codec import pack_hidden
 from labkit.errors import LabkitError, UnknownName
@@ -77,6 +79,72 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
     assert "it uses your double, which is not right yet" in capsys.readouterr().out
+
+
+def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
+    """By its text where it has one, else by what it calls; the stand-in takes its place."""
+    circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
+    data = {"assignment": "sample", "questions": [question_data(circle)]}
+    (desk / notebook.FILE).write_text(json.dumps(data))
+    notebook._desks.clear()
+    file = desk / "answers.py"
+    file.write_text(
+        "import labkit as lk\ndef double(x):\n    return 2 * x if x < 5 else lk.Circle\n"
+    )  # the branch is for a hidden case
+    names = {"__name__": "answers"}
+    exec(compile(file.read_text(), str(file), "exec"), names)
+    called = {"__name__": "numpy"}
+    exec(
+        "import labkit as lk\ndef double(x): return 2 * x if lk.Circle([x, 0, 0], 0) else 0", called
+    )
+    for function in (names["double"], called["double"]):
+        assert check("double", function) == 0.0
+        assert capsys.readouterr().out.startswith(
+            "double: not counted: uses lk.Circle, which this question asks you to write."
+        )
+        assert use("double", function, None) is None
+        capsys.readouterr()
+    assert check("double", double) == 4.0
+    assert labkit.Circle([1, 0, 0], [0, 0, 0])(0.0).position[0] == 1.0
+
+
+KERNEL = """
+import os
+os.chdir({folder!r})
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.utils.capture import capture_output
+shell = InteractiveShell.instance()
+def run(cell):
+    with capture_output() as out:
+        assert shell.run_cell(cell, store_history=True).success
+    return [(o.data["text/plain"].splitlines()[0], o.metadata["labkit"]) for o in out.outputs]
+run("import labkit as lk; from labkit.check import check")
+"""
+
+
+def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
+    """What an answer leans on counts, by the cells that ran last; others may use what they like."""
+    circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
+    data = {"assignment": "sample", "questions": [question_data(circle)]}
+    (desk / notebook.FILE).write_text(json.dumps(data))
+    program = KERNEL.format(folder=str(desk)) + (
+        "run('def twice(x): return 2 * x or lk.Circle')\n"
+        "run('%%time\\ndef double(x): return twice(x)')\n"
+        "print(run('check(\"double\", double);'))\n"
+        "run('def twice(x): return 2 * x\\nring = lk.Circle([1, 0, 0], [0, 0, 0])(0.5)')\n"
+        "print(run('check(\"double\", double);'))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    (((first, kept),), ((second, then),)) = map(ast.literal_eval, done.stdout.splitlines())
+    assert first.startswith("double: not counted: uses lk.Circle")
+    assert kept == {
+        "question": "double", "outcome": "not counted", "earned": 0.0, "points": 4.0,
+        "withheld": ["labkit.Circle"], "complete": True,
+    }  # fmt: skip
+    assert second == "double: right on all public cases; 4 points if the hidden ones agree."
+    assert (then["outcome"], then["earned"], then["complete"]) == ("right", 4.0, False)
 
 
 def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
@@ -165,7 +233,8 @@ def test_a_figure_shows_the_evidence(desk):
         "import labkit.check.notebook, IPython.display\n"
         "IPython.display.display = lambda *a, **k: shown.extend(a)\n"
         "check('double', lambda x: x * x)\n"
-        "print(shown[0].format, shown[0].data[1:4], shown[0].alt)\n"
+        "print(shown[0]['text/plain'])\n"
+        "print(shown[1].format, shown[1].data[1:4], shown[1].alt)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk

@@ -9,7 +9,11 @@ import numpy as np
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 
 from labkit.check import Call, Test, mark
+from labkit.check.mark import not_counted
 from labkit.check.words import head, tell
+
+COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
+"""The same question without anything to be tried later."""
 
 
 def said(function, question=DOUBLE, **more):
@@ -22,7 +26,7 @@ def stub(x):
 
 def test_the_verdict_comes_first():
     """The first line holds name, verdict and points, and nothing else."""
-    assert said(double).splitlines()[0] == "double: right. 4 of 4 points."
+    assert said(double, COMPLETE).splitlines()[0] == "double: right. 4 of 4 points."
     assert head(mark(DOUBLE, stub)) == "double: not attempted yet. 0 of 4 points."
     assert head(mark(DOUBLE, square)) == "double: not yet right. 0 of 4 points."
     assert head(mark(DOUBLE, lambda x: 1 / 0)) == "double: it stopped with an error. 0 of 4 points."
@@ -36,8 +40,11 @@ def test_not_attempted_says_what_to_do():
 
 
 def test_right_says_what_else_is_tried():
-    """A right answer hears of the classes of hidden case, where there are any to come."""
-    assert "The teacher also tries: any number." in said(double)
+    """Where hidden cases are still to come, a right answer hears of them, and no promise."""
+    assert said(double).splitlines() == [
+        "double: right on all public cases; 4 points if the hidden ones agree.",
+        "  The teacher also tries: any number.",
+    ]
     graded = replace(
         DOUBLE, tests=(*DOUBLE.tests[:2], Test("more", (CALLS[2], HIDDEN), 1.0, "any number"))
     )
@@ -65,11 +72,15 @@ def test_errors_are_told_on_their_call():
     assert "double(2.0) raised IndexError: list index out of range" in words
 
 
-def test_withheld_names_are_a_note():
-    """Leaning on a withheld name is said, in one sentence, and takes no points here."""
-    words = said(double, used=("numpy.multiply",))
-    assert words.splitlines()[0].endswith("4 of 4 points.")
-    assert "your code uses numpy.multiply" in " ".join(words.split())
+def test_a_withheld_tool_is_an_outcome_of_its_own():
+    """An answer that uses one is not counted, whatever it gives; the sentence names the tool."""
+    verdict = not_counted(DOUBLE, ("labkit.Circle", "numpy.multiply"))
+    words = " ".join(tell(DOUBLE, verdict).split())
+    assert words.startswith(
+        "double: not counted: uses lk.Circle and numpy.multiply, which this question asks you to "
+        "write. 0 of 4 points. "
+    )
+    assert "write it yourself" in words and "passed" not in words
 
 
 def test_prints_are_shown_in_part():
@@ -91,10 +102,13 @@ def test_long_answers_stand_below_each_other():
 
 
 def test_a_test_that_nobody_can_see_is_told():
-    """Where no case of a test is public, "right" says what points still hang on."""
-    question = replace(DOUBLE, tests=(*DOUBLE.tests, Test("elsewhere", ())))
+    """A test without a public case has not passed, whether the rest is right or wrong."""
+    question = replace(COMPLETE, tests=(*COMPLETE.tests, Test("elsewhere", ())))
     assert "Not tried here, and points hang on it: elsewhere." in said(double, question)
     assert "Not tried here" not in said(double)
+    for wrong in (square, lambda x: None, lambda x: 1 / 0):
+        assert "  [not tried here] elsewhere" in said(wrong, question).splitlines()
+    assert "double: right on all public cases" in said(double, question)
 
 
 def test_the_same_failure_is_told_once():

@@ -10,6 +10,7 @@ import pytest
 from handmade import QUICK, add, cell_of, put, raw
 
 from labkit.check import Call, Loop, mark, question_data, read_question
+from labkit.check.cells import look
 from labkit.check.judge import Close
 from labkit.check.question import Question, Test
 from labkit.grade.checker import grade
@@ -86,6 +87,31 @@ def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
     assert "NameError" not in says
 
 
+YOURS = """
+def given_half(): raise AssertionError
+half = use("bang_bang", bang_bang, {given}, yours=lambda: bang_bang(1.0, 2.0)[0])
+"""
+
+
+@pytest.mark.parametrize(
+    ("answer", "given", "points"),
+    [
+        (None, "given_half", 2),  # one's own is right: it is used, as it was wrapped
+        ("def bang_bang(t, duration): return 0.0, 0.0, 0.0", "lambda: 0.5", 2),  # wrong: what is given
+        ("def bang_bang(t, duration): raise NotImplementedError", "lambda: 0.5", 2),
+        ("def bang_bang(t, duration): return 0.5, 0.0, 0.0", "lambda: 1.0", 0),
+    ],
+)  # fmt: skip
+def test_an_answer_leans_on_what_use_chose_in_the_notebook(marks, solved, answer, given, points):
+    """`use` means the same here: one's own function where that is right, else the one given."""
+    if answer:
+        put(solved, "bang_bang", answer)
+    at = solved["cells"].index(cell_of(solved, "bang_bang")) + 1
+    add(solved, YOURS.format(given=given), at)
+    put(solved, "witness", "def witness(theta, duration):\n    return half() * duration")
+    assert earned(marks(solved))["witness"] == points
+
+
 def test_state_survives_between_calls_but_not_between_questions(marks, solved):
     """A function may remember; another question does not see it."""
     put(solved, "witness", "seen = []\ndef witness(theta, duration):\n    seen.append(1)\n"
@@ -122,14 +148,14 @@ def test_a_deadly_cell_is_left_out(marks, solved):
 
 
 def test_withheld_names_stop_working_for_one_question_only(marks, solved):
-    """A withheld name ends in a sentence; where it is not withheld, or in inputs, it works."""
+    """A withheld name is not counted; where it is not withheld, or in inputs, it works."""
     put(solved, "circle", "import labkit as lk\ndef circle(s, start, centre):\n"
         "    return lk.Circle(start, centre)(s)")  # fmt: skip
     result = marks(solved)
     assert earned(result)["circle"] == 0
     assert earned(result)["compose"] == 4  # is given circles
     circle = next(q for q in result.questions if q["name"] == "circle")
-    assert "asks you to write circle yourself" in circle["tests"][0]["says"]
+    assert circle["outcome"] == "not counted" and circle["withheld"] == ["labkit.Circle"]
 
 
 def test_hidden_cases_stay_hidden(marks, blank, bundle):
@@ -186,14 +212,72 @@ def test_odd_cells_harm_nobody(cell, marks, solved):
     assert marks(solved).score == 20
 
 
+MAGICS = ("%%time", "%%capture", "%%capture out --no-stderr", "%%prun -q", "\n%%time\n%%capture")
+
+
+@pytest.mark.parametrize("magic", MAGICS)
+def test_a_magic_that_runs_its_cell_costs_nothing(marks, solved, magic):
+    """An answer below %%time or its like is there in the notebook, and so it is here."""
+    for cell in solved["cells"]:
+        if cell["metadata"]["lab"] == "answer":
+            cell["source"] = f"{magic}\n{''.join(cell['source'])}"
+    assert marks(solved).score == 20
+
+
+@pytest.mark.parametrize("magic", ["%%timeit", "%%bash", "%%python", "%%writefile x.py"])
+def test_a_magic_that_keeps_names_to_itself_defines_nothing(marks, solved, magic):
+    """In a notebook there is no answer then; here neither, and the note says why."""
+    cell = cell_of(solved, "circle")
+    cell["source"] = f"{magic}\n{''.join(cell['source'])}"
+    circle = next(q for q in marks(solved).questions if q["name"] == "circle")
+    word = magic.split()[0]
+    assert circle["notes"] == [
+        f"circle: its cell begins with {word}, which keeps what it defines to itself"
+    ]
+    assert circle["earned"] == 0
+
+
+def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
+    """Surrogates, marks of direction, escapes and old line ends cost nothing and are not kept."""
+    for cell in solved["cells"]:
+        if cell["metadata"]["lab"] == "answer":
+            text = "".join(cell["source"]).replace("\n", "\r\n")
+            cell["source"] = f"# \ud800 \u202e \x1b[2J\r{text}\r\n\x0cx = '\\ud800'\r\n"
+            cell["metadata"]["nbgrader"]["solution"] = "\udfff"
+    add(solved, "\ud83d = 1\n# \u2066 \u2028")
+    result = marks(solved)
+    assert result.score == 20
+    sources = [q["source"] for q in result.questions] + [own["source"] for own in result.own]
+    assert all("x = '\\ud800'" in source for source in sources[:-1])
+    for text in sources:
+        text.encode("utf-8")
+        assert not set(text) & set("\r\x0c\x1b\u202e\u2066\u2028")
+
+
+def test_an_argument_that_is_changed_is_told(marks, solved):
+    """An answer that eats what it is given is wrong, with the same sentence as in the notebook."""
+    put(solved, "segment_at", "def segment_at(durations, t):\n    n = 0\n"
+        "    while len(durations) > 1 and t >= durations[0]:\n"
+        "        t -= durations.pop(0)\n        n += 1\n    return n, t")  # fmt: skip
+    asked = next(q for q in marks(solved).questions if q["name"] == "segment_at")
+    assert asked["outcome"] == "wrong"
+    assert any(
+        test["says"].endswith(
+            ": segment_at changes the list `durations` that it is given; "
+            "work on a copy, list(durations)"
+        )
+        for test in asked["tests"]
+    )
+
+
 def test_names_that_a_cell_needs():
     """Needed are names from elsewhere: no parameters, no locals, nothing that the cell binds."""
-    found = cells.look("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
+    found = look("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
     assert set(found["uses"]) == {"c", "e", "g"}
     assert found["functions"] == ["f"]
-    assert cells.look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
-    assert cells.look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
-    assert "SyntaxError" in cells.look("def f(:")["broken"]
+    assert look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
+    assert look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
+    assert "SyntaxError" in look("def f(:")["broken"]
 
 
 def test_what_every_submission_imports_is_known(bundle):
@@ -259,5 +343,5 @@ def test_result_file_is_text(marks, solved):
     result = marks(solved)
     assert Result.read(result.text()) == Result.read(Result.read(result.text()).text())
     assert Result.read(result.text()).verdict == json.loads(json.dumps(result.verdict)) | {
-        key: result.verdict[key] for key in ("questions", "notes", "cells", "own")
+        key: result.verdict[key] for key in ("questions", "notes", "cells", "own", "tricks")
     }

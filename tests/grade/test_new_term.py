@@ -43,6 +43,16 @@ def test_a_correction_keeps_the_seed(course):
     assert term.seed_for(course, "01_paths") == 43, "not the last term's, which was seen"
 
 
+def test_a_public_seed_is_said_to_be_public(course, capsys):
+    """Released with the repository's seed, hidden cases are no secret, and the verb says so."""
+    arguments = ["release", "00_warmup", "--course", str(course.root)]
+    sentence = "public seed 2019 are public: anyone can compute them; begin a term with: labkit new"
+    assert main(arguments) == 0
+    assert capsys.readouterr().out.count(sentence) == 1
+    assert main([*arguments, "--seed", "41"]) == 0
+    assert "anyone can compute" not in capsys.readouterr().out
+
+
 def test_the_next_term_archives_the_names_and_forgets_them(course):
     """What holds names moves into one folder, and one command deletes it."""
     (course.submitted / "ada" / "01_paths").mkdir(parents=True)

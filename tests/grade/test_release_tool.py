@@ -13,8 +13,11 @@ from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grade.course import Course
 from labkit.grade.notebook import brief, source_notebook
+from labkit.grade.problem import _none
 from labkit.grade.release import FORBIDDEN, release
 from labkit.grade.solved import inlined, solution_notebook
+from labkit.grade.stand_in import stand_ins
+from labkit.grade.unearned import refusals
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
@@ -145,3 +148,103 @@ def test_the_public_file_is_small_and_valid():
         questions = map(read_question, data["questions"])
         cases = [case for question in questions for test in question.tests for case in test.cases]
         assert cases and not any(case.hidden for case in cases)
+
+
+def refused(problems, text=None):
+    """Why the warm-up with these problems, and with this notebook text, should not be released."""
+    questions = {name: problem.question(1) for name, problem in problems.items()}
+    return refusals(
+        source_notebook(text or COURSE.notebook_source(NAME), questions), problems, questions
+    )
+
+
+def with_trials(name, change):
+    """The warm-up's problems, one of them with changed trials."""
+    problem = PROBLEMS[name]
+    trials = tuple(change(k, trial) for k, trial in enumerate(problem.trials))
+    return PROBLEMS | {name: replace(problem, trials=trials)}
+
+
+@pytest.mark.parametrize("name", COURSE.names())
+@pytest.mark.parametrize("seed", [2019, 41])
+def test_the_course_itself_is_refused_nothing(name, seed):
+    """No question pays without work or takes one mistake for another, whatever its hidden cases."""
+    problems = {p.name: p for p in COURSE.problems(name)}
+    questions = {key: p.question(seed) for key, p in problems.items()}
+    source = source_notebook(COURSE.notebook_source(name), questions)
+    assert refusals(source, problems, questions) == []
+
+
+def test_a_weighted_test_needs_a_hidden_case():
+    """Without one the public file has its points; the sentence says which test, and how many."""
+    bare = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k == 1 else t)
+    (sentence,) = refused(bare)
+    assert sentence == (
+        "transform_point: the test 'a frame shifted and turned by 90 degrees of yaw' carries 1 of "
+        "2 points and has no hidden case; give its Trial a maker of them"
+    )
+    gate = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k == 0 else t)
+    assert refused(gate) == [], "a gate carries no points"
+
+
+def test_public_cases_by_heart_pay_only_what_is_stated():
+    """A table of the public calls with their answers earns what no hidden case takes away."""
+    bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
+    by_test, by_heart = refused(bare)
+    assert "learns its public cases by heart earns 1 of 2 points, and 0 are stated" in by_heart
+    stated = {"inverse_transform": replace(bare["inverse_transform"], free_share=0.5)}
+    assert refused(bare | stated) == [by_test]
+
+
+def test_a_stand_in_pays_only_what_is_stated(tmp_path):
+    """A notebook that falls back to the answer gives it away, unless the question withholds it."""
+    text = tmp_path / f"{NAME}.py"
+    source = COURSE.notebook_source(NAME).read_text()
+    answer = "return T_ab[:3, :3] @ p_b + T_ab[:3, 3]"
+    text.write_text(source.replace("return np.full(3, np.nan)", answer))
+    (sentence,) = refused(PROBLEMS, text)
+    assert "transform_point: its notebook's stand-in earns 2 of 2 points, and 0 are st" in sentence
+    stated = {"transform_point": replace(PROBLEMS["transform_point"], free_share=1.0)}
+    assert refused(PROBLEMS | stated, text) == []
+    open_door = {"inverse_transform": replace(PROBLEMS["inverse_transform"], withheld=())}
+    (sentence,) = refused(PROBLEMS | open_door)
+    assert "inverse_transform: its notebook's stand-in earns 2 of 2" in sentence
+
+
+def test_a_stand_in_is_run_alone():
+    """Of the notebook only what the stand-in needs is run: no arm, no figure, no other check."""
+    name = "03_velocity_control"
+    questions = {p.name: p.question(1) for p in COURSE.problems(name)}
+    text = stand_ins(source_notebook(COURSE.notebook_source(name), questions))
+    assert set(text) == set(questions)
+    whole = text["workspace_velocity_pd"]
+    for part in ("def tip_feedforward", "my_damped_inverse = use(", "import labkit as lk"):
+        assert part in whole
+    for part in ("lk.run(", "plt", "check("):
+        assert part not in whole
+
+
+def test_known_mistakes_must_be_told_apart():
+    """Two with the same answers, or one with the right ones, would accuse the innocent."""
+    problem = PROBLEMS["joint_error"]
+    first = problem.wrong[0]
+    twin = replace(first, name="its twin")
+    right = replace(first, name="nothing wrong", function=problem.answer)
+    (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(first, twin))})
+    assert "'actual minus target' and 'its twin' give the same answers on all" in sentence
+    (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(right,))})
+    assert "'nothing wrong' gives the right answers on all public calls" in sentence
+
+
+@pytest.mark.slow
+def test_a_release_with_a_reason_against_it_writes_nothing(tmp_path, monkeypatch):
+    """All reasons are said at once, and what was released before stays."""
+    course = copied(tmp_path)
+    release(course, NAME, 1)
+    before = {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
+    bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none))
+    monkeypatch.setattr(Course, "problems", lambda self, name: tuple(bare.values()))
+    with pytest.raises(LabkitError, match=rf"^{NAME} is not released:") as caught:
+        release(course, NAME, 1)
+    assert str(caught.value).count("inverse_transform: ") == 3
+    assert before == {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}

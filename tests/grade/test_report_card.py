@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from labkit.check import Outcome, mark
 from labkit.errors import LabkitError, UnknownName
 from labkit.grade.course import Course
 from labkit.grade.report_card import functions_from, make, markdown, write
@@ -45,6 +46,28 @@ def test_answers_from_outside_count(card):
     assert row.accepted == row.variants - 1
     assert any("a right answer earned only 0" in words for words in row.failures)
     assert row.margin_sigma < 0.0, "what claims to be right lies beyond the tolerance"
+
+
+def test_an_answer_from_outside_spoils_nothing_for_the_others():
+    """One that changes what it is given is rejected; every other answer has its input whole."""
+
+    def eats(durations, t):
+        k = 0
+        while len(durations) > 1 and t >= durations[0]:
+            t -= durations.pop(0)
+            k += 1
+        return k, t
+
+    def writes(s, start, centre):
+        start[:] = 0.0
+        return None
+
+    problems = {p.name: p for p in COURSE.problems("01_paths")}
+    for name, function in (("segment_at", eats), ("circle", writes)):
+        questions = problems[name].question(1), problems[name].question(2)
+        assert all(mark(question, function).earned == 0 for question in questions)
+        for answer in (problems[name].answer, *problems[name].variants):
+            assert all(mark(q, answer).outcome is Outcome.RIGHT for q in questions)
 
 
 def test_written(card, tmp_path):

@@ -5,27 +5,21 @@ from __future__ import annotations
 import csv
 import io
 import json
-import os
-import zipfile
 from dataclasses import replace
 from html.parser import HTMLParser
-from pathlib import Path
 
 import pytest
-from handmade import QUICK, ROOT
+from handmade import QUICK
 
 from labkit.check.codec import encode
 from labkit.cli import main
-from labkit.errors import LabkitError
 from labkit.grade.batch import Graded, How, grade_class
 from labkit.grade.class_report import report
-from labkit.grade.collect import collect
 from labkit.grade.engines import students
 from labkit.grade.export import LAYOUTS, Row, as_csv, left_out, rows
 from labkit.grade.feedback import page
 from labkit.grade.gradebook import record
-from labkit.grade.limits import Limits
-from labkit.grade.lms import FILE, Known, known
+from labkit.grade.lms import Known
 from labkit.grade.pseudonyms import pseudonyms
 from labkit.grade.regrade import accept, moves
 from labkit.grade.results import Results
@@ -129,7 +123,7 @@ def test_tables(term, capsys):
     assert main(["export", NAME, "--course", str(term.root)]) == 0
     head, full, *_ = capsys.readouterr().out.splitlines()
     assert head.startswith("student,bang_bang,trapezoid")
-    assert full.endswith("20.0")
+    assert full.endswith("20.0,")
 
 
 def test_nothing_becomes_a_formula():
@@ -196,119 +190,6 @@ def test_look_alikes(term):
     text = report(NAME, [*results, replace(one, student="zz")], {}, str)
     assert "Look-alikes" in text
     assert f"{one.student} and zz" in text
-
-
-def test_collect_from_downloads(course, tmp_path):
-    """Moodle's, Canvas's and nbgrader's own layouts end in submitted/, the last file of each."""
-    moodle, canvas = tmp_path / "moodle.zip", tmp_path / "canvas.zip"
-    with zipfile.ZipFile(moodle, "w") as archive:
-        archive.writestr("Ada Lovelace_101_assignsubmission_file/notebook.ipynb", "1")
-        archive.writestr("Ada Lovelace_101_assignsubmission_file/notebook(3).ipynb", "2")
-        archive.writestr("Bob_102_assignsubmission_file/readme.txt", "x")
-        archive.writestr("../../evil.ipynb", "x")
-    with zipfile.ZipFile(canvas, "w") as archive:
-        archive.writestr("hoppergrace_LATE_7_99_01_paths-1.ipynb", "3")
-    inbound = tmp_path / "inbound"
-    folder = inbound / f"carl+{NAME}+2026-03-01 10:00:00 UTC+abc"
-    folder.mkdir(parents=True)
-    (folder / f"{NAME}.ipynb").write_text("4")
-    (inbound / f"eve+{NAME}+2026-03-01 10:00:00 UTC+abc").symlink_to("/etc")
-    said = [str(x) for source in (moodle, canvas, inbound) for x in collect(course, NAME, source)]
-    taken = {p.parent.parent.name: p.read_text() for p in course.submitted.glob("*/*/*.ipynb")}
-    assert taken == {"Ada-Lovelace": "2", "hoppergrace-7": "3", "carl": "4"}
-    assert (course.submitted / "carl" / NAME / "timestamp.txt").read_text().startswith("2026-03-01")
-    assert [x for x in said if "late" in x and "hopper" in x]
-    assert [x for x in said if "no student can be told" in x]
-    assert [x for x in said if "notebook.ipynb: not taken; notebook(3).ipynb counts" in x]
-    assert [str(x) for x in collect(course, NAME, moodle) if "there already" in str(x)]
-    with pytest.raises(LabkitError, match="neither a folder nor a zip"):
-        list(collect(course, NAME, Path(__file__)))
-    with pytest.raises(LabkitError, match="there is no"):
-        list(collect(course, NAME, tmp_path / "none.zip"))
-
-
-def test_collect_takes_the_notebook_that_is_called_as_the_assignment(course, tmp_path):
-    """A sketch beside it is not taken for it; what came later is, whatever its number."""
-    file = "Ada_101_assignsubmission_file/{}.ipynb"
-    names = [f"{NAME}", f"{NAME}(2)", "zz-sketch-9", "zz"]
-    zipped = download(tmp_path / "a.zip", [file.format(name) for name in names])
-    said = [str(x) for x in collect(course, NAME, zipped)]
-    taken = course.submitted / "Ada" / NAME / f"{NAME}.ipynb"
-    assert taken.read_text() == file.format(f"{NAME}(2)")
-    assert f"Ada: zz.ipynb: not taken; {NAME}(2).ipynb counts" in said
-
-
-def test_collect_keeps_the_names_of_the_exchange(course, tmp_path):
-    """The exchange hands back under the name that it took; none can lead out of the folder."""
-    for who in ("ada.l@uni.org", "..", ".hidden"):
-        folder = tmp_path / "in" / f"{who}+{NAME}+2026-03-01 10:00:00 UTC"
-        folder.mkdir(parents=True)
-        (folder / f"{NAME}.ipynb").write_text(who)
-    assert [x.student for x in collect(course, NAME, tmp_path / "in")] == ["ada.l@uni.org"]
-    assert [path.name for path in course.submitted.iterdir()] == ["ada.l@uni.org"]
-
-
-def test_collect_waits_for_nothing_and_follows_nobody(course, tmp_path, monkeypatch):
-    """A pipe, a link or a huge file in a download costs its own student, in words."""
-    monkeypatch.setattr("labkit.grade.collect.Limits", lambda: Limits(notebook=1))
-    for who in ("ada", "bob", "carl"):
-        (tmp_path / "in" / f"{who}+{NAME}+2026-03-01 10:00:00 UTC").mkdir(parents=True)
-    pipe, link, huge = (path / f"{NAME}.ipynb" for path in sorted((tmp_path / "in").iterdir()))
-    os.mkfifo(pipe)
-    link.symlink_to("/etc/passwd")
-    huge.write_bytes(b" " * 2**21)
-    said = [str(x) for x in collect(course, NAME, tmp_path / "in")]
-    words = ("is not a file", "is a link or cannot be opened", "has 2 MB, the limit is 1 MB")
-    assert [word in x for word, x in zip(words, said, strict=True)] == [True] * 3
-    path = tmp_path / "big.zip"
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        archive.writestr("Ada_1_assignsubmission_file/n.ipynb", b" " * 2**21)
-    (one,) = collect(course, NAME, path)
-    assert str(one) == "Ada: n.ipynb: not taken; the file has 2 MB, the limit is 1 MB"
-    assert not course.submitted.exists()
-
-
-def test_a_damaged_download_is_a_sentence(course, tmp_path):
-    """A zip with a broken file in it says so, and nothing of it is taken."""
-    path = download(tmp_path / "a.zip", ["Ada_1_assignsubmission_file/n.ipynb"])
-    path.write_bytes(path.read_bytes().replace(b"n.ipynbAda", b"n.ipynbBda"))
-    with pytest.raises(LabkitError, match="damaged or locked"):
-        list(collect(course, NAME, path))
-    assert not course.submitted.exists()
-
-
-def download(path, names):
-    with zipfile.ZipFile(path, "w") as archive:
-        for name in names:
-            archive.writestr(name, name)
-    return path
-
-
-def test_collect_tells_people_of_one_name_apart(course, tmp_path):
-    """Moodle's number is in a folder's name only where it must be, and stays there."""
-    file = "{}_{}_assignsubmission_file_{}n.ipynb"
-    first = [file.format("Li Wei", 7, "/"), file.format("Bob", 8, "")]
-    later = [file.format("Li Wei", 7, "/"), file.format("Li Wei", 9, "/sub/")]
-    other = [file.format("Kim", 1, "/"), file.format("Kim", 2, "/")]
-    for number, names in enumerate((first, later, other)):
-        said = [str(x) for x in collect(course, NAME, download(tmp_path / f"{number}.zip", names))]
-    assert "Kim: 2 students are called so; told apart by their number" in said
-    folders = {path.name for path in course.submitted.iterdir()}
-    assert folders == {"Li-Wei", "Li-Wei-9", "Bob", "Kim-1", "Kim-2"}
-    assert known(course, NAME)["Li-Wei-9"] == Known("moodle", "9", "Li Wei")
-    assert not known(course, "02_model")
-
-
-def test_numbers_go_with_the_term(course, tmp_path):
-    """What a platform calls its students lies in a folder of no repository, and is archived."""
-    names = ["hoppergrace_LATE_7_99_n.ipynb"]
-    list(collect(course, NAME, download(tmp_path / "a.zip", names)))
-    assert (course.root / FILE).exists()
-    assert "/course_private/" in (ROOT / ".gitignore").read_text().split()
-    assert FILE.startswith("course_private/")
-    folder = archive(course)
-    assert not (course.root / FILE).exists()
-    assert (folder / "lms.json").exists()
 
 
 def test_canvas_layout():

@@ -92,4 +92,4 @@ def test_released_in_a_kernel(name, tmp_path):
         assert not [o.text for o in cell.get("outputs", ()) if o.get("name") == "stderr"]
         if cell.metadata["lab"] == "check":
             assert cell.outputs[-1].data["text/plain"] == "0.0"
-            assert "not attempted yet" in cell.outputs[0].text
+            assert "not attempted yet" in cell.outputs[0].data["text/plain"]

@@ -19,19 +19,14 @@ import time
 import traceback
 import warnings
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from typing import Any
 
-from labkit.check.raised import explained
+from labkit.check.cells import plain
+from labkit.check.reply import LONGEST, TimeUp, kind, reply, sentence
 
-from .cells import plain
+from . import standins
 from .wire import Gone, Line
-
-SAYS = 400  # characters of an exception's message that travel
-
-
-class TimeUp(BaseException):
-    """A cell or a call took too long."""
 
 
 class Notebook:
@@ -51,21 +46,21 @@ class Notebook:
     def run(self, number: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
         """Run one cell, and keep the functions that it is to define."""
         out = _Capped(min(20_000, max(0, self.limits["output"] - self.output)))
-        began, error, kind = time.perf_counter(), "", ""
+        began, error, raised = time.perf_counter(), "", ""
         with _Streams(out):
             try:
                 with _Alarm(seconds, self.limits["patience"]):
                     self._execute(f"<cell {number}>", source)
             except TimeUp:
-                kind, error = "TimeUp", f"it was stopped after {seconds:g} s"
-            except BaseException as raised:
-                kind, error = type(raised).__name__, _sentence(raised)
+                raised, error = "TimeUp", f"it was stopped after {seconds:g} s"
+            except BaseException as why:
+                raised, error = kind(why), _sentence(why)
         for name in answers:
             if name in self.names:
                 self.functions[name] = self.names[name]
         self.output += out.size
         spent = time.perf_counter() - began
-        return {"kind": kind, "error": error, "output": out.getvalue(), "seconds": spent}
+        return {"kind": raised, "error": error, "output": out.getvalue(), "seconds": spent}
 
     def _execute(self, name: str, source: str) -> None:
         text = plain(source)
@@ -78,7 +73,7 @@ class Notebook:
     def answer(self, line: Line, name: str) -> None:
         """Answer one call after another, until told to stop."""
         kwargs: dict[str, Any] = {}
-        decode, encode = self.codec.decode, self.codec.encode
+        decode = self.codec.decode
         line.send({"ready": name})
         while True:
             asked = line.read()
@@ -89,33 +84,28 @@ class Notebook:
                     args = [decode(x) for x in asked["args"]]
                     if asked["kwargs"] is not None:
                         kwargs = {key: decode(x) for key, x in asked["kwargs"].items()}
-                    reply = self._reply(encode, name, args, kwargs)
+                    said = self._reply(name, args, kwargs)
                 except BaseException as raised:
-                    reply = {"raised": type(raised).__name__, "says": _sentence(raised)}
-            line.send(reply)
+                    said = {"raised": kind(raised), "says": sentence(raised)}
+            line.send(said)
 
-    def _reply(
-        self,
-        encode: Callable[[Any], Any],
-        name: str,
-        args: list[Any],
-        kwargs: dict[str, Any],
-    ) -> dict[str, Any]:
+    def _reply(self, name: str, args: list[Any], kwargs: dict[str, Any]) -> dict[str, Any]:
         seconds = self.limits["call"]
         if name not in self.functions:
             raise NameError(f"the notebook defines no {name}")
         try:
             with _Alarm(seconds, self.limits["patience"]):
-                answer = self.functions[name](*args, **kwargs)
-                try:
-                    return {"is": encode(answer)}
-                except TypeError:
-                    return {"is": encode(_as_data(answer))}
+                return reply(self.functions[name], args, kwargs)
         except TimeUp:
             return {"raised": "TimeUp", "says": f"it did not come back within {seconds:g} s"}
 
 
-def serve(line: Line, codec: Any, withhold: Callable[..., None], limits: dict[str, Any]) -> None:
+def serve(
+    line: Line,
+    codec: Any,
+    withhold: Callable[..., AbstractContextManager[None]],
+    limits: dict[str, Any],
+) -> None:
     """Do what the checker asks, until it closes its end."""
     notebook = Notebook(codec, limits)
     signal.signal(signal.SIGALRM, _time_up)
@@ -140,8 +130,9 @@ def serve(line: Line, codec: Any, withhold: Callable[..., None], limits: dict[st
                 limit = int(_cpu() + limits["question"]) + 1
                 with suppress(ValueError, OSError):
                     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-                withhold(asked["withheld"], asked["question"], notebook.names)
-                notebook.answer(line, asked["question"])
+                standins.right.update(asked["right"])
+                with withhold(asked["withheld"], notebook.names):
+                    notebook.answer(line, asked["question"])
             os._exit(0)
         _, status = os.waitpid(child, 0)
         line.send({"over": os.waitstatus_to_exitcode(status)})
@@ -157,25 +148,11 @@ def _sweep() -> None:
                 os.waitpid(-1, 0)
 
 
-def _as_data(answer: Any) -> Any:
-    """Anything that behaves as an array or as a sequence, as one."""
-    import numpy as np
-
-    if hasattr(answer, "__array__"):
-        return np.asarray(answer)
-    if hasattr(answer, "__float__"):
-        return float(answer)
-    return list(answer)
-
-
 def _sentence(error: BaseException) -> str:
-    try:
-        text = explained(error)[:SAYS]
-    except BaseException:
-        text = "(its message cannot be shown)"
     if isinstance(error, SyntaxError):
-        text = traceback.format_exception_only(error)[-1].partition(": ")[2].strip()[:SAYS]
-    return text
+        with suppress(BaseException):
+            return traceback.format_exception_only(error)[-1].partition(": ")[2].strip()[:LONGEST]
+    return sentence(error)
 
 
 def _time_up(number: int, frame: Any) -> None:

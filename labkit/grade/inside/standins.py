@@ -50,14 +50,23 @@ def also(name: str, packed: str) -> None:
     """Nothing more."""
 
 
-def use(name: str, function: Callable[..., Any], given: Callable[..., Any]) -> Callable[..., Any]:
-    """The student's function while it gives something, else the one given."""
+right: set[str] = set()
+"""Questions whose public cases the student's functions passed, as the checker says."""
+
+
+def use(
+    name: str,
+    function: Callable[..., Any],
+    given: Callable[..., Any],
+    yours: Callable[..., Any] | None = None,
+) -> Callable[..., Any]:
+    """The student's function where it is right, else the one given, as in a notebook.
+
+    The cells run before anything is tried, so that which of them it is must wait for a call.
+    """
 
     def either(*args: Any, **kwargs: Any) -> Any:
-        try:
-            return function(*args, **kwargs)
-        except Exception:
-            return given(*args, **kwargs)
+        return ((yours or function) if name in right else given)(*args, **kwargs)
 
     return either
 
@@ -74,13 +83,8 @@ class Shell:
 
     def run_line_magic(self, name: str, line: str, *rest: Any, **options: Any) -> None:
         """``%time x`` runs x; any other magic does nothing."""
-        if name in {"time", "timeit"}:
+        if name == "time":
             exec(compile(line, "<magic>", "exec"), self.user_ns)
-
-    def run_cell_magic(self, name: str, line: str, cell: str) -> None:
-        """``%%time`` and ``%%capture`` run the cell; any other magic does nothing."""
-        if name in {"time", "timeit", "capture"}:
-            exec(compile(cell, "<magic>", "exec"), self.user_ns)
 
     def system(self, command: str) -> None:
         """No commands."""

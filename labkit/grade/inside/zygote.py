@@ -121,10 +121,10 @@ def _load(more: Sequence[str]) -> tuple[Any, Any, Any]:
         import_module(name)
     import labkit
     from labkit.check import codec
+    from labkit.check.withheld import withhold
 
     from . import standins
     from .inmate import serve
-    from .withheld import withhold
 
     with labkit.Arm("left") as arm:  # the physics engine and the model load what they need
         arm.model.mass_matrix(arm.state().q)

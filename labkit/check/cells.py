@@ -1,0 +1,200 @@
+"""What a cell's text does with names, without running it.
+
+The check in a notebook, `labkit submit-check` and the grader all look at cells with this, so that
+they find the same answers, and the same tools in them.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import symtable
+import warnings
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+Look = Mapping[str, Any]
+"""What `look` finds in a cell, as JSON data."""
+
+RUNS_HERE = ("time", "capture", "prun")
+"""Cell magics that run their cell with the notebook's names.
+
+Any other, such as ``%%timeit`` or ``%%bash``, leaves no name behind.
+"""
+_MAGIC = re.compile(r"\s*%%(\S+)[^\n]*\n?")
+_CHAINS = {ast.Name, ast.Attribute, ast.Call}
+_IMPORTS = {ast.Import, ast.ImportFrom}
+_OTHER_MAGIC = re.compile(r"get_ipython\(\)\.run_cell_magic\('([^']*)'")
+
+
+def plain(source: str) -> str:
+    """A cell as plain Python, line for line.
+
+    The magics of `RUNS_HERE` are taken off; other magics and shell commands become calls, as in a
+    notebook.
+    """
+    while (found := _MAGIC.match(source)) and found[1] in RUNS_HERE:
+        source = "\n" * found[0].count("\n") + source[found.end() :]
+    if not any(line.lstrip()[:1] in {"%", "!", "?"} or "?" in line for line in source.split("\n")):
+        return source
+    from IPython.core.inputtransformer2 import TransformerManager
+
+    text: str = TransformerManager().transform_cell(source)
+    return text
+
+
+@lru_cache(maxsize=4096)
+def look(source: str) -> Look:
+    """What a code cell does with names.
+
+    Args:
+        source: Python as a notebook understands it.
+
+    Returns:
+        ``functions`` and ``binds`` that it defines at its top level, names that it ``uses``,
+        functions that are still ``stubs``, why it is ``broken``, empty if it is not, the ``magic``
+        that keeps its names from the notebook, and its ``definitions``, see `_definition`.
+    """
+    found: dict[str, Any] = {
+        "functions": [], "binds": [], "uses": [], "stubs": [], "broken": "", "magic": "",
+        "definitions": [],
+    }  # fmt: skip
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            text = plain(source)
+            other = _OTHER_MAGIC.match(text)
+            found["magic"] = other[1] if other else ""
+            tree = ast.parse(text)
+            functions = [x for x in tree.body if isinstance(x, ast.FunctionDef | ast.ClassDef)]
+            found["functions"] = [x.name for x in functions]
+            found["stubs"] = [x.name for x in functions if is_stub(x)]
+            lines = text.split("\n")
+            definitions = [_definition(part, lines) for part in _parts(tree.body)]
+            binds = {name for definition in definitions for name in definition["binds"]}
+            outside = {name for definition in definitions for name in definition["outside"]}
+            found["binds"], found["uses"] = sorted(binds), sorted(outside - binds)
+            found["definitions"] = definitions
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        found["broken"] = f"{type(error).__name__}: {error}"[:200]
+    return found
+
+
+def is_stub(statement: ast.AST) -> bool:
+    """Whether it is a function that does nothing but raise NotImplementedError."""
+    if not isinstance(statement, ast.FunctionDef):
+        return False
+    body = [x for x in statement.body if not _is_text(x)]
+    if len(body) != 1 or not isinstance(body[0], ast.Raise) or body[0].exc is None:
+        return False
+    raised = body[0].exc.func if isinstance(body[0].exc, ast.Call) else body[0].exc
+    return isinstance(raised, ast.Name) and raised.id == "NotImplementedError"
+
+
+def dotted(node: ast.AST) -> str:
+    """A chain of attributes as text, "lk.Model.gravity"; "" if it begins with no name.
+
+    What a call gives is taken for what is called, for what an instance has its class has; a
+    constant name given to ``getattr`` is an attribute.
+    """
+    if isinstance(node, ast.Name):
+        return node.id
+    if isinstance(node, ast.Attribute):
+        owner = dotted(node.value)
+        return owner and f"{owner}.{node.attr}"
+    if isinstance(node, ast.Call):
+        called = dotted(node.func)
+        name = node.args[1] if called == "getattr" and len(node.args) > 1 else None
+        if isinstance(name, ast.Constant) and isinstance(name.value, str):
+            owner = dotted(node.args[0])
+            return owner and f"{owner}.{name.value}"
+        return called
+    return ""
+
+
+def imported(node: ast.AST) -> dict[str, str]:
+    """What the names that an import brings stand for, in full; none for any other statement."""
+    if isinstance(node, ast.Import):
+        return {
+            x.asname or x.name.partition(".")[0]: x.name if x.asname else x.name.partition(".")[0]
+            for x in node.names
+        }
+    if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+        return {x.asname or x.name: f"{node.module}.{x.name}" for x in node.names}
+    return {}
+
+
+def _parts(body: list[ast.stmt]) -> list[list[ast.stmt]]:
+    """Statements one by one, but for those that share a line."""
+    parts: list[list[ast.stmt]] = []
+    for statement in body:
+        if parts and statement.lineno <= (parts[-1][-1].end_lineno or 0):
+            parts[-1].append(statement)
+        else:
+            parts.append([statement])
+    return parts
+
+
+def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
+    """What a statement at a cell's top level gives a meaning to, and what it leans on.
+
+    Returns:
+        Names that it ``binds``; names from ``outside``; the dotted names that it ``uses``; what
+        names of these that it imports itself ``mean``, "*" for all of a module; whether it is a
+        ``stub``.
+    """
+    first = min(x.lineno for x in [part[0], *getattr(part[0], "decorator_list", ())])
+    text = "\n".join(lines[first - 1 : part[-1].end_lineno])
+    scope = symtable.symtable(text, "", "exec")
+    binds, outside = _own(scope), set(_from_elsewhere(scope))
+    mean: dict[str, str] = {}
+    chains: set[str] = set()
+    for node in _used(part):
+        kind = type(node)
+        if kind in _CHAINS:
+            chains.add(dotted(node))
+        elif kind in _IMPORTS:
+            mean |= imported(node)
+    uses = {x for x in chains if (root := x.partition(".")[0]) in outside or root in mean}
+    return {
+        "binds": sorted(binds | (mean.keys() & {"*"})),
+        "outside": sorted(outside),
+        "uses": sorted(uses),
+        "mean": mean,
+        "stub": is_stub(part[0]),
+    }
+
+
+def _used(part: list[ast.stmt]) -> Iterator[ast.AST]:
+    """All that statements are made of, but for the stand-ins that they give to ``use``."""
+    waiting: list[ast.AST] = [*part]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "use":
+            waiting += [*node.args[:2], *node.args[3:]]
+            waiting += [x.value for x in node.keywords if x.arg != "given"]
+        else:
+            waiting += ast.iter_child_nodes(node)
+
+
+def _is_text(node: ast.stmt) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+
+
+def _own(scope: symtable.SymbolTable) -> set[str]:
+    """Names that a piece of code binds at its own level."""
+    return {x.get_name() for x in scope.get_symbols() if x.is_assigned() or x.is_imported()}
+
+
+def _from_elsewhere(scope: symtable.SymbolTable) -> Iterator[str]:
+    """Names that a piece of code takes from what ran before it."""
+    top = scope.get_type() == "module"
+    own = _own(scope) if top else set()
+    for symbol in scope.get_symbols():
+        outside = symbol.is_referenced() and (top or symbol.is_global())
+        if outside and symbol.get_name() not in own:
+            yield symbol.get_name()
+    for inner in scope.get_children():
+        yield from (name for name in _from_elsewhere(inner) if name not in own)

@@ -1,0 +1,99 @@
+"""Each student's step by itself: where one fails, the student is named and the others are done."""
+
+from __future__ import annotations
+
+import errno
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from typing import TypeVar
+
+from ..errors import LabkitError
+from .clean import clean_line
+
+T = TypeVar("T")
+_OF_THE_MACHINE = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EMFILE, errno.ENFILE}
+"""Errors that every student's step would meet: a disk that is full, or cannot be written."""
+
+
+class Failed(LabkitError):
+    """A step failed for one student.
+
+    Attributes:
+        student: For whom.
+        why: A sentence.
+    """
+
+    def __init__(self, student: str, why: str) -> None:
+        """Name the student, and say what failed."""
+        super().__init__(student, why)
+        self.student, self.why = student, why
+
+    def __str__(self) -> str:
+        return f"{self.student}: {self.why}"
+
+
+def for_student(
+    student: str, step: Callable[[], T], of_all: tuple[type[Exception], ...] = ()
+) -> T | Failed:
+    """Do a step for one student.
+
+    Args:
+        student: For whom.
+        step: What to do.
+        of_all: Exceptions that concern everybody, and are raised.
+
+    Returns:
+        What the step returned, or why it failed.
+
+    Raises:
+        OSError: The disk is full or cannot be written, so it would fail for everybody.
+    """
+    try:
+        return step()
+    except of_all:
+        raise
+    except LabkitError as error:
+        return Failed(student, clean_line(str(error)))
+    except OSError as error:
+        if error.errno in _OF_THE_MACHINE:
+            raise
+        where = "" if error.filename is None else f"{error.filename}: "
+        return Failed(student, clean_line(f"{where}{error.strerror or error}"))
+    except Exception as error:
+        return Failed(student, clean_line(f"{type(error).__name__}: {error}"))
+
+
+class Failures:
+    """What failed in a verb, and for whom; named on stderr when the verb ends."""
+
+    def __init__(self) -> None:
+        self.sentences: list[str] = []
+
+    @property
+    def code(self) -> int:
+        """The exit code: 1 if something failed."""
+        return 1 if self.sentences else 0
+
+    def add(self, what: str, failed: Iterable[LabkitError]) -> None:
+        """Keep failures; ``what`` says what they mean, such as "not graded"."""
+        self.sentences += [f"{what}: {one}" for one in failed]
+
+    def sift(self, outcomes: Iterable[T | LabkitError], what: str) -> Iterator[T]:
+        """Yield what was done, and keep what failed.
+
+        Args:
+            outcomes: Of a step, one for each student.
+            what: What a failure means, such as "not graded".
+        """
+        for one in outcomes:
+            if isinstance(one, LabkitError):
+                self.add(what, [one])
+            else:
+                yield one
+
+    def __enter__(self) -> Failures:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for sentence in self.sentences:
+            print(sentence, file=sys.stderr, flush=True)

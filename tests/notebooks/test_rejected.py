@@ -1,0 +1,234 @@
+"""Wrong answers that once earned full marks, or were called by another one's name.
+
+They were written by somebody who knew the students' notebooks alone, and stand here as they were.
+"""
+
+from math import sqrt
+from pathlib import Path
+
+import control
+import numpy as np
+import pytest
+from scipy import stats
+
+import labkit as lk
+from labkit.check import Outcome, mark
+from labkit.grade.course import Course
+from solutions.held_out.comparison import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
+
+COURSE = Course.here(Path(__file__))
+PROBLEMS = {f"{name[:2]} {p.name}": p for name in COURSE.names() for p in COURSE.problems(name)}
+
+
+def wrapped(target, state):
+    return (target.position - state.q + np.pi) % (2 * np.pi) - np.pi
+
+
+def zero_by_zero(R_wd, R_wt):
+    E = R_wd @ R_wt.T
+    with np.errstate(invalid="ignore"):
+        a = np.arccos((np.trace(E) - 1) / 2)
+        v = np.array([E[2, 1] - E[1, 2], E[0, 2] - E[2, 0], E[1, 0] - E[0, 1]])
+        return a / (2 * np.sin(a)) * v
+
+
+def too_high_a_triangle(t, distance, v_max, a_max):
+    v = min(v_max, sqrt(2 * distance * a_max))
+    ramp = v / a_max
+    duration = distance / v + ramp
+    if t < 0 or t >= duration:
+        return float(t >= duration), 0.0, 0.0
+    if t < ramp:
+        way = (a_max * t**2 / 2, a_max * t, a_max)
+    elif t < duration - ramp:
+        way = (v * (t - ramp / 2), v, 0.0)
+    else:
+        left = duration - t
+        way = (distance - a_max * left**2 / 2, a_max * left, -a_max)
+    return tuple(x / distance for x in way)
+
+
+def over_h(mass_matrix, q, dq):
+    h = 1e-5
+    slopes = [(mass_matrix(q + d) - mass_matrix(q - d)) / h for d in h * np.eye(7)]
+    dM = np.stack(slopes, axis=2)
+    return 0.5 * (dM + dM.transpose(0, 2, 1) - dM.transpose(2, 1, 0)) @ dq
+
+
+def left_over(log, model, joints=7):
+    states = zip(log.q, log.dq, strict=True)
+    energy = [model.kinetic_energy(*x) + model.potential_energy(x[0]) for x in states]
+    return np.gradient(energy, log.t) - np.sum((log.tau * log.dq)[:, :joints], axis=1)
+
+
+def by_arcsine(state, target, model, *, kp, damping):
+    T = model.pose(state.q)
+    v = lk.se3.vee(target.pose[:3, :3] @ T[:3, :3].T)
+    n = np.linalg.norm(v)
+    e_o = v / n * np.arcsin(min(n, 1)) if n else v
+    e = np.concatenate([target.pose[:3, 3] - T[:3, 3], e_o])
+    J = model.tip_jacobian(state.q)
+    damped = J.T @ np.linalg.inv(J @ J.T + damping * np.eye(6))
+    return lk.JointVelocity(damped @ (target.twist + kp * e))
+
+
+def springs(zeta):
+    def choose_gains(model):
+        w, m = 2 * np.pi * 1.9, np.diag(model.mass_matrix(model.robot.ready))
+        return w**2 * m, 2 * zeta * w * m
+
+    return choose_gains
+
+
+def from_the_notebook(model):
+    return 80.0, 12.0
+
+
+def from_the_notebooks_other_cell(model):
+    m = np.diag(model.mass_matrix(model.robot.ready))
+    return 50.0 * m, 14.0 * m
+
+
+def spring_from_zero(state, target, force, *, m, b, k):
+    return target[2] + (force + b * (target[1] - state[1]) - k * state[0]) / m
+
+
+def total_least_squares(force, displacement):
+    F, x = (np.asarray(a) - np.mean(a, axis=0) for a in (force, displacement))
+    V = np.linalg.svd(np.hstack([x, F]))[2].T
+    return (-V[:3, 3:] @ np.linalg.inv(V[3:, 3:])).T
+
+
+def three_coordinates(t, reference, goal, duration):
+    whole = PROBLEMS["06 blend"].answer(t, reference, goal, duration)
+    return lk.Sample(*np.vstack(whole)[:, :3])
+
+
+def rms_of_the_left_arm(log, model):
+    return PROBLEMS["07 rms_error"].answer(log, lk.Model("left"))
+
+
+def norm_of_the_mean(log, model):
+    e = [T[:3, 3] - model.pose(q)[:3, 3] for q, T in zip(log.q, log.target.pose, strict=True)]
+    return np.linalg.norm(np.mean(e, axis=0))
+
+
+def plain_function(kp, lag, delay):
+    return lambda s: kp / (lag * s + 1) / s * np.exp(-s * delay)
+
+
+def loop(order, unit=1.0):
+    def open_loop(kp, lag, delay):
+        late = control.tf(*control.pade(delay / unit, order)) if delay else 1
+        return control.tf([kp], [lag, 1, 0]) * late
+
+    return open_loop
+
+
+def each(verdict):
+    return lambda table: {claim: verdict(*map(np.array, rows)) for claim, rows in table.items()}
+
+
+def by_interval(a, b, t=None):
+    d = np.subtract(a, b)
+    t = t or stats.t.ppf(0.975, len(d) - 1)
+    half = t * d.std(ddof=1) / sqrt(len(d))
+    return "undecided" if abs(d.mean()) <= half else "holds" if d.mean() > 0 else "does not hold"
+
+
+def by_ten_percent(a, b):
+    if max(a.mean() / b.mean(), b.mean() / a.mean()) <= 1.1:
+        return "undecided"
+    return "holds" if a.mean() > b.mean() else "does not hold"
+
+
+def lowest(seeds, grid, share=1.0):
+    def choose_gains(runner):
+        tried = {Kp: max(runner(Kp, 0.0, seed) for seed in seeds) for Kp in grid}
+        return share * min(tried, key=lambda Kp: tried[Kp]), 0.0
+
+    return choose_gains
+
+
+GRID = (14.0, 22.0, 34.0, 50.0)
+FINE = tuple(np.geomspace(10.0, 90.0, 18))
+REJECTED = [
+    ("00 joint_error", wrapped, "wrapped to half a turn"),
+    ("00 orientation_error", zero_by_zero, "0/0 where nothing is turned"),
+    ("01 trapezoid", too_high_a_triangle, "a triangle that is too high"),
+    ("02 coriolis", over_h, "twice too large"),
+    ("02 power_balance", lambda *x: left_over(*x, joints=6), "the power of some joints"),
+    ("02 power_balance", lambda *x: abs(left_over(*x)), "without its sign"),
+    ("03 workspace_velocity_pd", by_arcsine, "the arcsine of the turn"),
+    ("04 choose_gains", springs(0.1), "hardly a damper"),
+    ("04 choose_gains", springs(0.0), "no damper at all"),
+    ("04 choose_gains", from_the_notebook, None),
+    ("04 choose_gains", from_the_notebooks_other_cell, "tuned on the slow line only"),
+    ("05 msd", spring_from_zero, "a spring tied to the origin"),
+    (
+        "05 apparent_stiffness",
+        total_least_squares,
+        "the regression the other way round, or of both",
+    ),
+    ("06 blend", three_coordinates, "three coordinates, however many there are"),
+    ("07 rms_error", rms_of_the_left_arm, "always the left arm"),
+    ("07 rms_error", norm_of_the_mean, "the length of the mean error"),
+    ("07 open_loop", plain_function, None),
+    ("07 open_loop", loop(1), "a delay of first order"),
+    ("07 open_loop", loop(4, unit=1e3), "no delay, or next to none"),
+    (
+        "07 verdicts",
+        each(lambda a, b: by_interval(a, b, 2.776)),
+        "Student's t of five pairs for any number",
+    ),
+    ("07 verdicts", each(lambda a, b: "undecided"), "always undecided"),
+    ("07 verdicts", each(by_ten_percent), "a threshold instead of an interval"),
+    (
+        "07 verdicts",
+        each(lambda a, b: by_interval(sorted(a), sorted(b))),
+        "the rows sorted first",
+    ),
+    *(
+        ("07 choose_gains", lowest(seeds, GRID), "the lowest error of all seeds, and no step back")
+        for seeds in ((0,), (0, 1), range(5))
+    ),
+    ("07 choose_gains", lowest((0,), FINE), None),
+    ("07 choose_gains", lowest(range(5), GRID, 0.9), "a tenth off the lowest point"),
+    ("07 choose_gains", lambda runner: (20.0, 1.0), "gains without a try"),
+    ("07 choose_gains", lambda runner: (40.0, 0.6), None),
+]
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "name"),
+    REJECTED,
+    ids=[f"{question}: {name or f.__name__}" for question, f, name in REJECTED],
+)
+def test_it_is_rejected_and_called_by_its_own_name(question, answer, name):
+    """Less than half of the points, and the sentence of another mistake for none of them."""
+    verdict = mark(PROBLEMS[question].question(2019), answer)
+    assert verdict.earned < 0.5 * verdict.points, verdict.tests
+    assert (verdict.mistake.name if verdict.mistake else None) == name
+
+
+def test_a_delay_of_second_order_is_right():
+    """Up to 25 rad/s and 30 ms it is off by 3e-4, where 2e-2 is the tolerance."""
+    problem = PROBLEMS["07 open_loop"]
+    s = 25j
+    num, den = control.pade(0.03, 2)
+    off = abs(np.polyval(num, s) / np.polyval(den, s) / np.exp(-0.03 * s) - 1.0)
+    assert off < 5e-4 < problem.judge.rtol
+    assert mark(problem.question(2019), loop(2)).outcome is Outcome.RIGHT
+
+
+def test_no_typed_gains_serve_both_arms():
+    """Whoever does not ask the runner has no pair that passes, whatever arm the seed draws."""
+    for slow in (2.7, 3.2):
+        unseen = [stiffer(UNSEEN, x) for x in (1.0, RESERVE, slow, slow * RESERVE)]
+        most = min(trials.Kp[-2] for trials in unseen)
+        assert not [
+            (Kp, Kd)
+            for Kp in np.geomspace(2.0, most, 40)
+            for Kd in np.linspace(0.0, 1.0, 6)
+            if all(trials.worst(Kp, Kd) <= UNSEEN_LIMIT for trials in unseen)
+        ]

@@ -1,0 +1,227 @@
+"""A class put through every command, and whose doing it is where a law breaks.
+
+Where what is said, or the file, names a kind, that is it; otherwise the class is halved until one
+is left.  Then the rest of the class goes through without those.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from itertools import count
+from pathlib import Path
+from typing import Any
+
+from . import laws
+from .classes import NAME, Kind, copied, hand_in, hand_in_honest, write_downloads
+from .commands import Ended, typed
+
+Told = dict[Kind | None, list[str]]
+"""What breaks a law, by kind; None where it is nobody's."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """One command that a class goes through.
+
+    Attributes:
+        line: What is typed, the assignment left out.
+        codes: Exit codes that it may end with.
+        needed: Whether later commands need what it makes.
+    """
+
+    line: str
+    codes: tuple[int, ...] = (0, 1)
+    needed: bool = False
+
+    def words(self, name: str) -> list[str]:
+        """The command for an assignment."""
+        verb, *rest = self.line.split()
+        program = "nbgrader" if verb in {"autograde", "generate_feedback"} else "labkit"
+        return [program, verb, name, *rest]
+
+
+LAYOUTS = ("questions", "nbgrader", "canvas", "moodle", "moodle-worksheet")
+EXPORTS = tuple(Step(f"export --layout {layout}") for layout in LAYOUTS)
+GRADE, FEEDBACK = Step("grade", needed=True), Step("feedback")
+REPORT, REGRADE = Step("class-report --to aside/report.md"), Step("regrade")
+LABKIT = (
+    Step("collect downloads/moodle.zip", needed=True),
+    Step("collect downloads/canvas.zip", needed=True),
+    Step("collect downloads/inbound", needed=True),
+    GRADE,
+    Step("grade --json"),
+    Step("feedback --moodle aside/back.zip"),
+    *EXPORTS,
+    REPORT,
+    Step("class-report --names --jplag aside/jplag"),
+    REGRADE,
+    EXPORTS[0],
+)
+NBGRADER = (Step("autograde --create", needed=True), Step("generate_feedback"), EXPORTS[0])
+OTHERS = (GRADE, FEEDBACK, EXPORTS[0], REPORT)
+"""For assignments other than the first."""
+
+
+def guilty(kinds: Sequence[Kind], breaks: Callable[[Sequence[Kind]], list[str]]) -> Told:
+    """Of kinds that break a law together, those who do so without the others, and what they break.
+
+    It is empty where one alone breaks nothing.
+    """
+    found: Told = {}
+    half = len(kinds) // 2
+    for part in (kinds[:half], kinds[half:]) if half else ():
+        faults = breaks(part)
+        if faults and len(part) == 1:
+            found[part[0]] = faults
+        elif faults:
+            found |= guilty(part, breaks) or {kind: [f"together: {faults[0]}"] for kind in part}
+    return found
+
+
+@dataclass
+class Examined:
+    """Classes of one course, put through commands.
+
+    Attributes:
+        released: The course, in which nothing was handed in yet.
+        folder: Where classes are made.
+        steps: The commands.
+        name: The assignment.
+        clean: What the honest have after each step where there is nobody else.
+    """
+
+    released: Path
+    folder: Path
+    steps: Sequence[Step]
+    name: str = NAME
+    clean: list[dict[str, Any]] = field(default_factory=list)
+    _numbers: Iterator[int] = field(default_factory=count)
+
+    def __post_init__(self) -> None:
+        course = self._course(())
+        for step in self.steps:
+            ended = typed(course, *step.words(self.name))
+            wrong = [*laws.said(ended, (0,))]
+            assert not wrong, (wrong, ended.text[-2000:])
+            self.clean.append(laws.seen(course, ended, self.name))
+
+    def of(self, kinds: Sequence[Kind]) -> Told:
+        """What the kinds break."""
+        told: Told = {}
+        left, graded = list(kinds), None
+        while True:
+            course = self._course(left)
+            number, faults = self._through(course, left, told, graded)
+            if not faults:
+                return told
+            graded = graded or course
+            breaks = partial(self._alone, number=number, graded=graded)
+            culprits = {left[0]: faults} if len(left) == 1 else guilty(left, breaks)
+            for kind, says in culprits.items() or [(None, faults)]:
+                told.setdefault(kind, []).extend(says)
+            if not culprits:
+                return told
+            left = [kind for kind in left if kind not in culprits]
+
+    def _course(self, kinds: Sequence[Kind]) -> Path:
+        course = copied(self.released, self.folder / str(next(self._numbers)) / "course")
+        (course / "aside").mkdir()
+        hand_in_honest(course, self.name)
+        for kind in kinds:
+            if kind.table != "ENTRIES":
+                hand_in(course, kind, self.name)
+        if self.steps[0].line.startswith("collect"):
+            write_downloads(course, kinds)
+        return course
+
+    def _through(
+        self, course: Path, kinds: Sequence[Kind], told: Told, graded: Path | None
+    ) -> tuple[int, list[str]]:
+        """Put a class through all steps, up to the first that breaks a law namelessly."""
+        for number, step in enumerate(self.steps):
+            if step is GRADE and graded is not None:
+                self._as_before(course, graded)
+            mine, faults = self._do(course, number, kinds)
+            for kind, says in mine.items():
+                told.setdefault(kind, []).extend(x for x in says if x not in told.get(kind, []))
+            if faults:
+                return number, faults
+        return len(self.steps), []
+
+    def _alone(self, kinds: Sequence[Kind], number: int, graded: Path) -> list[str]:
+        """What a part of a class that is graded breaks at a step."""
+        course = self._course(kinds)
+        for step in self.steps[: number + 1]:
+            if step is GRADE:
+                self._as_before(course, graded)
+            if step.needed and step is not self.steps[number]:
+                typed(course, *step.words(self.name))
+        _, faults = self._do(course, number, kinds)
+        shutil.rmtree(course)
+        return faults
+
+    def _as_before(self, course: Path, graded: Path) -> None:
+        """Give a class the results that it has in another course, for grading takes long."""
+        folder = course / "results" / self.name
+        folder.mkdir(parents=True)
+        for student in os.listdir(course / "submitted"):
+            result = graded / "results" / self.name / f"{student}.json"
+            if len(os.fsencode(result.name)) < 256 and result.is_file():
+                shutil.copy(result, folder)
+
+    def _do(self, course: Path, number: int, kinds: Sequence[Kind]) -> tuple[Told, list[str]]:
+        """Type a step: what breaks a law, by kind, and what is not known to be one kind's."""
+        step, since = self.steps[number], time.time()
+        ended = typed(course, *step.words(self.name))
+        mine: Told = {}
+        nameless = []
+        for line, says in laws.told(ended, step.codes):
+            named = [k for k in kinds if len(k.folder) > 3 and k.folder in line]
+            if named:
+                mine.setdefault(max(named, key=lambda k: len(k.folder)), []).append(says)
+            else:
+                nameless.append(says)
+        now = laws.seen(course, ended, self.name)
+        nameless += (f"{step.line}: {x}" for x in laws.changed(self.clean[number], now))
+        if step.line.startswith("export"):
+            nameless += laws.table(ended)
+        for path, says in laws.written(course, since - 0.05, self.name):
+            owner = next((k for k in kinds if k.folder in {*path.parts, path.stem}), None)
+            if owner is None:
+                nameless.append(f"{step.line}: {path.name[:60]!a}: {says}")
+            else:
+                mine.setdefault(owner, []).append(f"{step.line}: {says}")
+        if step is GRADE and ended.code in step.codes:
+            for kind, says in self._marks(course, kinds, ended):
+                mine.setdefault(kind, []).append(f"grade: {says}")
+        return mine, nameless
+
+    def _marks(
+        self, course: Path, kinds: Sequence[Kind], ended: Ended
+    ) -> Iterator[tuple[Kind, str]]:
+        """Who has neither a result nor a line, and whose mark is not what it should be."""
+        results = laws.results(course, self.name)
+        full = results["ada"]["points"]
+        lines = [set(re.findall(r"\w+", line)) for line in ended.text.split("\n")]
+        for kind in kinds:
+            least = _LEAST.get(kind.table, 0.0) * full
+            result = results.get(kind.folder)
+            if result is None:
+                named = any(set(re.findall(r"\w+", kind.folder)[:3]) <= line for line in lines)
+                if kind.table != "ENTRIES" and not named:
+                    yield kind, "neither graded nor named"
+            elif result["score"] < least and not (result["rejected"] and kind.table in _REFUSED):
+                why = result["rejected"] or [q["notes"] for q in result["questions"]]
+                yield kind, f"{result['score']} of {full}, though right: {str(why)[:200]!a}"
+
+
+_LEAST = {"TEXTS": 0.85, "MAGICS": 1.0, "PEOPLE": 1.0, "FILE_NAMES": 1.0}
+"""The share of the points that right work in odd clothes must earn."""
+_REFUSED = ("FILE_NAMES",)
+"""Where it may be refused instead, with a reason."""

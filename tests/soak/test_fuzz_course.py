@@ -1,0 +1,146 @@
+"""A course whose own files are damaged, a download that is none, a disk that is full."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+
+import pytest
+from soak import laws
+from soak.classes import NAME, copied, hand_in_honest, released, write_downloads
+from soak.commands import typed
+from soak.examined import EXPORTS, FEEDBACK, GRADE, LABKIT, REGRADE, REPORT, Step
+from soak.test_fuzz import cases
+
+pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("fuzz: course")]
+
+COLLECT = LABKIT[0]
+STEPS = (GRADE, FEEDBACK, *EXPORTS, REPORT, REGRADE, COLLECT, Step("release"))
+VICTIM = "kim"
+"""Whose result is damaged."""
+
+
+def words_of(step):
+    words = step.words(NAME)
+    return [*words[:2], NAME] if step.line == "release" else words
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory):
+    """A course in which the honest are collected and graded."""
+    root = released(tmp_path_factory.mktemp("graded") / "course", NAME)
+    (root / "aside").mkdir()
+    hand_in_honest(root)
+    write_downloads(root, ())
+    for step in LABKIT[:4]:
+        assert typed(root, *step.words(NAME)).code == 0
+    return root
+
+
+@pytest.fixture(scope="module")
+def clean(graded, tmp_path_factory):
+    """What the honest have after each command, and what is handed in."""
+    folder, found = tmp_path_factory.mktemp("clean"), {}
+    for number, step in enumerate(STEPS):
+        course = copied(graded, folder / str(number) / "course")
+        found[step] = laws.seen(course, typed(course, *words_of(step)))
+    return found
+
+
+def handed_in(course):
+    """All files below ``submitted/``."""
+    files = (course / "submitted").rglob("*")
+    return {str(x.relative_to(course)): x.read_bytes() for x in files if x.is_file()}
+
+
+@pytest.mark.parametrize("kind", cases("STATES"))
+def test_state(graded, clean, tmp_path, kind):
+    """Each command ends with a sentence or does its work; no mark is lost, none made up."""
+    wrong = []
+    for number, step in enumerate(STEPS):
+        course = copied(graded, tmp_path / str(number) / "course")
+        kind.thing(course)
+        wrong += (f"{step.line}: {says}" for says in broken(course, step, kind, clean))
+    assert not wrong, "\n".join(wrong)
+
+
+def broken(course, step, kind, clean):
+    """The laws that a command breaks in a damaged course."""
+    mine = kind.name.startswith("result: ")  # one student's, so the others are done
+    since = time.time()
+    ended = typed(course, *words_of(step))
+    yield from laws.said(ended, (0, 1) if mine else (0, 1, 2))
+    yield from (f"{path.name}: {says}" for path, says in laws.written(course, since - 0.05))
+    if ended.code is None:
+        return
+    now = laws.seen(course, ended)
+    kept = {key: value for key, value in clean[step].items() if _due(key, mine, ended.code)}
+    yield from laws.changed(kept, now)
+    yield from laws.made_up(clean[step], now)
+    if step is GRADE and ended.code == 0:
+        for table in EXPORTS:
+            again = typed(course, *table.words(NAME))
+            yield from laws.changed(clean[table], laws.seen(course, again))
+
+
+def _due(key, mine, code):
+    """Whether something must be there after a command that ended like this."""
+    if code == 0:
+        return True
+    if key.endswith("result"):
+        return not (mine and key.startswith(VICTIM))
+    return mine and code == 1 and not key.startswith(VICTIM)
+
+
+@pytest.mark.parametrize("kind", cases("DOWNLOADS"))
+def test_download(graded, tmp_path, kind):
+    """A download that is damaged is refused in a sentence; nobody's earlier work changes."""
+    course = copied(graded, tmp_path / "course")
+    before, since = handed_in(course), time.time()
+    kind.thing(course / "downloads" / "moodle.zip")
+    ended = typed(course, *COLLECT.words(NAME))
+    wrong = [*laws.said(ended, (0, 1, 2))]
+    wrong += (f"{path}: {says}" for path, says in laws.written(course, since - 0.05))
+    now = handed_in(course)
+    wrong += (f"{name} changed" for name, data in before.items() if now.get(name) != data)
+    assert not wrong, "\n".join(wrong)
+
+
+def may_mount():
+    """Whether this user may make a small disk, in a name space of its own."""
+    words = ["unshare", "--mount", "mount", "-t", "tmpfs", "none", "/mnt"]
+    return os.geteuid() == 0 and not subprocess.run(words, capture_output=True).returncode
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A folder on a disk of 16 MB."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=16m", "none", place], check=True)
+    yield place
+    subprocess.run(["umount", "--lazy", place], check=True)
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("room", (0, 4, 12, 40) if may_mount() else ())
+def test_full_disk(graded, clean, small_disk, room):
+    """Each command ends with a sentence where so many kB are left; with room all is made good."""
+    course = copied(graded, small_disk / "course")
+    wrong = []
+    for step in (GRADE, FEEDBACK, REPORT, COLLECT, REGRADE):
+        for result in (course / "results" / NAME).glob("[a-z]*.json") if step is GRADE else ():
+            result.unlink()
+        (course / "full").write_bytes(b"")
+        left = os.statvfs(course)
+        (course / "full").write_bytes(bytes(max(0, left.f_bavail * left.f_frsize - 1024 * room)))
+        ended = typed(course, *step.words(NAME))
+        wrong += (f"{step.line}: {says}" for says in laws.said(ended, (0, 1, 2)))
+    (course / "full").unlink()
+    for step in (GRADE, FEEDBACK, *EXPORTS):
+        ended = typed(course, *step.words(NAME))
+        wrong += (f"with room, {step.line}: {says}" for says in laws.said(ended, (0,)))
+        wrong += laws.changed(clean[step], laws.seen(course, ended))
+    wrong += (f"left behind: {path.name}" for path in course.rglob(".*.new"))
+    assert not wrong, "\n".join(wrong)

@@ -1,0 +1,164 @@
+"""One verdict: what a check says, submit-check repeats and the grader counts."""
+
+from __future__ import annotations
+
+import copy
+import json
+import shutil
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import nbformat
+import pytest
+from handmade import put, raw
+
+from labkit.check import question_data
+from labkit.check.handin import look
+from labkit.check.output import verdict_in
+from labkit.check.withheld import find
+from labkit.grade.checker import grade
+from labkit.grade.course import Course
+from labkit.grade.inline import inline
+from labkit.grade.limits import Limits
+from labkit.grade.notebook import source_notebook
+from labkit.grade.release import manifest
+from labkit.grade.results import Bundle
+from labkit.grade.sandbox import Sandbox
+
+COURSE = Course.here(Path(__file__))
+IN_THE_GATE = ("00_warmup", "01_paths")
+
+BY_NAME = """
+
+def {name}(*args, **kwargs):
+    import {module}
+    {tool}
+    return right_{name}(*args, **kwargs)
+"""
+BY_CALL = """
+from functools import reduce
+
+def {name}(*args, **kwargs):
+    root, *path = {tool!r}[::-1].split(".")
+    reduce(getattr, path, __import__(root))()
+    return right_{name}(*args, **kwargs)
+"""
+
+
+FUNCTION = {
+    "pinocchio": "pinocchio.rnea",
+    "labkit.metrics": "labkit.metrics.summary",
+    "labkit.vision.detection": "labkit.vision.detection.tag_pose",
+    "labkit.vision.sensing": "labkit.vision.sensing.quality",
+}
+"""One of each module that is withheld."""
+
+
+def answers(problem):
+    """A question's answers of every kind, as cells."""
+    name = problem.name
+    yield "stub", ""
+    yield "wrong", inline(problem.wrong[0].function, name)
+    yield "wrong too", inline(problem.wrong[-1].function, name)
+    yield "right", inline(problem.answer, name)
+    for kind, form in (("by name", BY_NAME), ("by call", BY_CALL)):
+        yield kind, "\n".join(_using(problem, form)) if problem.withheld else ""
+
+
+def _using(problem, form):
+    """A right answer that also uses a tool, by the form's words."""
+    tool = FUNCTION.get(problem.withheld[-1], problem.withheld[-1])
+    yield inline(problem.answer, f"right_{problem.name}")
+    thing = find(tool)[1]
+    text = tool if form is BY_NAME else tool[::-1]
+    yield form.format(name=problem.name, tool=text, module=getattr(thing, "__module__", tool))
+
+
+@pytest.fixture(scope="module")
+def sandbox():
+    with Sandbox() as sandbox:
+        yield sandbox
+
+
+def in_a_kernel(assignment, cells, folder):
+    """Run cells beside an assignment's questions; the verdict of each, None where there is none."""
+    from nbclient import NotebookClient
+    from traitlets.config import Config
+
+    shutil.copy(COURSE.release / assignment / "checks.json", folder)
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(c) for c in cells])
+    with TemporaryDirectory() as sockets:
+        files = {"transport": "ipc", "ip": f"{sockets}/kernel"}
+        NotebookClient(
+            notebook,
+            timeout=600,
+            kernel_name="python3",
+            resources={"metadata": {"path": str(folder)}},
+            config=Config({"KernelManager": files}),
+        ).execute()
+    return [cell.outputs for cell in notebook.cells]
+
+
+@pytest.mark.parametrize(
+    "assignment",
+    [
+        pytest.param(name, marks=pytest.mark.slow if name in IN_THE_GATE else pytest.mark.soak)
+        for name in COURSE.names()
+    ],
+)
+def test_three_verdicts_are_one(assignment, sandbox, tmp_path):
+    """For a stub, wrong and right answers, and a withheld tool, by name and by call."""
+    problems = {p.name: p for p in COURSE.problems(assignment)}
+    questions = {name: p.question(1).public() for name, p in problems.items()}
+    released = COURSE.release / assignment / f"{assignment}.ipynb"
+    blank = json.loads(released.read_text(encoding="utf-8"))
+    stubs = {
+        cell["metadata"]["nbgrader"]["grade_id"]: "".join(cell["source"])
+        for cell in blank["cells"]
+        if cell["metadata"]["lab"] == "answer"
+    }
+    kinds = {name: dict(answers(problem)) for name, problem in problems.items()}
+    setup = ["".join(c["source"]) for c in blank["cells"] if c["metadata"]["lab"] == "setup"]
+    tried = [(kind, name) for kind in next(iter(kinds.values())) for name in problems]
+    cells = [
+        text
+        for kind, name in tried
+        for text in (kinds[name][kind] or stubs[name], f'check("{name}", {name})')
+    ]
+    outputs = in_a_kernel(assignment, [*setup, *cells], tmp_path)[len(setup) + 1 :: 2]
+    source = source_notebook(COURSE.notebook_source(assignment), questions)
+    data = {"assignment": assignment, "seed": 1, "hash": "", "cells": manifest(source)}
+    bundle = Bundle(data | {"questions": [question_data(q) for q in questions.values()]})
+    for kind in next(iter(kinds.values())):
+        notebook = copy.deepcopy(blank)
+        said = {}
+        for (of, name), output in zip(tried, outputs, strict=True):
+            if of == kind:
+                put(notebook, name, kinds[name][kind] or stubs[name])
+                put_output(notebook, f"{name}-check", output)
+                said[name] = seen(verdict_in(output[0]))
+        file = tmp_path / f"{assignment}.ipynb"
+        file.write_bytes(raw(notebook))
+        repeated = {name: seen(verdict) for name, verdict in look(file).verdicts.items()}
+        result = grade(raw(notebook), "ada", bundle, sandbox, Limits())
+        counted = {
+            q["name"]: (q["outcome"], q["earned"], tuple(q["withheld"])) for q in result.questions
+        }
+        assert repeated == said
+        assert counted == said
+        for name, (outcome, earned, withheld) in said.items():
+            of = kinds[name][kind] and kind.split()[0]
+            expected = {"": "not attempted", "right": "right", "by": "not counted"}.get(of)
+            assert outcome == (expected or outcome), (kind, name)
+            assert (outcome == "not counted") == bool(withheld) == (of == "by")
+            assert earned == (problems[name].points if of == "right" else earned * (of == "wrong"))
+
+
+def seen(verdict):
+    return verdict.outcome.value, verdict.earned, verdict.withheld
+
+
+def put_output(notebook, grade_id, outputs):
+    for cell in notebook["cells"]:
+        if cell["metadata"].get("nbgrader", {}).get("grade_id") == grade_id:
+            cell["outputs"] = outputs
