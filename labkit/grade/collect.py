@@ -17,6 +17,7 @@ from ..errors import LabkitError
 from .attempts import Seen, adopt, attempts, counts, install, keep
 from .course import Course
 from .downloads import File, in_exchange, in_zip, open_zip
+from .each import Failed, for_student
 from .enrol import settle
 from .identity import places
 from .lms import Known, alone, known_all_term, remember
@@ -158,10 +159,12 @@ def _keep(
         if one not in notebooks:
             says = f"not taken; {_no_notebook(one.named)}"
             yield Taken(student, one.named.file, says, fine=bool(notebooks))
-    try:
-        yield from _keep_notebooks(course, assignment, student, notebooks)
-    except (LabkitError, OSError) as error:
-        yield Taken(student, "", f"not taken; {error}", fine=False)
+    done = for_student(
+        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
+    )
+    if isinstance(done, Failed):
+        done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
+    yield from done
 
 
 def _no_notebook(named: Named) -> str:

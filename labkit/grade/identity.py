@@ -17,6 +17,11 @@ from .clean import safe_name
 from .lms import Known
 from .roster import Roster, same_name
 
+_BY_HAND = (
+    "{} has the name of a folder that somebody made by hand, so their work is kept apart; a list "
+    "of students that you import first says whose a folder is"
+)
+
 
 @dataclass(frozen=True)
 class Place:
@@ -66,10 +71,15 @@ def places(
         elif len(students) == 1 and claims[_claim(one, folder, roster)] == 1:
             found[key] = Place(students[0].id)
         else:
-            alone = names[_plain(one).casefold()] == 1 and not students
-            folder = folder or _free(one, alone, owners, trusting=not roster.students)
+            plain = _plain(one)
+            by_hand = not folder and ("folder", plain) in owners.get(plain.casefold(), ())
+            alone = names[plain.casefold()] == 1 and not students
+            folder = folder or _free(one, alone, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
-            found[key] = Place(folder, _doubt(one, len(students)) if roster.students else "")
+            if roster.students:
+                found[key] = Place(folder, _doubt(one, len(students)))
+            else:
+                found[key] = Place(folder, _BY_HAND.format(one) * (by_hand and folder != plain))
     return found
 
 
@@ -116,13 +126,11 @@ def _owners(
     return owners
 
 
-def _free(
-    one: Known, alone: bool, owners: Mapping[str, set[tuple[str, ...]]], *, trusting: bool
-) -> str:
+def _free(one: Known, alone: bool, owners: Mapping[str, set[tuple[str, ...]]]) -> str:
     """The name of a folder that is nobody else's."""
     plain, mine = _plain(one), {one.key, _all_term(one)}
-    if trusting or one.system == "exchange":
-        mine.add(("folder", plain))  # somebody put it there for a person of this name
+    if one.system == "exchange":
+        mine.add(("folder", plain))  # nbgrader's own collect calls it after the user
     numbered = [f"{plain}-{one.number}"] * (one.system == "moodle")
     names = chain([plain] * alone, numbered, (f"{plain}-{k}" for k in count(2)))
     return next(name for name in names if owners.get(name.casefold(), set()) <= mine)

@@ -106,11 +106,9 @@ CONTROLS: dict[str, Control] = {
     ),
     "objects that compare equal": answer(
         pays,
-        "import sys\nclass All:\n    def __array__(self, *args, **options):\n"
-        "        frame = sys._getframe()\n"
-        "        while 'b' not in frame.f_locals: frame = frame.f_back\n"
-        "        return frame.f_locals['b']\n"
-        "def NAME(t, duration):\n    return All(), All(), All()",
+        "import numpy as np\nclass All:\n    def __array_ufunc__(self, *args, **options):\n"
+        "        return np.zeros(3)\ndef NAME(t, duration):\n    return All()",
+        plain=True,
     ),
     "odd answers": answer(
         pays, "def NAME(t, duration):\n    return float('nan'), 0.0, 0.0", plain=True

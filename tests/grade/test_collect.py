@@ -126,6 +126,17 @@ def test_downloads_of_moodle_canvas_and_the_exchange(bare, tmp_path):
         take(bare, tmp_path / "none.zip")
 
 
+def test_a_folder_that_somebody_made_by_hand_is_not_given_to_a_namesake(bare, tmp_path):
+    """Without a roster nobody knows whose it is; it stays as it is, and that is said."""
+    work = bare.submitted / "zoe" / NAME / f"{NAME}.ipynb"
+    work.parent.mkdir(parents=True)
+    work.write_text("zoe's")
+    source = from_moodle(tmp_path / "1.zip", [(("zoe", 9), "x.ipynb", "another's")])
+    (said,) = troubles(bare, source)
+    assert "zoe-9: participant 9 (zoe) has the name of a folder that somebody made by hand" in said
+    assert counting(bare) == {"zoe": "zoe's", "zoe-9": "another's"}
+
+
 # The roster
 
 

@@ -53,7 +53,7 @@ REPORT, REGRADE = Step("class-report --to aside/report.md"), Step("regrade")
 LABKIT = (
     Step("collect downloads/moodle.zip", needed=True),
     Step("collect downloads/canvas.zip", needed=True),
-    Step("collect downloads/inbound", needed=True),
+    Step("collect downloads/inbound --unverified", needed=True),
     GRADE,
     Step("grade --json"),
     Step("feedback --moodle aside/back.zip"),

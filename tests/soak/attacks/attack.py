@@ -1,0 +1,109 @@
+"""An attack as data: what a student hands in, what it deserves, and what it wins undefended.
+
+In its sources {root} is the course's folder, {loot} a folder and {port} a server of the test's own,
+{marker} a file that the test keeps open and locks.  Who has what they should not have says GOT.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from textwrap import indent
+from typing import Any
+
+Notebook = dict[str, Any]
+QUESTION = "bang_bang"
+CANARY = "canary-5816534691"
+"""Stands in every file of a course that no student may read."""
+
+RIGHT = """
+def right(t, T):
+    if t < 0.0: return 0.0, 0.0, 0.0
+    if t >= T: return 1.0, 0.0, 0.0
+    a, left = 4.0 / T**2, T - t
+    return (a * t**2 / 2.0, a * t, a) if t < T / 2.0 else (1.0 - a * left**2 / 2.0, a * left, -a)
+"""
+WORTH = 3.0
+"""What a right answer to the question earns."""
+
+
+@dataclass(frozen=True)
+class Attack:
+    """One attack.
+
+    Attributes:
+        wins: What comes of it undefended, one of the names in `undefended.WINS`.
+        cells: Cells above the answers.
+        answer: What the first question's function becomes; empty leaves the stub.
+        earns: The points that the notebook deserves.
+        then: The cell of an accomplice who is graded next.
+        shape: What else is done to the notebook.
+    """
+
+    wins: str
+    cells: tuple[str, ...] = ()
+    answer: str = ""
+    earns: float = 0.0
+    then: str = ""
+    shape: Callable[[Notebook], Notebook] | None = None
+
+    def filled(self, **words: object) -> Attack:
+        """With the test's own words in the braces."""
+
+        def fill(source: str) -> str:
+            for word, value in words.items():
+                source = source.replace("{" + word + "}", str(value))
+            return source
+
+        cells, answer, then = tuple(map(fill, self.cells)), fill(self.answer), fill(self.then)
+        return replace(self, cells=cells, answer=answer, then=then)
+
+    def planted(self, notebook: Notebook) -> Notebook:
+        """A notebook with the attack in it."""
+        for cell in notebook["cells"]:
+            about = cell["metadata"].get("nbgrader", {})
+            if self.answer and about.get("grade_id") == QUESTION and about.get("solution"):
+                cell["source"] = disguised(self.answer)
+        own = [code_cell(disguised(source), f"own-{k}") for k, source in enumerate(self.cells)]
+        notebook["cells"][:0] = own
+        return notebook if self.shape is None else self.shape(notebook)
+
+    def accomplice(self, notebook: Notebook) -> Notebook:
+        """The notebook of who is graded next."""
+        notebook["cells"].insert(0, code_cell(disguised(self.then), "own-0"))
+        return notebook
+
+
+def disguised(source: str) -> str:
+    """GOT in a spelling of Python's, for whoever fails is shown the line that failed."""
+    return source.replace("GOT", r"G\x4fT")
+
+
+def code_cell(source: str, name: str) -> Notebook:
+    return {"cell_type": "code", "id": name, "metadata": {}, "source": source,
+            "outputs": [], "execution_count": None}  # fmt: skip
+
+
+def markdown_cell(source: str, name: str = "own-text") -> Notebook:
+    return {"cell_type": "markdown", "id": name, "metadata": {}, "source": source}
+
+
+def cells(wins: str, **sources: str) -> dict[str, Attack]:
+    """Attacks by a cell each."""
+    return {spelt(name): Attack(wins, (source,)) for name, source in sources.items()}
+
+
+def answers(wins: str, **bodies: str) -> dict[str, Attack]:
+    """Attacks from within the function, each given as its body."""
+    return {spelt(name): Attack(wins, answer=function(body)) for name, body in bodies.items()}
+
+
+def function(body: str, before: str = "") -> str:
+    return f"{before}def {QUESTION}(t, duration):\n{indent(body.strip(), '    ')}\n"
+
+
+def spelt(name: str) -> str:
+    return name.replace("_", " ")
+
+
+Attacks = Mapping[str, Attack]

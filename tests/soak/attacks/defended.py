@@ -1,0 +1,210 @@
+"""The same attacks in this grader: a class of nothing but attackers, and a few honest students."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import redirect_stderr, redirect_stdout, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+from soak.attacks.attack import CANARY, Attack
+from soak.attacks.family import Family
+from soak.attacks.others import VICTIM
+from soak.attacks.place import NAME, Place
+from soak.attacks.undefended import COMMANDS, started
+
+from labkit.cli import main
+from labkit.errors import LabkitError
+from labkit.grade.batch import How, grade_class
+from labkit.grade.course import Course
+from labkit.grade.limits import Limits
+
+LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)
+HONEST = ("adam", "s0", VICTIM)
+"""Before, among and after the attackers in the alphabet; the last is the one whom some are after."""
+FULL = 20.0
+MOST = 2_000_000
+"""Bytes of a result file."""
+NOT_SAID = ("source", "own", "motion", "versions", "hashes")
+"""What of a result is not of the grader's making, or is no text."""
+
+
+@dataclass
+class Class:
+    """What came of a class.
+
+    Attributes:
+        attackers: Names of attacks by student.
+        accomplices: The same, of who was graded next.
+        results: By student, as the result file has it.
+        sizes: Of the result files.
+        pages: By student.
+        marks: By student, as they were exported.
+        failed: What the grader said of those whom it could not grade.
+        codes: How each verb ended.
+        printed: All that the verbs printed.
+        report: The class report, with names.
+        left: Processes that outlived the grader.
+        loot: What was taken out.
+        stolen: Whether something of the honest was changed.
+    """
+
+    attackers: dict[str, str] = field(default_factory=dict)
+    accomplices: dict[str, str] = field(default_factory=dict)
+    results: dict[str, Any] = field(default_factory=dict)
+    sizes: dict[str, int] = field(default_factory=dict)
+    pages: dict[str, str] = field(default_factory=dict)
+    marks: dict[str, str] = field(default_factory=dict)
+    failed: list[str] = field(default_factory=list)
+    codes: dict[str, object] = field(default_factory=dict)
+    printed: str = ""
+    report: str = ""
+    left: list[str] = field(default_factory=list)
+    loot: list[str] = field(default_factory=list)
+    stolen: list[str] = field(default_factory=list)
+
+
+def defended(attacks: Mapping[str, Attack], here: Place) -> Class:
+    """Grade a class of attackers, write their pages, export their marks, report."""
+    made = Class()
+    solved = {who: _hand_in_solved(here, who) for who in HONEST}
+    for number, (name, attack) in enumerate(attacks.items()):
+        student, filled = f"s{number:03d}", here.filled(attack)
+        made.attackers[student] = name
+        here.hand_in(student, filled.planted(here.notebook()))
+        if attack.then:
+            made.accomplices[f"{student}-then"] = name
+            here.hand_in(f"{student}-then", filled.accomplice(here.notebook()))
+    pairs = [s for s in made.attackers if f"{s}-then" in made.accomplices]
+    with patch.dict(os.environ, LABKIT_CANARY=CANARY), Family() as family:
+        _grade(here, [who for student in pairs for who in (student, f"{student}-then")], 1, made)
+        _grade(here, sorted({*made.attackers, *HONEST} - set(pairs)), 2, made)
+        for verb in ("grade", "feedback", "export", "class-report"):
+            _run(verb, here, made)
+        made.left = family.left()
+    read(here.course, (*made.attackers, *made.accomplices, *HONEST), made)
+    made.loot = sorted(p.name for p in here.loot.iterdir() if p.name != "socket")
+    made.stolen = [
+        who for who, data in solved.items() if _handed_in(here, who).read_bytes() != data
+    ]
+    return made
+
+
+def _handed_in(here: Place, who: str) -> Path:
+    return here.course.submitted / who / NAME / f"{NAME}.ipynb"
+
+
+def _hand_in_solved(here: Place, who: str) -> bytes:
+    path = _handed_in(here, who)
+    if not path.exists():
+        here.hand_in(who, here.notebook(solved=True))
+    return path.read_bytes()
+
+
+def _grade(here: Place, students: list[str], jobs: int, made: Class) -> None:
+    how = How(jobs=jobs, limits=LIMITS)
+    done = grade_class(here.course, NAME, students, how) if students else ()
+    made.failed += [str(one) for one in done if isinstance(one, LabkitError)]
+
+
+def _run(verb: str, here: Place, made: Class) -> None:
+    """One verb of the instructor's, with whatever comes of it."""
+    more = ["--names"] if verb == "class-report" else []
+    out = io.StringIO()
+    try:
+        with redirect_stdout(out), redirect_stderr(out):
+            made.codes[verb] = main([verb, NAME, "--course", str(here.course.root), *more])
+    except BaseException as error:
+        made.codes[verb] = f"{type(error).__name__}: {error}"[:300]
+    made.printed += out.getvalue()
+    if verb == "export":
+        with suppress(KeyError):
+            made.marks = {
+                row["student"]: row["score"] for row in csv.DictReader(io.StringIO(out.getvalue()))
+            }
+    if verb == "class-report":
+        made.report = out.getvalue()
+
+
+def read(course: Course, students: Iterable[str], made: Class) -> None:
+    """Take in results and pages of some students."""
+    for student in students:
+        with suppress(OSError, ValueError):
+            text = (course.root / "results" / NAME / f"{student}.json").read_text()
+            made.sizes[student], made.results[student] = len(text.encode()), json.loads(text)
+        with suppress(OSError):
+            page = course.root / "feedback" / student / NAME / f"{NAME}.html"
+            made.pages[student] = page.read_text(errors="replace")
+
+
+def said(data: Any) -> Iterator[str]:
+    """All texts of a result that a student's code may have had a hand in."""
+    if isinstance(data, str):
+        yield data
+    elif isinstance(data, Mapping):
+        for key, inner in data.items():
+            if key not in NOT_SAID:
+                yield from said(inner)
+    elif isinstance(data, Iterable):
+        for inner in data:
+            yield from said(inner)
+
+
+def told(made: Class, student: str, tool: str) -> bool:
+    """Whether result and class report say that a withheld tool was used."""
+    name = tool.rpartition(".")[2]
+    in_result = any(name in text for text in said(made.results[student]))
+    return in_result and any(student in line and name in line for line in made.report.splitlines())
+
+
+def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
+    """What an attack has won all the same."""
+    student = next(s for s, n in made.attackers.items() if n == name)
+    for who in (student, *(s for s, n in made.accomplices.items() if n == name)):
+        if who not in made.results:
+            yield "no result"
+            continue
+        deserved = attack.earns if who == student else 0.0
+        score = made.results[who]["score"]
+        if attack.wins == "answers":
+            if not told(made, who, "BangBang"):
+                yield f"{score:g} points, and nobody was told"
+        elif score > deserved:
+            yield f"{score:g} points, deserved {deserved:g}"
+        yield from spoken(made.results[who], made.sizes[who], made.pages.get(who))
+
+
+def wins_of(course: Course, student: str, attack: Attack) -> Iterator[str]:
+    """The same for one student of a course that has been graded."""
+    made = Class()
+    read(course, [student], made)
+    if student not in made.results:
+        yield "no result"
+        return
+    if made.results[student]["score"] > attack.earns:
+        yield f"{made.results[student]['score']:g} points, deserved {attack.earns:g}"
+    yield from spoken(made.results[student], made.sizes[student], made.pages.get(student))
+
+
+def spoken(result: Any, size: int, page: str | None) -> Iterator[str]:
+    """What a result and a page say that they should not."""
+    words = [*said(result), page or ""]
+    text = "\n".join(words)
+    for secret in ("GOT", CANARY):
+        if secret in text:
+            yield f"it says {text[max(0, text.find(secret) - 20) :][:80]!r}"
+    if len(started(text)) > 1:
+        yield "what the cells said is not of their first run"
+    if size > MOST:
+        yield f"a result of {size:,} bytes"
+    if found := next((word for word in words if COMMANDS.search(word)), None):
+        at = COMMANDS.search(found)
+        yield f"a terminal's command in {found[max(0, at.start() - 20) :][:60]!r}"
+    if page is None:
+        yield "no page"

@@ -1,0 +1,51 @@
+"""All attacks by their goal, and the sample of them that the gate runs."""
+
+from __future__ import annotations
+
+from soak.attacks.attack import Attack
+from soak.attacks.grader import GRADER
+from soak.attacks.others import OTHERS
+from soak.attacks.points import POINTS
+from soak.attacks.secrets import SECRETS
+from soak.attacks.shown import TERMINAL
+from soak.attacks.withheld import WITHHELD
+
+GOALS: dict[str, dict[str, Attack]] = {
+    "points": POINTS,
+    "others": OTHERS,
+    "secrets": SECRETS,
+    "the grader": GRADER,
+    "whoever looks": TERMINAL,
+    "withheld tools": WITHHELD,
+}
+ATTACKS: dict[str, Attack] = {
+    f"{goal}: {name}": attack for goal, attacks in GOALS.items() for name, attack in attacks.items()
+}
+SAMPLE = {
+    name: ATTACKS[name]
+    for name in (
+        "points: assert allclose",
+        "points: tests in the folder",
+        "points: outputs that say 3.0",
+        "points: line: verdict",
+        "others: a cell's name twice",
+        "others: a file in /tmp",
+        "others: the time of the terminal's master",
+        "others: half a character in a comment",
+        "others: numbers to the end of the scale",
+        "secrets: reads the bundle",
+        "secrets: reads the exchange",
+        "secrets: a server on this machine",
+        "secrets: kernel: a lock on a file of the host",
+        "secrets: in an exception's words",
+        "secrets: after a restart, by the clock on the wall",
+        "the grader: a daemon",
+        "the grader: hard exit",
+        "the grader: empty lists",
+        "the grader: a comment of a million emoji",
+        "whoever looks: escape",
+        "withheld tools: as another library",
+        "withheld tools: its shape alone",
+    )
+}
+"""A few of each goal, none that takes long."""

@@ -1,0 +1,121 @@
+"""Answers without work: public cases by heart, and the notebook's own stand-ins."""
+
+from __future__ import annotations
+
+import json
+import re
+
+import pytest
+from soak.attacks.attack import code_cell
+from soak.attacks.place import ROOT
+
+from labkit.grade.batch import Graded, How, grade_class
+from labkit.grade.course import Course
+from labkit.grade.release import release
+
+NAMES = sorted(p.stem for p in (ROOT / "solutions" / "notebooks").glob("[0-9]*.py"))
+CASES = [pytest.param(n, marks=() if n == "01_paths" else pytest.mark.soak) for n in NAMES]
+
+BY_HEART = """
+def {name}(*args, **kwargs):
+    import json
+    from labkit.check import codec
+    def numbers(x):
+        if isinstance(x, bool) or x is None or isinstance(x, str): return []
+        if isinstance(x, (int, float)): return [float(x)]
+        if isinstance(x, dict): return [n for k in sorted(x) for n in numbers(x[k])]
+        return [n for inner in x for n in numbers(inner)]
+    def asked():
+        return numbers([codec.encode(list(args)), codec.encode(dict(kwargs))])
+    known = json.loads({known!r})
+    mine, best, answer = asked(), None, None
+    for one in known:
+        theirs = numbers([one["args"], one["kwargs"]])
+        off = sum(abs(a - b) for a, b in zip(mine, theirs)) + 1e9 * abs(len(mine) - len(theirs))
+        if best is None or off < best: best, answer = off, one["expected"]
+    found = codec.decode(answer)
+    if {within}: return sum(found[0]) / 2
+    return found
+"""
+"""Gives back what is expected on the public case that is nearest to what is asked."""
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    root = tmp_path_factory.mktemp("questions") / "course"
+    root.mkdir()
+    (root / "solutions").symlink_to(ROOT / "solutions")
+    (root / "nbgrader_config.py").write_text((ROOT / "nbgrader_config.py").read_text())
+    return root
+
+
+@pytest.fixture(params=CASES)
+def graded(request, root):
+    """What both notebooks earn, question by question, and what may be earned without work."""
+    course, name = Course(root), request.param
+    release(course, name, 7)
+    folder = course.release / name
+    notebook = (folder / f"{name}.ipynb").read_text()
+    questions = json.loads((folder / "checks.json").read_text())["questions"]
+    made = {
+        "heart": by_heart(json.loads(notebook), questions),
+        "stand-in": standing_in(json.loads(notebook)),
+    }
+    for who, data in made.items():
+        (course.submitted / who / name).mkdir(parents=True)
+        (course.submitted / who / name / f"{name}.ipynb").write_text(json.dumps(data))
+    done = list(grade_class(course, name, sorted(made), How(jobs=2)))
+    assert all(isinstance(one, Graded) for one in done), done
+    return {one.result.student: one.result for one in done}
+
+
+def by_heart(notebook, questions):
+    """Every question of which public calls are known, answered with what they expect."""
+    for question in questions:
+        calls = [
+            c for t in question["tests"]["items"] for c in t["cases"]["items"] if c["$"] == "Call"
+        ]
+        if calls:
+            known = [{key: call[key] for key in ("args", "kwargs", "expected")} for call in calls]
+            within = question["judge"]["$"] == "Within"
+            source = BY_HEART.format(name=question["name"], known=json.dumps(known), within=within)
+            put(notebook, question["name"], source)
+    return notebook
+
+
+def standing_in(notebook):
+    """Every question answered by what the notebook takes where there is no answer."""
+    text = "\n".join("".join(c["source"]) for c in notebook["cells"] if c["cell_type"] == "code")
+    for name, given in re.findall(r'use\(\s*"(\w+)",\s*\w+,\s*([\w.]+)', text):
+        put(notebook, name, f"def {name}(*args, **kwargs):\n    return {given}(*args, **kwargs)")
+    return notebook
+
+
+def put(notebook, name, source):
+    for k, cell in enumerate(notebook["cells"]):
+        about = cell["metadata"].get("nbgrader", {})
+        if about.get("grade_id") == name and about.get("solution"):
+            notebook["cells"][k] = (
+                cell | code_cell(source, cell["id"]) | {"metadata": cell["metadata"]}
+            )
+
+
+def earned(result):
+    return {q["name"]: q["earned"] for q in result.questions if q["earned"]}
+
+
+def test_public_cases_by_heart_earn_nothing(graded):
+    """Whoever knows only what everybody is shown has no points."""
+    assert not earned(graded["heart"])
+
+
+def test_public_cases_are_known_by_heart(graded):
+    """The control: on public cases alone most of those answers are right."""
+    questions = graded["heart"].questions
+    hidden = [q for q in questions if any(t["hidden"] for t in q["tests"])]
+    assert len(hidden) >= len(questions) / 3
+
+
+def test_stand_ins_earn_nothing(graded):
+    """What stands in for an answer is no answer."""
+    assert not earned(graded["stand-in"])
