@@ -27,7 +27,7 @@ _LAB = "/lab"
 _PARTS = ("bin", "lib", "lib32", "lib64", "pyvenv.cfg")
 """What is shown of the system, of ``/usr`` and of each Python."""
 _MORE = ("/usr/share/fonts", "/etc/ld.so.cache", "/etc/alternatives")
-_FORKSERVER = (sys.executable, "-s", "-m", "labkit.grade.inside.zygote")
+_FORKSERVER = (sys.executable, "-sP", "-m", "labkit.grade.inside.zygote")
 _VARIABLES = {
     "PYTHONHASHSEED": "0",
     "PYTHONDONTWRITEBYTECODE": "1",
@@ -172,7 +172,7 @@ def _font_list() -> Path:
     if not any(folder.glob("fontlist*")):
         folder.mkdir(parents=True, exist_ok=True)
         subprocess.run(
-            [sys.executable, "-c", "import matplotlib.font_manager"],
+            [sys.executable, "-P", "-c", "import matplotlib.font_manager"],
             env=dict(os.environ) | {"MPLCONFIGDIR": str(folder)},
             check=False,
             capture_output=True,

@@ -107,7 +107,7 @@ class Worker:
             if self.closed:
                 raise EOFError
             if self.process is None:
-                words = [sys.executable, "-m", "labkit.grade.worker"]
+                words = [sys.executable, "-P", "-m", "labkit.grade.worker"]  # nothing from here
                 here = str(Path(labkit.__file__).parent.parent)
                 self.process = subprocess.Popen(
                     words if self.isolated else [*words, "--no-isolation"],
