@@ -5,40 +5,26 @@ It shares no process with the student's code; what comes back is plain data, rea
 
 from __future__ import annotations
 
-import builtins
 import time
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
-from .. import errors
-from ..check.codec import encode
 from ..check.mark import Outcome, TestResult, Tried, Verdict, mark, not_counted, try_public
 from ..check.question import Question
-from ..check.reply import Failed, answer
 from ..check.source import withheld_tools
 from ..check.words import uses
 from . import seen
 from .clean import clean_line
 from .inside.wire import Gone, TooLate, TooMuch
-from .limits import Limits, TextBudget
+from .limits import TRICKS, Limits, TextBudget
 from .plan import Plan, plan
+from .remote import RemoteFunction
 from .results import Bundle, Result, digest, engine, versions
 from .sandbox import Sandbox
 from .seat import Session
 
-_KNOWN = (
-    {name for name, thing in vars(errors).items() if isinstance(thing, type)}
-    | {"ArgumentChanged", "LinAlgError"}
-    | {
-        name
-        for name, thing in vars(builtins).items()
-        if isinstance(thing, type) and issubclass(thing, BaseException)
-    }
-)
-MOST_LOST = 3
-"""After so many calls of one question that died or hung, it is not asked any more."""
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "
     "until the new notebook is handed in, into which `labkit merge` brings the work done so far"
@@ -73,12 +59,12 @@ def grade(
     with Session(sandbox, todo, limits) as session:
         with suppress(Gone):
             session.start()
-        asks = [Ask(question, session) for question in questions]
-        tried = [_public(ask) for ask in asks]
+        functions = [RemoteFunction(question, session) for question in questions]
+        tried = [_public(function) for function in functions]
         failed = session.failed()  # nothing shown of cells is made after the first hidden case
         verdicts = {
-            ask.question.name: _guarded(ask, before)
-            for ask, before in zip(asks, tried, strict=True)
+            function.question.name: _guarded(function, before)
+            for function, before in zip(functions, tried, strict=True)
         }
         spent = session.spent
     result = replace(
@@ -109,8 +95,11 @@ def _shortened(result: Result) -> Result:
     def short(things: Iterable[Mapping[str, Any]], *keys: str) -> tuple[dict[str, Any], ...]:
         return tuple({**x, **{key: budget.take(x[key]) for key in keys}} for x in things)
 
+    tricks = tuple(map(budget.take, result.tricks[:TRICKS]))
+    more = len(result.tricks) - TRICKS
     result = replace(
         result,
+        tricks=(*tricks, f"and {more} more such things") if more > 0 else tricks,
         questions=tuple(
             {**x, "tests": list(short(x["tests"], "says"))}
             for x in short(result.questions, "source")
@@ -157,94 +146,29 @@ def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]
     return list(found["cells"])
 
 
-class Ask:
-    """The student's function as one that lives here: it asks for each answer.
-
-    Raises `Failed` when called, where the answer never came.
-
-    Attributes:
-        left: Seconds that its answers may still take, those to hidden cases included.
-        lost: How many calls died or hung.
-    """
-
-    def __init__(self, question: Question, session: Session) -> None:
-        self.question, self.session = question, session
-        self.left = session.limits.question
-        self.lost = 0
-        self._constant: Mapping[str, Any] | None = None
-
-    def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """The answer to one call."""
-        if self.lost >= MOST_LOST or self.session.over or self.left <= 0.0:
-            raise Failed("TimeoutError", "TimeoutError: too much time was spent already")
-        before = self._constant
-        again = (
-            before is not None
-            and kwargs.keys() == before.keys()
-            and all(x is before[key] for key, x in kwargs.items())
-        )
-        try:
-            if self.session.open(self.question):
-                again = False
-            message = {
-                "args": [encode(x) for x in args],
-                "kwargs": None if again else {key: encode(x) for key, x in kwargs.items()},
-            }
-            self._constant = dict(kwargs)
-            return self._answer(message)
-        except TooLate:
-            self.lost += 1
-            limit = self.session.limits.call
-            raise Failed(
-                "TimeoutError", f"TimeoutError: it did not come back within {limit:g} s"
-            ) from None
-        except TooMuch as much:
-            self.lost += 1
-            raise Failed("TypeMismatch", str(much)) from None
-        except Gone:
-            self.lost += 1
-            raise Failed("SystemExit", "SystemExit: it ended its own process") from None
-
-    def _answer(self, message: dict[str, Any]) -> Any:
-        """What came of one call; reading it counts as the student's time."""
-        began = time.monotonic()
-        try:
-            reply = self.session.ask(message, self.left)
-            if "raised" not in reply:
-                return answer(reply, self.question.withheld)
-        finally:
-            self.left -= time.monotonic() - began
-        kind, says = str(reply["raised"]), clean_line(str(reply.get("says", "")))
-        if kind == "TimeUp":
-            self.lost += 1
-            kind = "TimeoutError"
-        if kind not in _KNOWN:
-            kind = "Exception"  # a name of its own could carry a secret out
-        return answer({"raised": kind, "says": says}, self.question.withheld)
-
-
-def _public(ask: Ask) -> Tried:
+def _public(function: RemoteFunction) -> Tried:
     """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
     try:
-        tried = try_public(ask.question, ask)
-        ask.session.right += [ask.question.name] if tried.outcome is Outcome.RIGHT else []
+        tried = try_public(function.question, function)
+        if tried.outcome is Outcome.RIGHT:
+            function.session.right.append(function.question.name)
         return tried
     except Exception:
-        return Tried(tuple(_lost(ask.question)), {})
+        return Tried(tuple(_lost(function.question)), {})
     finally:
-        ask.session.close()
+        function.session.close()
 
 
-def _guarded(ask: Ask, tried: Tried) -> Verdict:
+def _guarded(function: RemoteFunction, tried: Tried) -> Verdict:
     """The verdict, even where an answer is so odd that comparing it fails."""
-    question = ask.question
+    question = function.question
     try:
-        return mark(question, ask, tried)
+        return mark(question, function, tried)
     except Exception:
         tests = tuple(_lost(question))
         return Verdict(question.name, Outcome.ERROR, 0.0, question.points, tests)
     finally:
-        ask.session.close()
+        function.session.close()
 
 
 def _untried(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:

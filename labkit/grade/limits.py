@@ -13,6 +13,8 @@ REPLY = 256_000
 """The longest answer to one call, in bytes; the longest honest one has 1,600."""
 VALUES = 10_000
 """So many numbers, texts, lists and tables an answer may have; the largest honest one has 80."""
+TRICKS = 100
+"""So many of the things worth a look are named."""
 TEXT = 1_000_000
 """So much of what a student wrote a result keeps, in bytes; the rest of a result has as much."""
 _TIMES = ("parse", "cell", "cells", "call", "question", "wall", "grace")

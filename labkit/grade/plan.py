@@ -161,13 +161,16 @@ def _answer(
 
 def _needed(code: Mapping[int, Cell], places: Iterable[int]) -> set[int]:
     """Cells that the answers lean on, directly or through one another."""
+    binders: dict[str, list[int]] = {}
+    for k, cell in code.items():
+        for name in cell["binds"]:
+            binders.setdefault(name, []).append(k)
     needed, waiting = set(places), list(places)
     while waiting:
-        uses = set(code[waiting.pop()]["uses"])
-        for k, cell in code.items():
-            if k not in needed and uses & set(cell["binds"]):
-                needed.add(k)
-                waiting.append(k)
+        for name in code[waiting.pop()]["uses"]:
+            found = set(binders.pop(name, ())) - needed
+            needed |= found
+            waiting += found
     return needed
 
 

@@ -101,20 +101,18 @@ class Sandbox:
             self.group.enter()
 
     def _wait_until_ready(self) -> None:
+        """Wait for the word of both processes that fork; close where it does not come."""
         try:
             for line in self._lines.values():
                 line.read(START)
-        except Gone:
-            said = self._words()
+        except (Gone, TooLate, TooMuch) as error:
+            said = self._words() or str(error)
             self.close()
-            if not said:
+            if isinstance(error, Gone) and self.process.returncode != 1:  # what failed says 1
                 raise Broken("it was killed while it started") from None
             raise NoIsolation(
                 f"the sandbox did not start: {said}; `labkit doctor` says what is missing"
             ) from None
-        except (TooLate, TooMuch) as error:
-            self.close()
-            raise NoIsolation(f"the sandbox did not start in {START:g} s: {error}") from None
 
     @property
     def level(self) -> str:

@@ -12,11 +12,12 @@ from handmade import QUICK, ROOT, add, cell_of, put, raw
 from labkit.check.judge import MOST_COEFFICIENTS, Ratio
 from labkit.errors import OutOfRange
 from labkit.grade import checker
-from labkit.grade.checker import MOST_LOST, grade
+from labkit.grade.checker import grade
 from labkit.grade.course import Course
 from labkit.grade.limits import REPLY, VALUES, Limits, TextBudget, slowness
 from labkit.grade.plan import imports
 from labkit.grade.release import release
+from labkit.grade.remote import MOST_LOST
 from labkit.grade.results import Bundle
 from labkit.grade.sandbox import Sandbox
 from labkit.grade.seat import Session
@@ -219,7 +220,7 @@ def test_an_honest_answer_five_times_slower_than_ours_is_marked(torque):
 EMOJI = "\U0001f600"
 
 
-@pytest.mark.parametrize("what", ["outputs", "own cells", "sources", "sentences"])
+@pytest.mark.parametrize("what", ["outputs", "own cells", "sources", "sentences", "tricks"])
 def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
     """However much is printed, raised or written, a result stays small, says so, and counts."""
     if what == "outputs":  # the runner's own limit is lifted, in the student's own process
@@ -230,6 +231,8 @@ def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
     elif what == "own cells":
         for _ in range(9):
             add(solved, f"# {EMOJI * 200_000}")
+    elif what == "tricks":
+        add(solved, "\n".join(f"lk.name_{k} = 1" for k in range(2_000)))
     elif what == "sources":
         put(
             solved,
@@ -247,8 +250,9 @@ def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
     assert len(result.text().encode()) <= LARGEST
     assert not result.rejected
     assert result.score == (0 if what == "sentences" else 20)
-    if what != "sentences":
-        assert any("more text than is kept" in note for note in result.notes)
+    cut = any("more text than is kept" in note for note in result.notes)
+    assert cut == (what in {"outputs", "own cells", "sources"})
+    assert len(result.tricks) == 101 or what != "tricks"
 
 
 def test_five_megabytes_of_cells_are_refused(solved, bundle, sandbox):

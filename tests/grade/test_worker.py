@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import socket
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
 from handmade import QUICK, ROOT, add, hand_in
-from processes import below, wait_until_gone
+from processes import below, child, wait_until_gone
 
 from labkit.errors import LabkitError
 from labkit.grade.batch import job
@@ -53,6 +55,24 @@ def test_a_sandbox_killed_while_it_starts_is_made_again(dying_bwrap, told):
     try:
         assert desk.do(told).score == 20
     finally:
+        desk.close()
+
+
+def test_a_forkserver_killed_while_it_loads_is_made_again(told):
+    """What is ended when it has said something already, such as a library's banner, is no fault."""
+
+    def kill():
+        for pid, _ in below(child(os.getpid(), "bwrap"), at_least=3):
+            if Path(f"/proc/{pid}/cmdline").read_text().startswith(sys.executable):
+                os.kill(pid, signal.SIGKILL)
+
+    killer = threading.Thread(target=kill)
+    desk = Desk(isolated=True)
+    killer.start()
+    try:
+        assert desk.do(told).score == 20
+    finally:
+        killer.join()
         desk.close()
 
 

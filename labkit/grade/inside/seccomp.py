@@ -23,6 +23,7 @@ import socket
 import struct
 import termios
 from collections.abc import Iterable, Iterator
+from functools import cache
 
 from .syscalls import ALLOWED, CONDITIONAL
 
@@ -57,8 +58,9 @@ def supported() -> bool:
     return platform.machine() in _MACHINES
 
 
+@cache
 def program(machine: str) -> bytes:
-    """The filter as the kernel's instructions.
+    """The filter as the kernel's instructions; made once, before any process that it is put on.
 
     Args:
         machine: "x86_64" or "aarch64".
