@@ -33,6 +33,11 @@ class Trials:
     Kd: tuple[float, ...]
     rms_mm: tuple[Any, ...]
 
+    def __post_init__(self) -> None:
+        """Make rows that nobody can write to, for a student is given them."""
+        rows = tuple(tuple(map(tuple, table)) for table in self.rms_mm)
+        object.__setattr__(self, "rms_mm", rows)
+
     def error(self, case: int, Kp: float, Kd: float) -> float:
         """The error of one case, in [mm], infinite where the arm is lost.
 

@@ -37,7 +37,7 @@ def stiffer(trials: Trials, factor: float) -> Trials:
     Kp = tuple(x / factor for x in trials.Kp)
     lost = [None] * len(trials.Kd)
     return replace(
-        trials, Kp=(*Kp, trials.Kp[-1]), rms_mm=tuple([*rows, lost] for rows in trials.rms_mm)
+        trials, Kp=(*Kp, trials.Kp[-1]), rms_mm=tuple((*rows, lost) for rows in trials.rms_mm)
     )
 
 

@@ -37,3 +37,10 @@ def test_trials_are_the_same_from_their_file(tmp_path):
     trials = read_trials(LINE)
     trials.save(tmp_path / "again.json")
     assert read_trials(tmp_path / "again.json") == trials
+
+
+def test_nobody_writes_to_what_was_recorded():
+    """A runner is handed to students: what one of them does to it is nothing to the next."""
+    runner = Runner(read_trials(LINE))
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        runner.trials.rms_mm[0][0][0] = 0.0
