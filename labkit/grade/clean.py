@@ -11,7 +11,7 @@ _UNSAFE = re.compile(f"[{_CONTROL}]")
 _SURROGATE = re.compile("[\ud800-\udfff]")
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 LONGEST = 80
-"""Bytes of a folder's name: results, pages and attempts are called after it."""
+"""Bytes of a folder's name, after which results, pages and attempts are called."""
 
 
 def clean_text(text: str) -> str:

@@ -234,10 +234,10 @@ lk.plotting.show(measured.describe())
 # recorded; between the recorded gains the error is interpolated.)
 #
 # Your gains are then used where you could not try them: on another path, at twice the speed, with a
-# kilogram in the hand, with a state that is a few milliseconds older. And not only they, but also one and
-# a half times your `Kp`: so much margin you should leave. Your function is asked twice, with a runner for
-# this arm and with one for an arm that takes about three times as long for everything, its path included.
-# No pair of gains serves both, so let the function look for them.
+# kilogram in the hand, with a state that is a few milliseconds older. And not only they, but also 1.3 times
+# your `Kp`: so much margin you should leave at least. Your function is asked twice, with a runner for this
+# arm and with one for an arm that takes about three times as long for everything, its path included. No
+# pair of gains serves both, so let the function look for them.
 
 # %% question="choose_gains"
 def choose_gains(runner):

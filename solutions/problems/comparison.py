@@ -382,10 +382,17 @@ CHOOSE_GAINS = Problem(
         ),
         Wrong(
             "the lowest error of all seeds, and no step back",
-            "The lowest point of the curve lies beside the cliff: with half as much gain again the arm "
-            "is lost. Take half of the largest Kp that was safe.",
+            "The lowest point of the curve lies beside the cliff: a little more gain, or a state a little "
+            "older, and the arm is lost. Take half of the largest Kp that was safe.",
             mistakes.Lowest(),
             "The best gain on one path is the most fragile one.",
+        ),
+        Wrong(
+            "a tenth off the lowest point",
+            "A tenth is no margin: a state that is a little older takes more. Take half of the largest "
+            "Kp that was safe.",
+            mistakes.Lowest(0.9),
+            "Say how large your margin is, and against what.",
         ),
         Wrong(
             "gains without a try",

@@ -50,7 +50,7 @@ def margin_by_search(lag: float, delay: float, margin_deg: float) -> float:
 
 def by_doubling(runner: Callable[..., float]) -> list[float]:
     """Doubles Kp while that does not hurt, and gives half of the last one."""
-    Kp = 4.0
+    Kp = 5.0
     while runner(2.0 * Kp, 0.0, 0) < 1.2 * runner(Kp, 0.0, 0):
         Kp *= 2.0
     return [Kp / 2.0, 0.0]
