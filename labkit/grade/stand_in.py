@@ -16,7 +16,7 @@ from .inline import names_defined
 from .notebook import Notebook
 
 USE = "def use(name, function, given, yours=None):\n    return yours or function\n"
-"""In the place of the notebook's: the other parts are right."""
+"""Takes the place of the notebook's, since the other parts are right."""
 
 
 def stand_ins(source: Notebook) -> dict[str, str]:
