@@ -12,7 +12,7 @@ from .clean import clean_line
 
 T = TypeVar("T")
 _OF_THE_MACHINE = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EMFILE, errno.ENFILE}
-"""Errors that every student's step would meet: a disk that is full, or cannot be written."""
+"""Errors that every student's step would meet, such as a full or read-only disk."""
 
 
 class Failed(LabkitError):

@@ -43,10 +43,10 @@ _ARGUMENTS: dict[str, tuple[int, tuple[int, ...]]] = {
         + (termios.FIOCLEX, termios.FIONCLEX),
     ),
 }
-"""By call: which argument is looked at, and the values that it may have."""
+"""Which argument of a call is looked at, and the values that it may have."""
 
 _MACHINES = {"x86_64": (0, 0xC000003E), "aarch64": (1, 0xC00000B7)}
-"""By processor: its column in `syscalls`, and what the kernel calls it."""
+"""A processor's column in `syscalls`, and what the kernel calls it."""
 
 _ALLOW, _KILL, _ERRNO = 0x7FFF0000, 0x80000000, 0x00050000
 _LOAD, _EQUAL, _ANY_BIT, _RETURN = 0x20, 0x15, 0x45, 0x06
