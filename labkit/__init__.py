@@ -9,7 +9,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from . import controllers, energy, errors, impedance, metrics, se3
+from . import controllers, errors, metrics, se3
 from .arm import Arm
 from .commands import Command, JointPosition, JointTorque, JointVelocity, State
 from .errors import LabkitError
@@ -116,10 +116,8 @@ __all__ = [
     "controllers",
     "detect_tags",
     "dials",
-    "energy",
     "errors",
     "find_tag",
-    "impedance",
     "links",
     "looking_at",
     "metrics",

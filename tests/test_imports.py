@@ -34,8 +34,8 @@ LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 # What simulates, and what plans and sees for it.
 SIMULATE = {"arm", "body", "world", "scene", "vision.camera", "vision.board", "vision.looks"}
 MODEL = {"kinematics", "model", "baseline"}
-DRAW = {"plotting", "replay", "vision.sensor_plots", "interactive"}
-SEE = {f"vision.{name}" for name in ("camera", "tags", "detection", "calibration", "edges")}
+DRAW = {"plotting", "replay", "interactive"}
+SEE = {f"vision.{name}" for name in ("camera", "tags", "detection", "edges")}
 
 
 def names(path):

@@ -19,7 +19,7 @@ LAYERS = (
     ("What is wanted", ("motion", "scalings", "paths")),
     ("What is known", ("plant", "robot", "limits", "kinematics", "model")),
     ("What moves", ("commands", "world", "scene", "sensors", "body", "arm")),
-    ("The loop, and what it did", ("log", "run", "controllers", "metrics", "energy", "impedance")),
+    ("The loop, and what it did", ("log", "run", "controllers", "metrics")),
     ("What looks, compares and draws", ("vision", "study", "baseline", "plotting")),
     ("What judges and shows", ("check", "replay", "interactive", "readiness", "notation")),
     ("For instructors, and what one types", ("grade", "verbs", "cli")),

@@ -1,8 +1,8 @@
 r"""Estimation: making one good reading out of several noisy ones.
 
-Sources: averaging of rotations, Moakher 2002 (the nearest rotation to the mean of matrices);
-Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2; constant velocity under
-white acceleration, Bar-Shalom, Li & Kirubarajan, *Estimation with Applications*, section 6.2.2.
+Sources: the Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2; constant
+velocity under white acceleration, Bar-Shalom, Li & Kirubarajan, *Estimation with Applications*,
+section 6.2.2.
 """
 
 from __future__ import annotations
@@ -11,57 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import se3
-from ..arrays import Array, as_array, as_number, as_numbers, locked
-from ..errors import OutOfRange
-
-
-def average_pose(poses: Any) -> Array:
-    """The middle of several poses: the mean of the places, the nearest rotation to the mean of R.
-
-    Args:
-        poses: Shape (n, 4, 4), n at least 1.
-
-    Returns:
-        Shape (4, 4).
-
-    Raises:
-        OutOfRange: The rotations are spread so evenly that they have no middle.
-    """
-    mean = se3.as_poses(poses, "poses").mean(axis=0)
-    U, s, Vt = np.linalg.svd(mean[:3, :3])
-    mirror = np.sign(np.linalg.det(U @ Vt))
-    if s[1] + mirror * s[2] < 1e-9:
-        raise OutOfRange("these rotations point everywhere alike: they have no middle")
-    return se3.pose(U @ np.diag([1.0, 1.0, mirror]) @ Vt, mean[:3, 3])
-
-
-def low_pass(values: Any, share: float) -> Array:
-    r"""A simple filter: each output goes a ``share`` of the way to the new value.
-
-    :math:`y_k = y_{k-1} + a\,(x_k - y_{k-1})`.  White noise comes out with its standard deviation
-    times :math:`\sqrt{a / (2 - a)}`; a value that moves at a constant speed comes out
-    :math:`(1 - a)/a` readings late.
-
-    Args:
-        values: Shape (n, k), or (n,).
-        share: a, above 0 and at most 1; 1 passes everything.
-
-    Returns:
-        The same shape; the first output is the first value.
-
-    Raises:
-        OutOfRange: The share is not above 0 and at most 1.
-    """
-    a = as_number(share, "share", above=0.0)
-    if a > 1.0:
-        raise OutOfRange(
-            f"share is {a:g}; a filter that goes further than the new value overshoots"
-        )
-    filtered = np.atleast_1d(as_numbers(values, "values"))
-    for k in range(1, len(filtered)):
-        filtered[k] = filtered[k - 1] + a * (filtered[k] - filtered[k - 1])
-    return filtered
+from ..arrays import Array, as_array, as_number, locked
 
 
 class Estimate(NamedTuple):
