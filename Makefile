@@ -53,10 +53,10 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@PYTHON="$(CURDIR)/$(BIN)/python" sh tools/vendor.sh
 
 campaign: .venv/.course ## every controller on every task: build/campaign.json
-	@$(BIN)/python -m solutions.campaign
+	@$(BIN)/python -m solutions.study.campaign
 
 build/campaign.json: # the book to hand out has the films
-	@$(BIN)/python -m solutions.campaign
+	@$(BIN)/python -m solutions.study.campaign
 
 bench: for-tests .venv/.dev browser ## measure speeds as ratios: build/bench.json
 	@$(BIN)/python -m bench

@@ -3,8 +3,8 @@
 import os
 import time
 
-from labkit.study.campaign import work_through
-from solutions.campaign import grid, numbers
+from solutions.study.campaign import grid, numbers
+from solutions.study.grid import work_through
 
 
 def measure():

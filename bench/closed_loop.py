@@ -6,7 +6,7 @@ from time import perf_counter
 import numpy as np
 
 import labkit as lk
-from solutions.joint_torque import ComputedTorque
+from solutions.study.joint_torque import ComputedTorque
 
 from .hand_loop import hand_loop, open_arm
 

@@ -5,7 +5,7 @@ from time import perf_counter
 import numpy as np
 
 import labkit as lk
-from solutions.gains import five
+from solutions.study.gains import five
 
 SECONDS = 2.0
 

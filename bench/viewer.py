@@ -4,8 +4,10 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from figures.embed import motion_html, shared_files
+
 import labkit as lk
-from labkit.replay import Motion, motion_html, shared_files
+from labkit.replay import Motion
 from tools.chromium import program
 
 TIMES = 5

@@ -6,8 +6,13 @@ and `run`.  Everything that a notebook needs is ``lk.something``.
 
 from __future__ import annotations
 
+import platform
+import sys
 from importlib import import_module
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
+
+from numpy.linalg import norm
 
 from . import controllers, errors, metrics, se3
 from .arm import Arm
@@ -26,8 +31,6 @@ from .world import World
 
 if TYPE_CHECKING:
     from . import check, plotting, replay
-    from .interactive import dials, progress
-    from .readiness import ready
     from .vision.board import Board
     from .vision.camera import Camera, looking_at
     from .vision.detection import detect_tags, find_tag
@@ -47,12 +50,9 @@ _LATER = {
     "Tag": "vision.tags",
     "check": "",
     "detect_tags": "vision.detection",
-    "dials": "interactive",
     "find_tag": "vision.detection",
     "looking_at": "vision.camera",
     "plotting": "",
-    "progress": "interactive",
-    "ready": "readiness",
     "replay": "",
 }
 """Where to find what is loaded when first asked for; OpenCV and Matplotlib are slow to import."""
@@ -69,6 +69,30 @@ def __getattr__(name: str) -> Any:
 
 def __dir__() -> list[str]:
     return [*globals(), *_LATER]
+
+
+def ready() -> None:
+    """Move the simulated arm once and print one line that says so.
+
+    Raises:
+        LabkitError: The arm did not move as it should.
+    """
+    import psutil  # not needed where nobody asks
+
+    with Arm() as arm:
+        start, goal = (arm.robot.neutral + [x, 0, 0, 0, 0, 0, 0] for x in (0.0, 0.1))
+        log = run(arm, Trajectory(Line(start, goal), Quintic(0.5)), controllers.feedforward)
+        a, b = (arm.model.pose(q)[:3, 3] for q in (log.q[0], log.q[-1]))
+    off = abs(log.q[-1] - goal).max()
+    if off > 0.01:
+        raise LabkitError(f"the arm ended {off:.3f} rad from where it was sent; reinstall labkit")
+    engines = ", ".join(f"{name} {version(name)}" for name in ("pybullet", "pin"))
+    free = psutil.virtual_memory().available / 2**30
+    print(  # short enough for one line of a notebook beside its file browser
+        f"labkit {__version__}: the arm moved {1e3 * norm(b - a):.0f} mm; Python "
+        f"{platform.python_version()}, {sys.platform} {platform.machine()}, {engines}, "
+        f"{free:.0f} GB free"
+    )
 
 
 __all__ = [
@@ -115,14 +139,12 @@ __all__ = [
     "check",
     "controllers",
     "detect_tags",
-    "dials",
     "errors",
     "find_tag",
     "links",
     "looking_at",
     "metrics",
     "plotting",
-    "progress",
     "ready",
     "replay",
     "robot",

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from itertools import accumulate, pairwise
 from math import prod
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .arrays import Array, locked
-from .commands import Command, State
-from .motion import AnySample
+from .commands import COMMANDS, Command, State
+from .motion import AnySample, PoseSample, Sample
 from .plant import Plant
 from .robot import JOINTS, Side, robot
 
@@ -59,6 +61,28 @@ class Log:
             f"Log({self.controller} on the {self.plant.name} {self.side} arm, "
             f"{len(self)} ticks, {self.t[-1]:.3g} s)"
         )
+
+
+def load_log(path: Path) -> Log:
+    """A log from a file that `solutions.study.recording.save` wrote, in single precision."""
+    with np.load(path) as file:
+        about = json.loads(str(file["about"]))
+        columns = {name: file[name] for name in file.files if name != "about"}
+    wide: dict[str, Any] = {
+        x: a if a.dtype == bool else locked(a.astype(np.float64)) for x, a in columns.items()
+    }
+    kind = {c.__name__: c for c in (Sample, PoseSample)}[about.pop("target")]
+    command = {c.__name__: c for c in COMMANDS}[about.pop("command")]
+    plant = about.pop("plant")
+    plant |= {x: tuple(v) for x, v in plant.items() if isinstance(v, list)}
+    return Log(
+        **{name: column for name, column in wide.items() if "." not in name},
+        target=kind(*(wide[f"target.{x}"] for x in kind._fields)),
+        measured=State(*(wide[f"measured.{x}"] for x in State._fields)),
+        command_type=command,
+        plant=Plant(**plant),
+        **about,
+    )
 
 
 class Recorder:

@@ -5,6 +5,8 @@ Curves differ by line style as well as by colour, and `describe` gives each figu
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from textwrap import fill
 from typing import Any
 
@@ -210,3 +212,75 @@ def describe(log: Log, model: Model | None = None) -> str:
         f"Tracking by {log.controller} on the {log.plant.name} {log.side} arm over "
         f"{numbers.duration:.3g} s: {numbers}."
     )
+
+
+def dials(
+    draw: Callable[..., tuple[Figure, str]], **ranges: tuple[float, float, float]
+) -> dict[str, Any]:
+    """Show a figure under sliders that change it.
+
+    Without a page to move them in, the figure of the starting values is all there is, so a notebook
+    runs the same with nobody looking.
+
+    Args:
+        draw: A function of a number for each slider, by name; returns a figure and its caption.
+        ranges: For each slider its least value, its largest one, and where it starts.
+
+    Returns:
+        The sliders by name; setting a slider's `value` redraws.
+    """
+    import ipywidgets
+
+    def drawn() -> dict[str, Any]:
+        figure, caption.value = draw(**{name: slider.value for name, slider in sliders.items()})
+        plt.close(figure)
+        return {"obj": figure, "metadata": {"image/png": {"alt": caption.value}}}
+
+    sliders = {
+        name: ipywidgets.FloatSlider(
+            start, min=a, max=b, step=(b - a) / 100, description=name, continuous_update=False
+        )
+        for name, (a, b, start) in ranges.items()
+    }
+    caption = ipywidgets.HTML()
+    span = ", ".join(f"{name} from {a:g} to {b:g}" for name, (a, b, _) in ranges.items())
+    _display(ipywidgets.VBox([*sliders.values(), caption]), f"Dials: {span}")
+    figure = display(**drawn(), display_id=True)
+    for slider in sliders.values():
+        slider.observe(lambda change: figure.update(**drawn()), "value")
+    return sliders
+
+
+def progress(doing: str, total: float) -> Callable[[float], None]:
+    """A bar for what takes more than a moment.
+
+    Args:
+        doing: What is being done, such as "following the tag".
+        total: How much there is to do: runs, seconds, anything.
+
+    Returns:
+        A function to call with how much is done; cheap enough for every tick of a control loop.
+    """
+    import ipywidgets
+
+    bar, words = ipywidgets.FloatProgress(0.0, max=total), ipywidgets.Label(f"{doing} …")
+    place = _display(ipywidgets.HBox([bar, words]), f"{doing} …", display_id=True)
+    latest = began = time.monotonic()
+
+    def tell(done: float) -> None:
+        nonlocal latest
+        now = time.monotonic()
+        if done < total and now - latest < 0.2:
+            return
+        latest, bar.value = now, done
+        left = (now - began) * (total - done) / done if done else 0.0
+        words.value = f"{doing}: about {left:.0f} s left"
+        if done >= total and place is not None:  # a saved notebook keeps words, but no bar
+            place.update({"text/plain": f"{doing}: done"}, raw=True)
+
+    return tell
+
+
+def _display(box: Any, words: str, **options: Any) -> Any:
+    """Show a widget, and words where no widget can be shown."""
+    return display(box._repr_mimebundle_() | {"text/plain": words}, raw=True, **options)

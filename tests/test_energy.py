@@ -5,8 +5,8 @@ import pytest
 from energy import energy_balance, lyapunov
 
 import labkit as lk
-from solutions.gains import known
-from solutions.joint_torque import AugmentedPD, ComputedTorque
+from solutions.study.gains import known
+from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 
 MODEL = lk.Model()
 READY = MODEL.robot.ready

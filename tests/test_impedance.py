@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from solutions.workspace_impedance import WorkspaceImpedance
+from solutions.study.workspace_impedance import WorkspaceImpedance
 
 
 def fitted(t, force, x, smoothing=0.02):

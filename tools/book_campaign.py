@@ -11,8 +11,8 @@ from typing import Any
 
 from book_pages import CACHE, CAMPAIGN, ROOT, key_of
 
-from labkit.study import recorded
-from labkit.study.campaign import pick, work_through
+from labkit import recordings
+from solutions.study.grid import pick, work_through
 
 JOBS = 2  # the rows are the same with any number
 
@@ -27,7 +27,7 @@ def compare(progress: Callable[[str], None]) -> None:
     Args:
         progress: Told in a few words what is done.
     """
-    key, stamp = key_of("solutions.campaign"), CACHE / "campaign.key"
+    key, stamp = key_of("solutions.study.campaign"), CACHE / "campaign.key"
     if CAMPAIGN.exists() and stamp.exists() and stamp.read_text() == key:
         return
     CACHE.mkdir(parents=True, exist_ok=True)
@@ -41,9 +41,9 @@ def compare(progress: Callable[[str], None]) -> None:
 
 
 def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
-    from solutions import campaign
+    from solutions.study import campaign
 
-    kept = [row | {"failed": None} for row in recorded.campaign()]
+    kept = [row | {"failed": None} for row in recordings.campaign()]
     progress("comparing the runs that are kept with runs of now")
     changed = {row["task"] for row in _differ(list(_sample(kept)))}
     changed |= set(campaign.TASKS) - {row["task"] for row in kept}
@@ -60,7 +60,7 @@ def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
 
 def _sample(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
     """Of each way one run on a path, and one run on the tag, on Baxter's arm."""
-    from solutions.campaign import TASKS, WAYS
+    from solutions.study.campaign import TASKS, WAYS
 
     paths = [task for task in TASKS if task != "tag"]
     seeds = len({row["seed"] for row in rows})
@@ -71,7 +71,7 @@ def _sample(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
 
 def _differ(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """The rows that this code does not give again."""
-    from solutions.campaign import numbers
+    from solutions.study.campaign import numbers
 
     names = ("way", "task", "plant", "seed")
     again = work_through(numbers, [{x: row[x] for x in names} for row in rows], jobs=JOBS)
@@ -87,7 +87,7 @@ def _same(row: dict[str, Any], new: dict[str, Any]) -> bool:
 
 def _judged(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """Rows and what they say of the report's claims; the few runs about gains are made here."""
-    from solutions import campaign, claims
+    from solutions.study import campaign, claims
 
     seeds = len({row["seed"] for row in rows})
     asked = [cell for cell in campaign.gain_grid(seeds) if cell["Kp"] in (3.0, 12.0)]

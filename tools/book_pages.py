@@ -23,7 +23,7 @@ CAMPAIGN = CACHE / "campaign.json"
 OURS = ("labkit", "solutions", "figures")
 DATA = (
     "labkit/data/baxter.json",
-    "labkit/data/baxter_collision.json",
+    "solutions/study/baseline/baxter_collision.json",
     "labkit/data/campaign.json",
 )
 ENGINES = ("numpy", "scipy", "pybullet", "pin", "matplotlib", "opencv-python-headless")

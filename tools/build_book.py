@@ -61,7 +61,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def prepare() -> None:
     """Make the files that stand in no repository: viewer, notation, notebooks."""
-    from labkit.replay import shared_files
+    from figures.embed import shared_files
 
     for name, path in shared_files().items():
         _copy(path, BOOK / "static/viewer" / name)
@@ -73,8 +73,8 @@ def prepare() -> None:
 
 
 def _symbols() -> str:
-    """The table of `labkit.notation` in Markdown."""
-    from labkit.notation import ERRORS, SYMBOLS
+    """The table of symbols in Markdown."""
+    from figures.notation import ERRORS, SYMBOLS
 
     rows = ["| In code | In formulas | Meaning | Shape | Unit |", "|---|---|---|---|---|"]
     for s in (*SYMBOLS, *ERRORS):

@@ -1,4 +1,4 @@
-"""Make labkit/data/baxter_collision.json: the simple shapes with which a planner sees Baxter.
+"""Make the simple shapes with which a planner sees Baxter: baxter_collision.json of the baseline.
 
 Rethink's own collision shapes (cylinders, spheres, boxes) as packaged in example-robot-data 6, and
 the pairs that MoveIt's Setup Assistant found worth a check (the SRDF of the same package; BSD-3,
@@ -22,7 +22,8 @@ import pinocchio as pin
 import trimesh
 from make_urdf import JOINTS, NEUTRAL, URDF, full_model, rounded
 
-DATA = Path(__file__).parents[1] / "labkit/data"
+ROOT = Path(__file__).parents[1]
+DATA = ROOT / "labkit/data"
 SRDF = URDF.parents[1] / "srdf/baxter_manipulation.srdf"
 STACKED = {"torso": "base_link_charcoal", "pedestal": "PEDESTAL_black"}
 SLICES = 8
@@ -135,7 +136,7 @@ def main() -> None:
     apart = {frozenset((d.get("link1"), d.get("link2"))) for d in disabled}
     data = {"source": "example-robot-data 6.0.0, baxter_description (BSD-3); by make_collision.py"}
     data |= {side: arm(side, links, apart) for side in ("left", "right")}
-    out = DATA / "baxter_collision.json"
+    out = ROOT / "solutions/study/baseline/baxter_collision.json"
     out.write_text(json.dumps(data, separators=(",", ":")) + "\n")
     print(f"{out}: {out.stat().st_size} bytes")
 

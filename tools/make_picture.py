@@ -14,7 +14,7 @@ from PIL import Image
 
 import labkit as lk
 from labkit.motion import PosePath
-from solutions.workspace_velocity import WorkspaceVelocityPD
+from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
 OUT = Path(__file__).parents[1] / "book/static/baxter.png"
 WIDTH, HEIGHT, FINE = 1000, 600, 2

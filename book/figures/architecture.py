@@ -19,9 +19,9 @@ LAYERS = (
     ("What is wanted", ("motion", "scalings", "paths")),
     ("What is known", ("plant", "robot", "limits", "kinematics", "model")),
     ("What moves", ("commands", "world", "scene", "sensors", "body", "arm")),
-    ("The loop, and what it did", ("log", "run", "controllers", "metrics")),
-    ("What looks, compares and draws", ("vision", "study", "baseline", "plotting")),
-    ("What judges and shows", ("check", "replay", "interactive", "readiness", "notation")),
+    ("The loop, and what it did", ("log", "run", "controllers", "metrics", "recordings", "loop")),
+    ("What looks, compares and draws", ("vision", "plotting")),
+    ("What judges and shows", ("check", "replay")),
     ("For instructors, and what one types", ("grade", "verbs", "cli")),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""

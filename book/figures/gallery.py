@@ -16,8 +16,8 @@ import labkit as lk
 from labkit import metrics
 from labkit.plotting import AXES, STYLES
 from labkit.replay.motion import JOINTS
-from solutions import campaign
-from solutions.campaign import BASELINE, FIVE
+from solutions.study import campaign
+from solutions.study.campaign import BASELINE, FIVE
 
 from .comparison import run_of
 from .page import figure, holds, replay, table

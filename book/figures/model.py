@@ -7,9 +7,9 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.replay import demo_html
 from labkit.replay.motion import JOINTS
 
+from .embed import demo_html
 from .page import Question, figure, holds, numbers, picture, quiz, table
 
 SEED = 2

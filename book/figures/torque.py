@@ -12,7 +12,7 @@ import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
 from labkit.replay.motion import JOINTS
-from solutions.joint_torque import AugmentedPD, ComputedTorque
+from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 
 from .page import Question, figure, holds, number, numbers, quiz, replay, table, tracking
 from .velocity import circle_task

@@ -19,8 +19,8 @@ from ..errors import TypeMismatch
 from ..log import Log
 from ..metrics import since, summary
 from ..plant import IDEAL, Plant
+from ..recordings import Runner, Trials
 from ..run import run
-from ..study.trials import Runner, Trials
 from ..world import Thing, World
 from .judge import in_brief
 

@@ -18,7 +18,7 @@ from ..arrays import locked
 from ..errors import TypeMismatch
 from ..log import Log
 from ..model import Model
-from ..study.trials import Runner, Trials
+from ..recordings import Runner, Trials
 from .judge import Ratio
 
 DATA = (

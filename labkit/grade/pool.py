@@ -17,7 +17,7 @@ from typing import Any
 import labkit
 
 from ..errors import LabkitError
-from ..study.campaign import dask_client
+from .cluster import dask_client
 from .sandbox import NoIsolation
 
 Job = dict[str, Any]

@@ -24,7 +24,6 @@ STEPS = {  # how fine each channel is kept
     "error": 1e-5,  # m
     "tau": 1e-2,  # N m
 }
-LIMIT = 40_000  # bytes that a page spends on one motion
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,8 @@ from typing import Any
 
 from ..arrays import shown
 from ..errors import TypeMismatch
+from .figure import VIEWER
 from .motion import Motion
-from .page import VIEWER, demo_data
 
 
 def show(motion: Motion) -> Any:
@@ -22,18 +22,9 @@ def show(motion: Motion) -> Any:
         A widget; assign `.motion = another` to change what it shows.
 
     Raises:
-        TypeMismatch: It is no `Motion`.
+        TypeMismatch: It is not a `Motion`.
     """
     return _widget_class()(data=_data(motion))
-
-
-def demo(name: str) -> Any:
-    """One of the live demos, "scaling", "jacobian" or "rotation", as a widget.
-
-    Raises:
-        UnknownName: There is no such demo.
-    """
-    return _widget_class()(data=json.dumps(demo_data(name)))
 
 
 @cache

@@ -309,7 +309,7 @@ def error_of_one_joint(frequency, damping):
     )
 
 
-dials = lk.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping=(0.1, 2.0, 0.7))
+dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping=(0.1, 2.0, 0.7))
 
 # %% [markdown]
 # ## The torque stands still between two ticks
@@ -450,7 +450,7 @@ def rest_torques(plant, poses=8, seed=1):
     """What the springs command at rest, and the model's gravity there, shape (poses, 7) each."""
     random = np.random.default_rng(seed)
     tau, g = [], []
-    shown = lk.progress(f"holding {poses} poses, plant {plant.name}", poses)
+    shown = lk.plotting.progress(f"holding {poses} poses, plant {plant.name}", poses)
     with lk.Arm("left", plant, seed) as arm:
         for k, q in enumerate(ready + random.uniform(-0.4, 0.4, (poses, 7))):
             arm.reset(q)
@@ -538,7 +538,7 @@ def same_gains_everywhere(kp, kd):
     return figure, f"kp = {kp:g} N m/rad, kd = {kd:g} N m s/rad everywhere: {lk.metrics.summary(log)}."
 
 
-dials = lk.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0, 40.0, 8.0))
+dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0, 40.0, 8.0))
 
 # %% [markdown]
 # The shoulder wants more, the wrist cannot bear it. Your gains may differ from joint to joint, and the
@@ -588,7 +588,7 @@ steps = np.array([0.5, 0.75, 1.0, 1.25, 1.6, 2.0])
 kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
 plt.figure(figsize=(7, 3.2), layout="constrained")
 yours = []
-shown = lk.progress("eighteen runs", len(occasions) * len(steps))
+shown = lk.plotting.progress("eighteen runs", len(occasions) * len(steps))
 for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
     errors = []
     for x in steps:

@@ -34,7 +34,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from labkit import se3
-from labkit.vision import detection, estimation, sensing
+from labkit.vision import detection, estimation
 from labkit.vision.board import Board
 
 # %% [markdown]
@@ -387,7 +387,7 @@ board.place(se3.pose(np.eye(3), round_it_goes(0.0).position))
 board.move(round_it_goes)
 watching = lk.Camera(world, lk.looking_at(centre + [0.75, -0.1, 0.45], centre))
 follow = lk.Following(lk.Lookups(watching, board.tag, rate=10.0, delay=0.1), Follower())
-shown = lk.progress("following the tag", 10.0)
+shown = lk.plotting.progress("following the tag", 10.0)
 log = lk.run(arm, follow, position_mode, rate=100.0, duration=10.0)
 shown(10.0)
 

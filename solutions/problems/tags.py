@@ -209,7 +209,6 @@ QUALITY = Problem(
             "noise and offset together",
         ),
     ),
-    withheld=("labkit.vision.sensing",),
     hints=(
         "First one error vector of six numbers for each estimate. Then their mean and their covariance.",
         "se3.rotation_log(R_truth @ R_estimate.T) is the turn from the estimate to the truth.",

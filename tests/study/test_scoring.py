@@ -1,10 +1,9 @@
 """Gains on held-out cases."""
 
 import labkit as lk
-from labkit.study import campaign, tasks
-from solutions import scoring
-from solutions.gains import Tuned
-from solutions.joint_velocity import JointVelocityPD
+from solutions.study import grid, scoring, tasks
+from solutions.study.gains import Tuned
+from solutions.study.joint_velocity import JointVelocityPD
 
 
 def test_a_controller_is_scored_on_every_case_and_seed_with_its_spread():
@@ -12,9 +11,9 @@ def test_a_controller_is_scored_on_every_case_and_seed_with_its_spread():
     assert [(r["case"], r["seed"]) for r in rows] == [
         (case, seed) for case in ("as tuned", "twice as fast") for seed in (0, 1)
     ]
-    means = [campaign.spread(r["rms_mm"] for r in rows[i : i + 2])[0] for i in (0, 2)]
+    means = [grid.spread(r["rms_mm"] for r in rows[i : i + 2])[0] for i in (0, 2)]
     assert means[0] < means[1], "faster is harder"
-    assert "[" in campaign.table(rows, "case", "failed", "rms_mm")
+    assert "[" in grid.table(rows, "case", "failed", "rms_mm")
 
 
 def test_a_controller_that_loses_the_arm_is_a_row_with_a_sentence():

@@ -15,8 +15,8 @@ from labkit.vision.detection import (
     tag_pose,
     tag_poses,
 )
-from labkit.vision.sensing import Setup, random_poses, read
 from labkit.vision.tags import APRILTAG, ARUCO
+from solutions.study.sensing import Setup, random_poses, read
 
 LENS = lk.Intrinsics()
 
