@@ -7,7 +7,7 @@ import numpy as np
 
 import labkit as lk
 from labkit import se3
-from labkit.vision.camera import BACKGROUND
+from labkit.tags.camera import BACKGROUND
 
 EYE, AT = (1.5, 0.3, 0.7), (0.85, 0.3, -0.26)
 """Where the camera of the measured frame stands and what it looks at: a table, arm and tag."""
@@ -39,7 +39,7 @@ def measure():
         table = np.abs(tint - np.divide(wood, max(wood))).max(axis=2) < 0.03
         figures = {
             "frame_ms": quickest(camera.image),
-            "tag_frame_ms": quickest(camera.glimpse),
+            "tag_frame_ms": quickest(camera.tag_image),
             "detection_ms": quickest(lambda: lk.detect_tags(frame, camera, {0: 0.1})),
         }
         if len(lk.detect_tags(frame, camera, 0.1)) != 1:

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, locked, shown
+from .baxter import robot
 from .body import load
-from .commands import (
+from .control import (
     COMMANDS,
     NOTHING,
     Command,
@@ -25,15 +25,16 @@ from .errors import Closed, ControllerError, LabkitError, TypeMismatch
 from .model import Model
 from .plant import IDEAL, Plant
 from .quiet import quiet
-from .robot import JOINTS, Robot, Side, robot
+from .robot import DOF, Robot, Side
 from .sensors import Reports, TorqueSensors, angles, motor_torques
+from .shapes import Array, as_array, locked, shown
 from .world import World
 
 with quiet():
     import pybullet as bullet
 
-_JOINTS = tuple(range(JOINTS))
-_ZERO = [0.0] * JOINTS
+_JOINTS = tuple(range(DOF))
+_ZERO = [0.0] * DOF
 
 BRAKING = 0.5
 """Share of the torque left by gravity that the position mode plans to brake with."""
@@ -260,9 +261,7 @@ class Arm:
         columns = zip(*rows)  # noqa: B905  # angles, speeds, reactions, torques
         both = np.array(next(columns) + next(columns))  # one array is quicker made than two
         both.setflags(False)  # type: ignore[call-arg]  # as in `locked`
-        return State(
-            steps * self.world.dt, both[:JOINTS], both[JOINTS:], self._sensors.felt(rows, steps)
-        )
+        return State(steps * self.world.dt, both[:DOF], both[DOF:], self._sensors.felt(rows, steps))
 
     def _reported(self, rows: Any) -> State:
         if not self._reports.every:

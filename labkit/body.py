@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from .baxter import robot
 from .plant import Plant
 from .quiet import quiet
-from .robot import JOINTS, Side, robot
+from .robot import DOF, Side
 from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 
 with quiet():
@@ -32,7 +33,7 @@ def load(client: int, side: Side, plant: Plant) -> int:
             flags=bullet.URDF_USE_INERTIA_FROM_FILE,
             physicsClientId=client,
         )
-    for joint in range(-1, JOINTS):
+    for joint in range(-1, DOF):
         bullet.changeDynamics(
             body,
             joint,
@@ -43,7 +44,7 @@ def load(client: int, side: Side, plant: Plant) -> int:
         )
     bullet.changeDynamics(
         body,
-        JOINTS - 1,
+        DOF - 1,
         contactStiffness=TIP_STIFFNESS,
         contactDamping=TIP_DAMPING,
         lateralFriction=1.0,
@@ -51,7 +52,7 @@ def load(client: int, side: Side, plant: Plant) -> int:
         physicsClientId=client,
     )
     # PyBullet would show the ball; what cameras see of the arm is in `vision.looks`.
-    bullet.changeVisualShape(body, JOINTS - 1, rgbaColor=[0, 0, 0, 0], physicsClientId=client)
+    bullet.changeVisualShape(body, DOF - 1, rgbaColor=[0, 0, 0, 0], physicsClientId=client)
     return body
 
 

@@ -11,11 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, locked
-from .commands import COMMANDS, Command, State
-from .motion import AnySample, PoseSample, Sample
+from .baxter import robot
+from .control import COMMANDS, Command, State
 from .plant import Plant
-from .robot import JOINTS, Side, robot
+from .robot import DOF, Side
+from .shapes import Array, locked
+from .trajectory import AnySample, PoseSample, Sample
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +130,7 @@ class Recorder:
         (q, dq, tau_ext, torque, command), samples = self._columns()
         seen = [q, dq, tau_ext]
         if self._reports:
-            seen = np.split(_numbers(self._reports[:n], 3 * JOINTS), 3, axis=1)
+            seen = np.split(_numbers(self._reports[:n], 3 * DOF), 3, axis=1)
         tau = np.concatenate([torque[1:], torque[-1:]])
         saturated = (np.abs(tau) >= robot(side).effort * (1.0 - 1e-9)).any(axis=1)
         saturated |= [*self.saturated, False][:n]
@@ -151,7 +152,7 @@ class Recorder:
 
     def _columns(self) -> tuple[list[Array], AnySample]:
         """What is seven numbers wide, and the samples."""
-        widths = [JOINTS] * 5 + [prod(shape) for shape in self._shapes]
+        widths = [DOF] * 5 + [prod(shape) for shape in self._shapes]
         rows = _numbers(self._rows, sum(widths))
         columns = [rows[:, a:b] for a, b in pairwise(accumulate(widths, initial=0))]
         shaped = zip(columns[5:], self._shapes, strict=True)

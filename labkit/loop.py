@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import control
 import numpy as np
 
-from .arrays import as_number
 from .errors import OutOfRange
 from .plant import Plant
+from .shapes import as_number
 
 _PADE = 4  # order of the rational stand-in for the delay; where a delay can be exact, it is
 

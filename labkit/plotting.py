@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from . import metrics
 from .log import Log
 from .model import Model
-from .motion import PoseSample
+from .trajectory import PoseSample
 
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
@@ -80,7 +80,7 @@ def scaling(*scalings: Any, axes: Any = None) -> Any:
     return axes
 
 
-def everything(
+def overview(
     log: Log, model: Model | None = None, *, joints: Any = None, title: str | None = None
 ) -> Any:
     """One run on one page: the tip's position, velocity and errors; seven joints; seven torques.

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_number
 from .errors import OutOfRange, UnknownName
 from .log import Log, load_log
+from .shapes import Array, as_number
 
 DATA = Path(__file__).parent / "data"
 LINE = DATA / "trials_line.json"

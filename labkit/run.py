@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from .arm import Arm
-from .arrays import as_array, as_number, shown
-from .commands import COMMANDS, Command, State
+from .control import COMMANDS, Command, State
 from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .log import Log, Recorder
-from .motion import AnySample, PoseSample, Sample, Target
-from .robot import JOINTS
+from .robot import DOF
+from .shapes import as_array, as_number, shown
+from .trajectory import AnySample, PoseSample, Sample, Target
 from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]
@@ -200,7 +200,7 @@ def _what(error: Exception, sample: AnySample) -> str:
             what += f"; {makes} joint angles of poses"
     elif isinstance(error, ValueError) and isinstance(sample, Sample):
         n = sample.position.size
-        if n != JOINTS:
+        if n != DOF:
             what += f"; the target gives {n} numbers, {makes} joint angles of points"
     return what
 

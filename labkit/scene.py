@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_number, lock_vectors, locked
 from .errors import OutOfRange, UnknownName
 from .quiet import quiet
 from .robot import Side
+from .shapes import Array, as_number, lock_vectors, locked
 from .world import Actor, Pushable, World
 
 with quiet():

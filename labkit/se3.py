@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, as_numbers
 from .errors import OutOfRange, ShapeError
+from .shapes import Array, as_array, as_numbers
 
 _IDENTITY = np.eye(3)
 _SMALL = 1e-4  # below this angle the closed forms lose digits and the series are exact

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, Self
 
-from .arrays import Array, as_number, shown
 from .errors import Closed, OutOfRange, TypeMismatch
 from .quiet import quiet
+from .shapes import Array, as_number, shown
 
 with quiet():
     import pybullet as bullet

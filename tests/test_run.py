@@ -352,7 +352,7 @@ def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
     point = lk.Hold(ideal.model.pose(ideal.robot.neutral)[:3, 3], 1.0)
     words = r"springs failed .*\(3,\) \(7,\).*gives 3 numbers, model.joint_traj.* of points"
     with pytest.raises(ControllerError, match=words):
-        lk.run(ideal, point, lk.controllers.springs(100.0, 1.0))
+        lk.run(ideal, point, lk.control.springs(100.0, 1.0))
 
 
 @pytest.mark.parametrize(

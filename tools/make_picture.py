@@ -13,7 +13,7 @@ import numpy as np
 from PIL import Image
 
 import labkit as lk
-from labkit.motion import PosePath
+from labkit.trajectory import PosePath
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
 OUT = Path(__file__).parents[1] / "book/static/baxter.png"

@@ -15,13 +15,13 @@ from .page import framed, holds
 
 HOME = Path(labkit.__file__).parent
 LAYERS = (
-    ("Sentences and numbers", ("errors", "quiet", "arrays", "se3")),
-    ("What is wanted", ("motion", "scalings", "paths")),
-    ("What is known", ("plant", "robot", "limits", "kinematics", "model")),
-    ("What moves", ("commands", "world", "scene", "sensors", "body", "arm")),
-    ("The loop, and what it did", ("log", "run", "controllers", "metrics", "recordings", "loop")),
-    ("What looks, compares and draws", ("vision", "plotting")),
-    ("What judges and shows", ("check", "replay")),
+    ("Sentences and numbers", ("errors", "quiet", "shapes", "se3")),
+    ("What is wanted", ("trajectory", "paths")),
+    ("What is known", ("plant", "robot", "baxter", "kinematics", "model")),
+    ("What moves", ("control", "world", "scene", "sensors", "body", "arm")),
+    ("The loop, and what it did", ("log", "run", "metrics", "recordings", "loop")),
+    ("What sees, draws and shows", ("tags", "plotting", "replay")),
+    ("What judges", ("check",)),
     ("For instructors, and what one types", ("grade", "verbs", "cli")),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""

@@ -22,8 +22,8 @@ from PIL import Image
 from labkit import Arm, Log, Plant, Table, World, metrics, plotting
 from labkit.replay import motion_of
 from labkit.robot import Side
-from labkit.vision.camera import Camera, looking_at
-from labkit.vision.intrinsics import Intrinsics
+from labkit.tags.camera import Camera, looking_at
+from labkit.tags.intrinsics import Intrinsics
 from solutions.study.film import AT, EYE
 
 from .embed import motion_html

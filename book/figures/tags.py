@@ -10,7 +10,7 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit.replay import motion_of
-from labkit.vision.detection import detect_tags, find_tag
+from labkit.tags.detection import detect_tags, find_tag
 from solutions.study.gains import known
 from solutions.study.tag_scenes import circling_board
 from solutions.study.tag_task import OFFSET, followed, sequential, staged

@@ -6,8 +6,8 @@ import json
 from functools import cache
 from typing import Any
 
-from ..arrays import shown
 from ..errors import TypeMismatch
+from ..shapes import shown
 from .figure import VIEWER
 from .motion import Motion
 

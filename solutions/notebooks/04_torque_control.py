@@ -388,7 +388,7 @@ lk.plotting.show(
 
 # %%
 kp_report = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
-springs = lk.controllers.springs(kp_report, [10.0, 10.0, 5.0, 5.0, 4.0, 1.5, 1.5])
+springs = lk.control.springs(kp_report, [10.0, 10.0, 5.0, 5.0, 4.0, 1.5, 1.5])
 for armature in (0.0, 0.05):
     plant = replace(carries_itself, name=f"armature {armature:g}", armature=armature)
     try:
@@ -443,7 +443,7 @@ def look_at_one_joint(tau_hold, gravity_model):
 my_gravity_factor = use("gravity_factor", gravity_factor, look_at_one_joint)
 
 holding = np.diag(model.mass_matrix(ready))
-holding = lk.controllers.springs(140.0 * holding, 24.0 * holding)
+holding = lk.control.springs(140.0 * holding, 24.0 * holding)
 
 
 def rest_torques(plant, poses=8, seed=1):
@@ -528,7 +528,7 @@ slow_line = model.joint_trajectory(
 def same_gains_everywhere(kp, kd):
     figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
     try:
-        log = drive(lk.BAXTER, lk.controllers.springs(kp, kd), slow_line)
+        log = drive(lk.BAXTER, lk.control.springs(kp, kd), slow_line)
     except lk.errors.Diverged as error:
         log = error.log
     error = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
@@ -545,7 +545,7 @@ dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0,
 # model can tell you how. The rest is a frequency, and that is for you to find: too low, and friction and
 # load win; too high, and the arm acts on old news.
 #
-# The law is the simplest there is, `lk.controllers.springs(kp, kd)`: springs and dampers, no model. The
+# The law is the simplest there is, `lk.control.springs(kp, kd)`: springs and dampers, no model. The
 # point is the gains. They are tried on the slow line, then on quicker tours and with a load.
 
 # %% question="choose_gains"
@@ -593,7 +593,7 @@ for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
     errors = []
     for x in steps:
         try:
-            log = drive(plant, lk.controllers.springs(x**2 * kp, x * kd), target)
+            log = drive(plant, lk.control.springs(x**2 * kp, x * kd), target)
         except lk.errors.Diverged as error:
             log = error.log
         errors.append(lk.metrics.summary(log).rms_mm)
@@ -618,7 +618,7 @@ lk.plotting.show(f"The error over the stiffness of your gains. Yours, in the mid
 # which knows nothing of that kilogram either.
 
 # %%
-sprung = drive(loaded, lk.controllers.springs(kp, kd))
+sprung = drive(loaded, lk.control.springs(kp, kd))
 ct = with_gains(my_computed_torque, lk.BAXTER, 120.0, 22.0, True)
 computed = drive(loaded, ct)
 print(f"springs: {lk.metrics.summary(sprung)}")

@@ -222,7 +222,7 @@ def workspace_impedance(state, target, model, *, stiffness, damping):
 # %%
 JOINT_K = np.array([400.0, 400.0, 200.0, 200.0, 40.0, 40.0, 20.0])
 JOINT_D = np.array([60.0, 60.0, 28.0, 28.0, 6.0, 6.0, 3.0])
-joint_springs = lk.controllers.springs(JOINT_K, JOINT_D)
+joint_springs = lk.control.springs(JOINT_K, JOINT_D)
 
 
 def springs_in_the_joints(state, target, model, *, stiffness, damping):

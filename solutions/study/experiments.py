@@ -32,8 +32,8 @@ from labkit import (
     metrics,
     run,
 )
-from labkit.arrays import Array, locked
 from labkit.scene import TIP_RADIUS, contact_stiffness
+from labkit.shapes import Array, locked
 from labkit.world import Thing
 
 from .gains import TIP_SPRING, Tuned, five

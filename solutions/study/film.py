@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from labkit import Arm, Camera, Intrinsics, Log, Table, World, looking_at, metrics
-from labkit.arrays import Array, as_number
 from labkit.errors import OutOfRange
-from labkit.vision.tags import Picture
+from labkit.shapes import Array, as_number
+from labkit.tags.tag import Picture
 
 EYE, AT = (1.7, 1.15, 0.7), (0.45, 0.2, 0.2)
 """Where the camera stands and what it looks at, world axes, in [m]."""

@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from labkit import Controller, Model, Plant
+from labkit import Model, Plant
+from labkit.run import Controller
 
 from .joint_impedance import JointImpedance
 from .joint_torque import AugmentedPD, ComputedTorque

@@ -19,9 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from labkit.arrays import as_number
 from labkit.errors import LabkitError, OutOfRange, UnknownName
 from labkit.grade.cluster import dask_client
+from labkit.shapes import as_number
 
 Cell = Mapping[str, Any]
 Row = dict[str, Any]

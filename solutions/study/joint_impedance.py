@@ -25,7 +25,7 @@ from typing import Any
 import numpy as np
 
 from labkit import JointTorque, Model, Sample, State
-from labkit.arrays import as_gains
+from labkit.shapes import as_gains
 
 from .joint_torque import AugmentedPD
 from .shaping import as_inertia

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from labkit import JointTorque, Model, Sample, State
-from labkit.arrays import as_gains
+from labkit.shapes import as_gains
 
 
 @dataclass(frozen=True, eq=False)

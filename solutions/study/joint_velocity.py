@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from labkit import JointVelocity, Sample, State
-from labkit.arrays import as_gains
+from labkit.shapes import as_gains
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,9 +32,7 @@ def draw(way: str, task: str, folder: str) -> Mapping[str, Any]:
 
     number = 4 + 4 * FIVE.index(way) + TASKS.index(task)
     log = perform(way, task, "baxter", 0)
-    figure = plotting.everything(
-        log, joints=joints(way, task, 0), title=f"{way}, {task}, baxter arm"
-    )
+    figure = plotting.overview(log, joints=joints(way, task, 0), title=f"{way}, {task}, baxter arm")
     name = f"figure_{number:02d}_{way.replace(' ', '_')}_{task}.png"
     figure.savefig(Path(folder) / name, dpi=90)
     plt.close(figure)

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from labkit.arrays import as_array, as_number
 from labkit.errors import Diverged, OutOfRange
+from labkit.shapes import as_array, as_number
 
 Trial = Callable[[float, float], tuple[Any, Any]]
 """Tries gains (Kp, Kd) and gives times (N,) [s] and one joint's error (N,), target minus actual."""

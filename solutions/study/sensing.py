@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from labkit import se3
-from labkit.arrays import Array, as_number, locked
 from labkit.errors import OutOfRange, UnknownName
-from labkit.vision.board import Board
-from labkit.vision.camera import Camera, looking_at
-from labkit.vision.detection import detect_tags
-from labkit.vision.intrinsics import Intrinsics
-from labkit.vision.tags import Tag
+from labkit.shapes import Array, as_number, locked
+from labkit.tags.board import Board
+from labkit.tags.camera import Camera, looking_at
+from labkit.tags.detection import detect_tags
+from labkit.tags.intrinsics import Intrinsics
+from labkit.tags.tag import Tag
 from labkit.world import World
 
 _T_WC = looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))  # away from the robot, and looking away
@@ -173,7 +173,7 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
         board = Board(world, setup.tag, _T_WC @ poses[0])
         for i, T_cm in enumerate(poses):
             board.place(_T_WC @ T_cm)
-            found = detect_tags(camera.glimpse(), camera, sizes, setup.tag.dictionary)
+            found = detect_tags(camera.tag_image(), camera, sizes, setup.tag.dictionary)
             if len(found) != 1:
                 continue
             corners = setup.tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3]

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from labkit.arrays import Array, as_array, as_gains, locked
 from labkit.errors import OutOfRange
+from labkit.shapes import Array, as_array, as_gains, locked
 
 
 def as_inertia(x: Any, n: int) -> Array:

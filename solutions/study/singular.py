@@ -14,9 +14,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from labkit.arrays import Array
 from labkit.errors import LabkitWarning
-from labkit.limits import NEAR_SINGULAR
+from labkit.kinematics import NEAR_SINGULAR
+from labkit.shapes import Array
 
 
 @dataclass

@@ -8,10 +8,10 @@ from math import cos, sin
 import numpy as np
 
 from labkit import IDEAL, Arm, Log, Plant, Sample, World, metrics, se3
-from labkit.arrays import Array
-from labkit.vision.board import Board
-from labkit.vision.camera import Camera, looking_at
-from labkit.vision.tags import Tag
+from labkit.shapes import Array
+from labkit.tags.board import Board
+from labkit.tags.camera import Camera, looking_at
+from labkit.tags.tag import Tag
 
 RADIUS, SPEED = 0.15, 0.1
 """Of the board's circle, in [m] and [m/s]."""

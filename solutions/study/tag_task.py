@@ -14,12 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from labkit import Chain, Circle, Hold, PosePath, Quintic, Spline, Trajectory, World, robot, se3
-from labkit.arrays import Array
-from labkit.vision.board import Board
-from labkit.vision.camera import Camera, looking_at
-from labkit.vision.looking import Following, Lookups
-from labkit.vision.tags import Tag
+from labkit import Chain, Circle, Hold, PosePath, Quintic, Trajectory, World, robot, se3
+from labkit.paths import Spline
+from labkit.shapes import Array
+from labkit.tags.board import Board
+from labkit.tags.camera import Camera, looking_at
+from labkit.tags.stream import TagStream, TagTarget
+from labkit.tags.tag import Tag
 
 from ..tag_following import TagFollower
 from .tasks import Task, ready_pose
@@ -89,7 +90,7 @@ def _record(seed: int, rate: float, delay: float, make: Callable[[], Any]) -> Ch
     path, goal = np.empty((len(times), 3)), np.empty((len(times), 3))
     with World() as world:
         board, camera = staged(world, seed)
-        following = Following(Lookups(camera, board.tag, rate, delay, seed=seed), make())
+        following = TagTarget(TagStream(camera, board.tag, rate, delay, seed=seed), make())
         for k, t in enumerate(times):
             path[k] = following(float(t)).pose[:3, 3]  # type: ignore[union-attr]
             goal[k] = board.T_wm[:3, 3] + OFFSET

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from labkit.arrays import Array, as_array, as_vector, locked
+from labkit.baxter import robot
 from labkit.model import Model
-from labkit.motion import Chain, Hold, PosePath, Target, Trajectory
-from labkit.paths import Circle, Line, Polyline
-from labkit.robot import Side, robot
-from labkit.scalings import Quintic
+from labkit.paths import Circle, Line, Polyline, Quintic
+from labkit.robot import Side
+from labkit.shapes import Array, as_array, as_vector, locked
+from labkit.trajectory import Chain, Hold, PosePath, Target, Trajectory
 
 V_MAX = 0.2
 """The tip's largest speed, in [m/s]; the report's mean speed."""

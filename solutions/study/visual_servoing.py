@@ -6,20 +6,33 @@ make the arm jerk.  It is here to be seen beside `tag_following`, not to be copi
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from labkit import BangBang, Line, PoseSample, Trajectory, se3
-from labkit.arrays import as_vector
-from labkit.motion import PosePath
-from labkit.vision.looking import Reading
+from labkit import (
+    BangBang,
+    JointTorque,
+    JointVelocity,
+    Line,
+    PosePath,
+    PoseSample,
+    State,
+    Trajectory,
+    se3,
+)
+from labkit.control import Command, still
+from labkit.errors import ControllerError
+from labkit.run import Controller
+from labkit.shapes import as_vector
+from labkit.tags.stream import Reading
 
 
 @dataclass(eq=False)
 class SequentialServoing:
-    """A follower for `lk.Following`: look up every 5 s, and wait for each look-up.
+    """A follower for `lk.TagTarget`: look up every 5 s, and wait for each look-up.
 
     Attributes:
         T_wt: Pose of the tip at the start, shape (4, 4); its orientation is kept.
@@ -51,3 +64,35 @@ class SequentialServoing:
 
     def _line(self, start: Any, goal: Any) -> Trajectory:
         return Trajectory(PosePath(Line(start, goal), self.T_wt[:3, :3]), BangBang(self.duration))
+
+
+def stalled(controller: Controller, busy: Callable[[], bool], timeout: float = 0.2) -> Controller:
+    """A controller whose loop waits for something: it is asked only when it is not busy.
+
+    Meanwhile the arm obeys the last command until its command timeout, and then stays where it is.
+
+    Args:
+        controller: The controller.
+        busy: Whether the loop waits now.
+        timeout: The arm's command timeout, in [s].
+    """
+    last: list[Any] = []  # when the controller was last asked, and its answer
+
+    def stalled(state: State, target: Any) -> Command:
+        if not (busy() and last):
+            command: Command = controller(state, target)
+            if isinstance(command, JointTorque):
+                raise ControllerError(
+                    "a torque controller cannot wait for a look-up: nothing would hold the arm; "
+                    "use one that commands speeds, or look beside the loop"
+                )
+            last[:] = [state.t, command]
+            return command
+        since, latest = last
+        command = latest
+        if state.t - since <= timeout or not isinstance(command, JointVelocity):
+            return command
+        return still()
+
+    stalled.__name__ = f"stalled {getattr(controller, '__name__', type(controller).__name__)}"
+    return stalled

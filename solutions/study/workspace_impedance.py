@@ -37,7 +37,7 @@ from typing import Any
 import numpy as np
 
 from labkit import JointTorque, Model, PoseSample, State, se3
-from labkit.arrays import Array, as_gains, as_number
+from labkit.shapes import Array, as_gains, as_number
 
 from .shaping import as_inertia
 from .singular import Watch

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from labkit import JointVelocity, Model, PoseSample, State, se3
-from labkit.arrays import as_gains, as_number
+from labkit.shapes import as_gains, as_number
 
 from .singular import Watch, damped_inverse
 

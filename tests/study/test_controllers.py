@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import labkit as lk
 from labkit import metrics, se3
-from labkit.controllers import feedforward, hold
+from labkit.control import feedforward, hold
 from labkit.errors import ControllerError, Diverged, LabkitWarning, OutOfRange, ShapeError
 from solutions.study.gains import five, known
 from solutions.study.joint_impedance import JointImpedance

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.vision.camera import looking_at
-from labkit.vision.intrinsics import Intrinsics
+from labkit.tags.camera import looking_at
+from labkit.tags.intrinsics import Intrinsics
 from solutions.study import film, tasks
 
 LENS = Intrinsics(width=192, height=144, fx=160.0, fy=160.0)

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.vision.looking import stalled
+from labkit.errors import ControllerError
+from labkit.tags.stream import Reading
 from solutions.study.tag_scenes import RADIUS, SPEED, circling_board
-from solutions.study.visual_servoing import SequentialServoing
+from solutions.study.visual_servoing import SequentialServoing, stalled
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 from solutions.tag_following import TagFollower, blend, predict
 
@@ -75,10 +76,10 @@ class Watched(TagFollower):
 
 def followed(duration, plant=lk.IDEAL, noise=0.0, follower=Watched, **dials):
     scene = circling_board(plant, noise)
-    lookups = lk.Lookups(scene.camera, scene.board.tag, **{"rate": 10, "delay": 0.1} | dials)
+    lookups = lk.TagStream(scene.camera, scene.board.tag, **{"rate": 10, "delay": 0.1} | dials)
     guide = follower(scene.T_wt, scene.offset)
     controller = WorkspaceVelocityPD(scene.arm.model)
-    log = lk.run(scene.arm, lk.Following(lookups, guide), controller, duration=duration)
+    log = lk.run(scene.arm, lk.TagTarget(lookups, guide), controller, duration=duration)
     error = np.linalg.norm(scene.error(log), axis=1)
     scene.arm.close()
     return log, error, guide, lookups
@@ -130,8 +131,8 @@ def test_a_tag_never_seen_leaves_the_arm_where_it_is():
 def test_a_still_tag_is_followed_to_a_stand():
     scene = circling_board()
     scene.board.place(scene.board.pose_at(0.0))
-    lookups = lk.Lookups(scene.camera, scene.board.tag)
-    target = lk.Following(
+    lookups = lk.TagStream(scene.camera, scene.board.tag)
+    target = lk.TagTarget(
         lookups, TagFollower(scene.T_wt, scene.offset + np.array([0.03, 0.0, 0.0]))
     )
     log = lk.run(scene.arm, target, WorkspaceVelocityPD(scene.arm.model), duration=4.0)
@@ -143,10 +144,10 @@ def test_a_still_tag_is_followed_to_a_stand():
 def test_algorithm_1_jumps_and_lags_where_the_continuous_reference_does_not():
     """Looking every 5 s, waiting 1.2 s for each answer, each line from rest."""
     scene = circling_board()
-    lookups = lk.Lookups(scene.camera, scene.board.tag, rate=0.2, delay=1.2)
+    lookups = lk.TagStream(scene.camera, scene.board.tag, rate=0.2, delay=1.2)
     servoing = SequentialServoing(scene.T_wt, scene.offset)
     controller = stalled(WorkspaceVelocityPD(scene.arm.model), lambda: lookups.busy)
-    log = lk.run(scene.arm, lk.Following(lookups, servoing), controller, duration=12.0)
+    log = lk.run(scene.arm, lk.TagTarget(lookups, servoing), controller, duration=12.0)
     error = np.linalg.norm(scene.error(log), axis=1)
     scene.arm.close()
     assert 1e3 * np.sqrt(np.mean(error[log.t >= 5.0] ** 2)) > 100.0
@@ -158,7 +159,7 @@ def test_algorithm_1_jumps_and_lags_where_the_continuous_reference_does_not():
 def test_a_reading_older_than_what_is_known_is_passed_over():
     scene = circling_board()
     guide = TagFollower(scene.T_wt, scene.offset)
-    reading = lk.Reading(1.0, 1.1, scene.board.T_wm, 1e-6 * np.eye(6), 9.0)
+    reading = Reading(1.0, 1.1, scene.board.T_wm, 1e-6 * np.eye(6), 9.0)
     guide.learn(reading)
     known = guide.estimate
     guide.learn(reading._replace(stamp=0.5))
@@ -170,3 +171,27 @@ def test_a_reading_older_than_what_is_known_is_passed_over():
 def test_a_prediction_without_sense_is_refused(wrong):
     with pytest.raises(lk.LabkitError):
         predict(np.zeros(6), np.eye(6), **{"age": 0.1, "accel_noise": 1.0} | wrong)
+
+
+def test_a_stalled_loop_repeats_its_command_until_the_timeout_then_the_arm_stands_still():
+    asked, busy = [], [False]
+
+    def drift(state, target):
+        asked.append(state.t)
+        return lk.JointVelocity(np.full(7, 0.1))
+
+    slow = stalled(drift, lambda: busy[0], timeout=0.2)
+    seen = []
+    for k in range(100):
+        busy[0] = 20 <= k < 80
+        state = lk.State(0.01 * k, np.zeros(7), np.zeros(7), np.zeros(7))
+        seen.append(slow(state, None).value[0])
+    assert len(asked) == 40
+    assert all(x == 0.1 for x in seen[:40]) and all(x == 0.0 for x in seen[40:80])
+    assert all(x == 0.1 for x in seen[80:])
+
+
+def test_a_torque_controller_cannot_wait():
+    falls = stalled(lambda s, _: lk.JointTorque(np.zeros(7)), lambda: True)
+    with pytest.raises(ControllerError, match="nothing would hold the arm"):
+        falls(lk.State(0.0, np.zeros(7), np.zeros(7), np.zeros(7)), None)

@@ -7,11 +7,11 @@ import argparse
 from labkit.arm import Arm
 from labkit.log import Log
 from labkit.metrics import summary
-from labkit.motion import Chain, Hold
 from labkit.plant import BAXTER
 from labkit.recordings import DATA
 from labkit.run import run
 from labkit.scene import Table
+from labkit.trajectory import Chain, Hold
 
 from .. import tasks
 from ..recording import save

@@ -18,10 +18,11 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from labkit.arrays import Array, as_array, as_number, as_vector, shown
+from labkit.baxter import robot
 from labkit.errors import JointLimitExceeded, LabkitError, OutOfRange, TypeMismatch
-from labkit.robot import Robot, Side, robot
+from labkit.robot import Robot, Side
 from labkit.scene import FACE, Table, Wall
+from labkit.shapes import Array, as_array, as_number, as_vector, shown
 
 SHAPES = Path(__file__).with_name("baxter_collision.json")
 

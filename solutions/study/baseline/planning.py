@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from labkit.arrays import Array, as_array
 from labkit.errors import OutOfRange
 from labkit.model import Model
-from labkit.motion import Chain, Hold, Path, Sample, Trajectory
 from labkit.paths import Spline
 from labkit.quiet import quiet
+from labkit.shapes import Array, as_array
+from labkit.trajectory import Chain, Hold, Path, Sample, Trajectory
 
 from .collision import Blocked, PlanningScene
 from .timing import MOVEIT, Limits, quickest

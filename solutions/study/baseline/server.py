@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from labkit.arrays import Array, as_number
-from labkit.commands import JointPosition, JointVelocity, State
+from labkit.control import JointPosition, JointVelocity, State
 from labkit.errors import LabkitError
-from labkit.motion import Sample
+from labkit.shapes import Array, as_number
+from labkit.trajectory import Sample
 
 RATE = 100.0
 """How often the server speaks to the arm, in [Hz]."""

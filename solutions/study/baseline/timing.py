@@ -14,11 +14,11 @@ import numpy as np
 from toppra import algorithm, constraint
 from toppra.interpolator import AbstractGeometricPath
 
-from labkit.arrays import Array, as_array, as_number, as_vector, locked
 from labkit.errors import OutOfRange
-from labkit.motion import Path, Sample, Trajectory
+from labkit.paths import END, START
 from labkit.quiet import quiet
-from labkit.scalings import END, START
+from labkit.shapes import Array, as_array, as_number, as_vector, locked
+from labkit.trajectory import Path, Sample, Trajectory
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ from typing import Any
 import cv2
 import numpy as np
 
-from ..arrays import Array
-from .tags import Picture
+from ..shapes import Array
+from .tag import Picture
 
 _ROWS, _DEEP = 24, 13  # rows across each side, and samples along each of them
 _LONGEST = 2.5  # half of a row's length, in [px], if the tag's cells are large enough

@@ -13,14 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import se3
-from ..arrays import Array, as_number, locked
-from ..commands import Command, JointTorque, JointVelocity, State, still
-from ..errors import ControllerError, OutOfRange
-from ..motion import AnySample
-from ..run import Controller
+from ..errors import OutOfRange
+from ..shapes import Array, as_number, locked
+from ..trajectory import AnySample
 from .camera import Camera
 from .detection import TagNotFound, detect_tags, find_tag
-from .tags import Tag
+from .tag import Tag
 
 
 class Reading(NamedTuple):
@@ -48,7 +46,7 @@ class Reading(NamedTuple):
 
 @dataclass
 class Count:
-    """How the look-ups of one `Lookups` went.
+    """How the look-ups of one `TagStream` went.
 
     Attributes:
         taken: Pictures taken.
@@ -63,7 +61,7 @@ class Count:
     arrived: int = 0
 
 
-class Lookups:
+class TagStream:
     """Regular look-ups of one tag by one camera.
 
     Attributes:
@@ -147,13 +145,13 @@ class Lookups:
             self.count.unseen += 1
             return None
         try:
-            return look(self.camera, self.tag, self._believed, arrives - now)
+            return detect_once(self.camera, self.tag, self._believed, arrives - now)
         except TagNotFound:
             self.count.unseen += 1
             return None
 
 
-def look(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Reading:
+def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Reading:
     """Look up a tag once.
 
     Args:
@@ -168,7 +166,7 @@ def look(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Readin
     """
     now = camera.world.t
     T_wc = camera.reported_T_wc if T_wc is None else se3.as_pose(T_wc, "T_wc")
-    seen = detect_tags(camera.glimpse(), camera, {int(tag.id): tag.size}, tag.dictionary)
+    seen = detect_tags(camera.tag_image(), camera, {int(tag.id): tag.size}, tag.dictionary)
     found = find_tag(seen, tag.id)
     turn = np.kron(np.eye(2), T_wc[:3, :3])
     return Reading(
@@ -180,18 +178,18 @@ def look(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Readin
     )
 
 
-class Following:
+class TagTarget:
     """A target for `run`: what a follower makes of the readings that have arrived.
 
     Attributes:
-        lookups: Where the readings come from.
+        stream: Where the readings come from.
         follower: A function of the time since the run began and of the readings that arrived since
             it was last asked, their times counted from there too; gives a `Sample` or `PoseSample`.
             It sees no world, camera or arm.
     """
 
     def __init__(
-        self, lookups: Lookups, follower: Callable[[float, tuple[Reading, ...]], AnySample]
+        self, lookups: TagStream, follower: Callable[[float, tuple[Reading, ...]], AnySample]
     ) -> None:
         """Join look-ups to a follower."""
         self.lookups, self.follower = lookups, follower
@@ -205,34 +203,3 @@ class Following:
             for r in self.lookups.poll()
         )
         return self.follower(t, readings)
-
-
-def stalled(controller: Controller, busy: Callable[[], bool], timeout: float = 0.2) -> Controller:
-    """A controller whose loop waits for something: it is asked only when it is not busy.
-
-    Meanwhile the arm obeys the last command until its command timeout, and then stays where it is.
-
-    Args:
-        controller: The controller.
-        busy: Whether the loop waits now.
-        timeout: The arm's command timeout, in [s].
-    """
-    last: list[Any] = []  # when the controller was last asked, and its answer
-
-    def stalled(state: State, target: Any) -> Command:
-        if not (busy() and last):
-            command = controller(state, target)
-            if isinstance(command, JointTorque):
-                raise ControllerError(
-                    "a torque controller cannot wait for a look-up: nothing would hold the arm; "
-                    "use one that commands speeds, or look beside the loop"
-                )
-            last[:] = [state.t, command]
-            return command
-        since, command = last
-        if state.t - since <= timeout or not isinstance(command, JointVelocity):
-            return command  # type: ignore[no-any-return]
-        return still()
-
-    stalled.__name__ = f"stalled {getattr(controller, '__name__', type(controller).__name__)}"
-    return stalled

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from labkit.arrays import as_array, as_gains, as_number, as_vector
 from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError, TypeMismatch
+from labkit.shapes import as_array, as_gains, as_number, as_vector
 
 
 @given(arrays(np.float64, array_shapes(max_dims=3), elements=st.floats(-1e9, 1e9)))

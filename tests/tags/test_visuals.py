@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pybullet
 
-DATA = Path(__file__).parents[1] / "labkit/data"
+DATA = Path(__file__).parents[2] / "labkit/data"
 TABLE = json.loads((DATA / "baxter_visual.json").read_text())
 REST = {"s1": -0.55, "e1": 0.75, "w1": 1.26}
 

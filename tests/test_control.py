@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import labkit as lk
-from labkit.commands import COMMANDS, still
+from labkit.control import COMMANDS, still
 from labkit.errors import LabkitError, NotFinite, ShapeError, TypeMismatch
 
 

@@ -10,8 +10,8 @@ import pytest
 import labkit as lk
 from labkit import se3
 from labkit.errors import Closed, OutOfRange, TypeMismatch, UnknownName
-from labkit.vision.camera import BACKGROUND, CameraBlocked
-from labkit.vision.looks import joint_frames
+from labkit.tags.camera import BACKGROUND, CameraBlocked
+from labkit.tags.visuals import joint_frames
 
 AWAY = lk.looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))
 """Nothing of the robot is in this camera's view."""
@@ -138,13 +138,13 @@ def test_a_picture_changes_nothing_in_the_world():
     np.testing.assert_array_equal(*ends)
 
 
-def test_a_glimpse_shows_the_tag_as_the_picture_does(world):
+def test_a_tag_image_shows_the_tag_as_the_picture_does(world):
     """Within the paper every pixel is the same; the rest is blank."""
     ready_arm(world)
     lk.World.put(world, lk.Table())
     board = lk.Board(world, lk.Tag(), se3.pose(np.eye(3), np.array([0.75, 0.3, -0.2])))
     camera = lk.Camera(world, lk.looking_at((1.4, 0.0, 0.4), (0.7, 0.3, -0.2)))
-    whole, quick = camera.image(), camera.glimpse()
+    whole, quick = camera.image(), camera.tag_image()
     T_cm = se3.inverse(camera.T_wc) @ board.T_wm
     paper = camera.intrinsics.project(0.9 * board.outline @ T_cm[:3, :3].T + T_cm[:3, 3])
     mask = np.zeros(whole.shape[:2], np.uint8)
@@ -155,7 +155,7 @@ def test_a_glimpse_shows_the_tag_as_the_picture_does(world):
     assert np.mean(whole == BACKGROUND) < 0.7
 
 
-def test_a_glimpse_is_much_quicker(world):
+def test_a_tag_image_is_much_quicker(world):
     ready_arm(world)
     lk.World.put(world, lk.Table())
     lk.Board(world, lk.Tag(), se3.pose(np.eye(3), np.array([0.75, 0.3, -0.2])))
@@ -170,10 +170,10 @@ def test_a_glimpse_is_much_quicker(world):
             times.append(time.process_time() - start)
         return min(times)
 
-    assert quickest(camera.glimpse) < 0.4 * quickest(camera.image)
+    assert quickest(camera.tag_image) < 0.4 * quickest(camera.image)
 
 
-@pytest.mark.parametrize("how", ["image", "glimpse"])
+@pytest.mark.parametrize("how", ["image", "tag_image"])
 def test_the_arm_hides_a_tag(world, how):
     """A tag behind the gripper is not found; when the arm is gone, it is."""
     arm = ready_arm(world)
@@ -196,7 +196,7 @@ def test_the_hand_camera_sees_the_tag_below_and_moves_with_the_arm(world):
     forward = camera.T_wc[:3, 2]
     np.testing.assert_allclose(forward, tip[:3, 2], atol=1e-6)
     board = lk.Board(world, lk.Tag(), se3.pose(np.eye(3), camera.T_wc[:3, 3] + 0.45 * forward))
-    found = lk.find_tag(lk.detect_tags(camera.glimpse(), camera, 0.1), 0)
+    found = lk.tags.find_tag(lk.detect_tags(camera.tag_image(), camera, 0.1), 0)
     np.testing.assert_allclose((camera.T_wc @ found.T_cm)[:3, 3], board.T_wm[:3, 3], atol=2e-3)
     before = camera.T_wc
     arm.reset(arm.robot.ready + 0.1)
@@ -229,7 +229,7 @@ def test_a_camera_inside_the_robot_says_so(world):
     elbow = joint_frames({"left": arm.truth().q})["left_e1"]
     inside = elbow[:3, 3]
     camera = lk.Camera(world, lk.looking_at(inside, inside + np.array([1, 0, 0])))
-    for take in (camera.image, camera.glimpse):
+    for take in (camera.image, camera.tag_image):
         with pytest.raises(CameraBlocked, match="inside the robot, near its joint left_"):
             take()
     camera.place(AWAY)

@@ -7,7 +7,7 @@ import pytest
 import labkit as lk
 from labkit import se3
 from labkit.errors import LabkitError, OutOfRange, TypeMismatch, UnknownName
-from labkit.vision.detection import (
+from labkit.tags.detection import (
     DuplicateTag,
     TagNotFound,
     pose_covariance,
@@ -15,7 +15,7 @@ from labkit.vision.detection import (
     tag_pose,
     tag_poses,
 )
-from labkit.vision.tags import APRILTAG, ARUCO
+from labkit.tags.tag import APRILTAG, ARUCO
 from solutions.study.sensing import Setup, random_poses, read
 
 LENS = lk.Intrinsics()
@@ -62,7 +62,7 @@ def test_corners_have_no_bias():
 @pytest.mark.parametrize("tilt", [0.0, 0.4, 0.9])
 def test_the_pose_in_a_picture_made_without_the_renderer_is_the_true_one(tilt):
     tag, T_cm = lk.Tag(11), tilted(tilt)
-    found = lk.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 11)
+    found = lk.tags.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 11)
     np.testing.assert_allclose(found.T_cm[:3, 3], T_cm[:3, 3], atol=1.5e-3)
     assert np.degrees(se3.angle_between(found.T_cm[:3, :3], T_cm[:3, :3])) < 1.0
 
@@ -85,7 +85,7 @@ def test_the_better_of_the_two_poses_comes_first_and_their_ratio_is_told():
     lean = [se3.inverse(T)[2, 1] for T in (best, other)]
     assert lean[0] * lean[1] < 0.0
     assert reprojection_error(other, pixels, LENS, 0.1) > 1.0
-    found = lk.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 0)
+    found = lk.tags.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 0)
     assert found.ratio > 5.0 and found.error < 0.1
 
 
@@ -126,7 +126,7 @@ def test_no_tag_in_view_is_an_empty_answer_and_a_named_error():
     found = lk.detect_tags(blank, LENS, 0.1)
     assert found == ()
     with pytest.raises(TagNotFound, match=r"tag 4 is not in the picture .found: none at all."):
-        lk.find_tag(found, 4)
+        lk.tags.find_tag(found, 4)
 
 
 def test_two_tags_with_one_number_are_a_named_error():
@@ -139,7 +139,7 @@ def test_two_tags_with_one_number_are_a_named_error():
         found = lk.detect_tags(both, LENS, size)
         assert [d.id for d in found] == [7, 7]
         with pytest.raises(DuplicateTag, match="tag 7 is in the picture 2 times"):
-            lk.find_tag(found, 7)
+            lk.tags.find_tag(found, 7)
 
 
 def test_tags_of_other_numbers_are_passed_over_when_sizes_are_named():
@@ -157,7 +157,7 @@ def test_noise_in_the_picture_is_survived():
     random = np.random.default_rng(0)
     picture = painted(lk.Tag(7), tilted(0.5)) + 15.0 * random.standard_normal((480, 640))
     noisy = np.clip(picture, 0, 255).astype(np.uint8)
-    found = lk.find_tag(lk.detect_tags(noisy, LENS, 0.1), 7)
+    found = lk.tags.find_tag(lk.detect_tags(noisy, LENS, 0.1), 7)
     np.testing.assert_allclose(found.T_cm[:3, 3], tilted(0.5)[:3, 3], atol=3e-3)
 
 

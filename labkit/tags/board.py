@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from .. import se3
-from ..arrays import Array, as_array, locked, shown
 from ..errors import Closed, TypeMismatch
-from ..motion import PoseSample, Sample, Target
 from ..quiet import quiet
+from ..shapes import Array, as_array, locked, shown
+from ..trajectory import PoseSample, Sample, Target
 from ..world import World
-from .tags import Tag
+from .tag import Tag
 
 with quiet():
     import pybullet as bullet

@@ -16,8 +16,8 @@ from typing import Any, NamedTuple, Protocol, TypeVar
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_array, as_number, as_numbers, locked, shown
 from .errors import OutOfRange, TypeMismatch
+from .shapes import Array, as_array, as_number, as_numbers, locked, shown
 
 
 class Sample(NamedTuple):

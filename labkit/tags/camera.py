@@ -13,14 +13,14 @@ import numpy as np
 
 from .. import se3
 from ..arm import Arm
-from ..arrays import Array, as_number, as_vector, locked, shown
 from ..errors import Closed, LabkitError, OutOfRange, TypeMismatch
 from ..quiet import quiet
+from ..shapes import Array, as_number, as_vector, locked, shown
 from ..world import World
 from .board import Board
 from .intrinsics import Intrinsics
-from .looks import Looks
-from .tags import Picture
+from .tag import Picture
+from .visuals import RobotVisuals
 
 with quiet():
     import pybullet as bullet
@@ -165,7 +165,7 @@ class Camera:
             self._refine(picture, T_wc, looks)
         return self._developed(picture, [size])
 
-    def glimpse(self) -> Picture:
+    def tag_image(self) -> Picture:
         """A quick picture of only the tags and of what may hide them; the rest stays blank.
 
         Returns:
@@ -180,11 +180,11 @@ class Camera:
         picture = np.full(shape, BACKGROUND, np.uint8)
         return self._developed(picture, self._refine(picture, T_wc, looks))
 
-    def _focus(self) -> tuple[Array, Looks]:
+    def _focus(self) -> tuple[Array, RobotVisuals]:
         """Everything in its place; where the camera is, and the robot it sees."""
         if self.world.client < 0:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
-        looks = Looks.of(self.world)
+        looks = RobotVisuals.of(self.world)
         for thing in self.world.shown:
             thing.update()
         T_wc = self.T_wc
@@ -197,7 +197,7 @@ class Camera:
             )
         return T_wc, looks
 
-    def _refine(self, picture: Picture, T_wc: Array, looks: Looks) -> list[Window]:
+    def _refine(self, picture: Picture, T_wc: Array, looks: RobotVisuals) -> list[Window]:
         """Draw tags, and what may hide them, finely over the picture."""
         windows = []
         for board in [thing for thing in self.world.shown if isinstance(thing, Board)]:
@@ -253,7 +253,7 @@ class Camera:
                 body, -1, rgbaColor=[*rgb, alpha * opacity], physicsClientId=self.world.client
             )
 
-    def _finely(self, T_wc: Array, looks: Looks, window: Window, depth: float) -> Picture:
+    def _finely(self, T_wc: Array, looks: RobotVisuals, window: Window, depth: float) -> Picture:
         """Draw a window on a finer grid, turned so that no two samples of a pixel share a row.
 
         With s for `samples` a pixel holds s^2 + 1 points of the grid, all at different heights and
@@ -280,7 +280,7 @@ class Camera:
     def _draw(
         self,
         T_wc: Array,
-        looks: Looks,
+        looks: RobotVisuals,
         window: Window,
         depth: float,
         grid: Any = _PLAIN,
@@ -335,7 +335,7 @@ class Camera:
         )
 
     @staticmethod
-    def _cull(looks: Looks, T_wc: Array, borders: tuple[float, ...], depth: float) -> None:
+    def _cull(looks: RobotVisuals, T_wc: Array, borders: tuple[float, ...], depth: float) -> None:
         """Draw only those pieces of the robot that reach into the cone seen, up to a depth."""
         centres, radii = looks.balls
         x, y, z = ((centres - T_wc[:3, 3]) @ T_wc[:3, :3]).T

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, as_number, as_numbers, locked
 from ..errors import OutOfRange, ShapeError
+from ..shapes import Array, as_number, as_numbers, locked
 
 
 @dataclass(frozen=True)

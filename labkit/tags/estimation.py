@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, as_array, as_number, locked
+from ..shapes import Array, as_array, as_number, locked
 
 
 class Estimate(NamedTuple):

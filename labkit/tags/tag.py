@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from ..arrays import Array, as_number, locked
 from ..errors import OutOfRange, TypeMismatch, UnknownName
+from ..shapes import Array, as_number, locked
 
 Picture = NDArray[np.uint8]
 """Grey levels (height, width) or colours (height, width, 3) in RGB order, 0 to 255."""

@@ -20,11 +20,11 @@ import cv2
 import numpy as np
 
 from .. import se3
-from ..arrays import Array, as_array, as_number, locked, shown
 from ..errors import LabkitError, OutOfRange, TypeMismatch
+from ..shapes import Array, as_array, as_number, locked, shown
 from .edges import sharpened
 from .intrinsics import Intrinsics
-from .tags import APRILTAG, Picture, as_picture, pattern, tag_corners
+from .tag import APRILTAG, Picture, as_picture, pattern, tag_corners
 
 if TYPE_CHECKING:
     from .camera import Camera

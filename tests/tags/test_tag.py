@@ -8,7 +8,7 @@ from PIL import Image
 import labkit as lk
 from labkit import se3
 from labkit.errors import LabkitError, OutOfRange, TypeMismatch, UnknownName
-from labkit.vision.tags import APRILTAG, ARUCO, tag_corners
+from labkit.tags.tag import APRILTAG, ARUCO, tag_corners
 
 
 @pytest.mark.parametrize("dictionary", [APRILTAG, ARUCO])

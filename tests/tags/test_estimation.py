@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from labkit.vision.estimation import Estimate, first_estimate, update
+from labkit.tags.estimation import Estimate, first_estimate, update
 
 
 def test_a_reading_moves_the_estimate_as_the_information_says():

@@ -17,9 +17,9 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from .. import se3
-from ..arrays import Array, locked
+from ..baxter import robot
 from ..quiet import quiet
-from ..robot import robot
+from ..shapes import Array, locked
 from ..world import World
 
 with quiet():
@@ -69,7 +69,7 @@ class Piece:
     file: str
 
 
-class Looks:
+class RobotVisuals:
     """What cameras see of the robot in one world; made when the first camera opens its eye.
 
     Attributes:
@@ -79,10 +79,10 @@ class Looks:
     """
 
     @staticmethod
-    def of(world: World) -> Looks:
+    def of(world: World) -> RobotVisuals:
         """The looks of the robot in ``world``: there is one."""
-        found = next((thing for thing in world.shown if isinstance(thing, Looks)), None)
-        return Looks(world) if found is None else found
+        found = next((thing for thing in world.shown if isinstance(thing, RobotVisuals)), None)
+        return RobotVisuals(world) if found is None else found
 
     def __init__(self, world: World) -> None:
         """Load the meshes into ``world``."""

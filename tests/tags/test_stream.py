@@ -6,7 +6,7 @@ import pytest
 import labkit as lk
 from labkit import se3
 from labkit.errors import ControllerError, OutOfRange
-from labkit.vision.looking import look, stalled
+from labkit.tags.stream import detect_once
 
 EYE = lk.looking_at((3.0, 3.0, 0.7), (3.0, 3.0, 0.0), up=(1, 0, 0))
 
@@ -28,7 +28,7 @@ def polled(lookups, seconds, every=5):
 
 def test_a_look_tells_where_the_tag_is_in_the_world(scene):
     board, camera = scene
-    reading = look(camera, board.tag)
+    reading = detect_once(camera, board.tag)
     off = se3.pose_error(board.T_wm, reading.T_wm)
     assert np.linalg.norm(off[:3]) < 2e-3
     spread = np.sqrt(np.diag(reading.covariance))
@@ -37,15 +37,15 @@ def test_a_look_tells_where_the_tag_is_in_the_world(scene):
 
 def test_a_believed_place_of_the_camera_may_be_a_list_and_must_be_a_pose(scene):
     board, camera = scene
-    believed = look(camera, board.tag, EYE.tolist())
-    np.testing.assert_array_equal(believed.T_wm, look(camera, board.tag).T_wm)
+    believed = detect_once(camera, board.tag, EYE.tolist())
+    np.testing.assert_array_equal(believed.T_wm, detect_once(camera, board.tag).T_wm)
     with pytest.raises(OutOfRange, match="T_wc's last row"):
-        look(camera, board.tag, np.ones((4, 4)))
+        detect_once(camera, board.tag, np.ones((4, 4)))
 
 
 def test_readings_come_at_the_rate_and_as_late_as_stated(scene):
     board, camera = scene
-    readings = polled(lk.Lookups(camera, board.tag, rate=10, delay=0.1), 1.0)
+    readings = polled(lk.TagStream(camera, board.tag, rate=10, delay=0.1), 1.0)
     stamps = [r.stamp for _, r in readings]
     np.testing.assert_allclose(stamps, np.arange(9) * 0.1, atol=1e-9)
     for seen_at, reading in readings:
@@ -60,7 +60,7 @@ def test_a_late_reading_tells_of_the_moment_of_its_picture(scene):
     board.move(
         lk.Trajectory(lk.Line(start, start + np.array([0.2, 0, 0])), lk.Trapezoid(0.2, 0.1, 100.0))
     )
-    (_, reading), *_ = polled(lk.Lookups(camera, board.tag, rate=1, delay=0.2), 0.3)
+    (_, reading), *_ = polled(lk.TagStream(camera, board.tag, rate=1, delay=0.2), 0.3)
     assert abs(reading.T_wm[0, 3] - start[0]) < 2e-3
 
 
@@ -68,7 +68,7 @@ def test_losses_are_the_stated_share_and_repeat_with_the_seed(scene):
     board, camera = scene
 
     def arrivals(seed):
-        lookups = lk.Lookups(
+        lookups = lk.TagStream(
             camera, board.tag, rate=50, delay=0.05, jitter=0.03, dropout=0.3, seed=seed
         )
         times = [t for t, _ in polled(lookups, 1.2, every=10)]
@@ -84,14 +84,14 @@ def test_losses_are_the_stated_share_and_repeat_with_the_seed(scene):
 def test_a_tag_out_of_view_gives_no_reading_and_no_error(scene):
     board, camera = scene
     board.place(se3.pose(np.eye(3), np.array([8.0, 8.0, 0.0])))
-    lookups = lk.Lookups(camera, board.tag)
+    lookups = lk.TagStream(camera, board.tag)
     assert polled(lookups, 0.5) == []
     assert lookups.count.unseen == 5
 
 
 def test_a_blind_stretch_is_blind(scene):
     board, camera = scene
-    readings = polled(lk.Lookups(camera, board.tag, delay=0.0, blind=[(0.25, 0.65)]), 1.0)
+    readings = polled(lk.TagStream(camera, board.tag, delay=0.0, blind=[(0.25, 0.65)]), 1.0)
     np.testing.assert_allclose([r.stamp for _, r in readings], [0, 0.1, 0.2, 0.7, 0.8, 0.9])
 
 
@@ -104,7 +104,7 @@ def test_two_boards_with_one_number_stop_the_run_with_a_sentence(scene):
         def follower(t, readings):
             return lk.PoseSample(pose, np.zeros(6), np.zeros(6))
 
-        target = lk.Following(lk.Lookups(camera, board.tag), follower)
+        target = lk.TagTarget(lk.TagStream(camera, board.tag), follower)
         with pytest.raises(ControllerError, match="tag 2 is in the picture 2 times"):
             lk.run(arm, target, lambda s, _: lk.JointVelocity(np.zeros(7)), duration=0.1)
 
@@ -118,35 +118,11 @@ def test_a_follower_counts_its_times_from_the_start_of_the_run(scene):
         got.extend((t, r.stamp, r.arrived) for r in readings)
         return lk.Sample(np.zeros(7), np.zeros(7), np.zeros(7))
 
-    target = lk.Following(lk.Lookups(camera, board.tag, delay=0.05), follower)
+    target = lk.TagTarget(lk.TagStream(camera, board.tag, delay=0.05), follower)
     for k in range(40):
         target(k * 0.005)
         board.world.step(5)
     np.testing.assert_allclose(got, [[0.05, 0, 0.05], [0.15, 0.1, 0.15]], atol=1e-9)
-
-
-def test_a_stalled_loop_repeats_its_command_until_the_timeout_then_the_arm_stands_still():
-    asked, busy = [], [False]
-
-    def drift(state, target):
-        asked.append(state.t)
-        return lk.JointVelocity(np.full(7, 0.1))
-
-    slow = stalled(drift, lambda: busy[0], timeout=0.2)
-    seen = []
-    for k in range(100):
-        busy[0] = 20 <= k < 80
-        state = lk.State(0.01 * k, np.zeros(7), np.zeros(7), np.zeros(7))
-        seen.append(slow(state, None).value[0])
-    assert len(asked) == 40
-    assert all(x == 0.1 for x in seen[:40]) and all(x == 0.0 for x in seen[40:80])
-    assert all(x == 0.1 for x in seen[80:])
-
-
-def test_a_torque_controller_cannot_wait():
-    falls = stalled(lambda s, _: lk.JointTorque(np.zeros(7)), lambda: True)
-    with pytest.raises(ControllerError, match="nothing would hold the arm"):
-        falls(lk.State(0.0, np.zeros(7), np.zeros(7), np.zeros(7)), None)
 
 
 def test_dials_out_of_range_are_refused(scene):
@@ -157,4 +133,4 @@ def test_dials_out_of_range_are_refused(scene):
         ({"dropout": 2}, "share"),
     ):
         with pytest.raises(OutOfRange, match=says):
-            lk.Lookups(camera, board.tag, **options)
+            lk.TagStream(camera, board.tag, **options)
