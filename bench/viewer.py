@@ -1,14 +1,15 @@
 """How soon a reader of the book can read, and watch a motion, in a headless Chromium."""
 
 import shutil
+import sys
 import tempfile
 from pathlib import Path
-
-from figures.embed import motion_html, shared_files
 
 import labkit as lk
 from labkit.replay import Motion
 from tools.chromium import program
+
+sys.path.append(str(Path(__file__).parents[1] / "book"))
 
 TIMES = 5
 BOOK = Path("book/_build/html/index.html")
@@ -29,6 +30,8 @@ def motion():
 
 def page(folder):
     """A page of its own with one motion, written into ``folder``."""
+    from figures.embed import motion_html, shared_files  # the book's
+
     for name, path in shared_files().items():
         shutil.copy(path, folder / name)
     file = folder / "motion.html"

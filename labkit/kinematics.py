@@ -2,8 +2,9 @@ r"""Kinematics: where the tip is, how it moves with the joints, and which joints
 
 .. math:: T_{wt} = f(q), \qquad V = J(q)\,\dot q
 
-Three Jacobians exist and none is "the Jacobian": each is named for the twist it gives.  References:
-Murray, Li & Sastry (MLS) chapter 3; Lynch & Park chapters 4 to 6.  The computing is Pinocchio's.
+Three Jacobians exist and none is "the Jacobian": each is named for the twist it returns.
+References: Murray, Li & Sastry (MLS) chapter 3; Lynch & Park chapters 4 to 6.  The computing is
+Pinocchio's.
 """
 
 from __future__ import annotations
@@ -162,11 +163,11 @@ class Kinematics:
             JointLimitExceeded: A joint is outside its range.
         """
         angles: Array = as_array(q, (DOF,), name)
-        low, high = self.robot.lower - _SLACK, self.robot.upper + _SLACK
-        for i in np.flatnonzero((angles < low) | (angles > high))[:1]:
-            raise JointLimitExceeded(
-                name, self.robot.joint_names[i], angles[i], self.robot.lower[i], self.robot.upper[i]
-            )
+        low, high = self.robot.lower, self.robot.upper
+        outside = (angles < low - _SLACK) | (angles > high + _SLACK)
+        if outside.any():
+            i = int(outside.argmax())
+            raise JointLimitExceeded(name, self.robot.joint_names[i], angles[i], low[i], high[i])
         return angles
 
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
@@ -239,8 +240,8 @@ class Kinematics:
             A target of the same make whose samples are joint angles, shape (7,) in [rad].
 
         Raises:
-            Unreachable: A pose along the way cannot be reached; names s, the pose and the reason.
-            TypeMismatch: It is none of these, as a target that has joint angles already.
+            Unreachable: A pose along the path cannot be reached; names s, the pose and the reason.
+            TypeMismatch: It is something else, such as a target that has joint angles already.
 
         Warns:
             LabkitWarning: A joint would exceed its speed limit, or the path comes near a

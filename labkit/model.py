@@ -79,7 +79,7 @@ class Model(Kinematics):
 
         Raises:
             UnknownName: Baxter has no such arm.
-            TypeMismatch: The plant is none.
+            TypeMismatch: The plant is not a `Plant`.
         """
         if not isinstance(plant, Plant):
             raise TypeMismatch(

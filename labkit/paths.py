@@ -110,7 +110,7 @@ class Circle:
 
 @dataclass(frozen=True, eq=False)
 class Polyline:
-    """Straight segments from point to point, s proportional to the way gone.
+    """Straight segments from point to point, s proportional to the distance covered.
 
     The corners are sharp: followed on one time scaling, the velocity jumps there.  To stop at each
     corner, give every one of `lines` a schedule of its own and join them with a `Chain`.
@@ -136,9 +136,9 @@ class Polyline:
 
     @cached_property
     def _pieces(self) -> tuple[list[Line], Array]:
-        """The segments that have a length, and the way gone at their ends, as shares of it all."""
-        way = np.cumsum([0.0, *(line.length for line in self.lines)])
-        ends = way / way[-1]
+        """The segments that have a length, and where they end, as shares of the whole length."""
+        distance = np.cumsum([0.0, *(line.length for line in self.lines)])
+        ends = distance / distance[-1]
         lines = [line for line, share in zip(self.lines, np.diff(ends), strict=True) if share > 0.0]
         return lines, np.unique(ends)
 
@@ -259,7 +259,7 @@ class _Profile(ABC):
 
 @dataclass(frozen=True)
 class BangBang(_Profile):
-    """Constant acceleration, then as much deceleration: the report's equations 2 to 4, mended."""
+    """Constant acceleration, then as much deceleration: the report's equations, corrected."""
 
     PEAK_SPEED = 2.0
     PEAK_ACCELERATION = 4.0
@@ -299,7 +299,7 @@ class Quintic(_Profile):
 
 @dataclass(frozen=True)
 class Trapezoid:
-    """Accelerate, cruise, brake; a triangle where the way is too short to reach v_max.
+    """Accelerate, cruise, brake; a triangle where the path is too short to reach v_max.
 
     Lynch & Park, section 9.2.2.  The limits hold along the path, in metres, not in s.
 

@@ -82,7 +82,7 @@ class TorqueSensors:
 
     .. math:: \tau_{ext} = M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) - \tau_{joint}
 
-    The sensors feel motor and friction together, so friction is no part of the estimate; gravity,
+    The sensors feel motor and friction together, so the estimate is free of friction; gravity,
     inertia and Coriolis terms are taken off with the model that the arm has of itself, which knows
     of its rotors and not of what it carries.  The acceleration is that of the last physics step.
     """

@@ -99,14 +99,14 @@ class Trajectory:
         """The motion at time ``t`` [s], by the chain rule; of the path's kind of sample.
 
         Raises:
-            TypeMismatch: The scaling or the path gave something else than it should.
+            TypeMismatch: The scaling or the path returned something unexpected.
         """
         at_t = self.scaling(t)
         try:
             s, ds, dds = at_t
         except (TypeError, ValueError):
             raise TypeMismatch(
-                f"the scaling gave {shown(at_t)}, expected three numbers: s, ds/dt and d2s/dt2"
+                f"the scaling returned {shown(at_t)}, expected three numbers: s, ds/dt and d2s/dt2"
             ) from None
         at_s = self.path(s)
         try:
@@ -114,7 +114,7 @@ class Trajectory:
             return type(at_s)(x, dx * ds, ddx * (ds * ds) + dx * dds)
         except (TypeError, ValueError):
             raise TypeMismatch(
-                f"the path gave {shown(at_s)}, expected lk.Sample(position, velocity, "
+                f"the path returned {shown(at_s)}, expected lk.Sample(position, velocity, "
                 "acceleration) of arrays, with the derivatives by s, or an lk.PoseSample"
             ) from None
 

@@ -18,10 +18,10 @@ Actor = Callable[[], None]
 
 
 class Thing(Protocol):
-    """Something to put into a world: a value that knows how to build itself there."""
+    """Something to put into a world: a value that builds itself there."""
 
     def put_into(self, world: World) -> Actor | None:
-        """Build it; what it gives, if anything, acts before each physics step from now on."""
+        """Build it; what it returns, if anything, acts before each physics step from now on."""
 
 
 class Pushable(Protocol):
@@ -58,6 +58,7 @@ class World:
 
     Attributes:
         dt: The physics step, in [s].
+        steps: How many physics steps were taken.
         client: PyBullet's number of this world, -1 once it is closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
@@ -75,7 +76,7 @@ class World:
         """
         self.dt = as_number(dt, "dt", above=0.0)
         self.client = bullet.connect(bullet.DIRECT)
-        self._steps = 0
+        self.steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
         self.arms: list[Pushable] = []
@@ -90,7 +91,7 @@ class World:
     @property
     def t(self) -> float:
         """The time in this world, in [s]."""
-        return self._steps * self.dt
+        return self.steps * self.dt
 
     def put(self, thing: Thing) -> None:
         """Put a thing into the world, where it stays.
@@ -102,7 +103,10 @@ class World:
         if self.client < 0:
             raise Closed("this world was closed; make a new World")
         if isinstance(thing, type) or not hasattr(thing, "put_into"):
-            raise TypeMismatch(f"{shown(thing)} is no thing; put in an lk.Table(), an lk.Wall(...)")
+            raise TypeMismatch(
+                f"cannot add {shown(thing)}; expected an object with put_into(), such as "
+                "lk.Table() or lk.Wall(...)"
+            )
         actor = thing.put_into(self)
         self.things.append(thing)
         if actor is not None:
@@ -129,7 +133,7 @@ class World:
             for act in self._actors:
                 act()
             bullet.stepSimulation(client)
-            self._steps += 1
+            self.steps += 1
 
     def close(self) -> None:
         """Free the world; closing twice is harmless."""

@@ -27,6 +27,7 @@ ORDER = [
     {"world"},
     {"scene"},
     {"sensors", "body"},
+    {"motors"},
     {"arm"},
     {"log"},
     {"run"},
@@ -49,7 +50,7 @@ LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 UPSTAIRS = {"check", "grade", "cli", "verbs"}
 """Course and grader, which the lab does not know."""
 # What simulates, what knows the equations, what draws and what sees.
-SIMULATE = {"arm", "body", "world", "scene", "tags.camera", "tags.board", "tags.visuals"}
+SIMULATE = {"arm", "body", "motors", "world", "scene", "tags.camera", "tags.board", "tags.visuals"}
 MODEL = {"kinematics", "model"}
 DRAW = {"plotting", "replay"}
 SEE = {"tags.tag", "tags.detection", "tags.edges"}

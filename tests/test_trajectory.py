@@ -75,19 +75,23 @@ def chain():
 @pytest.mark.parametrize(
     ("path", "scaling", "words"),
     [
-        (lambda s: np.zeros(3), Cubic(1.0), r"the path gave array.* expected lk\.Sample"),
+        (lambda s: np.zeros(3), Cubic(1.0), r"the path returned array.* expected lk\.Sample"),
         (
             lambda s: (s, 1.0, 0.0),
             Cubic(1.0),
-            r"the path gave .* \(tuple\), expected lk\.Sample",
+            r"the path returned .* \(tuple\), expected lk\.Sample",
         ),
-        (lambda s: None, Cubic(1.0), r"the path gave None"),
-        (lambda s: Sample([s], [1], [0]), Cubic(1.0), r"the path gave .*\[1\].* of arrays"),
-        (lambda s: Sample(A, np.ones(3), np.ones(2)), Cubic(1.0), r"the path gave .* of arrays"),
+        (lambda s: None, Cubic(1.0), r"the path returned None"),
+        (lambda s: Sample([s], [1], [0]), Cubic(1.0), r"the path returned .*\[1\].* of arrays"),
+        (
+            lambda s: Sample(A, np.ones(3), np.ones(2)),
+            Cubic(1.0),
+            r"the path returned .* of arrays",
+        ),
         (
             Line(A, B),
             "half",
-            r"the scaling gave 0\.5 \(float\), expected three",
+            r"the scaling returned 0\.5 \(float\), expected three",
         ),
     ],
 )
@@ -190,8 +194,8 @@ skewed = np.diag([1.0, 1.0, 1.1])
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
-        (lambda: PosePath(Line(A, B), skewed), OutOfRange, "R_wt is no rotation"),
-        (lambda: PosePath(Line(A, B), np.eye(3), skewed), OutOfRange, "R_goal is no rotation"),
+        (lambda: PosePath(Line(A, B), skewed), OutOfRange, "R_wt is not a rotation"),
+        (lambda: PosePath(Line(A, B), np.eye(3), skewed), OutOfRange, "R_goal is not a rotation"),
         (lambda: PosePath(Line(A, B), np.eye(4)), ShapeError, "R_wt has shape"),
         (lambda: PosePath(Line(A, B), "down"), LabkitError, "R_wt is 'down'"),
         (

@@ -18,7 +18,7 @@ LAYERS = (
     ("Sentences and numbers", ("errors", "quiet", "shapes", "se3")),
     ("What is wanted", ("trajectory", "paths")),
     ("What is known", ("plant", "robot", "baxter", "kinematics", "model")),
-    ("What moves", ("control", "world", "scene", "sensors", "body", "arm")),
+    ("What moves", ("control", "world", "scene", "sensors", "body", "motors", "arm")),
     ("The loop, and what it did", ("log", "run", "metrics", "recordings", "loop")),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
     ("What judges", ("check",)),
@@ -70,7 +70,7 @@ def picture() -> HTML:
         + "; ".join(f"{title.lower()}: {', '.join(names)}" for title, names in LAYERS)
         + f". All {len(arrows)} imports among them point to the same row or a lower one."
     )
-    width = LEFT + 6 * (WIDE + 10)
+    width = LEFT + 7 * (WIDE + 10)
     svg = (
         f'<svg class="lab-svg" role="img" aria-label="{escape(alt)}" '
         f'viewBox="0 0 {width} {height}" fill="currentColor" xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'

@@ -62,7 +62,7 @@ def _widget_class() -> type[Any]:
 def _data(motion: Motion) -> str:
     if not isinstance(motion, Motion):
         raise TypeMismatch(
-            f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) gives"
+            f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) returns"
         )
     return motion.to_json()
 

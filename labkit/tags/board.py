@@ -44,7 +44,7 @@ class Board:
             T_wm: Pose of the tag in the world, shape (4, 4); its z axis comes out of the paper.
 
         Raises:
-            TypeMismatch: The first is no world, or the second no tag.
+            TypeMismatch: The first is not a world, or the second not a tag.
             Closed: The world is closed.
         """
         if not isinstance(world, World) or not isinstance(tag, Tag):
@@ -75,7 +75,7 @@ class Board:
                 are where the tag's middle goes, turned as it is now.
 
         Raises:
-            TypeMismatch: It is no function, or its samples are neither poses nor points.
+            TypeMismatch: It is not a function, or its samples are neither poses nor points.
         """
         if not callable(motion):
             raise TypeMismatch(
@@ -86,7 +86,7 @@ class Board:
         is_point = isinstance(first, Sample) and first.position.shape == (3,)
         if not is_point and not isinstance(first, PoseSample):
             raise TypeMismatch(
-                f"the board's motion gave {str(first)[:80]}; it must give lk.PoseSample, or "
+                f"the board's motion returned {str(first)[:80]}; it must return lk.PoseSample, or "
                 "lk.Sample of points, shape (3,)"
             )
         self._home, self._motion, self._since = self.T_wm, motion, self.world.t

@@ -99,7 +99,7 @@ class Camera:
             seed: Of the noise.
 
         Raises:
-            TypeMismatch: There is no world or no lens in its place.
+            TypeMismatch: The world is not a `World`, or the lens not `Intrinsics`.
             OutOfRange: ``noise`` or ``samples`` is not what it may be.
         """
         if not isinstance(world, World):

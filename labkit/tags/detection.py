@@ -86,7 +86,7 @@ def detect_tags(
         What was found, by number; empty if there is none.
 
     Raises:
-        TypeMismatch: The image is no picture, or the camera no camera.
+        TypeMismatch: The image is not a picture, or the camera not a camera.
         OutOfRange: A size is not positive.
         UnknownName: No such dictionary.
     """

@@ -1,7 +1,7 @@
 """Edges: the corners of a dark square to a few hundredths of a pixel.
 
 Each side is met by short rows of samples across it.  Along such a row the picture rises from dark
-to light; where a sharp edge would have to be to give the same sum is where the side is, however the
+to light; where a sharp edge would have to be to make the same sum is where the side is, however the
 pixels blurred it.  A line through these places, by total least squares, is the side; the sides'
 intersections are the corners.
 """
@@ -94,7 +94,7 @@ def _meet(points: Array, directions: Array) -> Array:
     """Where each side meets the one before it."""
     before, turn = np.roll(points, 1, axis=0), np.roll(directions, 1, axis=0)
     gap = before - points
-    way = (gap[:, 0] * turn[:, 1] - gap[:, 1] * turn[:, 0]) / (
+    distance = (gap[:, 0] * turn[:, 1] - gap[:, 1] * turn[:, 0]) / (
         directions[:, 0] * turn[:, 1] - directions[:, 1] * turn[:, 0]
     )
-    return np.asarray(points + way[:, None] * directions)
+    return np.asarray(points + distance[:, None] * directions)

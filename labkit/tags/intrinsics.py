@@ -85,7 +85,8 @@ class Intrinsics:
         p = as_numbers(points, "points")
         if p.ndim != 2 or p.shape[1] != 3:
             raise ShapeError("points", (len(np.atleast_2d(p)), 3), p.shape)
-        for i in np.flatnonzero(p[:, 2] <= 0.0)[:1]:
+        if (behind := p[:, 2] <= 0.0).any():
+            i = int(behind.argmax())
             raise OutOfRange(
                 f"point {i} is at z = {p[i, 2]:.3g} m in the camera's frame: it is behind the "
                 "camera; are these coordinates of the world?"

@@ -184,8 +184,8 @@ class TagTarget:
     Attributes:
         stream: Where the readings come from.
         follower: A function of the time since the run began and of the readings that arrived since
-            it was last asked, their times counted from there too; gives a `Sample` or `PoseSample`.
-            It sees no world, camera or arm.
+            it was last asked, their times counted from there too; returns a `Sample` or a
+            `PoseSample`.  It sees no world, camera or arm.
     """
 
     def __init__(

@@ -144,7 +144,7 @@ def as_picture(x: Any) -> Picture:
         Grey levels, shape (height, width).
 
     Raises:
-        TypeMismatch: It is no picture.
+        TypeMismatch: It is not a picture.
     """
     if not isinstance(x, np.ndarray) or x.dtype != np.uint8:
         what = f"an array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__

@@ -40,8 +40,8 @@ from labkit import (
 )
 
 from . import tasks
-from .claims import Verdict, verdicts
-from .gains import Tuned, known
+from .claims import Finding, verdicts
+from .gains import Candidate, known
 from .grid import Job, Meter, Row, cells, pick, table, work_through
 from .joint_velocity import JointVelocityPD
 from .recording import save_campaign
@@ -110,13 +110,13 @@ def feed_forward(state: State, target: Sample) -> JointVelocity:
     return JointVelocity(target.velocity)
 
 
-def _tuned(way: str, plant: Plant, side: Any) -> Tuned:
+def _tuned(way: str, plant: Plant, side: Any) -> Candidate:
     if way == FEED_FORWARD:
-        return Tuned(feed_forward, 200.0, True)
+        return Candidate(feed_forward, 200.0, True)
     if way == BASELINE:
         from . import baseline
 
-        return Tuned(baseline.PositionServer(), baseline.RATE, True)
+        return Candidate(baseline.PositionServer(), baseline.RATE, True)
     knows = Plant(name=plant.name, armature=plant.armature)  # the rotors, and no payload
     return known(Model(side, knows), plant)[way]
 
@@ -251,7 +251,7 @@ def tables(rows: list[Row]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def claims(judged: list[Verdict]) -> str:
+def claims(judged: list[Finding]) -> str:
     """The verdicts in Markdown."""
     said = "\n".join(f"- {v}" for v in judged) or "One seed judges no claim; take two or more."
     return f"\n## What the report claimed\n\n{said}\n"

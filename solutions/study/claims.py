@@ -33,7 +33,7 @@ class Outcome(Enum):
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Finding:
     """A claim and its evidence.
 
     Attributes:
@@ -62,7 +62,7 @@ class Verdict:
         )
 
 
-def judge(claim: str, unit: str, a: Mapping[Any, float], b: Mapping[Any, float]) -> Verdict:
+def judge(claim: str, unit: str, a: Mapping[Any, float], b: Mapping[Any, float]) -> Finding:
     """Does ``a`` exceed ``b``?
 
     Args:
@@ -86,14 +86,14 @@ def judge(claim: str, unit: str, a: Mapping[Any, float], b: Mapping[Any, float])
         outcome = Outcome.UNDECIDED
     else:
         outcome = Outcome.HELD if mean > 0.0 else Outcome.DID_NOT_HOLD
-    return Verdict(claim, outcome, mean, half, unit, len(keys), by_seed)
+    return Finding(claim, outcome, mean, half, unit, len(keys), by_seed)
 
 
 def _flips(by_seed: Sequence[float]) -> bool:
     return min(by_seed) < 0.0 < max(by_seed)
 
 
-def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) -> list[Verdict]:
+def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) -> list[Finding]:
     """The report's claims (sections 5.2 and 6) from the campaign's rows.
 
     Args:

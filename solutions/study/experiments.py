@@ -36,7 +36,7 @@ from labkit.scene import TIP_RADIUS, contact_stiffness
 from labkit.shapes import Array, locked
 from labkit.world import Thing
 
-from .gains import TIP_SPRING, Tuned, five
+from .gains import TIP_SPRING, Candidate, five
 
 CONTENDERS = ("position", "joint torque", "joint impedance", "workspace impedance")
 
@@ -218,8 +218,8 @@ def position(state: State, target: Sample) -> JointPosition:
     return JointPosition(target.position)
 
 
-def _contender(name: str, model: Model) -> Tuned:
-    return Tuned(position, 200.0, True) if name == "position" else five(model)[name]
+def _contender(name: str, model: Model) -> Candidate:
+    return Candidate(position, 200.0, True) if name == "position" else five(model)[name]
 
 
 def _there(T_wt: Array, way: Array) -> Trajectory:

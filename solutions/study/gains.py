@@ -21,7 +21,7 @@ from .workspace_velocity import WorkspaceVelocityPD
 
 
 @dataclass(frozen=True, eq=False)
-class Tuned:
+class Candidate:
     """A controller ready to run.
 
     Attributes:
@@ -39,7 +39,7 @@ class Tuned:
         return model.joint_trajectory(trajectory, q0) if self.joints else trajectory
 
 
-def five(model: Model, plant: Plant | None = None) -> dict[str, Tuned]:
+def five(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     """The five controllers of the course.
 
     Args:
@@ -51,36 +51,36 @@ def five(model: Model, plant: Plant | None = None) -> dict[str, Tuned]:
     fast = 200.0 if slow else 1000.0
     K, D = _JOINT_SPRING[slow], _JOINT_DAMPER[slow]
     return {
-        "workspace velocity": Tuned(WorkspaceVelocityPD(model, Kp=_SPEED[slow]), 200.0, False),
-        "joint velocity": Tuned(JointVelocityPD(Kp=_SPEED[slow]), 200.0, True),
-        "joint torque": Tuned(ComputedTorque(model, *_COMPUTED[slow], gravity), fast, True),
-        "workspace impedance": Tuned(
+        "workspace velocity": Candidate(WorkspaceVelocityPD(model, Kp=_SPEED[slow]), 200.0, False),
+        "joint velocity": Candidate(JointVelocityPD(Kp=_SPEED[slow]), 200.0, True),
+        "joint torque": Candidate(ComputedTorque(model, *_COMPUTED[slow], gravity), fast, True),
+        "workspace impedance": Candidate(
             WorkspaceImpedance(model, K=TIP_SPRING, gravity=gravity), fast, False
         ),
-        "joint impedance": Tuned(JointImpedance(model, K, D, gravity=gravity), fast, True),
+        "joint impedance": Candidate(JointImpedance(model, K, D, gravity=gravity), fast, True),
     }
 
 
-def variants(model: Model, plant: Plant | None = None) -> dict[str, Tuned]:
+def variants(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     """The other form of the torque law, and both impedances with an inertia of their own."""
     plant = plant or model.plant
     gravity, slow = not plant.gravity_compensation, _slow(plant)
     fast = 200.0 if slow else 1000.0
     K, D = _JOINT_SPRING[slow], _JOINT_DAMPER[slow]
     return {
-        "augmented PD": Tuned(AugmentedPD(model, *_AUGMENTED[slow], gravity), fast, True),
-        "shaped workspace impedance": Tuned(
+        "augmented PD": Candidate(AugmentedPD(model, *_AUGMENTED[slow], gravity), fast, True),
+        "shaped workspace impedance": Candidate(
             WorkspaceImpedance(model, K=TIP_SPRING, inertia=_TIP_INERTIA[slow], gravity=gravity),
             fast,
             False,
         ),
-        "shaped joint impedance": Tuned(
+        "shaped joint impedance": Candidate(
             JointImpedance(model, K, D, inertia=_JOINT_INERTIA[slow], gravity=gravity), fast, True
         ),
     }
 
 
-def known(model: Model, plant: Plant | None = None) -> dict[str, Tuned]:
+def known(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     """All controllers that the campaign can run."""
     return {**five(model, plant), **variants(model, plant)}
 

@@ -15,7 +15,7 @@ from labkit.errors import Diverged
 from labkit.metrics import summary
 
 from . import tasks
-from .gains import Tuned, five
+from .gains import Candidate, five
 from .grid import Row, table
 from .tasks import Task
 
@@ -48,7 +48,7 @@ CASES = (
 
 
 def score(
-    tuned: Tuned, cases: Iterable[Case] = CASES, seeds: Iterable[int] = range(3)
+    tuned: Candidate, cases: Iterable[Case] = CASES, seeds: Iterable[int] = range(3)
 ) -> list[Row]:
     """Try a controller, gains and all, on every case and seed.
 

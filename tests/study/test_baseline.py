@@ -19,7 +19,7 @@ from solutions.study.baseline import (
     RATE,
     Blocked,
     Box,
-    Limits,
+    JointLimits,
     NoWay,
     PathTolerance,
     PlanningScene,
@@ -214,7 +214,7 @@ def test_a_schedule_is_its_own_slope():
 
 def test_bad_limits_and_schedules_are_sentences():
     with pytest.raises(lk.LabkitError, match="speed is 0 at a joint"):
-        Limits(np.zeros(7), np.ones(7))
+        JointLimits(np.zeros(7), np.ones(7))
     with pytest.raises(lk.LabkitError, match=r"stands still at s = 0\.000"):
         Schedule([0.0, 0.5, 1.0], [0.0, 0.0, 0.0])
 

@@ -9,7 +9,7 @@ try:
     from .collision import Blocked, Box, PlanningScene
     from .planning import NoWay, along, first_hit, plan
     from .server import RATE, PathTolerance, PositionServer, VelocityServer
-    from .timing import HARDWARE, MOVEIT, Limits, Schedule, quickest
+    from .timing import HARDWARE, MOVEIT, JointLimits, Schedule, quickest
 except ModuleNotFoundError as missing:
     raise ModuleNotFoundError(
         f'the baseline needs {missing.name}, which is not installed: pip install "labkit[baseline]"'
@@ -23,7 +23,7 @@ __all__ = [
     "RATE",
     "Blocked",
     "Box",
-    "Limits",
+    "JointLimits",
     "NoWay",
     "PathTolerance",
     "PlanningScene",

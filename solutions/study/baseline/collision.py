@@ -135,7 +135,8 @@ class PlanningScene:
         """
         angles: Array = as_array(q, (7,), name)
         low, high = self.robot.lower - 1e-9, self.robot.upper + 1e-9
-        for i in np.flatnonzero((angles < low) | (angles > high))[:1]:
+        if (outside := (angles < low) | (angles > high)).any():
+            i = int(outside.argmax())
             raise JointLimitExceeded(
                 name, self.robot.joint_names[i], angles[i], self.robot.lower[i], self.robot.upper[i]
             )

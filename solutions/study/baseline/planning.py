@@ -17,7 +17,7 @@ from labkit.shapes import Array, as_array
 from labkit.trajectory import Chain, Hold, Path, Sample, Trajectory
 
 from .collision import Blocked, PlanningScene
-from .timing import MOVEIT, Limits, quickest
+from .timing import MOVEIT, JointLimits, quickest
 
 with quiet():
     from ompl import base, geometric, util
@@ -94,7 +94,7 @@ def first_hit(scene: PlanningScene, path: Path[Sample]) -> float | None:
 
 
 def along(
-    scene: PlanningScene, model: Model, target: Any, q0: Any, limits: Limits = MOVEIT
+    scene: PlanningScene, model: Model, target: Any, q0: Any, limits: JointLimits = MOVEIT
 ) -> Trajectory | Chain | Hold:
     """A path of the tip, planned as MoveIt's computeCartesianPath does.
 
@@ -125,7 +125,7 @@ def along(
     return Chain(parts) if isinstance(joints, Chain) else parts[0]
 
 
-def _timed(scene: PlanningScene, part: Trajectory | Hold, limits: Limits) -> Trajectory | Hold:
+def _timed(scene: PlanningScene, part: Trajectory | Hold, limits: JointLimits) -> Trajectory | Hold:
     if isinstance(part, Hold):
         scene.require_free(part(0.0).position, "the place to hold")
         return part

@@ -22,7 +22,7 @@ from labkit.trajectory import Path, Sample, Trajectory
 
 
 @dataclass(frozen=True, eq=False)
-class Limits:
+class JointLimits:
     """What a schedule keeps to.
 
     Attributes:
@@ -41,13 +41,13 @@ class Limits:
             object.__setattr__(self, name, x)
 
 
-MOVEIT = Limits(
+MOVEIT = JointLimits(
     speed=(0.27, 0.27, 0.27, 0.27, 0.3, 0.3, 0.5),
     acceleration=(0.5,) * 7,
 )
 """What MoveIt keeps to on Baxter, joint_limits.yaml of moveit_robots' baxter_moveit_config."""
 
-HARDWARE = Limits(
+HARDWARE = JointLimits(
     speed=(1.5, 1.5, 1.5, 1.5, 4.0, 4.0, 4.0),
     acceleration=(5.0,) * 7,
 )
@@ -98,7 +98,7 @@ class Schedule:
 
 
 def quickest(
-    path: Path[Sample], limits: Limits = MOVEIT, *, ds_dt: float | None = None
+    path: Path[Sample], limits: JointLimits = MOVEIT, *, ds_dt: float | None = None
 ) -> Trajectory:
     """The quickest trajectory along a path of joint angles, at rest at both ends.
 
