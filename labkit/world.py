@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, Self
 
+from . import se3
 from .errors import Closed, OutOfRange, TypeMismatch
 from .quiet import quiet
 from .shapes import Array, as_number, shown
@@ -119,6 +120,22 @@ class World:
     def show(self, thing: Shown) -> None:
         """Let ``thing`` be brought up to date before each picture from now on."""
         self.shown.append(thing)
+
+    def add_visual(self, kind: int, **shape: Any) -> int:
+        """Put something to be seen into the world, which nothing touches; PyBullet's number."""
+        seen = bullet.createVisualShape(kind, physicsClientId=self.client, **shape)
+        return int(bullet.createMultiBody(0, -1, seen, physicsClientId=self.client))
+
+    def move_visual(self, body: int, T: Array) -> None:
+        """Put a body that is only seen to a pose, shape (4, 4)."""
+        turn = se3.quaternion(T[:3, :3]).tolist()
+        bullet.resetBasePositionAndOrientation(
+            body, T[:3, 3].tolist(), turn, physicsClientId=self.client
+        )
+
+    def paint(self, body: int, colour: Iterable[float]) -> None:
+        """Show a body in a colour: red, green, blue and opacity, from 0 to 1."""
+        bullet.changeVisualShape(body, -1, rgbaColor=list(colour), physicsClientId=self.client)
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.

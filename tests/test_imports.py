@@ -39,6 +39,7 @@ ORDER = [
     {"replay"},
     {"tags.tag", "tags.intrinsics", "tags.estimation"},
     {"tags.edges", "tags.board", "tags.visuals"},
+    {"tags.rendering"},
     {"tags.camera"},
     {"tags.detection"},
     {"tags.stream"},
@@ -50,7 +51,8 @@ LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 UPSTAIRS = {"check", "grade", "cli", "verbs"}
 """Course and grader, which the lab does not know."""
 # What simulates, what knows the equations, what draws and what sees.
-SIMULATE = {"arm", "body", "motors", "world", "scene", "tags.camera", "tags.board", "tags.visuals"}
+SIMULATE = {"arm", "body", "motors", "world", "scene", "tags.camera", "tags.board",
+            "tags.rendering", "tags.visuals"}  # fmt: skip
 MODEL = {"kinematics", "model"}
 DRAW = {"plotting", "replay"}
 SEE = {"tags.tag", "tags.detection", "tags.edges"}

@@ -7,12 +7,12 @@ import numpy as np
 import pinocchio as pin
 import pybullet as bullet
 import pytest
+from make_urdf import JOINTS, full_model
 from numpy.testing import assert_allclose
 
 import labkit as lk
 from labkit.errors import LabkitError, UnknownName
 from labkit.robot import _rpy
-from tools.make_urdf import JOINTS, full_model
 
 FULL = full_model()
 ROTORS = lk.Plant(name="rotors", armature=lk.BAXTER.armature)
@@ -27,7 +27,7 @@ def plant(request):
 @pytest.fixture
 def body(side, plant):
     """The arm of the URDF text alone in PyBullet, without motors: its client and its body."""
-    from bench.hand_loop import open_arm
+    from tests.bench.hand_loop import open_arm
 
     client, body = open_arm(lk.robot(side).urdf(plant))
     yield client, body

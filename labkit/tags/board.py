@@ -118,40 +118,27 @@ class Board:
 
     def update(self) -> None:
         """Put what cameras see where it belongs; they call it before each picture."""
-        T = self.T_wm
-        place, turn = T[:3, 3].tolist(), se3.quaternion(T[:3, :3]).tolist()
+        T_wm = self.T_wm
         for body in self.bodies:
-            bullet.resetBasePositionAndOrientation(
-                body, place, turn, physicsClientId=self.world.client
-            )
+            self.world.move_visual(body, T_wm)
 
     def _build(self) -> None:
-        client, half = self.world.client, 0.5 * self.tag.paper
-        if client < 0:
+        world, half = self.world, 0.5 * self.tag.paper
+        if world.client < 0:
             raise Closed("this world was closed; make a new World")
         mesh, texture = _paper(self.tag)
+        white = {"rgbaColor": [1, 1, 1, 1], "specularColor": [0, 0, 0]}
+        plate = {"halfExtents": [half, half, 0.5 * _THICKNESS], "rgbaColor": [0.5, 0.5, 0.5, 1]}
+        behind = [0, 0, -_THICKNESS]
         with quiet():
-            paper = bullet.createVisualShape(
-                bullet.GEOM_MESH,
-                fileName=str(mesh),
-                rgbaColor=[1, 1, 1, 1],
-                specularColor=[0, 0, 0],
-                physicsClientId=client,
+            paper = world.add_visual(bullet.GEOM_MESH, fileName=str(mesh), **white)
+            self.bodies = (
+                paper,
+                world.add_visual(bullet.GEOM_BOX, visualFramePosition=behind, **plate),
             )
-            plate = bullet.createVisualShape(
-                bullet.GEOM_BOX,
-                halfExtents=[half, half, 0.5 * _THICKNESS],
-                visualFramePosition=[0, 0, -_THICKNESS],
-                rgbaColor=[0.5, 0.5, 0.5, 1],
-                physicsClientId=client,
-            )
-            self.bodies = tuple(
-                bullet.createMultiBody(0, -1, shape, physicsClientId=client)
-                for shape in (paper, plate)
-            )
-            print_on = bullet.loadTexture(str(texture), physicsClientId=client)
+            print_on = bullet.loadTexture(str(texture), physicsClientId=world.client)
             bullet.changeVisualShape(
-                self.bodies[0], -1, textureUniqueId=print_on, physicsClientId=client
+                paper, -1, textureUniqueId=print_on, physicsClientId=world.client
             )
 
 

@@ -1,13 +1,8 @@
-"""A camera in the world: fixed somewhere, or in the robot's hand.
-
-PyBullet's software renderer looks at one point in the middle of each pixel.  A real pixel collects
-light from its whole area; so tags are drawn on a finer grid and averaged down, which costs little,
-for they are small.
-"""
+"""A camera in the world: fixed somewhere, or in the robot's hand."""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -19,51 +14,21 @@ from ..shapes import Array, as_number, as_vector, locked, shown
 from ..world import World
 from .board import Board
 from .intrinsics import Intrinsics
+from .rendering import FAR, NEAR, View, Window, draw, draw_finely
 from .tag import Picture
 from .visuals import RobotVisuals
 
 with quiet():
     import pybullet as bullet
 
-NEAR, FAR = 0.02, 12.0
-"""Nothing nearer or farther than this is drawn, in [m]."""
-
 BACKGROUND = 255
 """Grey level where there is nothing to see."""
 
 _MARGIN = 4  # pixels around a tag's paper that are drawn with it
-_PLAIN = np.eye(2)  # the picture's own grid
-_LIGHT = (0.6, 0.35, 1.0)  # where the light comes from, world axes
 
 
 class CameraBlocked(LabkitError, ValueError):
     """The camera's eye is inside of something."""
-
-
-class Window(NamedTuple):
-    """A part of the picture, in pixels.
-
-    Attributes:
-        left: First column.
-        top: First row.
-        width: How many columns.
-        height: How many rows.
-    """
-
-    left: int
-    top: int
-    width: int
-    height: int
-
-    @property
-    def rows(self) -> slice:
-        """Its rows of a picture."""
-        return slice(self.top, self.top + self.height)
-
-    @property
-    def columns(self) -> slice:
-        """Its columns of a picture."""
-        return slice(self.left, self.left + self.width)
 
 
 class Camera:
@@ -158,11 +123,11 @@ class Camera:
             CameraBlocked: The camera is inside the robot.
             Closed: The world is closed.
         """
-        T_wc, looks = self._focus()
+        view = self._focus()
         size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
-        picture = self._draw(T_wc, looks, size, FAR)
+        picture = draw(view, size, FAR)
         if self.samples > 1:
-            self._refine(picture, T_wc, looks)
+            self._refine(picture, view)
         return self._developed(picture, [size])
 
     def tag_image(self) -> Picture:
@@ -175,40 +140,42 @@ class Camera:
             CameraBlocked: The camera is inside the robot.
             Closed: The world is closed.
         """
-        T_wc, looks = self._focus()
+        view = self._focus()
         shape = (self.intrinsics.height, self.intrinsics.width, 3)
         picture = np.full(shape, BACKGROUND, np.uint8)
-        return self._developed(picture, self._refine(picture, T_wc, looks))
+        return self._developed(picture, self._refine(picture, view))
 
-    def _focus(self) -> tuple[Array, RobotVisuals]:
+    def _focus(self) -> View:
         """Everything in its place; where the camera is, and the robot it sees."""
         if self.world.client < 0:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
-        looks = RobotVisuals.of(self.world)
+        robot = RobotVisuals.of(self.world)
         for thing in self.world.shown:
             thing.update()
         T_wc = self.T_wc
-        blocker = None if self._hand else looks.around(T_wc[:3, 3])
+        blocker = None if self._hand else robot.around(T_wc[:3, 3])
         if blocker is not None:
             x, y, z = T_wc[:3, 3]
             raise CameraBlocked(
                 f"the camera at ({x:.3g}, {y:.3g}, {z:.3g}) m is inside the robot, near its joint "
                 f"{blocker}; move it out with camera.place(T_wc)"
             )
-        return T_wc, looks
+        return View(self.intrinsics, T_wc, robot)
 
-    def _refine(self, picture: Picture, T_wc: Array, looks: RobotVisuals) -> list[Window]:
+    def _refine(self, picture: Picture, view: View) -> list[Window]:
         """Draw tags, and what may hide them, finely over the picture."""
         windows = []
         for board in [thing for thing in self.world.shown if isinstance(thing, Board)]:
-            place = self._window(board, T_wc)
+            place = self._window(board, view.T_wc)
             if place is None:
                 continue
             window, depth = place
             behind = self._behind(board)
-            self._paint(behind, 0.0)
-            fine = self._finely(T_wc, looks, window, depth)
-            self._paint(behind, 1.0)
+            for body, (*rgb, _) in behind.items():
+                self.world.paint(body, [*rgb, 0.0])
+            fine = draw_finely(view, window, depth, self.samples)
+            for body, colour in behind.items():
+                self.world.paint(body, colour)
             part = picture[window.rows, window.columns]
             np.copyto(part, fine, where=(fine != BACKGROUND).any(axis=2, keepdims=True))
             windows.append(window)
@@ -245,106 +212,6 @@ class Camera:
                 if len(shapes) == 1:
                     found[body] = shapes[0][7]
         return found
-
-    def _paint(self, bodies: dict[int, Any], opacity: float) -> None:
-        """Show bodies in their colours, times an opacity."""
-        for body, (*rgb, alpha) in bodies.items():
-            bullet.changeVisualShape(
-                body, -1, rgbaColor=[*rgb, alpha * opacity], physicsClientId=self.world.client
-            )
-
-    def _finely(self, T_wc: Array, looks: RobotVisuals, window: Window, depth: float) -> Picture:
-        """Draw a window on a finer grid, turned so that no two samples of a pixel share a row.
-
-        With s for `samples` a pixel holds s^2 + 1 points of the grid, all at different heights and
-        at different places from left to right; an edge along the picture's own rows, which is
-        common, then shows where it is to that part of a pixel.
-        """
-        s = self.samples
-        if s == 1:
-            return self._draw(T_wc, looks, window, depth)
-        turn = np.array([[s, -1], [1, s]])  # from pixels to the fine grid
-        size = (s * window.width + window.height + 2 * s, window.width + s * window.height + 2 * s)
-        first = np.array([window.height + s - 1, s])  # where the first pixel's middle comes to lie
-        fine = self._draw(T_wc, looks, window, depth, turn, size, first).reshape(-1, 3)
-        column, row = np.meshgrid(np.arange(window.width), np.arange(window.height))
-        middles = (s * column - row + first[0]) + size[0] * (column + s * row + first[1])
-        near = np.mgrid[-s : s + 1, -s : s + 1].reshape(2, -1).T
-        inside = (np.abs(near @ np.linalg.inv(turn).T + 1e-9) < 0.5).all(axis=1)
-        offsets = near[inside] @ (1, size[0])
-        total = np.zeros((window.height, window.width, 3), dtype=np.uint16)
-        for offset in offsets:
-            total += fine[middles + offset]
-        return ((total + len(offsets) // 2) // len(offsets)).astype(np.uint8)
-
-    def _draw(
-        self,
-        T_wc: Array,
-        looks: RobotVisuals,
-        window: Window,
-        depth: float,
-        grid: Any = _PLAIN,
-        size: tuple[int, int] | None = None,
-        first: Any = (0, 0),
-    ) -> Picture:
-        """Let PyBullet draw a part of the picture, its middles of pixels on a grid of its own.
-
-        PyBullet's sample points, measured in ``tests/vision/test_camera.py``, are columns 0, 1, ...
-        from the left edge of what its projection matrix takes in, and rows 1, 2, ... from the
-        upper.
-
-        Args:
-            T_wc: Pose of the camera, shape (4, 4).
-            looks: The robot.
-            window: Which part.
-            depth: Up to how far away, in [m].
-            grid: From pixels to steps of the grid, shape (2, 2).
-            size: Columns and rows of the grid; None is the window's own.
-            first: Where on the grid the window's first pixel comes to lie.
-        """
-        lens, (wide, tall) = self.intrinsics, size or (window.width, window.height)
-        x0, y0 = window.left - 0.5, window.top - 0.5
-        left, right = (x0 - lens.cx) / lens.fx, (x0 + window.width - lens.cx) / lens.fx
-        top, bottom = (y0 - lens.cy) / lens.fy, (y0 + window.height - lens.cy) / lens.fy
-        self._cull(looks, T_wc, (left, right, top, bottom), depth)
-        (a, b), (c, d) = grid @ np.diag([lens.fx, lens.fy])
-        e, f = grid @ (lens.cx - window.left, lens.cy - window.top) + first
-        span = depth - NEAR
-        projection = np.array(
-            [
-                [2 * a / wide, -2 * b / wide, 1 - 2 * e / wide, 0],
-                [-2 * c / tall, 2 * d / tall, 2 * (f + 1) / tall - 1, 0],
-                [0, 0, -(depth + NEAR) / span, -2 * depth * NEAR / span],
-                [0, 0, -1, 0],
-            ]
-        )
-        view = np.diag([1.0, -1.0, -1.0, 1.0]) @ se3.inverse(T_wc)
-        _, _, rgba, _, _ = bullet.getCameraImage(
-            wide,
-            tall,
-            view.T.ravel().tolist(),
-            projection.T.ravel().tolist(),
-            lightDirection=_LIGHT,
-            shadow=0,
-            renderer=bullet.ER_TINY_RENDERER,
-            flags=bullet.ER_NO_SEGMENTATION_MASK,
-            physicsClientId=self.world.client,
-        )
-        return np.ascontiguousarray(
-            np.asarray(rgba, dtype=np.uint8).reshape(tall, wide, 4)[..., :3]
-        )
-
-    @staticmethod
-    def _cull(looks: RobotVisuals, T_wc: Array, borders: tuple[float, ...], depth: float) -> None:
-        """Draw only those pieces of the robot that reach into the cone seen, up to a depth."""
-        centres, radii = looks.balls
-        x, y, z = ((centres - T_wc[:3, 3]) @ T_wc[:3, :3]).T
-        left, right, top, bottom = borders
-        outside = (z + radii < NEAR) | (z - radii > depth)
-        for coordinate, low, high in ((x, left, right), (y, top, bottom)):
-            outside |= coordinate - low * z < -radii * np.hypot(1.0, low)
-            outside |= coordinate - high * z > radii * np.hypot(1.0, high)
-        looks.draw_only(~outside)
 
     def _developed(self, picture: Picture, windows: list[Window]) -> Picture:
         """With the sensor's noise where something was drawn, frozen."""

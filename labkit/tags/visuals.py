@@ -1,4 +1,4 @@
-"""Baxter's looks: the meshes that cameras see, moved with the joints before each picture.
+"""What cameras see of Baxter: meshes, moved with the joints before each picture.
 
 They belong to no physics: arms in the engine are seven bodies without a shape.  Where a world has
 only one arm, or none, the other hangs at Rethink's neutral pose.
@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from functools import cache, cached_property
-from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,20 +25,36 @@ from ..world import World
 with quiet():
     import pybullet as bullet
 
+DATA = Path(__file__).parents[1] / "data"
+
 
 @dataclass(frozen=True, eq=False)
-class Mesh:
-    """A mesh of one colour.
+class Piece:
+    """A mesh of one colour, a part of the robot.
 
     Attributes:
-        points: Corners, shape (n, 3) in [m].
-        centre: Of a ball around it, shape (3,) in [m].
-        radius: Of that ball, in [m].
+        parent: The joint that carries it.
+        T_jp: Its pose in that joint's moving frame, shape (4, 4).
+        colour: Red, green, blue, opacity, from 0 to 1.
+        file: The mesh's file.
     """
 
-    points: Array
-    centre: Array
-    radius: float
+    parent: str
+    T_jp: Array
+    colour: tuple[float, ...]
+    file: Path
+
+    @cached_property
+    def points(self) -> Array:
+        """The mesh's corners, shape (n, 3) in [m]."""
+        lines = self.file.read_text().splitlines()
+        return np.array([x.split()[1:4] for x in lines if x.startswith("v ")], dtype=float)
+
+    @cached_property
+    def ball(self) -> tuple[Array, float]:
+        """A ball around the mesh: its centre, shape (3,) in [m], and its radius in [m]."""
+        centre = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
+        return centre, float(np.linalg.norm(self.points - centre, axis=1).max())
 
     @cached_property
     def _hull(self) -> Array:
@@ -48,25 +64,6 @@ class Mesh:
     def encloses(self, point: Array) -> bool:
         """Whether a point is within the convex hull: the real shells are hollow."""
         return bool((self._hull[:, :3] @ point + self._hull[:, 3]).max() < -0.002)
-
-
-@dataclass(frozen=True, eq=False)
-class Piece:
-    """One mesh of the robot.
-
-    Attributes:
-        mesh: Its shape.
-        parent: The joint that carries it.
-        T_jp: Its pose in that joint's moving frame, shape (4, 4).
-        colour: Red, green, blue, opacity, from 0 to 1.
-        file: The mesh's file.
-    """
-
-    mesh: Mesh
-    parent: str
-    T_jp: Array
-    colour: tuple[float, ...]
-    file: str
 
 
 class RobotVisuals:
@@ -80,17 +77,21 @@ class RobotVisuals:
 
     @staticmethod
     def of(world: World) -> RobotVisuals:
-        """The looks of the robot in ``world``: there is one."""
+        """Those in ``world``: there is one robot."""
         found = next((thing for thing in world.shown if isinstance(thing, RobotVisuals)), None)
         return RobotVisuals(world) if found is None else found
 
     def __init__(self, world: World) -> None:
         """Load the meshes into ``world``."""
         self.world = world
-        self.bodies = [self._load(piece) for piece in pieces()]
+        with quiet():
+            self.bodies = [
+                world.add_visual(bullet.GEOM_MESH, fileName=str(p.file), rgbaColor=list(p.colour))
+                for p in pieces()
+            ]
         self._seen = np.ones(len(self.bodies), dtype=bool)
-        self._centres = np.array([[*p.mesh.centre, 1.0] for p in pieces()])
-        self._radii = np.array([p.mesh.radius for p in pieces()])
+        self._centres = np.array([[*p.ball[0], 1.0] for p in pieces()])
+        self._radii = np.array([p.ball[1] for p in pieces()])
         self._at: bytes = b""
         world.show(self)
         self.update()
@@ -106,12 +107,7 @@ class RobotVisuals:
         frames = joint_frames(q)
         self.poses = np.array([frames[piece.parent] @ piece.T_jp for piece in pieces()])
         for body, T in zip(self.bodies, self.poses, strict=True):
-            bullet.resetBasePositionAndOrientation(
-                body,
-                T[:3, 3].tolist(),
-                se3.quaternion(T[:3, :3]).tolist(),
-                physicsClientId=self.world.client,
-            )
+            self.world.move_visual(body, T)
 
     @property
     def balls(self) -> tuple[Array, Array]:
@@ -126,12 +122,7 @@ class RobotVisuals:
         """
         for i in np.flatnonzero(wanted != self._seen):
             *rgb, opacity = pieces()[i].colour
-            bullet.changeVisualShape(
-                self.bodies[i],
-                -1,
-                rgbaColor=[*rgb, opacity if wanted[i] else 0.0],
-                physicsClientId=self.world.client,
-            )
+            self.world.paint(self.bodies[i], [*rgb, opacity if wanted[i] else 0.0])
         self._seen = np.array(wanted)
 
     def around(self, point: Array) -> str | None:
@@ -139,20 +130,9 @@ class RobotVisuals:
         centres, radii = self.balls
         for i in np.flatnonzero(np.linalg.norm(centres - point, axis=1) < radii):
             T = self.poses[i]
-            if pieces()[i].mesh.encloses(T[:3, :3].T @ (point - T[:3, 3])):
+            if pieces()[i].encloses(T[:3, :3].T @ (point - T[:3, 3])):
                 return pieces()[i].parent
         return None
-
-    def _load(self, piece: Piece) -> int:
-        client = self.world.client
-        with quiet():
-            shape = bullet.createVisualShape(
-                bullet.GEOM_MESH,
-                fileName=piece.file,
-                rgbaColor=list(piece.colour),
-                physicsClientId=client,
-            )
-            return int(bullet.createMultiBody(0, -1, shape, physicsClientId=client))
 
 
 def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
@@ -177,39 +157,19 @@ def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
 @cache
 def pieces() -> tuple[Piece, ...]:
     """All the robot's pieces."""
-    data = files("labkit") / "data"
     return tuple(
-        Piece(
-            mesh=_mesh(p["mesh"]),
-            parent=p["parent"],
-            T_jp=_placed(p),
-            colour=tuple(p["rgba"]),
-            file=str(data / p["mesh"]),
-        )
-        for p in _table()["pieces"]
+        Piece(p["parent"], _placed(p), tuple(p["rgba"]), DATA / p["mesh"]) for p in _table("pieces")
     )
-
-
-@cache
-def _table() -> dict[str, Any]:
-    table: dict[str, Any] = json.loads(
-        (files("labkit") / "data" / "baxter_visual.json").read_text()
-    )
-    return table
 
 
 @cache
 def _joints() -> tuple[tuple[str, str, Array], ...]:
-    return tuple((j["name"], j["parent"], _placed(j)) for j in _table()["joints"])
+    return tuple((j["name"], j["parent"], _placed(j)) for j in _table("joints"))
 
 
-@cache
-def _mesh(name: str) -> Mesh:
-    lines = (files("labkit") / "data" / name).read_text().splitlines()
-    points = np.array([x.split()[1:4] for x in lines if x.startswith("v ")], dtype=float)
-    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    radius = float(np.linalg.norm(points - centre, axis=1).max())
-    return Mesh(locked(points), locked(centre), radius)
+def _table(name: str) -> list[dict[str, Any]]:
+    table: list[dict[str, Any]] = json.loads((DATA / "baxter_visual.json").read_text())[name]
+    return table
 
 
 def _placed(thing: dict[str, Any]) -> Array:

@@ -2,7 +2,7 @@
 
 Approximations: Rethink's own collision cylinders and boxes for the links, out of which the arm's
 housings stick by up to 5 cm (10 cm at the shoulder, which goes nowhere); stacks of boxes for torso
-and pedestal; the other arm at rest in its neutral pose (``tools/make_collision.py``).  MoveIt saw
+and pedestal; the other arm at rest in its neutral pose (``make_collision.py``).  MoveIt saw
 Baxter so too.  The distances are those of coal, by way of Pinocchio.
 """
 

@@ -1,6 +1,6 @@
 """Make the README's picture: Baxter drawing a line, seen by labkit's own camera.
 
-Run: python tools/make_picture.py   (writes book/static/baxter.png)
+Run: python book/_tools/make_picture.py   (writes book/static/baxter.png)
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import labkit as lk
 from labkit.trajectory import PosePath
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
-OUT = Path(__file__).parents[1] / "book/static/baxter.png"
+OUT = Path(__file__).parents[2] / "book/static/baxter.png"
 WIDTH, HEIGHT, FINE = 1000, 600, 2
 EYE, AT = (2.45, 0.95, 1.05), (0.3, 0.0, 0.17)
 PAPER, RED, GREY = (248, 247, 244), (178, 24, 43), (90, 90, 90)

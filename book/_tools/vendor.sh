@@ -1,6 +1,6 @@
 #!/bin/sh
 # Make the browser files: bundle the viewer, copy MathJax and the widget manager, write the manifest.
-# Needs node 20 with npm, and a Python with anywidget.  Run from anywhere: sh tools/vendor.sh
+# Needs node 20 with npm, and a Python with anywidget.  Run from anywhere: sh book/_tools/vendor.sh
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)

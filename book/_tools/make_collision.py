@@ -5,7 +5,7 @@ the pairs that MoveIt's Setup Assistant found worth a check (the SRDF of the sam
 see labkit/data/LICENSE-baxter).  Torso and pedestal are meshes there; here each is a stack of
 boxes, one around each slice of its mesh.  The other arm stands still at Rethink's neutral pose.
 
-Run: python tools/make_collision.py
+Run: python book/_tools/make_collision.py
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import pinocchio as pin
 import trimesh
 from make_urdf import JOINTS, NEUTRAL, URDF, full_model, rounded
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 DATA = ROOT / "labkit/data"
 SRDF = URDF.parents[1] / "srdf/baxter_manipulation.srdf"
 STACKED = {"torso": "base_link_charcoal", "pedestal": "PEDESTAL_black"}

@@ -1,5 +1,5 @@
 // Bundles the viewer and copies what the book needs from npm; writes the manifest of hashes.
-// Run by tools/vendor.sh, which brings the packages: 
+// Run by book/_tools/vendor.sh, which brings the packages: 
 // node build.mjs <node_modules> <anywidget's index.js> <anywidget's licence> <ipywidgets' licence>
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
@@ -9,7 +9,7 @@ import { fileURLToPath } from "node:url";
 
 const [modules, anywidget, anywidgetLicence, ipywidgetsLicence] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
-const root = join(here, "../..");
+const root = join(here, "../../..");
 const source = join(root, "labkit/replay/viewer");
 const viewer = join(root, "labkit/data/viewer");
 // Not book/_static: Jupyter Book 1 would put every script in a folder of that name on every page.
@@ -59,7 +59,7 @@ const sha = (file) => createHash("sha256").update(readFileSync(file)).digest("he
 const hashes = (files) => Object.fromEntries(files.map((f) => [relative(root, f).replaceAll("\\", "/"), sha(f)]));
 const built = walk(viewer).filter((f) => basename(f) !== "robot.js"); // that one is make_robot.py's
 writeFileSync(join(vendor, "MANIFEST.json"), `${JSON.stringify({
-  made_by: "sh tools/vendor.sh", packages: wanted,
+  made_by: "sh book/_tools/vendor.sh", packages: wanted,
   files: hashes([...walk(vendor), ...built, ...walk(tests)]),
   sources: hashes([...walk(source), ...walk(here)]),
 }, null, 1)}\n`);

@@ -1,4 +1,4 @@
-"""Build the book: `python tools/build_book.py`, or `make book`.
+"""Build the book: `python book/_tools/build_book.py`, or `make book`.
 
 Makes what the pages need (viewer, notation, the students' notebooks, recorded runs, the campaign),
 then runs Jupyter Book with warnings as errors.  What is computed is kept until the code that

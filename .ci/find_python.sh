@@ -12,7 +12,7 @@ This course needs Python 3.11, for which PyBullet's newest wheels are made. Get 
 try again:
   Debian 12                     sudo apt-get install -y python3.11-venv
   anywhere                      uv python install 3.11           (uv comes with: pipx install uv)
-  with conda or micromamba      micromamba create -f environment.yml && micromamba activate baxter-lab
+  with conda or micromamba      micromamba create -f .ci/environment.yml && micromamba activate baxter-lab
   one that you have already     export PYTHON=/path/to/python3.11
 END
 exit 1

@@ -95,7 +95,7 @@ def document(pages: Sequence[str]) -> BeautifulSoup:
     for link in index.select('head link[rel="stylesheet"]'):
         whole.head.append(_made(f'<link rel="stylesheet" href="{_file(HTML, link["href"])}">'))
     whole.head.append(
-        _made(f'<link rel="stylesheet" href="{(ROOT / "tools/print.css").as_uri()}">')
+        _made(f'<link rel="stylesheet" href="{(ROOT / "book/_tools/print.css").as_uri()}">')
     )
     for script in ("mathjax-config.js", "tex-svg-full.js"):
         address = (HTML / "_static/vendor" / script).as_uri()

@@ -1,15 +1,11 @@
 """How soon a reader of the book can read, and watch a motion, in a headless Chromium."""
 
 import shutil
-import sys
 import tempfile
 from pathlib import Path
 
 import labkit as lk
 from labkit.replay import Motion
-from tools.chromium import program
-
-sys.path.append(str(Path(__file__).parents[1] / "book"))
 
 TIMES = 5
 BOOK = Path("book/_build/html/index.html")
@@ -30,7 +26,7 @@ def motion():
 
 def page(folder):
     """A page of its own with one motion, written into ``folder``."""
-    from figures.embed import motion_html, shared_files  # the book's
+    from figures.embed import motion_html, shared_files
 
     for name, path in shared_files().items():
         shutil.copy(path, folder / name)
@@ -44,6 +40,7 @@ def measure():
 
     The best of several each; None for a book that has not been built.
     """
+    from chromium import program
     from playwright.sync_api import sync_playwright
 
     flags = [

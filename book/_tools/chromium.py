@@ -1,4 +1,4 @@
-"""Which Chromium prints the book, tests and measures its pages: python tools/chromium.py."""
+"""Which Chromium prints the book, tests and measures its pages: python book/_tools/chromium.py."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Measure, print and write build/bench.json: `make bench`; one alone: `python -m bench start`.
+"""Measure, print and write build/bench.json: `make bench`, or `python -m tests.bench start`.
 
 A measurement is a file here with a function ``measure() -> {key: number or None}``, whose first
 line of documentation says what the numbers are, and a place in `MEASUREMENTS`.
@@ -10,6 +10,9 @@ import sys
 from pathlib import Path
 
 from . import camera, campaign, closed_loop, drake, grading, notebooks, realistic, start, viewer
+
+ROOT = Path(__file__).parents[2]
+sys.path += [str(ROOT / "book"), str(ROOT / "book/_tools")]  # the viewer is measured in pages
 
 MEASUREMENTS = (
     start,
@@ -32,7 +35,7 @@ def main(arguments=()):
         arguments: Names of measurements, which are then only printed; by default all are taken.
     """
     known = {module.__name__.rpartition(".")[2]: module for module in MEASUREMENTS}
-    parser = argparse.ArgumentParser(prog="python -m bench", description="Measure speeds.")
+    parser = argparse.ArgumentParser(prog="python -m tests.bench", description="Measure speeds.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"by default {', '.join(known)}")
     names = parser.parse_args(arguments).names
     for name in set(names) - set(known):

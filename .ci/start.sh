@@ -2,9 +2,9 @@
 # For students: make the environment, the first time only, and open the notebooks.
 set -eu
 cd "$(dirname "$0")"
-sh tools/need.sh ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
+sh .ci/need.sh ensurepip.py:python3.11-venv libgomp.so.1:libgomp1
 if [ ! -e .venv/.done ]; then
-  python=$(sh tools/find_python.sh)
+  python=$(sh .ci/find_python.sh)
   "$python" -m venv .venv
   echo "fetching what the lab needs, a few minutes"
   labkit=$(ls ./labkit-*.whl 2>/dev/null || echo --editable=.)

@@ -4,7 +4,7 @@ Every link that a moving joint carries (the fixed electronics, the hand, the gri
 fingers closed) is lumped into that joint's body by Pinocchio.  Source: the URDF of Rethink
 Robotics as packaged in example-robot-data 6 (BSD-3, see labkit/data/LICENSE-baxter).
 
-Run: python tools/make_urdf.py
+Run: python book/_tools/make_urdf.py
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import pinocchio as pin
 
 SHARE = Path(site.getsitepackages()[0]) / "cmeel.prefix" / "share"
 URDF = SHARE / "example-robot-data/robots/baxter_description/urdf/baxter.urdf"
-OUT = Path(__file__).parents[1] / "labkit/data/baxter.json"
+OUT = Path(__file__).parents[2] / "labkit/data/baxter.json"
 JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 
 # The packaged file gives s1 50 N m, less than gravity asks at the neutral pose.  Rethink raised it

@@ -43,7 +43,7 @@ def main() -> int:
         ]
     else:
         print("This machine cannot isolate submissions, so nothing is graded: see `make doctor`.")
-    steps.append(("Build the book", [sys.executable, str(ROOT / "tools" / "build_book.py")]))
+    steps.append(("Build the book", [sys.executable, str(ROOT / "book/_tools/build_book.py")]))
     for number, (title, command) in enumerate(steps, start=1):
         shown = " ".join(Path(word).name if "/" in word else word for word in command)
         print(f"\n[{number}/{len(steps)}] {title}\n$ {shown}", flush=True)

@@ -1,4 +1,4 @@
-"""How good the tag's pose is: `python -m bench.tags --seed 1` writes build/tags.json.
+"""How good the tag's pose is: `python -m tests.bench.tags --seed 1` writes build/tags.json.
 
 Nothing here is fitted: the poses come from the seed, the truth from the simulation.
 """

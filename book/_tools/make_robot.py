@@ -4,7 +4,7 @@ Each visual mesh of the packaged URDF loses the faces that nobody can see, is sp
 camera's renderer gives a mesh one colour), and is decimated twice: coarse for the camera, finer
 for the viewer.  Left and right share one file.  Fingers are closed and ride on the wrist.
 
-Run: python tools/make_robot.py   (about a minute; needs the dev extra)
+Run: python book/_tools/make_robot.py   (about a minute; needs the dev extra)
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ import trimesh
 
 SHARE = Path(site.getsitepackages()[0]) / "cmeel.prefix" / "share"
 BAXTER = SHARE / "example-robot-data/robots/baxter_description"
-DATA = Path(__file__).parents[1] / "labkit/data"
+DATA = Path(__file__).parents[2] / "labkit/data"
 PALETTE = {  # sRGB; the source's blacks are lifted so that shape stays readable
     "red": (0.66, 0.05, 0.07),
     "black": (0.09, 0.09, 0.10),
@@ -107,8 +107,8 @@ CHANGES = """
 What was changed here: from the visual meshes of baxter_description (as packaged in
 example-robot-data) the hidden faces were removed, the rest was decimated, split by colour and
 written as OBJ and as quantised arrays; colours were snapped to four and the blacks lifted; fingers
-are fixed closed.  In the arms' data links are lumped into seven bodies.  See tools/make_robot.py
-and tools/make_urdf.py.
+are fixed closed.  In the arms' data links are lumped into seven bodies.  See make_robot.py and
+make_urdf.py in book/_tools.
 """
 
 

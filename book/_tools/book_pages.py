@@ -13,7 +13,7 @@ from pathlib import Path
 
 import yaml
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 BOOK = ROOT / "book"
 sys.path[:0] = [str(ROOT), str(BOOK)]  # this checkout, wherever another one is installed
 HTML = BOOK / "_build/html"

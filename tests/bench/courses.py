@@ -7,7 +7,7 @@ from pathlib import Path
 
 from labkit.grade.course import Course
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[2]
 
 
 @contextmanager

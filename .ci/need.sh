@@ -1,5 +1,5 @@
 #!/bin/sh
-# Make sure that what a verb needs is there: sh tools/need.sh THING[,OTHER]:PACKAGE ...
+# Make sure that what a verb needs is there: sh .ci/need.sh THING[,OTHER]:PACKAGE ...
 # A thing is a program, a library (libNAME.so.N) or one of Python's modules (NAME.py).
 # As root it installs the Debian packages that are missing; else it prints the one line to run.
 python=.venv/bin/python # what was made before needs nothing found again

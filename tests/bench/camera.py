@@ -1,4 +1,4 @@
-"""What a picture and a detection cost: `python -m bench camera`."""
+"""What a picture and a detection cost: `python -m tests.bench camera`."""
 
 import time
 

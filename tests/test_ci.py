@@ -1,4 +1,4 @@
-"""The tools that look for Python, packages and a browser, on machines that lack them."""
+"""The scripts that look for Python, packages and a browser, on machines that lack them."""
 
 from __future__ import annotations
 
@@ -6,10 +6,9 @@ import shutil
 import subprocess
 import sys
 
+import chromium
 import pytest
 from handmade import ROOT
-
-from tools import chromium
 
 
 @pytest.fixture
@@ -26,7 +25,7 @@ def machine(tmp_path):
 
     def run(tool, *arguments):
         return subprocess.run(
-            ["sh", str(ROOT / "tools" / tool), *arguments],
+            ["sh", str(ROOT / ".ci" / tool), *arguments],
             env={"PATH": str(programs)},
             cwd=tmp_path,
             capture_output=True,
