@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from .errors import OutOfRange, ShapeError
-from .shapes import Array, as_array, as_numbers
+from .errors import OutOfRange
+from .shapes import Array, as_array
 
 _IDENTITY = np.eye(3)
 _SMALL = 1e-4  # below this angle the closed forms lose digits and the series are exact
@@ -270,28 +270,6 @@ def as_pose(x: Any, name: str) -> Array:
         raise OutOfRange(f"{name}'s last row is {T[3]}, a pose has (0, 0, 0, 1); is it transposed?")
     as_rotation(T[:3, :3], f"{name}[:3, :3]")
     return T
-
-
-def as_poses(x: Any, name: str) -> Array:
-    """Read ``x`` as poses, one or more.
-
-    Args:
-        x: Shape (n, 4, 4).
-        name: What to call them in the sentence, if they do not fit.
-
-    Returns:
-        Shape (n, 4, 4); a copy.
-
-    Raises:
-        ShapeError: They are not a stack of poses, or there are none.
-        OutOfRange: One is not a rigid motion.
-    """
-    poses = as_numbers(x, name)
-    if poses.ndim != 3 or not len(poses):
-        raise ShapeError(name, (1, 4, 4), poses.shape)
-    for i, T in enumerate(poses):
-        as_pose(T, f"{name}[{i}]")
-    return poses
 
 
 def _coefficients(theta: float) -> tuple[float, float, float]:

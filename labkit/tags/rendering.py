@@ -78,7 +78,7 @@ def draw(
 ) -> Picture:
     """Let PyBullet draw a part of the picture, its middles of pixels on a grid of its own.
 
-    PyBullet's sample points, measured in ``tests/vision/test_camera.py``, are columns 0, 1, ...
+    PyBullet's sample points, measured in ``tests/tags/test_camera.py``, are columns 0, 1, ...
     from the left edge of what its projection matrix takes in, and rows 1, 2, ... from the
     upper.
 

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from labkit import se3
-from labkit.errors import OutOfRange, UnknownName
-from labkit.shapes import Array, as_number, locked
+from labkit.errors import OutOfRange, ShapeError, UnknownName
+from labkit.shapes import Array, as_number, as_numbers, locked
 from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.detection import detect_tags
@@ -163,7 +163,7 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
     Returns:
         The readings.
     """
-    poses = se3.as_poses(poses, "poses")
+    poses = _as_poses(poses, "poses")
     n = len(poses)
     estimate, covariance = np.full((n, 4, 4), np.nan), np.full((n, 6, 6), np.nan)
     ratio, pixels, off = np.full(n, np.nan), np.full(n, np.nan), np.full((n, 4, 2), np.nan)
@@ -222,3 +222,25 @@ def sweep(
         poses = random_poses(turned, count, np.random.default_rng(seed))
         results[float(value)] = quality(read(turned, poses, seed))
     return results
+
+
+def _as_poses(x: Any, name: str) -> Array:
+    """Read ``x`` as poses, one or more.
+
+    Args:
+        x: Shape (n, 4, 4).
+        name: What to call them in the sentence, if they do not fit.
+
+    Returns:
+        Shape (n, 4, 4); a copy.
+
+    Raises:
+        ShapeError: They are not a stack of poses, or there are none.
+        OutOfRange: One is not a rigid motion.
+    """
+    poses = as_numbers(x, name)
+    if poses.ndim != 3 or not len(poses):
+        raise ShapeError(name, (1, 4, 4), poses.shape)
+    for i, T in enumerate(poses):
+        se3.as_pose(T, f"{name}[{i}]")
+    return poses
