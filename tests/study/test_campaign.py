@@ -8,7 +8,7 @@ import pytest
 from scipy import stats
 
 import labkit as lk
-from labkit import plotting, recordings
+from labkit import recordings
 from solutions.comparison import paired_difference
 from solutions.study import campaign as report
 from solutions.study import pictures
@@ -107,7 +107,7 @@ def test_a_figure_of_the_report_is_numbered_drawn_and_put_into_words(tmp_path):
     assert made["figure"] == 5 and (tmp_path / made["file"]).stat().st_size > 50_000
     assert "circle: Tracking by joint velocity on the baxter left arm" in made["alt"]
     log = report.perform("workspace velocity", "circle", "ideal", 0)
-    figure = plotting.overview(log, joints=report.joints("workspace velocity", "circle", 0))
+    figure = pictures.overview(log, joints=report.joints("workspace velocity", "circle", 0))
     labels = {ax.get_ylabel() for ax in figure.axes}
     assert {"tip position [m]", "tip velocity [m/s]", "orientation error [deg]"} < labels
     assert {"s0", "s1", "e0", "e1", "w0", "w1", "w2"} < labels
