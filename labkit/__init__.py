@@ -65,6 +65,8 @@ def ready() -> None:
     """
     import psutil  # not needed where nobody asks
 
+    from .run import run  # whatever somebody put in the place of `lk.run`
+
     with Arm() as arm:
         start, goal = (arm.robot.neutral + [x, 0, 0, 0, 0, 0, 0] for x in (0.0, 0.1))
         log = run(arm, Trajectory(Line(start, goal), Quintic(0.5)), control.feedforward)

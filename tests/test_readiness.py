@@ -1,5 +1,7 @@
 """The first line of every notebook."""
 
+import sys
+
 import pytest
 
 import labkit as lk
@@ -33,6 +35,6 @@ def test_an_arm_that_does_not_move_is_said_so(monkeypatch):
     def stuck(arm, target, controller):
         return run(arm, lk.Hold(arm.state().q, 0.5), controller)
 
-    monkeypatch.setattr(lk, "run", stuck)
+    monkeypatch.setattr(sys.modules["labkit.run"], "run", stuck)
     with pytest.raises(LabkitError, match=r"ended 0\.100 rad from where it was sent; reinstall"):
         ready()
