@@ -26,7 +26,7 @@ CMD ["jupyter", "lab", "--ip=0.0.0.0", "--no-browser", "--allow-root", "--notebo
 FROM python AS student
 # The hub's own version: docker build --build-arg HUB=5.4.0
 ARG HUB=6.1.1
-COPY --from=course /handout/baxter-lab /lab/tools/start_container.sh /opt/baxter-lab/
+COPY --from=course /handout/baxter-lab /lab/.ci/start_container.sh /opt/baxter-lab/
 RUN pip install --quiet --no-cache-dir --disable-pip-version-check --root-user-action=ignore \
       --constraint /opt/baxter-lab/constraints.txt \
       /opt/baxter-lab/labkit-*.whl "jupyterhub==$HUB" nbgitpuller nbgrader

@@ -13,13 +13,13 @@ AS_ROOT = $(filter 0,$(shell id -u))
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
 
-.PHONY: help demo test quick soak lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test quick soak count lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
 
 demo: for-grading .venv/.course ## release, grade a small class, build the book, say where to look
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python tools/demo.py
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/demo.py
 
 test: for-tests .venv/.dev browser lint types ## everything: style, types, all tests
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --ignore tests/soak
@@ -40,29 +40,32 @@ grade: for-grading .venv/.course ## grade submitted/ ; ASSIGNMENT=01_paths
 	@$(BIN)/labkit grade $(ASSIGNMENT)
 
 book: .venv/.course ## build the book: book/_build/html/index.html
-	@$(BIN)/python tools/build_book.py
+	@$(BIN)/python book/_tools/build_book.py
 
 book-zip: .venv/.course build/campaign.json ## the book as one file to hand out
-	@$(BIN)/python tools/build_book.py --zip
+	@$(BIN)/python book/_tools/build_book.py --zip
 
 book-pdf: for-tests .venv/.dev browser ## the book to print
-	@$(BIN)/python tools/build_book.py --pdf
+	@$(BIN)/python book/_tools/build_book.py --pdf
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)
-	@sh tools/need.sh node:nodejs npm:npm
-	@PYTHON="$(CURDIR)/$(BIN)/python" sh tools/vendor.sh
+	@sh .ci/need.sh node:nodejs npm:npm
+	@PYTHON="$(CURDIR)/$(BIN)/python" sh book/_tools/vendor.sh
 
 campaign: .venv/.course ## every controller on every task: build/campaign.json
-	@$(BIN)/python -m solutions.campaign
+	@$(BIN)/python -m solutions.study.campaign
 
 build/campaign.json: # the book to hand out has the films
-	@$(BIN)/python -m solutions.campaign
+	@$(BIN)/python -m solutions.study.campaign
+
+count: ## how large labkit is: lines of code and statements of each storey
+	@python3 tests/count.py
 
 bench: for-tests .venv/.dev browser ## measure speeds as ratios: build/bench.json
-	@$(BIN)/python -m bench
+	@$(BIN)/python -m tests.bench
 
 tag-bench: .venv/.course ## precision of the tag sensor; SEED=n
-	@$(BIN)/python -m bench.tags --seed $(SEED)
+	@$(BIN)/python -m tests.bench.tags --seed $(SEED)
 
 report-card: .venv/.course ## do the checks reject what is wrong and accept what is right?
 	@$(BIN)/labkit report-card
@@ -86,20 +89,20 @@ clean: ## forget everything that was made
 
 .PHONY: for-all for-grading for-tests browser
 for-all:
-	@sh tools/need.sh $(FOR_ALL)
+	@sh .ci/need.sh $(FOR_ALL)
 
 for-grading:
-	@sh tools/need.sh $(FOR_GRADING)
+	@sh .ci/need.sh $(FOR_GRADING)
 
 for-tests:
-	@sh tools/need.sh $(FOR_TESTS)
+	@sh .ci/need.sh $(FOR_TESTS)
 
 browser: .venv/.dev
-	@$(BIN)/python tools/chromium.py >/dev/null 2>&1 || $(BIN)/playwright install $(if $(AS_ROOT),--with-deps) chromium
+	@$(BIN)/python book/_tools/chromium.py >/dev/null 2>&1 || $(BIN)/playwright install $(if $(AS_ROOT),--with-deps) chromium
 
 .venv/.made: | for-all
-	@echo "making .venv with $$(sh tools/find_python.sh)"
-	@"$$(sh tools/find_python.sh)" -m venv .venv && touch $@
+	@echo "making .venv with $$(sh .ci/find_python.sh)"
+	@"$$(sh .ci/find_python.sh)" -m venv .venv && touch $@
 
 .venv/.student: .venv/.made pyproject.toml constraints.txt
 	@echo "installing what a student needs"

@@ -4,130 +4,80 @@ Three nouns and a verb: an `Arm`, a `Trajectory`, a controller (any function of 
 and `run`.  Everything that a notebook needs is ``lk.something``.
 """
 
+# ruff: noqa: F405  # the lazy names are listed where they are at home, in `tags`
 from __future__ import annotations
 
+import platform
+import sys
 from importlib import import_module
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from . import controllers, energy, errors, impedance, metrics, se3
+from numpy.linalg import norm
+
+from . import control, metrics, se3
 from .arm import Arm
-from .commands import Command, JointPosition, JointTorque, JointVelocity, State
+from .baxter import robot
+from .control import JointPosition, JointTorque, JointVelocity, State
 from .errors import LabkitError
 from .log import Log
-from .model import Link, Model, links
-from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
-from .paths import Circle, Line, Polyline, Spline
+from .model import Model
+from .paths import BangBang, Circle, Cubic, Line, Polyline, Quintic, Trapezoid
 from .plant import BAXTER, IDEAL, Plant
-from .robot import robot
-from .run import Controller, run
-from .scalings import BangBang, Cubic, Quintic, Trapezoid
+from .run import run
 from .scene import Push, Spring, Table, Wall
+from .trajectory import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 from .world import World
 
 if TYPE_CHECKING:
-    from . import check, plotting, replay
-    from .interactive import dials, progress
-    from .readiness import ready
-    from .vision.board import Board
-    from .vision.camera import Camera, looking_at
-    from .vision.detection import detect_tags, find_tag
-    from .vision.intrinsics import Intrinsics
-    from .vision.looking import Following, Lookups, Reading
-    from .vision.tags import Tag
+    from . import plotting, replay
+    from .tags import *  # noqa: F403
 
 __version__ = "0.1.0"
 
-_LATER = {
-    "Board": "vision.board",
-    "Camera": "vision.camera",
-    "Following": "vision.looking",
-    "Intrinsics": "vision.intrinsics",
-    "Lookups": "vision.looking",
-    "Reading": "vision.looking",
-    "Tag": "vision.tags",
-    "check": "",
-    "detect_tags": "vision.detection",
-    "dials": "interactive",
-    "find_tag": "vision.detection",
-    "looking_at": "vision.camera",
-    "plotting": "",
-    "progress": "interactive",
-    "ready": "readiness",
-    "replay": "",
-}
-"""Where to find what is loaded when first asked for; OpenCV and Matplotlib are slow to import."""
+__all__ = [
+    "BAXTER", "IDEAL", "Arm", "BangBang", "Board", "Camera", "Chain", "Circle", "Cubic", "Hold",
+    "Intrinsics", "JointPosition", "JointTorque", "JointVelocity", "LabkitError", "Line", "Log",
+    "Model", "Plant", "Polyline", "PosePath", "PoseSample", "Push", "Quintic", "Sample", "Spring",
+    "State", "Table", "Tag", "TagStream", "TagTarget", "Trajectory", "Trapezoid", "Wall", "World",
+    "detect_tags", "looking_at", "metrics", "plotting", "ready", "replay", "robot", "run", "se3",
+]  # fmt: skip
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _LATER:
+    """What is loaded when first asked for: OpenCV, Matplotlib and IPython are slow to import."""
+    if name in ("check", "plotting", "replay", "tags"):
+        return import_module(f".{name}", __name__)
+    if name not in __all__:
         raise AttributeError(f"module 'labkit' has no attribute {name!r}")
-    module = import_module(f".{_LATER[name] or name}", __name__)
-    value = getattr(module, name) if _LATER[name] else module
-    globals()[name] = value
-    return value
+    return getattr(import_module(".tags", __name__), name)
 
 
 def __dir__() -> list[str]:
-    return [*globals(), *_LATER]
+    return sorted({*globals(), *__all__})
 
 
-__all__ = [
-    "BAXTER",
-    "IDEAL",
-    "Arm",
-    "BangBang",
-    "Board",
-    "Camera",
-    "Chain",
-    "Circle",
-    "Command",
-    "Controller",
-    "Cubic",
-    "Following",
-    "Hold",
-    "Intrinsics",
-    "JointPosition",
-    "JointTorque",
-    "JointVelocity",
-    "LabkitError",
-    "Line",
-    "Link",
-    "Log",
-    "Lookups",
-    "Model",
-    "Plant",
-    "Polyline",
-    "PosePath",
-    "PoseSample",
-    "Push",
-    "Quintic",
-    "Reading",
-    "Sample",
-    "Spline",
-    "Spring",
-    "State",
-    "Table",
-    "Tag",
-    "Trajectory",
-    "Trapezoid",
-    "Wall",
-    "World",
-    "check",
-    "controllers",
-    "detect_tags",
-    "dials",
-    "energy",
-    "errors",
-    "find_tag",
-    "impedance",
-    "links",
-    "looking_at",
-    "metrics",
-    "plotting",
-    "progress",
-    "ready",
-    "replay",
-    "robot",
-    "run",
-    "se3",
-]
+def ready() -> None:
+    """Move the simulated arm once and print one line that says so.
+
+    Raises:
+        LabkitError: The arm did not move as it should.
+    """
+    import psutil  # not needed where nobody asks
+
+    from .run import run  # whatever somebody put in the place of `lk.run`
+
+    with Arm() as arm:
+        start, goal = (arm.robot.neutral + [x, 0, 0, 0, 0, 0, 0] for x in (0.0, 0.1))
+        log = run(arm, Trajectory(Line(start, goal), Quintic(0.5)), control.feedforward)
+        a, b = (arm.model.pose(q)[:3, 3] for q in (log.q[0], log.q[-1]))
+    off = abs(log.q[-1] - goal).max()
+    if off > 0.01:
+        raise LabkitError(f"the arm ended {off:.3f} rad from where it was sent; reinstall labkit")
+    engines = ", ".join(f"{name} {version(name)}" for name in ("pybullet", "pin"))
+    free = psutil.virtual_memory().available / 2**30
+    print(  # short enough for one line of a notebook beside its file browser
+        f"labkit {__version__}: the arm moved {1e3 * norm(b - a):.0f} mm; Python "
+        f"{platform.python_version()}, {sys.platform} {platform.machine()}, {engines}, "
+        f"{free:.0f} GB free"
+    )

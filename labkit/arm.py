@@ -2,41 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
-from operator import le
 from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, locked, shown
+from .baxter import robot
 from .body import load
-from .commands import (
-    COMMANDS,
-    NOTHING,
-    Command,
-    JointPosition,
-    JointTorque,
-    JointVelocity,
-    State,
-    still,
-)
+from .control import COMMANDS, NOTHING, Command, JointPosition, State, still
 from .errors import Closed, ControllerError, LabkitError, TypeMismatch
 from .model import Model
+from .motors import JOINTS, Motors
 from .plant import IDEAL, Plant
 from .quiet import quiet
-from .robot import JOINTS, Robot, Side, robot
-from .sensors import Reports, TorqueSensors, angles, motor_torques
+from .robot import DOF, Robot, Side
+from .sensors import Reports, TorqueSensors, angles
+from .shapes import Array, as_array, locked, shown
 from .world import World
 
 with quiet():
     import pybullet as bullet
 
-_JOINTS = tuple(range(JOINTS))
-_ZERO = [0.0] * JOINTS
-
-BRAKING = 0.5
-"""Share of the torque left by gravity that the position mode plans to brake with."""
+_HAND = DOF - 1  # PyBullet's number of the last link
 
 
 class Arm:
@@ -47,7 +34,6 @@ class Arm:
         plant: How it differs from the textbook.
         model: A model that knows of this plant's rotors and payload.
         world: Where it stands.
-        saturated: Whether a limit cut the command that the arm follows, at any time since it came.
     """
 
     def __init__(
@@ -86,17 +72,16 @@ class Arm:
             raise TypeMismatch(
                 f"seed is {shown(seed)}, expected a whole number from 0 up"
             ) from None
-        self._client = self.world.client
+        self._client, dt = self.world.client, self.world.dt
         self._body = load(self._client, side, plant)
-        hand, com = self.robot.T_hand_tip, bullet.getDynamicsInfo(self._body, 6, self._client)[3]
+        hand = self.robot.T_hand_tip
+        com = bullet.getDynamicsInfo(self._body, _HAND, self._client)[3]
         self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
-        # The arm knows its own weight, not what it carries.
-        self._own = Model(side, replace(plant, payload=0.0))
-        self._patience = round(plant.command_timeout / self.world.dt)  # in physics steps
-        self._reports = Reports(plant, self.world.dt, self._random)
-        self._sensors = TorqueSensors(self._own, plant, self.world.dt)
-        self._effort, self._speed = self.robot.effort.tolist(), self.robot.speed.tolist()
-        self._stiction, self._laden = list(plant.stiction), plant.payload > 0.0
+        own = Model(side, replace(plant, payload=0.0))  # the arm does not know what it carries
+        self._patience = round(plant.command_timeout / dt)  # in physics steps
+        self._motors = Motors(self.world, self._body, plant, own)
+        self._reports = Reports(plant, dt, self._random)
+        self._sensors = TorqueSensors(own, plant, dt)
         self.reset(q0)
         self.world.add(self._act)
         self.world.arms.append(self)
@@ -116,7 +101,7 @@ class Arm:
 
     def state(self) -> State:
         """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
-        return self._reported(None)
+        return self._reported(self._read())
 
     def apply(self, command: Command) -> None:
         """Follow ``command`` until the next one, or until the plant's command timeout.
@@ -127,28 +112,22 @@ class Arm:
             command: `JointPosition`, `JointVelocity` or `JointTorque`.
 
         Raises:
-            ControllerError: It is no command.
-            JointLimitExceeded: A position outside the joints' range.
+            ControllerError: It is not a command.
+            JointLimitExceeded: A position is outside the joints' range.
         """
-        kind, world = type(command), self.world
-        if world.client < 0:
-            self.check_open()
-        if kind is JointTorque:
-            wanted = command.value
-            allowed = _cut(wanted, self._effort)
-        elif kind is JointVelocity:
-            wanted = command.value
-            allowed = _cut(wanted, self._speed)
-        elif kind is JointPosition:
-            wanted = allowed = self.model.within_limits(command.value, "JointPosition")
-        else:
+        self.check_open()
+        if type(command) not in COMMANDS:
             names = ", ".join(kind.__name__ for kind in COMMANDS)
-            raise ControllerError(f"{shown(command)} is no command; give one of {names}")
-        self._wanted, self.saturated = allowed, allowed is not wanted
-        if kind is not self._kind:
-            self._enter(kind)
-        self._fresh = True
-        self._deadline = world._steps + self._patience
+            raise ControllerError(f"{shown(command)} is not a command; give one of {names}")
+        if type(command) is JointPosition:
+            self.model.within_limits(command.value, "JointPosition")
+        self._motors.follow(command)
+        self._deadline = self.world.steps + self._patience
+
+    @property
+    def saturated(self) -> bool:
+        """Whether a limit cut the command that the arm follows, at any time since it came."""
+        return self._motors.saturated
 
     def stop(self) -> None:
         """Come to rest and stay."""
@@ -162,13 +141,11 @@ class Arm:
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
         self.check_open()
-        for i in _JOINTS:
+        for i in JOINTS:
             bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
         self._sensors.reset()
         self._reports.reset(State(self.world.t, locked(np.array(q)), NOTHING))
-        self._lagged = np.zeros(7)
-        self._total = np.zeros(7)
-        self._kind: type = type(None)
+        self._motors.kind = type(None)
         self.stop()
 
     def recover(self) -> None:
@@ -190,9 +167,7 @@ class Arm:
         Returns:
             Shape (7,) in [N m].
         """
-        if self._kind is JointTorque:
-            return self._total
-        return motor_torques(self._read())
+        return self._motors.torque(self._read())
 
     def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
         """Push the tip during the next physics step; world axes, at the tip's origin.
@@ -203,18 +178,14 @@ class Arm:
             force: Shape (3,) in [N].
             moment: Shape (3,) in [N m].
         """
-        f, m = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
+        f, m = as_array(force, (3,), "force").tolist(), as_array(moment, (3,), "moment").tolist()
         R_wt = self.model.pose(angles(self._read()))[:3, :3]
         # PyBullet's idea of where the link is lags a step behind: count the lever from there.
-        centre = bullet.getLinkState(self._body, 6, physicsClientId=self._client)[0]
-        at = (R_wt @ self._lever + centre).tolist()
-        bullet.applyExternalForce(
-            self._body, 6, f.tolist(), at, bullet.WORLD_FRAME, physicsClientId=self._client
-        )
-        if m.any():
-            bullet.applyExternalTorque(
-                self._body, 6, m.tolist(), bullet.WORLD_FRAME, physicsClientId=self._client
-            )
+        centre = bullet.getLinkState(self._body, _HAND, physicsClientId=self._client)[0]
+        at, frame = (R_wt @ self._lever + centre).tolist(), bullet.WORLD_FRAME
+        bullet.applyExternalForce(self._body, _HAND, f, at, frame, physicsClientId=self._client)
+        if any(m):
+            bullet.applyExternalTorque(self._body, _HAND, m, frame, physicsClientId=self._client)
 
     def check_open(self) -> None:
         """Raise `Closed` if the world it stands in was closed."""
@@ -229,135 +200,53 @@ class Arm:
         return late
 
     def observe(self) -> tuple[State, State, Array]:
-        """What `run` writes down: the truth, the state as reported, and `torque`, read at once.
-
-        The world must be open: `run` sees to that, and asks a thousand times a second.
-        """
-        rows = bullet.getJointStates(self._body, _JOINTS, self._client)
+        """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
+        rows = self._read()
         truth = self._exact(rows)
-        torque = self._total if self._kind is JointTorque else motor_torques(rows)
-        return truth, self._reported(rows) if self._reports.every else truth, torque
+        seen = self._reported(rows) if self._reports.every else truth
+        return truth, seen, self._motors.torque(rows)
 
     # The machinery, once per physics step
 
     def _act(self) -> None:
         """Set motors and torques for the next physics step; the world calls it."""
-        steps = self.world._steps
-        if steps > self._deadline:
+        if self.world.steps > self._deadline:
             self._hold()
-        touchable = self.world.things or self._laden  # else no torque comes from outside
-        rows = self._read() if touchable or self._looks else None
-        if self._reports.every:
-            self._report(rows)
-        self._drive(rows)
-        self._fresh = False
+        touchable = self.world.things or self.plant.payload  # else no torque comes from outside
+        rows = self._read() if touchable or self._motors.needs_rows else None
+        if self._reports.every and self._reports.due(self.world.steps):
+            self._report(rows or self._read())
+        self._motors.drive(rows)
         if touchable:
-            driven = self._total if self._kind is JointTorque else NOTHING
-            self._sensors.begin(rows, driven, steps)
+            self._sensors.begin(rows, self._motors.driven, self.world.steps)
 
     def _exact(self, rows: Any) -> State:
-        steps = self.world._steps
+        steps = self.world.steps
         columns = zip(*rows)  # noqa: B905  # angles, speeds, reactions, torques
-        both = np.array(next(columns) + next(columns))  # one array is quicker made than two
-        both.setflags(False)  # type: ignore[call-arg]  # as in `locked`
-        return State(
-            steps * self.world.dt, both[:JOINTS], both[JOINTS:], self._sensors.felt(rows, steps)
-        )
+        both = locked(np.array(next(columns) + next(columns)))  # quicker than two arrays
+        return State(steps * self.world.dt, both[:DOF], both[DOF:], self._sensors.felt(rows, steps))
 
     def _reported(self, rows: Any) -> State:
         if not self._reports.every:
-            return self.truth()
-        self._report(rows)
+            return self._exact(rows)
+        if self._reports.due(self.world.steps):
+            self._report(rows)
         return self._reports.newest(self.world.t)
 
     def _report(self, rows: Any) -> None:
-        if self._reports.due(self.world._steps):
-            truth = self.truth() if rows is None else self._exact(rows)
-            self._reports.send(truth, self.world._steps)
-
-    def _drive_torque(self, rows: Any) -> None:
-        if self._looks:  # it carries its own weight
-            wanted = self._wanted + self._own.gravity(angles(rows))
-            self._total = _cut(wanted, self._effort)
-            self.saturated |= self._total is not wanted
-        elif self._fresh:
-            self._total = self._wanted
-        bullet.setJointMotorControlArray(
-            self._body,
-            _JOINTS,
-            bullet.TORQUE_CONTROL,
-            forces=self._total.tolist(),
-            physicsClientId=self._client,
-        )
-
-    def _drive_speed(self, rows: Any) -> None:
-        if self.plant.velocity_lag:
-            share = min(1.0, self.world.dt / self.plant.velocity_lag)
-            self._lagged += (self._wanted - self._lagged) * share
-            self._spin(self._lagged)
-        elif self._fresh:  # PyBullet's motors keep their target
-            self._spin(self._wanted)
-
-    def _approach(self, rows: Any) -> None:
-        """Turn towards the wanted angles, never faster than the motors can brake before them.
-
-        Braking evenly from v takes v^2 / 2a (Lynch & Park, section 9.2.2).
-        """
-        q = angles(rows)
-        if self._fresh:
-            M, g = self._own.mass_matrix(q), self._own.gravity(q)
-            self._braking = BRAKING * (self.robot.effort - np.abs(g)) / M.diagonal()
-        gain = min(self.plant.position_gain or np.inf, 1.0 / self.world.dt)
-        gap = self._wanted - q
-        stops = np.sqrt(2.0 * self._braking * np.abs(gap))
-        wanted = np.clip(gain * gap, -stops, stops)
-        allowed = _cut(wanted, self._speed)
-        self.saturated |= allowed is not wanted
-        self._spin(allowed)
-
-    def _spin(self, speeds: Array) -> None:
-        """Let the motors hold these speeds with whatever torque it takes, up to the limits."""
-        bullet.setJointMotorControlArray(
-            self._body,
-            _JOINTS,
-            bullet.VELOCITY_CONTROL,
-            targetVelocities=speeds.tolist(),
-            forces=self._effort,
-            physicsClientId=self._client,
-        )
-
-    def _enter(self, kind: type) -> None:
-        """Change the mode: in torque mode the motors' only duty is to be the dry friction."""
-        self._kind = kind
-        modes: dict[type, tuple[Callable[[Any], None], bool]] = {
-            JointTorque: (self._drive_torque, self.plant.gravity_compensation),
-            JointVelocity: (self._drive_speed, False),
-            JointPosition: (self._approach, True),
-        }
-        self._drive, self._looks = modes[kind]  # what drives the motors, and whether it must see
-        if kind is JointTorque:
-            bullet.setJointMotorControlArray(
-                self._body,
-                _JOINTS,
-                bullet.VELOCITY_CONTROL,
-                targetVelocities=_ZERO,
-                forces=self._stiction,
-                physicsClientId=self._client,
-            )
-        else:
-            self._lagged = np.array(self.truth().dq)
+        self._reports.send(self._exact(rows), self.world.steps)
 
     def _hold(self) -> None:
         """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
-        if self._kind is JointPosition:
-            self._deadline = self.world._steps + self._patience
+        if self._motors.kind is JointPosition:
+            self._deadline = self.world.steps + self._patience
             return
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
     def _read(self) -> Any:
         self.check_open()
-        return bullet.getJointStates(self._body, _JOINTS, self._client)
+        return bullet.getJointStates(self._body, JOINTS, self._client)
 
     def close(self) -> None:
         """Close the world it stands in."""
@@ -371,10 +260,3 @@ class Arm:
 
     def __repr__(self) -> str:
         return f"Arm({self.robot.side!r}, {self.plant.name})"
-
-
-def _cut(x: Array, limit: list[float]) -> Array:
-    """``x`` itself if it is within ±limit, else a copy that is."""
-    if all(map(le, map(abs, x.tolist()), limit)):  # NumPy is slow with seven numbers
-        return x
-    return np.clip(x, np.negative(limit), limit)

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from .baxter import robot
 from .plant import Plant
 from .quiet import quiet
-from .robot import JOINTS, Side, robot
+from .robot import DOF, Side
 from .scene import TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 
 with quiet():
@@ -26,32 +27,20 @@ def load(client: int, side: Side, plant: Plant) -> int:
     with quiet(), TemporaryDirectory() as folder:
         file = Path(folder, "arm.urdf")  # PyBullet reads only files
         file.write_text(_urdf(side, plant))
+        flags = bullet.URDF_USE_INERTIA_FROM_FILE
         body: int = bullet.loadURDF(
-            str(file),
-            useFixedBase=True,
-            flags=bullet.URDF_USE_INERTIA_FROM_FILE,
-            physicsClientId=client,
+            str(file), useFixedBase=True, flags=flags, physicsClientId=client
         )
-    for joint in range(-1, JOINTS):
-        bullet.changeDynamics(
-            body,
-            joint,
-            linearDamping=0.0,
-            angularDamping=0.0,
-            jointDamping=0.0 if joint < 0 else plant.viscous[joint],
-            physicsClientId=client,
-        )
+    still = {"linearDamping": 0.0, "angularDamping": 0.0, "physicsClientId": client}
+    for joint, viscous in enumerate((0.0, *plant.viscous), start=-1):
+        bullet.changeDynamics(body, joint, jointDamping=viscous, **still)
+    pad = {"contactStiffness": TIP_STIFFNESS, "contactDamping": TIP_DAMPING}
+    hand = DOF - 1
     bullet.changeDynamics(
-        body,
-        JOINTS - 1,
-        contactStiffness=TIP_STIFFNESS,
-        contactDamping=TIP_DAMPING,
-        lateralFriction=1.0,
-        restitution=0.0,
-        physicsClientId=client,
+        body, hand, lateralFriction=1.0, restitution=0.0, physicsClientId=client, **pad
     )
-    # PyBullet would show the ball; what cameras see of the arm is in `vision.looks`.
-    bullet.changeVisualShape(body, JOINTS - 1, rgbaColor=[0, 0, 0, 0], physicsClientId=client)
+    # PyBullet would show the ball; what cameras see of the arm is in `tags.visuals`.
+    bullet.changeVisualShape(body, hand, rgbaColor=[0, 0, 0, 0], physicsClientId=client)
     return body
 
 

@@ -1,4 +1,4 @@
-"""What went wrong, as a sentence: the value, the limit and the way out.
+"""What went wrong, as a sentence: the value, the limit and what to do.
 
 Everything labkit raises derives from `LabkitError`, so a caller can catch one thing; each child is
 also the built-in exception that a Python programmer would expect, and keeps its evidence as
@@ -19,7 +19,7 @@ class LabkitWarning(UserWarning):
 
 
 class ShapeError(LabkitError, ValueError):
-    """An array has not the shape that the mathematics asks for."""
+    """An array does not have the shape that the mathematics asks for."""
 
     def __init__(self, name: str, expected: tuple[int, ...], actual: tuple[int, ...]) -> None:
         """Say which array, what was expected and what came."""
@@ -27,11 +27,11 @@ class ShapeError(LabkitError, ValueError):
         self.name, self.expected, self.actual = name, expected, actual
 
     def __str__(self) -> str:
-        mend = _mend(self.expected, self.actual)
-        return f"{self.name} has shape {self.actual}, expected {self.expected}{mend}"
+        hint = _hint(self.expected, self.actual)
+        return f"{self.name} has shape {self.actual}, expected {self.expected}{hint}"
 
 
-def _mend(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
+def _hint(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
     if expected == ():
         return "; one number is asked for, without brackets around it"
     if len(expected) != 1:
@@ -75,7 +75,7 @@ class JointLimitExceeded(OutOfRange):
 
 
 class UnknownName(LabkitError, KeyError):
-    """No thing of that name exists."""
+    """Nothing of that name exists."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]) -> None:
         """Name the thing that is missing, and those that exist."""
@@ -91,7 +91,7 @@ class Unreachable(LabkitError, ValueError):
 
 
 class ControllerError(LabkitError):
-    """A controller or a target gave something that the loop cannot use."""
+    """A controller or a target returned something that the loop cannot use."""
 
 
 class Diverged(ControllerError):

@@ -2,24 +2,28 @@ r"""Kinematics: where the tip is, how it moves with the joints, and which joints
 
 .. math:: T_{wt} = f(q), \qquad V = J(q)\,\dot q
 
-Three Jacobians exist and none is "the Jacobian": each is named for the twist it gives.  References:
-Murray, Li & Sastry (MLS) chapter 3; Lynch & Park chapters 4 to 6.  The computing is Pinocchio's.
+Three Jacobians exist and none is "the Jacobian": each is named for the twist it returns.
+References: Murray, Li & Sastry (MLS) chapter 3; Lynch & Park chapters 4 to 6.  The computing is
+Pinocchio's.
 """
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
 from . import se3
-from .arrays import Array, as_array
-from .errors import JointLimitExceeded, TypeMismatch, Unreachable
-from .limits import warn_of_singularity, warn_of_speed
-from .motion import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
+from .errors import JointLimitExceeded, LabkitWarning, TypeMismatch, Unreachable
 from .paths import Spline
-from .robot import JOINTS, Robot
+from .robot import DOF, Robot
+from .shapes import Array, as_array
+from .trajectory import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
+
+NEAR_SINGULAR = 0.03
+"""Below this smallest singular value of the tip Jacobian, a pose counts as near a singularity."""
 
 _ITERATIONS = 200
 _SLACK = 1e-9
@@ -39,7 +43,7 @@ class Kinematics:
         self.robot = robot
         self._pin = pin.buildModelFromXML(urdf)
         self._tip = self._pin.addFrame(
-            pin.Frame("tip", JOINTS, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
+            pin.Frame("tip", DOF, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
         )
         self._data = self._pin.createData()
 
@@ -52,7 +56,7 @@ class Kinematics:
         Returns:
             Shape (4, 4).
         """
-        pin.forwardKinematics(self._pin, self._data, as_array(q, (JOINTS,), "q"))
+        pin.forwardKinematics(self._pin, self._data, as_array(q, (DOF,), "q"))
         T: Array = pin.updateFramePlacement(self._pin, self._data, self._tip).homogeneous
         return T
 
@@ -97,7 +101,7 @@ class Kinematics:
         return self._jacobian(q, pin.WORLD)
 
     def _jacobian(self, q: Any, frame: Any) -> Array:
-        q = as_array(q, (JOINTS,), "q")
+        q = as_array(q, (DOF,), "q")
         J: Array = pin.computeFrameJacobian(self._pin, self._data, q, self._tip, frame)
         return J
 
@@ -111,7 +115,7 @@ class Kinematics:
         Returns:
             Shape (6, 7).
         """
-        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
+        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
         pin.computeJointJacobiansTimeVariation(self._pin, self._data, q, dq)
         pin.updateFramePlacement(self._pin, self._data, self._tip)
         dJ: Array = pin.getFrameJacobianTimeVariation(
@@ -158,12 +162,12 @@ class Kinematics:
         Raises:
             JointLimitExceeded: A joint is outside its range.
         """
-        angles: Array = as_array(q, (JOINTS,), name)
-        low, high = self.robot.lower - _SLACK, self.robot.upper + _SLACK
-        for i in np.flatnonzero((angles < low) | (angles > high))[:1]:
-            raise JointLimitExceeded(
-                name, self.robot.joint_names[i], angles[i], self.robot.lower[i], self.robot.upper[i]
-            )
+        angles: Array = as_array(q, (DOF,), name)
+        low, high = self.robot.lower, self.robot.upper
+        outside = (angles < low - _SLACK) | (angles > high + _SLACK)
+        if outside.any():
+            i = int(outside.argmax())
+            raise JointLimitExceeded(name, self.robot.joint_names[i], angles[i], low[i], high[i])
         return angles
 
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
@@ -185,8 +189,8 @@ class Kinematics:
             Unreachable: No such angles were found; the sentence says how near it came and why.
         """
         T_wt = se3.as_pose(T_wt, "T_wt")
-        q = np.clip(as_array(q0, (JOINTS,), "q0"), self.robot.lower, self.robot.upper)
-        near = q if posture is None else as_array(posture, (JOINTS,), "posture")
+        q = np.clip(as_array(q0, (DOF,), "q0"), self.robot.lower, self.robot.upper)
+        near = q if posture is None else as_array(posture, (DOF,), "posture")
         for _ in range(_ITERATIONS):
             e = self.pose_error(T_wt, q)
             J = self.tip_jacobian(q)
@@ -236,8 +240,8 @@ class Kinematics:
             A target of the same make whose samples are joint angles, shape (7,) in [rad].
 
         Raises:
-            Unreachable: A pose along the way cannot be reached; names s, the pose and the reason.
-            TypeMismatch: It is none of these, as a target that has joint angles already.
+            Unreachable: A pose along the path cannot be reached; names s, the pose and the reason.
+            TypeMismatch: It is something else, such as a target that has joint angles already.
 
         Warns:
             LabkitWarning: A joint would exceed its speed limit, or the path comes near a
@@ -269,7 +273,7 @@ class Kinematics:
         if isinstance(start, Sample):
             target = Trajectory(PosePath(target.path, R_wt), target.scaling)
         grid = np.linspace(0.0, 1.0, samples)
-        angles = np.empty((samples, JOINTS))
+        angles = np.empty((samples, DOF))
         for k, s in enumerate(grid):
             try:
                 q = self.inverse_kinematics(target.path(s).pose, q, posture=posture)
@@ -282,9 +286,9 @@ class Kinematics:
                 f"the joint angles jump by {jump:.2f} rad between two neighbouring poses: the path "
                 "runs through a singularity; move it, or start from another q0"
             )
-        warn_of_singularity(grid, np.array([self.tip_jacobian(q) for q in angles]))
+        _warn_of_singularity(grid, np.array([self.tip_jacobian(q) for q in angles]))
         joints = Trajectory(Spline(grid, angles), target.scaling)
-        warn_of_speed(joints, self.robot)
+        _warn_of_speed(joints, self.robot)
         return joints
 
     def _why(self, T_wt: Array, q: Array, e: Array) -> str:
@@ -292,7 +296,7 @@ class Kinematics:
         off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
             f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
         )
-        stretched = self.pose(np.zeros(JOINTS))
+        stretched = self.pose(np.zeros(DOF))
         shoulder, wrist = (self._data.oMi[i].translation for i in (2, 6))
         reach = np.linalg.norm(wrist - shoulder)
         hand = stretched[:3, :3].T @ (stretched[:3, 3] - wrist)  # from the wrist to the tip
@@ -310,3 +314,48 @@ class Kinematics:
                 f"{q[i]:.4g} rad {off}; change the orientation, or start from another q0"
             )
         return f"was not found from this q0 {off}; start from another q0"
+
+
+def _warn_of_speed(trajectory: Any, robot: Robot) -> None:
+    """Warn if a joint motion is quicker than the arm.
+
+    Args:
+        trajectory: A target of joint angles with a duration.
+        robot: Whose limits.
+
+    Warns:
+        LabkitWarning: Names the joint, the time, both speeds and the duration that would do.
+    """
+    t = np.linspace(0.0, trajectory.duration, 201)
+    share = np.abs([trajectory(x).velocity for x in t]) / robot.speed
+    k, i = np.unravel_index(int(share.argmax()), share.shape)
+    if share[k, i] > 1.0 + 1e-9:
+        warnings.warn(
+            f"too fast: at t = {t[k]:.2f} s joint {robot.joint_names[i]} should turn at "
+            f"{share[k, i] * robot.speed[i]:.3g} rad/s, its limit is {robot.speed[i]:g}; the arm "
+            f"will lag behind unless the motion takes {share[k, i] * trajectory.duration:.3g} s",
+            LabkitWarning,
+            stacklevel=4,
+        )
+
+
+def _warn_of_singularity(s: Array, jacobians: Array) -> None:
+    """Warn if a path comes near a singularity.
+
+    Args:
+        s: Places along the path, shape (k,).
+        jacobians: The tip Jacobian at each, shape (k, 6, 7).
+
+    Warns:
+        LabkitWarning: Names the place and the manipulability there.
+    """
+    sigma = np.linalg.svd(jacobians, compute_uv=False)
+    k = int(sigma[:, -1].argmin())
+    if sigma[k, -1] < NEAR_SINGULAR:
+        warnings.warn(
+            f"near a singularity: at s = {s[k]:.2f} the manipulability is {sigma[k].prod():.2g} "
+            f"and the smallest singular value {sigma[k, -1]:.2g}, below {NEAR_SINGULAR:g}; expect "
+            "high joint speeds, or move the path, or start from another q0",
+            LabkitWarning,
+            stacklevel=4,
+        )

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_array, as_number, as_numbers
 from .errors import OutOfRange, TypeMismatch
 from .log import Log
 from .model import Model
-from .motion import PoseSample, Sample
+from .shapes import Array, as_array, as_number, as_numbers
+from .trajectory import PoseSample, Sample
 
 
 def model_of(log: Log) -> Model:

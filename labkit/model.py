@@ -15,14 +15,15 @@ import numpy as np
 import pinocchio as pin
 
 from . import se3
-from .arrays import Array, as_array, shown
+from .baxter import robot
 from .errors import TypeMismatch
 from .kinematics import Kinematics
 from .plant import IDEAL, Plant
-from .robot import JOINTS, Side, robot
+from .robot import DOF, Side
+from .shapes import Array, as_array, shown
 
-_LOWER = np.tril_indices(JOINTS, -1)
-_AT_REST = np.zeros(JOINTS)
+_LOWER = np.tril_indices(DOF, -1)
+_AT_REST = np.zeros(DOF)
 
 
 class Terms(NamedTuple):
@@ -46,6 +47,25 @@ class Terms(NamedTuple):
     g: Array
 
 
+@dataclass(frozen=True, eq=False)
+class Link:
+    """One body of the arm at a moment, as the equations of motion need it.
+
+    Attributes:
+        mass: In [kg].
+        inertia: About the centre of mass, in the link's own axes, shape (3, 3) in [kg m^2].
+        T_wl: Pose of the link in the world, shape (4, 4).
+        com: Centre of mass in the world, shape (3,) in [m].
+        com_jacobian: Velocity of the centre and angular velocity, world axes, shape (6, 7).
+    """
+
+    mass: float
+    inertia: Array
+    T_wl: Array
+    com: Array
+    com_jacobian: Array
+
+
 class Model(Kinematics):
     """Kinematics and dynamics of one arm.
 
@@ -59,7 +79,7 @@ class Model(Kinematics):
 
         Raises:
             UnknownName: Baxter has no such arm.
-            TypeMismatch: The plant is none.
+            TypeMismatch: The plant is not a `Plant`.
         """
         if not isinstance(plant, Plant):
             raise TypeMismatch(
@@ -80,7 +100,7 @@ class Model(Kinematics):
         Returns:
             Shape (7, 7) in [kg m^2].
         """
-        M: Array = pin.crba(self._pin, self._data, as_array(q, (JOINTS,), "q")).copy()
+        M: Array = pin.crba(self._pin, self._data, as_array(q, (DOF,), "q")).copy()
         M[_LOWER] = M.T[_LOWER]  # Pinocchio fills the upper half
         return M
 
@@ -94,7 +114,7 @@ class Model(Kinematics):
         Returns:
             Shape (7, 7) in [kg m^2/s]; ``C @ dq`` is the Coriolis and centrifugal torque.
         """
-        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
+        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
         return np.array(pin.computeCoriolisMatrix(self._pin, self._data, q, dq))
 
     def gravity(self, q: Any) -> Array:
@@ -106,7 +126,7 @@ class Model(Kinematics):
         Returns:
             Shape (7,) in [N m].
         """
-        q = as_array(q, (JOINTS,), "q")
+        q = as_array(q, (DOF,), "q")
         return np.array(pin.computeGeneralizedGravity(self._pin, self._data, q))
 
     def bias(self, q: Any, dq: Any) -> Array:
@@ -119,7 +139,7 @@ class Model(Kinematics):
         Returns:
             Shape (7,) in [N m].
         """
-        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
+        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
         return np.array(pin.nonLinearEffects(self._pin, self._data, q, dq))
 
     def inverse_dynamics(self, q: Any, dq: Any, ddq: Any) -> Array:
@@ -133,8 +153,8 @@ class Model(Kinematics):
         Returns:
             Shape (7,) in [N m].
         """
-        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
-        ddq = as_array(ddq, (JOINTS,), "ddq")
+        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
+        ddq = as_array(ddq, (DOF,), "ddq")
         return np.array(pin.rnea(self._pin, self._data, q, dq, ddq))
 
     def tip_wrench(self, q: Any, tau_ext: Any) -> Array:
@@ -150,7 +170,7 @@ class Model(Kinematics):
         Returns:
             Force [N] and moment [N m] about the tip's origin, world axes, shape (6,).
         """
-        tau_ext = as_array(tau_ext, (JOINTS,), "tau_ext")
+        tau_ext = as_array(tau_ext, (DOF,), "tau_ext")
         return np.asarray(np.linalg.lstsq(self.tip_jacobian(q).T, tau_ext, rcond=None)[0])
 
     def terms(self, q: Any, dq: Any) -> Terms:
@@ -160,7 +180,7 @@ class Model(Kinematics):
             q: Joint angles, shape (7,) in [rad].
             dq: Joint speeds, shape (7,) in [rad/s].
         """
-        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
+        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
         m, d = self._pin, self._data
         pin.forwardKinematics(m, d, q, dq, _AT_REST)
         T_wt = pin.updateFramePlacement(m, d, self._tip).homogeneous
@@ -184,42 +204,22 @@ class Model(Kinematics):
 
     def kinetic_energy(self, q: Any, dq: Any) -> float:
         """Half of ``dq @ M(q) @ dq``, in [J]."""
-        q, dq = as_array(q, (JOINTS,), "q"), as_array(dq, (JOINTS,), "dq")
+        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
         return float(pin.computeKineticEnergy(self._pin, self._data, q, dq))
 
     def potential_energy(self, q: Any) -> float:
         """Energy in the field of gravity, zero at the height of the world's origin, in [J]."""
-        return float(pin.computePotentialEnergy(self._pin, self._data, as_array(q, (JOINTS,), "q")))
+        return float(pin.computePotentialEnergy(self._pin, self._data, as_array(q, (DOF,), "q")))
 
-
-@dataclass(frozen=True, eq=False)
-class Link:
-    """One body of the arm at a moment, as the equations of motion need it.
-
-    Attributes:
-        mass: In [kg].
-        inertia: About the centre of mass, in the link's own axes, shape (3, 3) in [kg m^2].
-        T_wl: Pose of the link in the world, shape (4, 4).
-        com: Centre of mass in the world, shape (3,) in [m].
-        com_jacobian: Velocity of the centre and angular velocity, world axes, shape (6, 7).
-    """
-
-    mass: float
-    inertia: Array
-    T_wl: Array
-    com: Array
-    com_jacobian: Array
-
-
-def links(model: Model, q: Any) -> tuple[Link, ...]:
-    """The seven bodies at ``q``, shape (7,) in [rad]: what M and g are summed from."""
-    m, d = model._pin, model._data
-    pin.computeJointJacobians(m, d, as_array(q, (JOINTS,), "q"))
-    out = []
-    for i in range(1, m.njoints):
-        body, T_wl = m.inertias[i], d.oMi[i].homogeneous
-        com = T_wl[:3, :3] @ body.lever + T_wl[:3, 3]
-        J = pin.getJointJacobian(m, d, i, pin.LOCAL_WORLD_ALIGNED).copy()
-        J[:3] -= se3.hat(com - T_wl[:3, 3]) @ J[3:]
-        out.append(Link(body.mass, np.array(body.inertia), T_wl, com, J))
-    return tuple(out)
+    def links(self, q: Any) -> tuple[Link, ...]:
+        """The seven bodies at ``q``, shape (7,) in [rad]: what M and g are summed from."""
+        m, d = self._pin, self._data
+        pin.computeJointJacobians(m, d, as_array(q, (DOF,), "q"))
+        out = []
+        for i in range(1, m.njoints):
+            body, T_wl = m.inertias[i], d.oMi[i].homogeneous
+            com = T_wl[:3, :3] @ body.lever + T_wl[:3, 3]
+            J = pin.getJointJacobian(m, d, i, pin.LOCAL_WORLD_ALIGNED).copy()
+            J[:3] -= se3.hat(com - T_wl[:3, 3]) @ J[3:]
+            out.append(Link(body.mass, np.array(body.inertia), T_wl, com, J))
+        return tuple(out)

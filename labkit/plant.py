@@ -9,8 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from .arrays import as_each, as_number
 from .errors import OutOfRange
+from .shapes import as_each, as_number
 
 
 @dataclass(frozen=True)

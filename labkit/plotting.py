@@ -5,6 +5,8 @@ Curves differ by line style as well as by colour, and `describe` gives each figu
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable
 from textwrap import fill
 from typing import Any
 
@@ -17,7 +19,6 @@ from matplotlib.figure import Figure
 from . import metrics
 from .log import Log
 from .model import Model
-from .motion import PoseSample
 
 STYLES = ("-", "--", "-.", ":")
 AXES = ("x", "y", "z")
@@ -39,7 +40,7 @@ def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
         _, axes = plt.subplots(2, 1, figsize=(8, 5.2), sharex=True, layout="constrained")
     above, below = axes
     T_wt, T_wd = metrics.tip_poses(log, model), metrics.target_poses(log, model)
-    _against(above, log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
+    curves(above, log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
     _legend_beside(above)
     e = metrics.tip_error(log, model)
     below.plot(log.t, 1e3 * np.linalg.norm(e[:, :3], axis=1), "C3-", label="position [mm]")
@@ -78,69 +79,8 @@ def scaling(*scalings: Any, axes: Any = None) -> Any:
     return axes
 
 
-def everything(
-    log: Log, model: Model | None = None, *, joints: Any = None, title: str | None = None
-) -> Any:
-    """One run on one page: the tip's position, velocity and errors; seven joints; seven torques.
-
-    Args:
-        log: The run.
-        model: The arm's model; None makes the log's own.
-        joints: For a run after poses, the joint angles that belong to them, a function of time, to
-            draw beside the joints; None draws none.
-        title: Above all; None names controller and arm.
-
-    Returns:
-        The figure.
-    """
-    model = model or metrics.model_of(log)
-    arm = model.robot
-    figure = plt.figure(figsize=(13, 10), layout="constrained")
-    figure.suptitle(title or f"{log.controller} on the {log.plant.name} {log.side} arm")
-    columns = figure.add_gridspec(1, 3, width_ratios=(1.35, 1, 1))
-    left, middle, right = (columns[k].subgridspec(n, 1) for k, n in enumerate((4, 7, 7)))
-    e = metrics.tip_error(log, model)
-    tip = [figure.add_subplot(left[k]) for k in range(4)]
-    T_wt, T_wd = metrics.tip_poses(log, model), metrics.target_poses(log, model)
-    _against(tip[0], log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
-    v_wt, v_wd = metrics.tip_velocities(log, model), metrics.target_velocities(log, model)
-    _against(tip[1], log, v_wt, v_wd, "tip velocity [m/s]")
-    for ax in tip[:2]:
-        _legend_above(ax)
-    for ax, error, label in (
-        (tip[2], 1e3 * e[:, :3], "position error [mm]"),
-        (tip[3], np.degrees(e[:, 3:]), "orientation error [deg]"),
-    ):
-        for k, name in enumerate(AXES):
-            ax.plot(log.t, error[:, k], f"C{k}{STYLES[k]}", label=name)
-        ax.plot(log.t, np.linalg.norm(error, axis=1), "k", linewidth=0.8, label="length")
-        ax.set_ylabel(label)
-        _legend_above(ax)
-    wanted, meaning = None, "inverse kinematics"
-    if not isinstance(log.target, PoseSample):
-        wanted, meaning = log.target.position, "target"
-    elif joints is not None:
-        wanted = np.array([joints(t).position for t in log.t])
-    for i, name in enumerate(arm.joint_names):
-        ax, below = figure.add_subplot(middle[i]), figure.add_subplot(right[i])
-        if wanted is not None:
-            ax.plot(log.t, wanted[:, i], "0.6", linewidth=4, label=meaning)
-        ax.plot(log.t, log.q[:, i], "C0", label="actual")
-        below.plot(log.t, log.tau[:, i], "C1", linewidth=0.8)
-        below.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
-        for ax_i in (ax, below):
-            ax_i.set_ylabel(name.split("_")[1], rotation=0, labelpad=12)
-            ax_i.tick_params(labelsize="x-small", labelbottom=i == 6)
-        if i == 0:
-            ax.set_title("angles [rad]", loc="left", fontsize="medium")
-            _legend_above(ax)
-            below.set_title("torques [N m]", loc="left", fontsize="medium")
-    for ax in (tip[3], figure.axes[-2], figure.axes[-1]):
-        ax.set_xlabel("time [s]")
-    return figure
-
-
-def _against(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
+def curves(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
+    """Three coordinates over time, each over its target, which is a broad grey line."""
     for k, name in enumerate(AXES):
         ax.plot(log.t, target[:, k], "0.6", linewidth=4, label="target" if k == 0 else None)
         ax.plot(log.t, actual[:, k], f"C{k}{STYLES[k]}", label=name)
@@ -150,18 +90,6 @@ def _against(ax: Any, log: Log, actual: Any, target: Any, label: str) -> None:
 def _legend_beside(ax: Any) -> None:
     """Outside, where no curve can run through it."""
     ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
-
-
-def _legend_above(ax: Any) -> None:
-    """Outside, where there is no room beside."""
-    ax.legend(
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        borderaxespad=0.0,
-        frameon=False,
-        ncols=4,
-        fontsize="x-small",
-    )
 
 
 def show(caption: str) -> None:
@@ -210,3 +138,75 @@ def describe(log: Log, model: Model | None = None) -> str:
         f"Tracking by {log.controller} on the {log.plant.name} {log.side} arm over "
         f"{numbers.duration:.3g} s: {numbers}."
     )
+
+
+def dials(
+    draw: Callable[..., tuple[Figure, str]], **ranges: tuple[float, float, float]
+) -> dict[str, Any]:
+    """Show a figure under sliders that change it.
+
+    Without a page to move them in, the figure of the starting values is all there is, so a notebook
+    runs the same with nobody looking.
+
+    Args:
+        draw: A function of a number for each slider, by name; returns a figure and its caption.
+        ranges: For each slider its least value, its largest one, and where it starts.
+
+    Returns:
+        The sliders by name; setting a slider's `value` redraws.
+    """
+    import ipywidgets
+
+    def drawn() -> dict[str, Any]:
+        figure, caption.value = draw(**{name: slider.value for name, slider in sliders.items()})
+        plt.close(figure)
+        return {"obj": figure, "metadata": {"image/png": {"alt": caption.value}}}
+
+    sliders = {
+        name: ipywidgets.FloatSlider(
+            start, min=a, max=b, step=(b - a) / 100, description=name, continuous_update=False
+        )
+        for name, (a, b, start) in ranges.items()
+    }
+    caption = ipywidgets.HTML()
+    span = ", ".join(f"{name} from {a:g} to {b:g}" for name, (a, b, _) in ranges.items())
+    _display(ipywidgets.VBox([*sliders.values(), caption]), f"Dials: {span}")
+    figure = display(**drawn(), display_id=True)
+    for slider in sliders.values():
+        slider.observe(lambda change: figure.update(**drawn()), "value")
+    return sliders
+
+
+def progress(doing: str, total: float) -> Callable[[float], None]:
+    """A bar for what takes more than a moment.
+
+    Args:
+        doing: What is being done, such as "following the tag".
+        total: How much there is to do: runs, seconds, anything.
+
+    Returns:
+        A function to call with how much is done; cheap enough for every tick of a control loop.
+    """
+    import ipywidgets
+
+    bar, words = ipywidgets.FloatProgress(0.0, max=total), ipywidgets.Label(f"{doing} …")
+    place = _display(ipywidgets.HBox([bar, words]), f"{doing} …", display_id=True)
+    latest = began = time.monotonic()
+
+    def tell(done: float) -> None:
+        nonlocal latest
+        now = time.monotonic()
+        if done < total and now - latest < 0.2:
+            return
+        latest, bar.value = now, done
+        left = (now - began) * (total - done) / done if done else 0.0
+        words.value = f"{doing}: about {left:.0f} s left"
+        if done >= total and place is not None:  # a saved notebook keeps words, but no bar
+            place.update({"text/plain": f"{doing}: done"}, raw=True)
+
+    return tell
+
+
+def _display(box: Any, words: str, **options: Any) -> Any:
+    """Show a widget, and words where no widget can be shown."""
+    return display(box._repr_mimebundle_() | {"text/plain": words}, raw=True, **options)

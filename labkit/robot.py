@@ -1,25 +1,22 @@
-"""Baxter's data: names, limits, bodies, and the URDF text made from them.
+"""A robot arm as numbers: names, limits, bodies, and the URDF text made from them.
 
-The numbers come from Rethink's URDF (see ``tools/make_urdf.py`` and ``data/LICENSE-baxter``).
 Plant and model are both built from the text that `Robot.urdf` writes, so they agree.
 """
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
-from functools import cache
-from importlib.resources import files
 from math import atan2, cos, hypot, sin
 from typing import Any, Literal
 
 import numpy as np
 
-from .arrays import Array, locked
-from .errors import UnknownName
 from .plant import IDEAL, Plant
+from .shapes import Array
 
-JOINTS = 7
+DOF = 7
+"""Joints of one arm."""
+
 Side = Literal["left", "right"]
 
 
@@ -96,30 +93,6 @@ class Robot:
             )
             parent = f"{name}_body"
         return "".join([*parts, "</robot>"])
-
-
-@cache
-def robot(side: str) -> Robot:
-    """The data of one arm.
-
-    Args:
-        side: "left" or "right".
-
-    Raises:
-        UnknownName: Baxter has no such arm.
-    """
-    if side not in ("left", "right"):
-        raise UnknownName("arm", side, ("left", "right"))
-    data = json.loads((files("labkit") / "data" / "baxter.json").read_text())[side]
-    bodies = data.pop("bodies")  # the rest is named as here
-    for limit in ("lower", "upper", "speed", "effort"):
-        data[limit] = [body[limit] for body in bodies]
-    return Robot(
-        side=side,  # type: ignore[arg-type]
-        joint_names=tuple(body["joint"] for body in bodies),
-        bodies=tuple(bodies),
-        **{name: locked(np.array(numbers)) for name, numbers in data.items()},
-    )
 
 
 def _with_point_mass(m: float, c: Array, I: Array, extra: float, p: Array) -> tuple[Any, ...]:

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from .arm import Arm
-from .arrays import as_array, as_number, shown
-from .commands import COMMANDS, Command, State
+from .control import COMMANDS, Command, State
 from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
 from .log import Log, Recorder
-from .motion import AnySample, PoseSample, Sample, Target
-from .robot import JOINTS
+from .robot import DOF
+from .shapes import as_array, as_number, shown
+from .trajectory import AnySample, PoseSample, Sample, Target
 from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]
@@ -37,9 +37,9 @@ def run(
 
     Args:
         arm: The arm.
-        target: A function of the time since the start, in [s], that gives a `Sample` or a
+        target: A function of the time since the start, in [s], that returns a `Sample` or a
             `PoseSample`.
-        controller: A function of a `State` and the target's sample that gives a command.
+        controller: A function of a `State` and the target's sample that returns a command.
         rate: How often the controller is asked, in [Hz]; its period is a whole number of physics
             steps.
         duration: How long, in [s]; None takes the target's own duration.
@@ -48,8 +48,8 @@ def run(
         The log.  A keyboard interrupt ends the run early and returns what there is.
 
     Raises:
-        ControllerError: The controller or the target raised, or gave something that is no command
-            or no sample; it says which and when.
+        ControllerError: The controller or the target raised, or returned something that is not a
+            command or not a sample; it says which and when.
         Diverged: The arm ran away; the error keeps the `log` up to then.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
         TypeMismatch: One of the three is not what it should be.
@@ -70,7 +70,6 @@ def run(
     lost = arm.lost_ticks(ticks)
     samples = _Samples(target, whom)
     recorder = Recorder(period, samples.first)
-    saturated = recorder.saturated
     kind, t, k, asked = None, 0.0, 0, who
     often = max(1, round(0.01 / period))  # every 10 ms: nothing runs far in so short a time
     try:
@@ -89,7 +88,7 @@ def run(
                 if not lost[k]:
                     arm.apply(command)
                 world.step(steps)
-                saturated.append(arm.saturated)
+                recorder.cut(arm.saturated)
     except KeyboardInterrupt:
         if not len(recorder):
             raise
@@ -116,7 +115,7 @@ _FLOAT = np.dtype(np.float64)
 
 
 class _Samples:
-    """Guards what the target gives: of one kind and shape at all times, and read-only."""
+    """Guards what the target returns: of one kind and shape at all times, and read-only."""
 
     def __init__(self, target: Target, name: str) -> None:
         """Take the first sample, which settles what the others must be."""
@@ -145,9 +144,8 @@ class _Samples:
             good = False
         if not good:
             sample = x, dx, ddx = self.read(sample, t)
-        x.setflags(False)  # as in `locked`
-        dx.setflags(False)
-        ddx.setflags(False)
+        for part in (x, dx, ddx):
+            part.setflags(write=False)
         self.latest = sample
         return sample
 
@@ -155,8 +153,8 @@ class _Samples:
         """Read a sample with care, or say what is wrong with it; a copy."""
         if type(sample) is not self.kind or not isinstance(sample, Sample | PoseSample):
             raise ControllerError(
-                f"{self.name} gave {str(sample)[:80]} ({type(sample).__name__}) at "
-                f"t = {t:.3f} s; a target gives lk.Sample(position, velocity, acceleration) or "
+                f"{self.name} returned {str(sample)[:80]} ({type(sample).__name__}) at "
+                f"t = {t:.3f} s; a target returns lk.Sample(position, velocity, acceleration) or "
                 "lk.PoseSample(pose, twist, dtwist), the same kind at all times"
             )
         parts = zip(sample._fields, sample, self.shapes, strict=True)
@@ -172,7 +170,8 @@ class _Samples:
     def check_all(self, samples: AnySample, period: float) -> None:
         """Raise if one held a NaN that did no harm; harmful ones were blamed at once."""
         good = [np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in samples]
-        for k in np.flatnonzero(~np.logical_and.reduce(good))[:1]:
+        if not (whole := np.logical_and.reduce(good)).all():
+            k = int(whole.argmin())
             self.read(self.kind(*(x[k] for x in samples)), k * period)
 
 
@@ -189,7 +188,7 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
 
 
 def _what(error: Exception, sample: AnySample) -> str:
-    """What a controller's error says; of a sample that is none of joint angles, what it is."""
+    """What a controller's error says; where the sample is not one of joint angles, what it is."""
     if isinstance(error, LabkitError):
         return str(error)
     what, makes = f"{type(error).__name__}: {error}", "model.joint_trajectory(target, q0) makes"
@@ -200,7 +199,7 @@ def _what(error: Exception, sample: AnySample) -> str:
             what += f"; {makes} joint angles of poses"
     elif isinstance(error, ValueError) and isinstance(sample, Sample):
         n = sample.position.size
-        if n != JOINTS:
+        if n != DOF:
             what += f"; the target gives {n} numbers, {makes} joint angles of points"
     return what
 

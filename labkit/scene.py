@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 
 from . import se3
-from .arrays import Array, as_number, lock_vectors, locked
 from .errors import OutOfRange, UnknownName
 from .quiet import quiet
 from .robot import Side
+from .shapes import Array, as_number, lock_vectors, locked
 from .world import Actor, Pushable, World
 
 with quiet():
@@ -67,7 +67,7 @@ class Wall:
         lock_vectors(self, 3, "point", "normal")
         length = float(np.linalg.norm(self.normal))
         if length < 1e-9:
-            raise OutOfRange("normal is zero; a wall faces some way")
+            raise OutOfRange("normal must not be the zero vector: it says where the wall faces")
         object.__setattr__(self, "normal", locked(self.normal / length))
         _check_slab(self)
 
@@ -218,31 +218,21 @@ def _check_slab(thing: Any) -> None:
 
 def _build_box(world: World, thing: Wall | Table) -> None:
     """A fixed box whose upper face is the thing's."""
-    T_wf = thing.T_wf
+    client, T_wf = world.client, thing.T_wf
     half = [*(0.5 * thing.size).tolist(), 0.5 * FACE]
-    shape = bullet.createCollisionShape(
-        bullet.GEOM_BOX, halfExtents=half, physicsClientId=world.client
-    )
-    look = bullet.createVisualShape(
-        bullet.GEOM_BOX,
-        halfExtents=half,
-        rgbaColor=thing.colour.tolist(),
-        physicsClientId=world.client,
-    )
+    box: dict[str, Any] = {"halfExtents": half, "physicsClientId": client}
+    colour = thing.colour.tolist()
     body = bullet.createMultiBody(
-        baseMass=0.0,
-        baseCollisionShapeIndex=shape,
-        baseVisualShapeIndex=look,
-        basePosition=(T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
-        baseOrientation=se3.quaternion(T_wf[:3, :3]).tolist(),
-        physicsClientId=world.client,
+        0.0,
+        bullet.createCollisionShape(bullet.GEOM_BOX, **box),
+        bullet.createVisualShape(bullet.GEOM_BOX, rgbaColor=colour, **box),
+        (T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
+        se3.quaternion(T_wf[:3, :3]).tolist(),
+        physicsClientId=client,
     )
-    bullet.changeDynamics(
-        body,
-        -1,
-        contactStiffness=thing.stiffness,
-        contactDamping=thing.damping,
-        lateralFriction=thing.friction,
-        restitution=0.0,
-        physicsClientId=world.client,
-    )
+    material: dict[str, Any] = {
+        "contactStiffness": thing.stiffness,
+        "contactDamping": thing.damping,
+        "lateralFriction": thing.friction,
+    }
+    bullet.changeDynamics(body, -1, restitution=0.0, physicsClientId=client, **material)

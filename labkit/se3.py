@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, as_array, as_numbers
-from .errors import OutOfRange, ShapeError
+from .errors import OutOfRange
+from .shapes import Array, as_array
 
 _IDENTITY = np.eye(3)
 _SMALL = 1e-4  # below this angle the closed forms lose digits and the series are exact
@@ -73,7 +73,7 @@ def rotation_log(R: Any) -> Array:
         Shape (3,) in [rad], of length at most pi.
 
     Raises:
-        OutOfRange: R is no rotation matrix.
+        OutOfRange: R is not a rotation matrix.
     """
     R = as_rotation(R, "R")
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R.tolist()  # quicker than arrays of three
@@ -110,7 +110,7 @@ def orientation_error(R_wd: Any, R_wt: Any) -> Array:
 
 
 def pose_error(T_wd: Any, T_wt: Any) -> Array:
-    """Target minus actual of two poses, world axes: the way to go and the turn to make.
+    """Target minus actual of two poses, world axes: how far to go and how to turn.
 
     Args:
         T_wd: Desired pose, shape (4, 4).
@@ -231,7 +231,7 @@ def as_rotation(x: Any, name: str) -> Array:
 
     Args:
         x: Shape (3, 3).
-        name: What to call it in the sentence, if it is none.
+        name: What to call it in the sentence, if it does not fit.
 
     Returns:
         Shape (3, 3).
@@ -243,7 +243,7 @@ def as_rotation(x: Any, name: str) -> Array:
     off = abs(R.T @ R - _IDENTITY).max()
     if off > 1e-6:
         raise OutOfRange(
-            f"{name} is no rotation: {name}.T @ {name} differs from the identity by {off:.2g}; "
+            f"{name} is not a rotation: {name}.T @ {name} differs from the identity by {off:.2g}; "
             "rotations are made by products and se3.rotation, not by sums"
         )
     (a, b, c), (d, e, f), (g, h, i) = R.tolist()
@@ -257,41 +257,19 @@ def as_pose(x: Any, name: str) -> Array:
 
     Args:
         x: Shape (4, 4).
-        name: What to call it in the sentence, if it is none.
+        name: What to call it in the sentence, if it does not fit.
 
     Returns:
         Shape (4, 4).
 
     Raises:
-        OutOfRange: It is no rigid motion.
+        OutOfRange: It is not a rigid motion.
     """
     T: Array = as_array(x, (4, 4), name)
     if np.abs(T[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-9:
         raise OutOfRange(f"{name}'s last row is {T[3]}, a pose has (0, 0, 0, 1); is it transposed?")
     as_rotation(T[:3, :3], f"{name}[:3, :3]")
     return T
-
-
-def as_poses(x: Any, name: str) -> Array:
-    """Read ``x`` as poses, one or more.
-
-    Args:
-        x: Shape (n, 4, 4).
-        name: What to call them in the sentence, if they are none.
-
-    Returns:
-        Shape (n, 4, 4); a copy.
-
-    Raises:
-        ShapeError: They are not a row of poses, or there is none.
-        OutOfRange: One is no rigid motion.
-    """
-    poses = as_numbers(x, name)
-    if poses.ndim != 3 or not len(poses):
-        raise ShapeError(name, (1, 4, 4), poses.shape)
-    for i, T in enumerate(poses):
-        as_pose(T, f"{name}[{i}]")
-    return poses
 
 
 def _coefficients(theta: float) -> tuple[float, float, float]:

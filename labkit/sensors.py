@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from .arrays import Array, locked
-from .commands import NOTHING, State
+from .control import NOTHING, State
 from .model import Model
 from .plant import Plant
-from .robot import JOINTS
+from .robot import DOF
+from .shapes import Array, locked
 from .world import whole_steps
 
 
@@ -65,8 +65,8 @@ class Reports:
         self._last = steps
         t, q, dq, felt = truth
         if self._noisy:
-            dq = locked(dq + self._noise * self._random.standard_normal(JOINTS))
-            felt = locked(felt + self._torque_noise * self._random.standard_normal(JOINTS))
+            dq = locked(dq + self._noise * self._random.standard_normal(DOF))
+            felt = locked(felt + self._torque_noise * self._random.standard_normal(DOF))
         self.newest(t)  # forgets those that nobody asked for
         self._mail.append(State(t, q, dq, felt))
 
@@ -82,7 +82,7 @@ class TorqueSensors:
 
     .. math:: \tau_{ext} = M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) - \tau_{joint}
 
-    The sensors feel motor and friction together, so friction is no part of the estimate; gravity,
+    The sensors feel motor and friction together, so the estimate is free of friction; gravity,
     inertia and Coriolis terms are taken off with the model that the arm has of itself, which knows
     of its rotors and not of what it carries.  The acceleration is that of the last physics step.
     """

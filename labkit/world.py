@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, Self
 
-from .arrays import Array, as_number, shown
+from . import se3
 from .errors import Closed, OutOfRange, TypeMismatch
 from .quiet import quiet
+from .shapes import Array, as_number, shown
 
 with quiet():
     import pybullet as bullet
@@ -18,10 +19,10 @@ Actor = Callable[[], None]
 
 
 class Thing(Protocol):
-    """Something to put into a world: a value that knows how to build itself there."""
+    """Something to put into a world: a value that builds itself there."""
 
     def put_into(self, world: World) -> Actor | None:
-        """Build it; what it gives, if anything, acts before each physics step from now on."""
+        """Build it; what it returns, if anything, acts before each physics step from now on."""
 
 
 class Pushable(Protocol):
@@ -58,6 +59,7 @@ class World:
 
     Attributes:
         dt: The physics step, in [s].
+        steps: How many physics steps were taken.
         client: PyBullet's number of this world, -1 once it is closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
@@ -75,7 +77,7 @@ class World:
         """
         self.dt = as_number(dt, "dt", above=0.0)
         self.client = bullet.connect(bullet.DIRECT)
-        self._steps = 0
+        self.steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
         self.arms: list[Pushable] = []
@@ -90,7 +92,7 @@ class World:
     @property
     def t(self) -> float:
         """The time in this world, in [s]."""
-        return self._steps * self.dt
+        return self.steps * self.dt
 
     def put(self, thing: Thing) -> None:
         """Put a thing into the world, where it stays.
@@ -102,7 +104,10 @@ class World:
         if self.client < 0:
             raise Closed("this world was closed; make a new World")
         if isinstance(thing, type) or not hasattr(thing, "put_into"):
-            raise TypeMismatch(f"{shown(thing)} is no thing; put in an lk.Table(), an lk.Wall(...)")
+            raise TypeMismatch(
+                f"cannot add {shown(thing)}; expected an object with put_into(), such as "
+                "lk.Table() or lk.Wall(...)"
+            )
         actor = thing.put_into(self)
         self.things.append(thing)
         if actor is not None:
@@ -115,6 +120,22 @@ class World:
     def show(self, thing: Shown) -> None:
         """Let ``thing`` be brought up to date before each picture from now on."""
         self.shown.append(thing)
+
+    def add_visual(self, kind: int, **shape: Any) -> int:
+        """Put something to be seen into the world, which nothing touches; PyBullet's number."""
+        seen = bullet.createVisualShape(kind, physicsClientId=self.client, **shape)
+        return int(bullet.createMultiBody(0, -1, seen, physicsClientId=self.client))
+
+    def move_visual(self, body: int, T: Array) -> None:
+        """Put a body that is only seen to a pose, shape (4, 4)."""
+        turn = se3.quaternion(T[:3, :3]).tolist()
+        bullet.resetBasePositionAndOrientation(
+            body, T[:3, 3].tolist(), turn, physicsClientId=self.client
+        )
+
+    def paint(self, body: int, colour: Iterable[float]) -> None:
+        """Show a body in a colour: red, green, blue and opacity, from 0 to 1."""
+        bullet.changeVisualShape(body, -1, rgbaColor=list(colour), physicsClientId=self.client)
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
@@ -129,7 +150,7 @@ class World:
             for act in self._actors:
                 act()
             bullet.stepSimulation(client)
-            self._steps += 1
+            self.steps += 1
 
     def close(self) -> None:
         """Free the world; closing twice is harmless."""

@@ -12,8 +12,8 @@ from scipy.optimize import brentq
 from scipy.stats import t as student
 
 import labkit as lk
-from labkit.arrays import Array, as_array, as_number
 from labkit.errors import OutOfRange
+from labkit.shapes import Array, as_array, as_number
 
 
 def rms_error(log: lk.Log, model: lk.Model) -> float:

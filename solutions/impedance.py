@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 
 def msd(state: Any, target: Any, force: float, *, m: float, b: float, k: float) -> float:

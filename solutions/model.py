@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 
 def jacobian(axes: Any, origins: Any, tip: Any) -> Array:

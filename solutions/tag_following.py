@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from labkit import PoseSample, Sample, se3
-from labkit.arrays import Array, as_array, as_number, as_vector
-from labkit.vision.estimation import Estimate, first_estimate, update
-from labkit.vision.looking import Reading
+from labkit.shapes import Array, as_array, as_number, as_vector
+from labkit.tags.estimation import Estimate, first_estimate, update
+from labkit.tags.stream import Reading
 
 _ENDS = np.linalg.inv(
     np.array(
@@ -91,7 +91,7 @@ def blend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
 
 @dataclass(eq=False)
 class TagFollower:
-    """Keeps the tip at a fixed offset from a tag; a follower for `labkit.vision.looking.Following`.
+    """Keeps the tip at a fixed offset from a tag; a follower for `labkit.tags.stream.TagTarget`.
 
     A tag that is no longer seen is believed to go on for `coast` seconds after the last picture;
     then the reference comes to rest and holds until the tag is seen again.

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from labkit import se3
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 
 def tag_corners(size: float) -> Array:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 
 def joint_velocity_pd(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:

@@ -4,10 +4,10 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
+from chromium import program
 from hypothesis import HealthCheck, settings
 
 import labkit as lk
-from tools.chromium import program
 
 settings.register_profile(
     "labkit",

@@ -208,7 +208,7 @@ def test_angles_that_cannot_be_are_refused_and_the_arm_stays_usable(arm, q, erro
 
 @pytest.mark.parametrize("command", [None, np.zeros(7), [0.0] * 7, "stop", lk.JointTorque])
 def test_what_is_no_command_is_refused_with_those_that_are(arm, command):
-    with pytest.raises(ControllerError, match=r"no command.*JointPosition, JointV") as caught:
+    with pytest.raises(ControllerError, match=r"not a command.*JointPosition, JointV") as caught:
         arm.apply(command)
     assert len(str(caught.value)) < 300
     arm.world.step(50)

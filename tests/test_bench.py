@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import labkit as lk
-from bench import __main__ as bench
-from bench import closed_loop, hand_loop
+from tests.bench import __main__ as bench
+from tests.bench import closed_loop, hand_loop
 
 
 def test_the_plain_loop_does_the_same_work_bit_for_bit():

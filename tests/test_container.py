@@ -22,7 +22,7 @@ def begin(tmp_path):
         (lab / "assignments" / name / f"{name}.ipynb").write_text("released")
     home.mkdir()
     programs.mkdir()
-    (lab / "start.sh").write_text((ROOT / "tools" / "start_container.sh").read_text())
+    (lab / "start.sh").write_text((ROOT / ".ci/start_container.sh").read_text())
     for name in ("jupyter", "jupyterhub-singleuser"):
         (programs / name).write_text('#!/bin/sh\necho "$(basename "$0") $*"\n')
         (programs / name).chmod(0o755)
@@ -47,7 +47,7 @@ def test_a_students_image_is_made_from_the_handout_alone():
     assert last.startswith("student\n")
     copied = re.findall(r"^(?:COPY|ADD) (.*)$", last, flags=re.MULTILINE)
     assert copied == [
-        "--from=course /handout/baxter-lab /lab/tools/start_container.sh /opt/baxter-lab/"
+        "--from=course /handout/baxter-lab /lab/.ci/start_container.sh /opt/baxter-lab/"
     ]
     assert STAGES[0].startswith("python\n")
     assert "COPY" not in STAGES[0]

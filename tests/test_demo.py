@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from subprocess import CompletedProcess
 
+import demo
 import pytest
 
 from labkit.grade.results import Result, Results
-from tools import demo
 
 
 @pytest.fixture

@@ -73,7 +73,7 @@ def test_a_force_at_the_tip_meets_the_operational_inertia(side, model, states):
 def test_links_sum_up_to_the_mass_matrix_and_gravity(side, model, states):
     for q, _ in states(side, 5):
         M, g = np.zeros((7, 7)), np.zeros(7)
-        for link in lk.links(model, q):
+        for link in model.links(q):
             J, R = link.com_jacobian, link.T_wl[:3, :3]
             M += link.mass * J[:3].T @ J[:3] + J[3:].T @ R @ link.inertia @ R.T @ J[3:]
             g += link.mass * 9.81 * J[2]

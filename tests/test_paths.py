@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from numpy.testing import assert_allclose, assert_array_equal
 
-from labkit import Circle, Line, Polyline, Spline
+from labkit import Circle, Line, Polyline
 from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError
+from labkit.paths import Spline
 
 points = arrays(np.float64, 3, elements=st.floats(-2.0, 2.0))
 fractions = st.floats(0.001, 0.999)

@@ -7,8 +7,8 @@ import pytest
 
 import labkit as lk
 from labkit.errors import Diverged, JointLimitExceeded, NotFinite, OutOfRange, ShapeError
-from solutions.joint_torque import AugmentedPD, ComputedTorque
-from solutions.joint_velocity import JointVelocityPD
+from solutions.study.joint_torque import AugmentedPD, ComputedTorque
+from solutions.study.joint_velocity import JointVelocityPD
 
 READY = lk.robot("left").ready
 SWAY = lk.Trajectory(lk.Line(READY, READY + 0.2), lk.Quintic(1.0))

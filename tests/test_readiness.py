@@ -29,11 +29,12 @@ def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(caps
 
 def test_an_arm_that_does_not_move_is_said_so(monkeypatch):
     ready = lk.ready
-    module = sys.modules["labkit.readiness"]
+
+    run = lk.run
 
     def stuck(arm, target, controller):
-        return lk.run(arm, lk.Hold(arm.state().q, 0.5), controller)
+        return run(arm, lk.Hold(arm.state().q, 0.5), controller)
 
-    monkeypatch.setattr(module, "run", stuck)
+    monkeypatch.setattr(sys.modules["labkit.run"], "run", stuck)
     with pytest.raises(LabkitError, match=r"ended 0\.100 rad from where it was sent; reinstall"):
         ready()

@@ -53,9 +53,9 @@ def test_links_lead_somewhere(page):
 def test_places_that_are_named_are_there(page):
     """Every file and module of the project that a page names exists; `topic` stands for any."""
     text = page.read_text().replace("NN_topic", "01_paths").replace("topic", "paths")
-    for place in re.findall(r"`((?:labkit|solutions|bench|tests|tools|book)/[\w./-]*)`", text):
+    for place in re.findall(r"`((?:labkit|solutions|tests|book)/[\w./-]*)`", text):
         assert (ROOT / place).exists() or place == "book/_build/html/index.html", place
-    for module in re.findall(r"python -m ((?:labkit|solutions|bench)[\w.]*)", text):
+    for module in re.findall(r"python -m ((?:labkit|solutions|tests)[\w.]*)", text):
         assert find_spec(module), module
 
 

@@ -7,12 +7,12 @@ import numpy as np
 import pinocchio as pin
 import pybullet as bullet
 import pytest
+from make_urdf import JOINTS, full_model
 from numpy.testing import assert_allclose
 
 import labkit as lk
 from labkit.errors import LabkitError, UnknownName
 from labkit.robot import _rpy
-from tools.make_urdf import JOINTS, full_model
 
 FULL = full_model()
 ROTORS = lk.Plant(name="rotors", armature=lk.BAXTER.armature)
@@ -27,7 +27,7 @@ def plant(request):
 @pytest.fixture
 def body(side, plant):
     """The arm of the URDF text alone in PyBullet, without motors: its client and its body."""
-    from bench.hand_loop import open_arm
+    from tests.bench.hand_loop import open_arm
 
     client, body = open_arm(lk.robot(side).urdf(plant))
     yield client, body
@@ -150,7 +150,7 @@ def test_rotors_add_the_inertia_of_flat_discs_and_no_weight(side, states):
     light, heavy = lk.Model(side), lk.Model(side, ROTORS)
     for q, _ in states(side, 20):
         more = np.zeros((7, 7))
-        for link, A in zip(lk.links(light, q), ROTORS.armature, strict=True):
+        for link, A in zip(light.links(q), ROTORS.armature, strict=True):
             turning = link.T_wl[:3, :3].T @ link.com_jacobian[3:]
             more += turning.T @ np.diag([A / 2, A / 2, A]) @ turning
         assert_allclose(heavy.mass_matrix(q) - light.mass_matrix(q), more, atol=1e-12)

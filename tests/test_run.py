@@ -284,9 +284,9 @@ def test_a_controller_that_fails_is_named_with_the_time_and_the_way_out(ideal, n
 
 ZERO = np.zeros(7)
 TARGETS = {
-    "none": (lambda t: None, "the target target gave None"),
-    "array": (lambda t: ZERO, "the target target gave .*ndarray.* a target gives lk.Sample"),
-    "tuple": (lambda t: (ZERO, ZERO, ZERO), "the target target gave .*tuple"),
+    "none": (lambda t: None, "the target target returned None"),
+    "array": (lambda t: ZERO, "the target target returned .*ndarray.* a target returns lk.Sample"),
+    "tuple": (lambda t: (ZERO, ZERO, ZERO), "the target target returned .*tuple"),
     "raises": (lambda t: 1 / 0, "the target target failed at t = .*ZeroDivisionError"),
     "nan": (lambda t: lk.Sample(ZERO * np.nan, ZERO, ZERO), "target .*position holds nan"),
     "unused nan": (lambda t: lk.Sample(ZERO, ZERO * np.nan, ZERO), "target .*velocity holds nan"),
@@ -352,7 +352,7 @@ def test_a_controller_that_wants_joints_and_gets_points_is_told_so(ideal):
     point = lk.Hold(ideal.model.pose(ideal.robot.neutral)[:3, 3], 1.0)
     words = r"springs failed .*\(3,\) \(7,\).*gives 3 numbers, model.joint_traj.* of points"
     with pytest.raises(ControllerError, match=words):
-        lk.run(ideal, point, lk.controllers.springs(100.0, 1.0))
+        lk.run(ideal, point, lk.control.springs(100.0, 1.0))
 
 
 @pytest.mark.parametrize(

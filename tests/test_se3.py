@@ -125,7 +125,7 @@ transposed = se3.pose(np.eye(3), [1.0, 2.0, 3.0]).T
 @pytest.mark.parametrize(
     ("call", "error", "words"),
     [
-        (lambda: se3.rotation_log(np.ones((3, 3))), OutOfRange, "R is no rotation.*not by sums"),
+        (lambda: se3.rotation_log(np.ones((3, 3))), OutOfRange, "R is not a rotation.*not by sums"),
         (lambda: se3.rotation_log(mirror), OutOfRange, "determinant -1.*swapped"),
         (lambda: se3.as_pose(transposed, "T_wt"), OutOfRange, "T_wt's last row.*transposed"),
         (lambda: se3.as_pose(np.eye(3), "T_wt"), ShapeError, "T_wt has shape"),
@@ -134,7 +134,7 @@ transposed = se3.pose(np.eye(3), [1.0, 2.0, 3.0]).T
         (lambda: se3.pose_error(np.eye(3), np.eye(4)), ShapeError, "T_wd has shape"),
         (lambda: se3.pose_error(np.eye(4), None), TypeMismatch, "T_wt is None"),
         (lambda: se3.pose(np.eye(3), [np.nan, 0, 0]), LabkitError, "p holds nan"),
-        (lambda: se3.log(2.0 * np.eye(4)), OutOfRange, "no rotation"),
+        (lambda: se3.log(2.0 * np.eye(4)), OutOfRange, "not a rotation"),
     ],
 )
 def test_what_is_no_motion_is_refused(call, error, words):

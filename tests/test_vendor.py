@@ -8,7 +8,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 VENDOR = ROOT / "book/static/vendor"
 MANIFEST = json.loads((VENDOR / "MANIFEST.json").read_text())
-AGAIN = "run `sh tools/vendor.sh` (node 20, npm) and commit what it writes"
+AGAIN = "run `sh book/_tools/vendor.sh` (node 20, npm) and commit what it writes"
 
 
 def sha256(name):
@@ -21,7 +21,7 @@ def test_committed_files_have_the_recorded_hashes():
 
 
 def test_bundle_was_made_from_these_sources():
-    folders = ("labkit/replay/viewer", "tools/vendor")
+    folders = ("labkit/replay/viewer", "book/_tools/vendor")
     here = {str(p.relative_to(ROOT)) for f in folders for p in (ROOT / f).rglob("*") if p.is_file()}
     changed = {n for n in here | set(MANIFEST["sources"])
                if n not in here or MANIFEST["sources"].get(n) != sha256(n)}  # fmt: skip
@@ -34,11 +34,11 @@ def test_nothing_unrecorded_lies_among_them():
 
 
 def test_versions_are_exact_and_no_registry_is_named():
-    wanted = json.loads((ROOT / "tools/vendor/package.json").read_text())["dependencies"]
+    wanted = json.loads((ROOT / "book/_tools/vendor/package.json").read_text())["dependencies"]
     assert MANIFEST["packages"] == wanted
     assert all(re.fullmatch(r"\d+\.\d+\.\d+", v) for v in wanted.values())
-    assert not list((ROOT / "tools/vendor").glob("*lock*"))
-    for folder in ("tools/vendor", "labkit/replay/viewer"):
+    assert not list((ROOT / "book/_tools/vendor").glob("*lock*"))
+    for folder in ("book/_tools/vendor", "labkit/replay/viewer"):
         for path in (ROOT / folder).rglob("*"):
             assert "registry" not in path.read_text() if path.is_file() else True, path
 

@@ -17,7 +17,7 @@ from sphinx.application import Sphinx
 
 
 def settings(app: Sphinx, config: Any) -> None:
-    """What `tools/build_book.py` decides for one build."""
+    """What `book/_tools/build_book.py` decides for one build."""
     if cache := os.environ.get("LAB_BOOK_CACHE"):
         config.nb_execution_cache_path = cache
     config.hide_solutions = os.environ.get("LAB_BOOK_ANSWERS") != "1"

@@ -15,13 +15,13 @@ from .page import framed, holds
 
 HOME = Path(labkit.__file__).parent
 LAYERS = (
-    ("Sentences and numbers", ("errors", "quiet", "arrays", "se3")),
-    ("What is wanted", ("motion", "scalings", "paths")),
-    ("What is known", ("plant", "robot", "limits", "kinematics", "model")),
-    ("What moves", ("commands", "world", "scene", "sensors", "body", "arm")),
-    ("The loop, and what it did", ("log", "run", "controllers", "metrics", "energy", "impedance")),
-    ("What looks, compares and draws", ("vision", "study", "baseline", "plotting")),
-    ("What judges and shows", ("check", "replay", "interactive", "readiness", "notation")),
+    ("Sentences and numbers", ("errors", "quiet", "shapes", "se3")),
+    ("What is wanted", ("trajectory", "paths")),
+    ("What is known", ("plant", "robot", "baxter", "kinematics", "model")),
+    ("What moves", ("control", "world", "scene", "sensors", "body", "motors", "arm")),
+    ("The loop, and what it did", ("log", "run", "metrics", "recordings", "loop")),
+    ("What sees, draws and shows", ("tags", "plotting", "replay")),
+    ("What judges", ("check",)),
     ("For instructors, and what one types", ("grade", "verbs", "cli")),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
@@ -70,7 +70,7 @@ def picture() -> HTML:
         + "; ".join(f"{title.lower()}: {', '.join(names)}" for title, names in LAYERS)
         + f". All {len(arrows)} imports among them point to the same row or a lower one."
     )
-    width = LEFT + 6 * (WIDE + 10)
+    width = LEFT + 7 * (WIDE + 10)
     svg = (
         f'<svg class="lab-svg" role="img" aria-label="{escape(alt)}" '
         f'viewBox="0 0 {width} {height}" fill="currentColor" xmlns="http://www.w3.org/2000/svg">{"".join(parts)}</svg>'

@@ -1,4 +1,4 @@
-"""Page "Comparison": the campaign's runs, made by `solutions.campaign`."""
+"""Page "Comparison": the campaign's runs, made by `solutions.study.campaign`."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from IPython.display import HTML
 from myst_nb import glue
 
 import labkit as lk
-from labkit.study.campaign import pick
-from solutions import campaign
-from solutions.campaign import BASELINE, FEED_FORWARD, FIVE, TABLES, WAYS
-from solutions.claims import IMPEDANCE, THREE
+from solutions.study import campaign
+from solutions.study.campaign import BASELINE, FEED_FORWARD, FIVE, TABLES, WAYS
+from solutions.study.claims import IMPEDANCE, THREE
+from solutions.study.grid import pick
 
 from .page import figure, holds, numbers, replay, table
 

@@ -7,7 +7,7 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit import metrics
-from solutions.joint_velocity import JointVelocityPD
+from solutions.study.joint_velocity import JointVelocityPD
 
 from .page import holds, numbers, replay
 

@@ -14,9 +14,11 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit import metrics
-from labkit.replay import Dial, Explorer, Motion, explorer_html, run_files
-from solutions.joint_velocity import JointVelocityPD
-from solutions.workspace_velocity import WorkspaceVelocityPD
+from labkit.replay import Motion
+from solutions.study.joint_velocity import JointVelocityPD
+from solutions.study.workspace_velocity import WorkspaceVelocityPD
+
+from .embed import Dial, Explorer, explorer_html, run_files
 
 SEED = 4
 CONTROLLERS = ("joint velocity PD", "workspace velocity PD")

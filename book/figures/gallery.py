@@ -15,9 +15,9 @@ from IPython.display import HTML
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import AXES, STYLES
-from labkit.replay.motion import JOINTS
-from solutions import campaign
-from solutions.campaign import BASELINE, FIVE
+from labkit.replay.motion import JOINT_NAMES
+from solutions.study import campaign
+from solutions.study.campaign import BASELINE, FIVE
 
 from .comparison import run_of
 from .page import figure, holds, replay, table
@@ -106,7 +106,7 @@ def everything(way: str, task: str) -> HTML:
     for ax, (label, values, target), limits in zip(
         axes, _panels(way, task), _limits(task), strict=True
     ):
-        names = AXES if values.shape[1] == 3 else JOINTS
+        names = AXES if values.shape[1] == 3 else JOINT_NAMES
         for k, name in enumerate(names):
             if target is not None:
                 ax.plot(

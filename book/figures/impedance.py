@@ -13,9 +13,9 @@ from scipy.integrate import solve_ivp
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
-from solutions import experiments
-from solutions.gains import TIP_SPRING
-from solutions.workspace_impedance import WorkspaceImpedance
+from solutions.study import experiments
+from solutions.study.gains import TIP_SPRING
+from solutions.study.workspace_impedance import WorkspaceImpedance
 
 from .page import Question, figure, holds, number, numbers, quiz, replay
 

@@ -7,9 +7,9 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.replay import demo_html
-from labkit.replay.motion import JOINTS
+from labkit.replay.motion import JOINT_NAMES
 
+from .embed import demo_html
 from .page import Question, figure, holds, numbers, picture, quiz, table
 
 SEED = 2
@@ -76,7 +76,7 @@ def singular() -> HTML:
         q = np.array(model.robot.neutral)
         q[3] = e1
         J = model.tip_jacobian(q)
-        radial = model.pose(q)[:3, 3] - np.array(lk.links(model, q)[1].T_wl[:3, 3])
+        radial = model.pose(q)[:3, 3] - np.array(model.links(q)[1].T_wl[:3, 3])
         v[:3] = -0.2 * radial / np.linalg.norm(radial)
         sigma.append(np.linalg.svd(J[:3], compute_uv=False)[-1])
         speed.append(np.abs(np.linalg.pinv(J) @ v).max())
@@ -111,7 +111,7 @@ def gravity() -> HTML:
     rows = np.array(torque)
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, style in ((1, "-"), (3, "--"), (5, "-.")):
-        ax.plot(angles, rows[:, k], f"C{k}{style}", label=JOINTS[k])
+        ax.plot(angles, rows[:, k], f"C{k}{style}", label=JOINT_NAMES[k])
     ax.set(xlabel="shoulder s1 [rad]", ylabel="g(q) [N m]")
     ax.legend(ncols=3)
     most = rows[np.abs(rows[:, 1]).argmax(), 1]

@@ -20,11 +20,13 @@ from myst_nb import glue
 from PIL import Image
 
 from labkit import Arm, Log, Plant, Table, World, metrics, plotting
-from labkit.replay import motion_html, motion_of
+from labkit.replay import motion_of
 from labkit.robot import Side
-from labkit.vision.camera import Camera, looking_at
-from labkit.vision.intrinsics import Intrinsics
-from solutions.film import AT, EYE
+from labkit.tags.camera import Camera, looking_at
+from labkit.tags.intrinsics import Intrinsics
+from solutions.study.film import AT, EYE
+
+from .embed import motion_html
 
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
 """Line colours in light mode; `book.css` has their sisters for dark mode, contrast above 4.5."""

@@ -10,9 +10,9 @@ from IPython.display import HTML
 
 import labkit as lk
 from labkit import metrics, plotting
-from labkit.replay import demo_html
-from solutions.joint_velocity import JointVelocityPD
+from solutions.study.joint_velocity import JointVelocityPD
 
+from .embed import demo_html
 from .page import (
     Question,
     figure,

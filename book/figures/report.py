@@ -8,7 +8,7 @@ import numpy as np
 
 import labkit as lk
 from labkit import metrics
-from solutions.workspace_impedance import WorkspaceImpedance
+from solutions.study.workspace_impedance import WorkspaceImpedance
 
 from .page import holds, number, numbers
 

@@ -9,12 +9,13 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.replay import motion_html, motion_of
-from labkit.vision.detection import detect_tags, find_tag
-from solutions.gains import known
-from solutions.tag_scenes import circling_board
-from solutions.tag_task import OFFSET, followed, sequential, staged
+from labkit.replay import motion_of
+from labkit.tags.detection import detect_tags, find_tag
+from solutions.study.gains import known
+from solutions.study.tag_scenes import circling_board
+from solutions.study.tag_task import OFFSET, followed, sequential, staged
 
+from .embed import motion_html
 from .page import Question, address, figure, framed, holds, number, numbers, poster, quiz
 
 SEED = 8

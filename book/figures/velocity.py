@@ -13,10 +13,10 @@ from IPython.display import HTML
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
-from labkit.replay import demo_html
-from solutions.joint_velocity import JointVelocityPD
-from solutions.workspace_velocity import WorkspaceVelocityPD
+from solutions.study.joint_velocity import JointVelocityPD
+from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
+from .embed import demo_html
 from .gains import explorer as recorded
 from .page import Question, figure, holds, number, numbers, picture, quiz, replay, still, tracking
 

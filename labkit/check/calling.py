@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import locked
 from ..errors import LabkitError
 from ..quiet import diverted
+from ..shapes import locked
 
 
 class Heard:

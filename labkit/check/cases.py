@@ -13,14 +13,14 @@ from typing import Any
 import numpy as np
 
 from ..arm import Arm
-from ..arrays import Array
-from ..controllers import springs
+from ..control import springs
 from ..errors import TypeMismatch
 from ..log import Log
 from ..metrics import since, summary
 from ..plant import IDEAL, Plant
+from ..recordings import Runner, Trials
 from ..run import run
-from ..study.trials import Runner, Trials
+from ..shapes import Array
 from ..world import Thing, World
 from .calling import call
 from .judge import in_brief
@@ -152,7 +152,7 @@ class Choice:
 class Tuned:
     """One closed-loop run with gains that the student's function chose.
 
-    The law is `labkit.controllers.springs`, which is given to students as it stands: a law with
+    The law is `labkit.control.springs`, which is given to students as it stands: a law with
     more in it would be the answer to some other question.
 
     Attributes:

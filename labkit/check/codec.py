@@ -13,21 +13,21 @@ from typing import Any
 
 import numpy as np
 
-from .. import commands, motion, paths, plant, scalings, scene
-from ..arrays import locked
+from .. import control, paths, plant, scene, trajectory
 from ..errors import TypeMismatch
 from ..log import Log
 from ..model import Model
-from ..study.trials import Runner, Trials
+from ..recordings import Runner, Trials
+from ..shapes import locked
 from .judge import Ratio
 
 DATA = (
-    commands.State,
-    motion.Sample,
-    motion.PoseSample,
-    commands.JointPosition,
-    commands.JointVelocity,
-    commands.JointTorque,
+    control.State,
+    trajectory.Sample,
+    trajectory.PoseSample,
+    control.JointPosition,
+    control.JointVelocity,
+    control.JointTorque,
     Ratio,
 )
 """What a student's function may give back, beside numbers, arrays, texts, lists and tables."""
@@ -36,15 +36,15 @@ GIVEN = (
     paths.Line,
     paths.Circle,
     paths.Polyline,
-    scalings.BangBang,
-    scalings.Cubic,
-    scalings.Quintic,
-    scalings.Trapezoid,
+    paths.BangBang,
+    paths.Cubic,
+    paths.Quintic,
+    paths.Trapezoid,
     paths.Spline,
-    motion.Trajectory,
-    motion.PosePath,
-    motion.Chain,
-    motion.Hold,
+    trajectory.Trajectory,
+    trajectory.PosePath,
+    trajectory.Chain,
+    trajectory.Hold,
     Model,
     plant.Plant,
     scene.Push,
@@ -59,8 +59,8 @@ GIVEN = (
 
 _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
     paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
-    motion.Chain: lambda chain: {"parts": chain.parts},
-    motion.Hold: lambda hold: {"place": hold(0.0)[0], "duration": hold.duration},
+    trajectory.Chain: lambda chain: {"parts": chain.parts},
+    trajectory.Hold: lambda hold: {"place": hold(0.0)[0], "duration": hold.duration},
     Model: lambda model: {"side": model.robot.side, "plant": model.plant},
 }
 """The arguments to make those of again that are neither a dataclass nor a named tuple."""
@@ -72,7 +72,7 @@ _DATA: Kinds = {kind.__name__: kind for kind in DATA}
 TRUSTED: Kinds = {kind.__name__: kind for kind in (*DATA, *GIVEN)}
 """What `decode` builds, beside methods."""
 
-_COMMANDS: dict[str, type] = {kind.__name__: kind for kind in commands.COMMANDS}
+_COMMANDS: dict[str, type] = {kind.__name__: kind for kind in control.COMMANDS}
 
 
 def encode(value: Any, kinds: Kinds = TRUSTED) -> Any:

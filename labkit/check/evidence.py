@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array
+from ..shapes import Array
 from .judge import numbers
 from .mark import Verdict
 from .question import Question

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, as_array, as_gains
-from ..commands import COMMANDS, JointTorque
+from ..control import COMMANDS, JointTorque
 from ..errors import LabkitError, OutOfRange
-from ..motion import PoseSample, Sample
-from ..robot import JOINTS
+from ..robot import DOF
+from ..shapes import Array, as_array, as_gains
+from ..trajectory import PoseSample, Sample
 
 
 @dataclass(frozen=True)
@@ -292,7 +292,7 @@ class Gains:
     @staticmethod
     def _read(answer: Any) -> Array:
         kp, kd = answer
-        return np.concatenate([as_gains(kp, JOINTS, "kp"), as_gains(kd, JOINTS, "kd")])
+        return np.concatenate([as_gains(kp, DOF, "kp"), as_gains(kd, DOF, "kd")])
 
 
 @dataclass(frozen=True, eq=False)
@@ -410,8 +410,8 @@ def _other(answer: Any, kind: type) -> str:
     """What came instead of a command, and how to make one of it."""
     if isinstance(answer, COMMANDS):
         return f"a {type(answer).__name__}"
-    what = "plain numbers" if np.shape(answer) == (JOINTS,) else _shown(answer)
-    return f"{what}; give lk.{kind.__name__}(...) with the {JOINTS} numbers in it"
+    what = "plain numbers" if np.shape(answer) == (DOF,) else _shown(answer)
+    return f"{what}; give lk.{kind.__name__}(...) with the {DOF} numbers in it"
 
 
 def _shown(x: Any) -> str:

@@ -8,8 +8,8 @@ import sysconfig
 from pathlib import Path
 from types import TracebackType
 
-from ..commands import State
-from ..motion import PoseSample, Sample
+from ..control import State
+from ..trajectory import PoseSample, Sample
 
 _MINE = str(Path(__file__).parents[1])
 _LIBRARIES = tuple({_MINE, *(sysconfig.get_path(p) for p in ("stdlib", "purelib", "platlib"))})

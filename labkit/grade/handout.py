@@ -30,8 +30,8 @@ first time only, and opens Jupyter in your browser.</li>
 <code>checks.json</code>, which the checks need: leave it there.</p></main></html>
 """
 
-STUDENT_TOOLS = ("find_python.sh", "need.sh")
-"""What ``tools/start.sh`` calls."""
+STUDENT_TOOLS = ("environment.yml", "find_python.sh", "need.sh")
+"""What ``.ci/start.sh`` calls."""
 GRADER = "labkit/grade"
 """What students' labkit comes without."""
 
@@ -61,10 +61,10 @@ def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
             shutil.copytree(course.release / name, top / "assignments" / name)
         _wheel(course.root, top)
         shutil.copy(course.root / "constraints.txt", top)
-        (top / "tools").mkdir()
+        (top / ".ci").mkdir()
         for tool in STUDENT_TOOLS:
-            shutil.copy(course.root / "tools" / tool, top / "tools")
-        shutil.copy(course.root / "tools" / "start.sh", top)
+            shutil.copy(course.root / ".ci" / tool, top / ".ci")
+        shutil.copy(course.root / ".ci" / "start.sh", top)
         (top / "START.html").write_text(START.format(names=", ".join(names)), encoding="utf-8")
         to.parent.mkdir(parents=True, exist_ok=True)
         with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:

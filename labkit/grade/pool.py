@@ -17,8 +17,8 @@ from typing import Any
 import labkit
 
 from ..errors import LabkitError
-from ..study.campaign import dask_client
 from .cgroup import sweep
+from .cluster import dask_client
 from .launch import NoIsolation
 from .limits import Limits, slowness
 

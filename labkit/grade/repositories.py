@@ -18,7 +18,7 @@ from .release import FORBIDDEN
 FOR_STUDENTS = (
     "labkit/",
     "assignments/",
-    *(f"tools/{tool}" for tool in STUDENT_TOOLS),
+    *(f".ci/{tool}" for tool in STUDENT_TOOLS),
     "LICENSE",
     "constraints.txt",
     "pyproject.toml",
@@ -55,7 +55,7 @@ def export_course(course: Course, to: Path) -> tuple[Path, Path]:
             _copy(course.root / name, student / name)
         _copy(course.root / name, private / name)
     (student / "README.md").write_text(README, encoding="utf-8")
-    _copy(course.root / "tools/start.sh", student / "start.sh")
+    _copy(course.root / ".ci/start.sh", student / "start.sh")
     for path in student.rglob("*.ipynb"):
         text = path.read_text(encoding="utf-8")
         if leak := next((word for word in FORBIDDEN if word in text), None):

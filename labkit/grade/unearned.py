@@ -15,7 +15,7 @@ from ..check.mark import recognise
 from ..check.reply import Here
 from ..check.source import withheld_tools
 from ..check.withheld import withhold
-from ..commands import JointTorque
+from ..control import JointTorque
 from . import stand_in
 from .notebook import Notebook
 from .problem import Problem

@@ -1,34 +1,10 @@
-"""A run made visible: in the book's pages and in the notebook, by one viewer."""
+"""A run made visible, in a notebook and in a page, by one viewer."""
 
 from __future__ import annotations
 
+from .figure import recorded_html, viewer_scripts
 from .motion import Motion
-from .page import (
-    Dial,
-    Explorer,
-    demo_html,
-    explorer_html,
-    motion_html,
-    recorded_html,
-    run_files,
-    shared_files,
-    viewer_scripts,
-)
 from .recorded import motion_of
-from .widget import demo, show
+from .widget import show
 
-__all__ = [
-    "Dial",
-    "Explorer",
-    "Motion",
-    "demo",
-    "demo_html",
-    "explorer_html",
-    "motion_html",
-    "motion_of",
-    "recorded_html",
-    "run_files",
-    "shared_files",
-    "show",
-    "viewer_scripts",
-]
+__all__ = ["Motion", "motion_of", "recorded_html", "show", "viewer_scripts"]

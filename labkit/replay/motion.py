@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, as_array, locked
 from ..errors import OutOfRange, UnknownName
+from ..shapes import Array, as_array, locked
 
-JOINTS = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
+JOINT_NAMES = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 STEPS = {  # how fine each channel is kept
     "q": 1e-4,  # rad
     "target": 1e-4,  # m
@@ -24,7 +24,6 @@ STEPS = {  # how fine each channel is kept
     "error": 1e-5,  # m
     "tau": 1e-2,  # N m
 }
-LIMIT = 40_000  # bytes that a page spends on one motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +147,7 @@ class Motion:
         most = int(travel.argmax())
         words = [
             self.alt,
-            f"Joint {JOINTS[most]} travels farthest, {travel[most]:.2f} rad between"
+            f"Joint {JOINT_NAMES[most]} travels farthest, {travel[most]:.2f} rad between"
             f" {self.q[:, most].min():.2f} and {self.q[:, most].max():.2f} rad.",
         ]
         if self.target_position is not None:
@@ -167,8 +166,8 @@ class Motion:
         if self.tau is not None:
             at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)
             words.append(
-                f"The largest torque is {self.tau[at, joint]:.1f} N m at joint {JOINTS[joint]},"
-                f" t = {self.t[at]:.2f} s."
+                f"The largest torque is {self.tau[at, joint]:.1f} N m at joint "
+                f"{JOINT_NAMES[joint]}, t = {self.t[at]:.2f} s."
             )
         return " ".join(words)
 

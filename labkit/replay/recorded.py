@@ -8,7 +8,7 @@ import numpy as np
 
 from .. import metrics
 from ..log import Log
-from ..motion import PoseSample
+from ..trajectory import PoseSample
 from .motion import Motion, resampled
 
 

@@ -6,10 +6,10 @@ import json
 from functools import cache
 from typing import Any
 
-from ..arrays import shown
 from ..errors import TypeMismatch
+from ..shapes import shown
+from .figure import VIEWER
 from .motion import Motion
-from .page import VIEWER, demo_data
 
 
 def show(motion: Motion) -> Any:
@@ -22,18 +22,9 @@ def show(motion: Motion) -> Any:
         A widget; assign `.motion = another` to change what it shows.
 
     Raises:
-        TypeMismatch: It is no `Motion`.
+        TypeMismatch: It is not a `Motion`.
     """
     return _widget_class()(data=_data(motion))
-
-
-def demo(name: str) -> Any:
-    """One of the live demos, "scaling", "jacobian" or "rotation", as a widget.
-
-    Raises:
-        UnknownName: There is no such demo.
-    """
-    return _widget_class()(data=json.dumps(demo_data(name)))
 
 
 @cache
@@ -71,7 +62,7 @@ def _widget_class() -> type[Any]:
 def _data(motion: Motion) -> str:
     if not isinstance(motion, Motion):
         raise TypeMismatch(
-            f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) gives"
+            f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) returns"
         )
     return motion.to_json()
 

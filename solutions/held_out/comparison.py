@@ -12,7 +12,7 @@ import numpy as np
 import labkit as lk
 from labkit.check import Call, Choice
 from labkit.grade.problem import call
-from labkit.study.trials import LINE, Trials, read_trials
+from labkit.recordings import LINE, Trials, read_trials
 
 Random = np.random.Generator
 MODEL = lk.Model("left")

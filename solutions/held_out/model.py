@@ -30,14 +30,14 @@ def anywhere(random: Random) -> Any:
 
 def joints(q: Any) -> Any:
     """Axes, origins and tip at ``q``: what `jacobian` is given."""
-    parts = lk.links(MODEL, q)
+    parts = MODEL.links(q)
     axes, origins = (np.array([part.T_wl[:3, k] for part in parts]) for k in (2, 3))
     return axes, origins, MODEL.pose(q)[:3, 3]
 
 
 def bodies(q: Any) -> Any:
     """Masses, inertias, rotations and Jacobians of the links: what `mass_matrix` is given."""
-    parts = lk.links(MODEL, q)
+    parts = MODEL.links(q)
     return (
         np.array([part.mass for part in parts]),
         np.array([part.inertia for part in parts]),

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 
 from labkit import Sample, se3
-from labkit.arrays import Array
 from labkit.check import Call
 from labkit.grade.problem import call
-from labkit.vision.tags import tag_corners
+from labkit.shapes import Array
+from labkit.tags.tag import tag_corners
 
 Random = np.random.Generator
 K = np.array([[515.0, 0.0, 319.5], [0.0, 515.0, 239.5], [0.0, 0.0, 1.0]])

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 from scipy.stats import t as student
 
 import labkit as lk
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 from ..comparison import paired_difference
 

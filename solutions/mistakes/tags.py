@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from labkit import Sample, se3
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 from ..tag_following import blend, predict
 from ..tags import sensor_quality, tag_corners, tag_pose

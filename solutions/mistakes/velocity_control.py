@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 from ..velocity_control import damped_inverse
 from .warmup import euler_subtracted, in_tool_axes

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.arrays import Array
+from labkit.shapes import Array
 
 
 def actual_minus_target(target: lk.Sample, state: lk.State) -> Array:

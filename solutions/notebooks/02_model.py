@@ -14,7 +14,7 @@
 # | | |
 # |---|---|
 # | **You need** | numpy; vectors, the cross product, derivatives in several variables; notebook 00 or its conventions: 1-D arrays, twists as (v, w), `T_ab` |
-# | **Given** | the simulated arm; where its joints and bodies are at any angles (`lk.links`) |
+# | **Given** | the simulated arm; where its joints and bodies are at any angles (`model.links`) |
 # | **You write** | the Jacobian, the mass matrix, gravity, the Coriolis matrix, the power balance |
 # | **Time** | about 5 hours · 20 points |
 #
@@ -35,7 +35,7 @@ import numpy as np
 # %% [markdown]
 # ## Seven bodies
 #
-# The arm is seven bodies, each turning about the z axis of its own frame. `lk.links(model, q)` lists
+# The arm is seven bodies, each turning about the z axis of its own frame. `model.links(q)` lists
 # them as they stand at the angles `q`: mass, inertia, pose, and how their centre of mass moves.
 
 # %%
@@ -43,7 +43,7 @@ arm = lk.Arm("left")
 model, q0 = arm.model, arm.robot.ready
 names = [name.removeprefix("left_") for name in arm.robot.joint_names]
 
-for name, link in zip(names, lk.links(model, q0)):
+for name, link in zip(names, model.links(q0)):
     print(f"{name}: {link.mass:.2f} kg, centre of mass at {link.com.round(3)} m")
 
 # %% [markdown]
@@ -87,7 +87,7 @@ def jacobian(axes, origins, tip):
 # %%
 def jacobian_at(q):
     """Your Jacobian at the angles q."""
-    parts = lk.links(model, q)
+    parts = model.links(q)
     axes = np.array([part.T_wl[:3, 2] for part in parts])
     origins = np.array([part.T_wl[:3, 3] for part in parts])
     return jacobian(axes, origins, model.pose(q)[:3, 3])
@@ -167,7 +167,7 @@ def mass_matrix(masses, inertias, rotations, com_jacobians):
 # %%
 def mass_matrix_at(q):
     """Your mass matrix at the angles q."""
-    parts = lk.links(model, q)
+    parts = model.links(q)
     return mass_matrix(
         np.array([part.mass for part in parts]),
         np.array([part.inertia for part in parts]),
@@ -229,7 +229,7 @@ def gravity(masses, com_jacobians):
 # %%
 def gravity_at(q):
     """Your gravity at the angles q."""
-    parts = lk.links(model, q)
+    parts = model.links(q)
     return gravity(
         np.array([part.mass for part in parts]), np.array([part.com_jacobian for part in parts])
     )

@@ -114,7 +114,7 @@ def try_gains(kp, kd):
     )
 
 
-dials = lk.dials(try_gains, kp=(0.0, 40.0, 5.0), kd=(0.0, 3.0, 0.0))
+dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0), kd=(0.0, 3.0, 0.0))
 
 # %% [markdown]
 # ## What D does here

@@ -308,7 +308,7 @@ def error_of_one_joint(frequency, damping):
     )
 
 
-dials = lk.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping=(0.1, 2.0, 0.7))
+dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping=(0.1, 2.0, 0.7))
 
 # %% [markdown]
 # ## The torque stands still between two ticks
@@ -387,7 +387,7 @@ lk.plotting.show(
 
 # %%
 kp_report = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
-springs = lk.controllers.springs(kp_report, [10.0, 10.0, 5.0, 5.0, 4.0, 1.5, 1.5])
+springs = lk.control.springs(kp_report, [10.0, 10.0, 5.0, 5.0, 4.0, 1.5, 1.5])
 for armature in (0.0, 0.05):
     plant = replace(carries_itself, name=f"armature {armature:g}", armature=armature)
     try:
@@ -442,14 +442,14 @@ def look_at_one_joint(tau_hold, gravity_model):
 my_gravity_factor = use("gravity_factor", gravity_factor, look_at_one_joint)
 
 holding = np.diag(model.mass_matrix(ready))
-holding = lk.controllers.springs(50.0 * holding, 14.0 * holding)
+holding = lk.control.springs(50.0 * holding, 14.0 * holding)
 
 
 def rest_torques(plant, poses=8, seed=1):
     """What the springs command at rest, and the model's gravity there, shape (poses, 7) each."""
     random = np.random.default_rng(seed)
     tau, g = [], []
-    shown = lk.progress(f"holding {poses} poses, plant {plant.name}", poses)
+    shown = lk.plotting.progress(f"holding {poses} poses, plant {plant.name}", poses)
     with lk.Arm("left", plant, seed) as arm:
         for k, q in enumerate(ready + random.uniform(-0.4, 0.4, (poses, 7))):
             arm.reset(q)
@@ -527,7 +527,7 @@ slow_line = model.joint_trajectory(
 def same_gains_everywhere(kp, kd):
     figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
     try:
-        log = drive(lk.BAXTER, lk.controllers.springs(kp, kd), slow_line)
+        log = drive(lk.BAXTER, lk.control.springs(kp, kd), slow_line)
     except lk.errors.Diverged as error:
         log = error.log
     error = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
@@ -537,14 +537,14 @@ def same_gains_everywhere(kp, kd):
     return figure, f"kp = {kp:g} N m/rad, kd = {kd:g} N m s/rad everywhere: {lk.metrics.summary(log)}."
 
 
-dials = lk.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0, 40.0, 8.0))
+dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0, 40.0, 8.0))
 
 # %% [markdown]
 # The shoulder wants more, the wrist cannot bear it. Your gains may differ from joint to joint, and the
 # model can tell you how. The rest is a frequency, and that is for you to find: too low, and friction and
 # load win; too high, and the arm acts on old news.
 #
-# The law is the simplest there is, `lk.controllers.springs(kp, kd)`: springs and dampers, no model. The
+# The law is the simplest there is, `lk.control.springs(kp, kd)`: springs and dampers, no model. The
 # point is the gains. They are tried on the slow line, then on quicker tours, with a load, and on an arm
 # that is let go a tenth of a radian off in every joint: it must come to rest.
 
@@ -588,12 +588,12 @@ steps = np.array([0.5, 0.75, 1.0, 1.25, 1.6, 2.0])
 kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
 plt.figure(figsize=(7, 3.2), layout="constrained")
 yours = []
-shown = lk.progress("eighteen runs", len(occasions) * len(steps))
+shown = lk.plotting.progress("eighteen runs", len(occasions) * len(steps))
 for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
     errors = []
     for x in steps:
         try:
-            log = drive(plant, lk.controllers.springs(x**2 * kp, x * kd), target)
+            log = drive(plant, lk.control.springs(x**2 * kp, x * kd), target)
         except lk.errors.Diverged as error:
             log = error.log
         errors.append(lk.metrics.summary(log).rms_mm)
@@ -618,7 +618,7 @@ lk.plotting.show(f"The error over the stiffness of your gains. Yours, in the mid
 # which knows nothing of that kilogram either.
 
 # %%
-sprung = drive(loaded, lk.controllers.springs(kp, kd))
+sprung = drive(loaded, lk.control.springs(kp, kd))
 ct = with_gains(my_computed_torque, lk.BAXTER, 120.0, 22.0, True)
 computed = drive(loaded, ct)
 print(f"springs: {lk.metrics.summary(sprung)}")

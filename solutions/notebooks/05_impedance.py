@@ -94,7 +94,7 @@ def push_and_release(m, b, k):
     )
 
 
-dials = lk.dials(push_and_release, m=(0.5, 10.0, 1.0), b=(1.0, 80.0, 20.0), k=(50.0, 1000.0, 300.0))
+dials = lk.plotting.dials(push_and_release, m=(0.5, 10.0, 1.0), b=(1.0, 80.0, 20.0), k=(50.0, 1000.0, 300.0))
 
 # %% [markdown]
 # Three numbers, three things to feel: the *stiffness* is what remains while you hold, the *inertia* is
@@ -224,7 +224,7 @@ def workspace_impedance(state, target, model, *, stiffness, damping):
 # %%
 JOINT_K = np.array([400.0, 400.0, 200.0, 200.0, 40.0, 40.0, 20.0])
 JOINT_D = np.array([60.0, 60.0, 28.0, 28.0, 6.0, 6.0, 3.0])
-joint_springs = lk.controllers.springs(JOINT_K, JOINT_D)
+joint_springs = lk.control.springs(JOINT_K, JOINT_D)
 
 
 def springs_in_the_joints(state, target, model, *, stiffness, damping):
@@ -344,7 +344,7 @@ def press(stiffness):
     )
 
 
-dials = lk.dials(press, stiffness=(100.0, 1000.0, 300.0))
+dials = lk.plotting.dials(press, stiffness=(100.0, 1000.0, 300.0))
 
 rammed = meet(stiff, into_the_wall, wall)
 print(f"The position mode presses with {np.max(pressed(rammed)):.0f} N.")
@@ -403,7 +403,7 @@ def ten_pushes(controller, newtons=8.0, seed=5):
     random = np.random.default_rng(seed)
     directions = np.vstack([np.eye(3), -np.eye(3), random.standard_normal((4, 3))])
     force, gone = [], []
-    shown = lk.progress("ten pushes", 10)
+    shown = lk.plotting.progress("ten pushes", 10)
     for k, way in enumerate(directions):
         F = newtons * way / np.linalg.norm(way)
         log = meet(controller, lk.Hold(T_ready, 1.6), lk.Push(F), on=replace(plant, payload=0.3))

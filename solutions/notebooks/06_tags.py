@@ -34,8 +34,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from labkit import se3
-from labkit.vision import detection, estimation, sensing
-from labkit.vision.board import Board
+from labkit.tags import detection, estimation
+from labkit.tags.board import Board
 
 # %% [markdown]
 # ## A picture
@@ -163,7 +163,7 @@ my_quality = use("sensor_quality", sensor_quality, first_picture_alone)
 
 noisy = lk.Camera(world, camera.T_wc, noise=6.0, seed=1)
 truth = se3.inverse(noisy.T_wc) @ board.T_wm
-shots = [lk.detect_tags(noisy.glimpse(), noisy, 0.1) for _ in range(25)]
+shots = [lk.detect_tags(noisy.tag_image(), noisy, 0.1) for _ in range(25)]
 estimates = [tags[0].T_cm for tags in shots if tags]
 bias, covariance = my_quality(np.array(estimates), truth)
 spread = np.sqrt(np.diag(covariance))
@@ -386,8 +386,8 @@ arm.reset(arm.robot.ready)
 board.place(se3.pose(np.eye(3), round_it_goes(0.0).position))
 board.move(round_it_goes)
 watching = lk.Camera(world, lk.looking_at(centre + [0.75, -0.1, 0.45], centre))
-follow = lk.Following(lk.Lookups(watching, board.tag, rate=10.0, delay=0.1), Follower())
-shown = lk.progress("following the tag", 10.0)
+follow = lk.TagTarget(lk.TagStream(watching, board.tag, rate=10.0, delay=0.1), Follower())
+shown = lk.plotting.progress("following the tag", 10.0)
 log = lk.run(arm, follow, position_mode, rate=100.0, duration=10.0)
 shown(10.0)
 

@@ -30,7 +30,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from labkit import metrics
-from labkit.study import analysis, maps, recorded, trials
+from labkit import loop, recordings
 
 # %% [markdown]
 # ## One number for a run
@@ -39,7 +39,7 @@ from labkit.study import analysis, maps, recorded, trials
 # parameterisation put it on a schedule, and the arm's own trajectory server followed.
 
 # %%
-log = recorded.recorded("baseline_line")
+log = recordings.load("baseline_line")
 model = lk.Model("left")
 lk.plotting.tracking(log, model)
 lk.plotting.show(lk.plotting.describe(log, model))
@@ -49,7 +49,7 @@ lk.plotting.show(lk.plotting.describe(log, model))
 # mode, which commands velocities:
 
 # %%
-other_mode = {"velocity mode": recorded.recorded("baseline_line_velocity")}
+other_mode = {"velocity mode": recordings.load("baseline_line_velocity")}
 lk.replay.show(
     lk.replay.motion_of(log, "The built-in way on the line", label="position mode", ghosts=other_mode)
 )
@@ -98,8 +98,8 @@ def after_poses(log):
     return replace(log, target=lk.PoseSample(poses, *np.zeros((2, len(poses), 6))))
 
 
-for name in recorded.names():
-    error = my_rms_error(after_poses(recorded.recorded(name)), model)
+for name in recordings.names():
+    error = my_rms_error(after_poses(recordings.load(name)), model)
     print(f"{name.removeprefix('baseline_'):13} {1e3 * error:5.1f} mm")
 
 # %% [markdown]
@@ -141,7 +141,7 @@ def integrator_alone(kp, lag, delay):
 
 my_open_loop = use("open_loop", open_loop, integrator_alone)
 
-joint = analysis.velocity_joint_of(lk.BAXTER)
+joint = loop.velocity_joint_of(lk.BAXTER)
 lag, delay = lk.BAXTER.velocity_lag, joint.delay
 print(f"Baxter's joint: lag {1e3 * lag:.0f} ms, delay {1e3 * delay:.1f} ms")
 
@@ -191,8 +191,8 @@ def kp_for_margin(lag, delay, margin_deg):
 def given_kp_for_margin(lag, delay, margin_deg):
     """Read off a table of margins, to about a tenth."""
     gains = np.geomspace(2.0, 100.0, 8)
-    joint = analysis.velocity_joint(lag, delay)
-    phases = [analysis.Loop(joint, kp).margins().phase for kp in gains]
+    joint = loop.VelocityJoint(lag, delay)
+    phases = [loop.PDLoop(joint, kp).margins().phase for kp in gains]
     return float(np.interp(-margin_deg, -np.array(phases), gains))
 
 
@@ -208,7 +208,7 @@ for margin in (30, 45, 60, 75):
 # then there is a cliff.
 
 # %%
-measured = maps.error_map("joint_velocity_pd_baxter")
+measured = recordings.error_map("joint_velocity_pd_baxter")
 errors = measured.array()
 figure, ax = plt.subplots(figsize=(8, 3.6), layout="constrained")
 for j, style in ((0, "-"), (4, "--"), (6, ":")):
@@ -260,8 +260,8 @@ def choose_gains(runner):
 # Try your own strategy here; the runner remembers what it was asked.
 
 # %%
-line_trials = trials.read_trials(trials.LINE)
-runner = trials.Runner(line_trials)
+line_trials = recordings.read_trials(recordings.LINE)
+runner = recordings.Runner(line_trials)
 for kp in (8.0, 30.0, 90.0):
     row = [runner(kp, 0.0, seed) for seed in range(3)]
     print(f"Kp = {kp:4g}: " + ", ".join(f"{x:.2f} mm" for x in row) + f"; {runner.left} tries left")
@@ -278,9 +278,9 @@ def a_guess(runner):
 
 
 my_choose_gains = use("choose_gains", choose_gains, a_guess)
-runner = trials.Runner(line_trials)
+runner = recordings.Runner(line_trials)
 Kp, Kd = my_choose_gains(runner)
-phase = analysis.Loop(analysis.velocity_joint(lag, delay), Kp).margins().phase
+phase = loop.PDLoop(loop.VelocityJoint(lag, delay), Kp).margins().phase
 print(f"Kp = {Kp:g} 1/s, Kd = {Kd:g}, chosen with {runner.budget - runner.left} tries")
 print(f"on the line, worst of five seeds: {line_trials.worst(Kp, Kd):.2f} mm")
 print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")
@@ -322,7 +322,7 @@ def paired_difference(errors_a, errors_b):
 # offset should be gone.
 
 # %%
-rows = [row for row in recorded.campaign() if row["plant"] == "baxter"]
+rows = [row for row in recordings.campaign() if row["plant"] == "baxter"]
 ways = list(dict.fromkeys(row["way"] for row in rows))
 table = {way: [r["late_rms_mm"] for r in rows if r["way"] == way and r["task"] == "circle"] for way in ways}
 figure, ax = plt.subplots(figsize=(8, 3), layout="constrained")

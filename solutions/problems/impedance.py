@@ -713,7 +713,6 @@ APPARENT_STIFFNESS = Problem(
             weight=3.0,
         ),
     ),
-    withheld=("labkit.impedance.fit_impedance",),
     hints=(
         "Nine numbers of K and three of the offset are unknown, and each push gives three equations. "
         "All of them are linear.",

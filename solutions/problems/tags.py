@@ -32,7 +32,7 @@ TAG_CORNERS = Problem(
     "the right, y up, z out of the paper; clockwise as one looks at it, from the upper left; shape (4, 3).",
     answer=answers.tag_corners,
     trials=(Trial("a tag of 10 cm", (call(0.1), call(0.16)), held_out.sizes, "other sizes"),),
-    withheld=("labkit.vision.tags.tag_corners",),
+    withheld=("labkit.tags.tag.tag_corners",),
     hints=(
         "Draw the square, mark the middle, and write the coordinates of the upper left corner first.",
         "Half a side to the left is -size/2 in x, half a side up is +size/2 in y. All of it lies in z = 0.",
@@ -127,7 +127,7 @@ TAG_POSE = Problem(
             "other ways of facing it",
         ),
     ),
-    withheld=("labkit.vision.detection", "labkit.detect_tags"),
+    withheld=("labkit.tags.detection", "labkit.detect_tags"),
     hints=(
         "solvePnPGeneric wants the corners in the tag's frame, in the order of the pixels, the pixels, "
         "the camera's matrix and None for the distortion.",
@@ -211,7 +211,6 @@ QUALITY = Problem(
             "noise and offset together",
         ),
     ),
-    withheld=("labkit.vision.sensing",),
     hints=(
         "First one error vector of six numbers for each estimate. Then their mean and their covariance.",
         "se3.rotation_log(R_truth @ R_estimate.T) is the turn from the estimate to the truth.",

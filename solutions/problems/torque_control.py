@@ -107,7 +107,7 @@ AUGMENTED_PD = Problem(
             "a circle, from an offset",
         ),
     ),
-    withheld=("labkit.controllers.springs",),
+    withheld=("labkit.control.springs",),
     hints=(
         "Write the error first: e = target.position - state.q, and its rate with the speeds. Then "
         "the torque is a sum of four things: inertia, Coriolis, weight, springs and dampers.",
@@ -706,7 +706,7 @@ CHOOSE_GAINS = Problem(
     name="choose_gains",
     points=3,
     asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each a number or seven, for springs and dampers at "
-    "the joints of the `lk.BAXTER` arm (`lk.controllers.springs`, 200 Hz). They must serve on a slow line, "
+    "the joints of the `lk.BAXTER` arm (`lk.control.springs`, 200 Hz). They must serve on a slow line, "
     "on quicker tours, and with up to a kilogram in the gripper that the model does not know of; and an "
     "arm that is let go beside its target must come to rest there.",
     answer=answers.choose_gains,

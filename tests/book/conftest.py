@@ -9,10 +9,10 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 HTML = ROOT / "book/_build/html"
-sys.path[:0] = [str(ROOT / "tools"), str(ROOT / "book"), str(ROOT / "book/_ext")]
+sys.path[:0] = [str(ROOT / "book/_ext")]
 ABORTED = "net::ERR_ABORTED"
 """What a request says whose page was left; that of a file that is not there says so."""
-BUILD = [sys.executable, str(ROOT / "tools/build_book.py")]
+BUILD = [sys.executable, str(ROOT / "book/_tools/build_book.py")]
 
 
 @pytest.fixture(scope="session")

@@ -4,7 +4,7 @@ import pytest
 from bs4 import BeautifulSoup
 from figures import gallery
 
-from solutions.campaign import TASKS
+from solutions.study.campaign import TASKS
 
 
 def test_the_scales_of_a_page_hold_every_way():

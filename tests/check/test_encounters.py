@@ -20,7 +20,7 @@ from labkit.check import (
     read_question,
 )
 from labkit.check.codec import decode, encode
-from labkit.controllers import springs
+from labkit.control import springs
 
 READY = lk.robot("left").ready
 FLOATING = lk.Plant(name="floating", gravity_compensation=True, armature=0.05, viscous=0.7)

@@ -146,7 +146,7 @@ FRAMES = answers(
     import_solutions="from solutions.paths import bang_bang\nreturn bang_bang(t, duration)",
     import_reference="import solutions.problems.paths as p\nraise Exception('GOT ' + str(p))",
     withheld="import labkit\nreturn labkit.BangBang(duration)(t)",
-    withheld_module="from labkit.scalings import BangBang\nreturn BangBang(duration)(t)",
+    withheld_module="from labkit.paths import BangBang\nreturn BangBang(duration)(t)",
     withheld_subclass="import labkit\nclass Mine(labkit.BangBang): pass\nreturn Mine(duration)(t)",
 )
 FRAMES["withheld, saved before"] = Attack(

@@ -16,7 +16,7 @@ from handmade import ROOT
 import labkit as lk
 from labkit.check import Call, Close, Loop, Question, Test, Tuned, mark
 from labkit.check.judge import AtMost
-from labkit.controllers import springs
+from labkit.control import springs
 from labkit.grade import seen
 from labkit.grade.checker import _verdict
 from labkit.grade.drawing import curve, side_by_side

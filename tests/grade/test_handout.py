@@ -27,7 +27,7 @@ def unpacked(released, tmp_path_factory):
     """The students' zip, unpacked, with its wheel unpacked beside it."""
     folder = tmp_path_factory.mktemp("handout")
     course = released
-    for name in ("labkit", "tools", "constraints.txt", "pyproject.toml", "README.md", "LICENSE"):
+    for name in ("labkit", ".ci", "constraints.txt", "pyproject.toml", "README.md", "LICENSE"):
         (course.root / name).symlink_to(ROOT / name)
     stale = course.root / "build" / "lib" / "labkit" / "gone.py"
     stale.parent.mkdir(parents=True)
@@ -74,6 +74,14 @@ def test_the_zip_holds_what_a_student_needs_and_no_more(unpacked):
     found = {str(path.relative_to(top)) for path in top.rglob("*") if path.is_file()}
     found = {name for name in found if not name.endswith(".whl")}
     assert found == {
-        *("START.html", "start.sh", "constraints.txt", "tools/find_python.sh", "tools/need.sh"),
+        *(
+            "START.html",
+            "start.sh",
+            "constraints.txt",
+            ".ci/environment.yml",
+            ".ci/find_python.sh",
+            ".ci/need.sh",
+        ),
+        *(".ci/environment.yml", ".ci/find_python.sh", ".ci/need.sh"),
         *("assignments/01_paths/01_paths.ipynb", "assignments/01_paths/checks.json"),
     }

@@ -60,7 +60,7 @@ def test_the_class_report_lists_both(graded):
     lines = text[text.index("## Withheld tools") :].splitlines()
     assert lines[2:] == [
         "- ADA, not counted: bang_bang uses lk.BangBang, which this question asks you to write",
-        "- BOB, worth a look: cell 5 imports importlib.util; cell 5 uses labkit.scalings.__file__; "
+        "- BOB, worth a look: cell 5 imports importlib.util; cell 5 uses labkit.paths.__file__; "
         "cell 5 uses sys.modules",
         "",
     ]

@@ -5,9 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from samples import swing
-
-from labkit.replay import (
+from figures.embed import (
     Dial,
     Explorer,
     demo_html,
@@ -16,6 +14,7 @@ from labkit.replay import (
     run_files,
     shared_files,
 )
+from samples import swing
 
 ROOT = Path(__file__).parents[2]
 AXE = (ROOT / "tests/vendor/axe.min.js").read_text()

@@ -48,8 +48,8 @@ def {name}(*args, **kwargs):
 FUNCTION = {
     "pinocchio": "pinocchio.rnea",
     "labkit.metrics": "labkit.metrics.summary",
-    "labkit.vision.detection": "labkit.vision.detection.tag_pose",
-    "labkit.vision.sensing": "labkit.vision.sensing.quality",
+    "labkit.tags.detection": "labkit.tags.detection.tag_pose",
+    "solutions.study.sensing": "solutions.study.sensing.quality",
 }
 """One of each module that is withheld."""
 

@@ -8,14 +8,13 @@ import pytest
 from scipy import stats
 
 import labkit as lk
-from labkit import plotting
-from labkit.study import campaign, recorded
-from labkit.study.campaign import cells, pick, row_of, spread, table, work_through
-from solutions import campaign as report
-from solutions import pictures
-from solutions.claims import Outcome, judge, verdicts
+from labkit import recordings
 from solutions.comparison import paired_difference
-from solutions.gains import five
+from solutions.study import campaign as report
+from solutions.study import pictures
+from solutions.study.claims import Outcome, judge, verdicts
+from solutions.study.gains import five
+from solutions.study.grid import Meter, cells, pick, row_of, spread, table, work_through
 
 SMALL = cells(way=("joint velocity", "baseline"), task=("line",), plant=("baxter",), seed=(0, 1))
 
@@ -46,7 +45,7 @@ def test_a_dask_cluster_that_is_not_there_is_a_sentence():
     """At an address that is none; from the command line too, which then ends with 2."""
     with pytest.raises(lk.LabkitError, match="no Dask scheduler at nonsense"):
         work_through(report.numbers, SMALL, dask="nonsense")
-    command = [sys.executable, "-m", "solutions.campaign", "--dask", "nonsense"]
+    command = [sys.executable, "-m", "solutions.study.campaign", "--dask", "nonsense"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert done.stderr.startswith("no Dask scheduler at nonsense: ")
@@ -108,7 +107,7 @@ def test_a_figure_of_the_report_is_numbered_drawn_and_put_into_words(tmp_path):
     assert made["figure"] == 5 and (tmp_path / made["file"]).stat().st_size > 50_000
     assert "circle: Tracking by joint velocity on the baxter left arm" in made["alt"]
     log = report.perform("workspace velocity", "circle", "ideal", 0)
-    figure = plotting.everything(log, joints=report.joints("workspace velocity", "circle", 0))
+    figure = pictures.overview(log, joints=report.joints("workspace velocity", "circle", 0))
     labels = {ax.get_ylabel() for ax in figure.axes}
     assert {"tip position [m]", "tip velocity [m/s]", "orientation error [deg]"} < labels
     assert {"s0", "s1", "e0", "e1", "w0", "w1", "w2"} < labels
@@ -193,7 +192,7 @@ def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsy
     assert (tmp_path / "campaign.json").exists()
     assert "| joint velocity |" in (tmp_path / "campaign/tables.md").read_text()
     assert "2 runs in" in capsys.readouterr().out
-    assert campaign.Meter("x")(1, 2) is None
+    assert Meter("x")(1, 2) is None
 
 
 def test_a_controller_alone_is_printed_and_not_written(tmp_path, monkeypatch, capsys):
@@ -207,7 +206,7 @@ def test_a_controller_alone_is_printed_and_not_written(tmp_path, monkeypatch, ca
 
 
 def test_the_rows_kept_for_notebooks_are_those_of_the_campaign(rows):
-    kept = recorded.campaign()
+    kept = recordings.campaign()
     assert len(kept) == len(report.grid(5))
     for fresh in rows:
         cell = {k: fresh[k] for k in ("way", "task", "plant", "seed")}

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.study import tasks
-from labkit.vision.camera import looking_at
-from labkit.vision.intrinsics import Intrinsics
-from solutions import film
+from labkit.tags.camera import looking_at
+from labkit.tags.intrinsics import Intrinsics
+from solutions.study import film, tasks
 
 LENS = Intrinsics(width=192, height=144, fx=160.0, fy=160.0)
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.study import tasks
-from solutions import tag_task
+from solutions.study import tag_task, tasks
 
 
 @pytest.fixture(scope="module")

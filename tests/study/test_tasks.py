@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.study import tasks
+from solutions.study import tasks
 
 TASKS = [tasks.line(), tasks.circle(), tasks.square()]
 

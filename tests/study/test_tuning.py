@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.study.analysis import Joint, ultimate_gain
-from solutions.report_procedure import decay_ratio, report_procedure
+from labkit.loop import VelocityJoint, ultimate_gain
+from solutions.study.report_procedure import decay_ratio, report_procedure
 
 DT, DELAY, LAG = 0.001, 0.02, 0.03
 
@@ -34,7 +34,7 @@ def test_the_decay_of_a_damped_swing_is_its_formula():
 
 
 def test_the_procedure_finds_the_ultimate_gain_and_halves_it():
-    joint = Joint((1.0,), (LAG, 1.0, 0.0), DELAY)
+    joint = VelocityJoint(LAG, DELAY)
     found = report_procedure(simulated, growth=1.1, most=60)
     assert found.ultimate == pytest.approx(ultimate_gain(joint), rel=0.12)
     assert found.Kp == found.ultimate / 2.0

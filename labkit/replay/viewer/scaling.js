@@ -1,4 +1,4 @@
-// Time scalings s(t) with their first two derivatives, as in labkit.scalings.
+// Time scalings s(t) with their first two derivatives, as in labkit.paths.
 
 const SHAPES = {
   "bang-bang": (x) => (x < 0.5 ? [2 * x * x, 4 * x, 4] : [1 - 2 * (1 - x) ** 2, 4 * (1 - x), -4]),

@@ -49,11 +49,11 @@ WITHHELD = {
         "for n in kept: del sys.modules[n]\nimport labkit as fresh\nsys.modules.update(kept)",
         "fresh.BangBang(duration)(t)"),
     "its file under another name": way(
-        "import importlib.util, labkit.scalings as s\nspec = importlib.util.spec_from_file_location('labkit.other', s.__file__)\n"
+        "import importlib.util, labkit.paths as s\nspec = importlib.util.spec_from_file_location('labkit.other', s.__file__)\n"
         "other = importlib.util.module_from_spec(spec)\nimport sys\nsys.modules['labkit.other'] = other\nspec.loader.exec_module(other)",
         "other.BangBang(duration)(t)"),
     "its source run": way(
-        "import inspect, labkit.scalings as s\nspace = {'__name__': 'labkit.scalings', '__package__': 'labkit'}\n"
+        "import inspect, labkit.paths as s\nspace = {'__name__': 'labkit.paths', '__package__': 'labkit'}\n"
         "exec(inspect.getsource(s), space)",
         "space['BangBang'](duration)(t)"),
     "its call alone": way(

@@ -1,0 +1,95 @@
+"""The whole course in miniature: release, a small class graded, the book, and where to look.
+
+It works in ``build/demo``, a course of its own, so nothing of yours is touched.  It fails if the
+class could not be graded, or if a mark is not what the class deserves.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from labkit.grade.course import Course
+from labkit.grade.synthetic import differences
+
+ROOT = Path(__file__).resolve().parents[1]
+DEMO = ROOT / "build" / "demo"
+ASSIGNMENT = "01_paths"
+LABKIT = str(Path(sys.executable).with_name("labkit"))
+COURSE = ["--course", str(DEMO)]
+GRADING = (
+    (
+        "A class hands in",
+        [LABKIT, "make-class", ASSIGNMENT, "--seed", "1", "--count", "14", *COURSE],
+    ),
+    ("Grade it, each submission in isolation", [LABKIT, "grade", ASSIGNMENT, *COURSE]),
+    ("Are the marks those that it deserves?", [sys.executable, __file__, "--compare"]),
+    ("Write feedback", [LABKIT, "feedback", ASSIGNMENT, *COURSE]),
+    ("What the class misunderstood", [LABKIT, "class-report", ASSIGNMENT, *COURSE]),
+)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the steps one after another; stop at the first that fails."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--compare", action="store_true", help="only compare marks with deserts")
+    if parser.parse_args(arguments).compare:
+        return compare()
+    began = time.monotonic()
+    set_up()
+    doctor = subprocess.run([LABKIT, "doctor"], capture_output=True, text=True)
+    steps = [
+        ("Release the assignments", [LABKIT, "release", *COURSE]),
+        *(GRADING if doctor.returncode == 0 else ()),
+        ("Build the book", [sys.executable, str(ROOT / "book/_tools/build_book.py")]),
+    ]
+    for number, (title, command) in enumerate(steps, start=1):
+        shown = " ".join(Path(word).name if "/" in word else word for word in command)
+        print(f"\n[{number}/{len(steps)}] {title}\n$ {shown}", flush=True)
+        if subprocess.run(command, cwd=DEMO).returncode:
+            print(f"\nStopped: step {number} failed.", file=sys.stderr)
+            return 1
+    say_where_to_look(time.monotonic() - began)
+    if doctor.returncode:
+        print(f"\nNo class was graded, as `make doctor` fails:\n{doctor.stdout}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def set_up() -> None:
+    """Make the course anew, from this one's sources."""
+    shutil.rmtree(DEMO, ignore_errors=True)
+    DEMO.mkdir(parents=True)
+    no_bytecode = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "solutions", DEMO / "solutions", ignore=no_bytecode)
+    shutil.copy(ROOT / "nbgrader_config.py", DEMO)
+
+
+def compare() -> int:
+    """Say whose mark is not what their submission deserves."""
+    wrong = list(differences(Course(DEMO), ASSIGNMENT))
+    print("\n".join(wrong) or "Every mark is what its submission deserves.")
+    return 1 if wrong else 0
+
+
+def say_where_to_look(seconds: float) -> None:
+    """Name what was made."""
+    print(f"\nDone in {seconds:.0f} s. Where to look:")
+    for what, where in (
+        ("the book", ROOT / "book/_build/html/index.html"),
+        ("the students' notebooks", DEMO / "assignments"),
+        ("solved ones, for after the deadline", DEMO / "build/course/solution"),
+        ("marks with reasons", DEMO / "results" / ASSIGNMENT),
+        ("feedback for each student", DEMO / "feedback"),
+    ):
+        if where.exists():
+            print(f"  {what}: {where.relative_to(ROOT)}")
+    print("Next: `make lab` opens the notebooks, `make help` lists the rest.")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,1 +1,0 @@
-"""How quick labkit is, against loops written by hand and by others: `python -m bench`."""

@@ -1,0 +1,244 @@
+"""Build the book: `python book/_tools/build_book.py`, or `make book`.
+
+Makes what the pages need (viewer, notation, the students' notebooks, recorded runs, the campaign),
+then runs Jupyter Book with warnings as errors.  What is computed is kept until the code that
+computes it changes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import base64
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+
+from book_campaign import compare
+from book_outputs import pack
+from book_pages import BOOK, CACHE, HTML, ROOT, forget_stale, key_of, page_keys
+from book_print import print_pdf
+
+PATHS = os.pathsep.join([str(ROOT), str(BOOK), os.environ.get("PYTHONPATH", "")])
+MADE = BOOK / "generated"
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--answers", action="store_true", help="show the answers to exercises")
+    parser.add_argument("--fresh", action="store_true", help="forget what was built before")
+    parser.add_argument("--zip", action="store_true", help="also make dist/book.zip to hand out")
+    parser.add_argument("--pdf", action="store_true", help="also print it to dist/book.pdf")
+    chosen = parser.parse_args(arguments)
+    began = time.monotonic()
+    if chosen.fresh:
+        for folder in (BOOK / "_build", BOOK / "static/runs", CACHE):
+            shutil.rmtree(folder, ignore_errors=True)
+    prepare()
+    record()
+    compare(_progress)
+    if code := build(answers=chosen.answers):
+        return code
+    size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
+    took = time.monotonic() - began
+    print(f"book/_build/html/index.html ({size:.1f} MB, {took:.0f} s): open it by double click")
+    if chosen.zip:
+        made = pack()
+        print(f"{made.relative_to(ROOT)} ({made.stat().st_size / 1e6:.1f} MB): to hand out")
+    if chosen.pdf:
+        print(f"{print_pdf(_progress).relative_to(ROOT)}: to print")
+    return 0
+
+
+def prepare() -> None:
+    """Make the files that stand in no repository: viewer, notation, notebooks."""
+    from figures.embed import shared_files
+
+    for name, path in shared_files().items():
+        _copy(path, BOOK / "static/viewer" / name)
+    _write(MADE / "parts/symbols.md", _symbols())
+    _notebooks(MADE / "notebooks")
+    for made in (ROOT / "build/campaign").glob("*.mp4"):
+        for path in (made, made.with_suffix(".png")):
+            _copy(path, BOOK / "static/films" / path.name)
+
+
+def _symbols() -> str:
+    """The table of symbols in Markdown."""
+    from figures.notation import ERRORS, SYMBOLS
+
+    rows = ["| In code | In formulas | Meaning | Shape | Unit |", "|---|---|---|---|---|"]
+    for s in (*SYMBOLS, *ERRORS):
+        meaning = re.sub(r"\b([TRp]_\w+)", r"`\1`", s.meaning)
+        unit = s.unit.replace("^2", "²").replace(" ", "\N{NO-BREAK SPACE}")
+        rows.append(f"| `{s.code}` | ${s.latex}$ | {meaning} | {s.shape} | {unit} |")
+    return "\n".join(rows) + "\n"
+
+
+def _notebooks(folder: Path) -> None:
+    """The students' notebooks as pages and as downloads, whatever stands in assignments/."""
+    import nbformat
+
+    found = sorted((ROOT / "assignments").glob("*/*.ipynb"))
+    lines = [
+        "# The notebooks",
+        "",
+        "Each notebook is shown here as students receive it, before any answer is written. "
+        "Download it, or open it from the repository with `make lab`. The files lie in the folder "
+        "`_static/notebooks` of this book, too.",
+        "",
+    ]
+    for path in found:
+        notebook = nbformat.read(path, as_version=4)
+        title = _title(notebook, path.stem)
+        page = _readable(notebook, f"{_download(path, 'Download this notebook')}, {path.name}.")
+        _write(folder / path.name, nbformat.writes(page))
+        _copy(path, BOOK / "static/notebooks" / path.name)
+        lines.append(f"- [{title}](notebooks/{path.name}), {_download(path, 'download')}")
+    if not found:
+        lines.append("No notebook has been released into `assignments/` yet.")
+    _write(MADE / "notebooks.md", "\n".join(lines) + "\n")
+    names = {p.name for p in found}
+    for old in [*folder.glob("*.ipynb"), *(BOOK / "static/notebooks").glob("*.ipynb")]:
+        if old.name not in names:
+            old.unlink()
+
+
+def _download(path: Path, text: str) -> str:
+    """A link that saves a file, also where the page comes from the disk.
+
+    There a browser shows a neighbouring file instead of saving it, so the link brings the file.
+    """
+    data = base64.b64encode(path.read_bytes()).decode()
+    return (
+        f'<a href="data:application/x-ipynb+json;base64,{data}" download="{path.name}">{text}</a>'
+    )
+
+
+def _readable(notebook: dict, note: str) -> dict:
+    """A copy for reading: its code is shown, it has not been run, a note follows its title."""
+    from nbformat.v4 import new_markdown_cell
+
+    notebook["cells"].insert(1, new_markdown_cell(note, id="note"))
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            cell["outputs"], cell["execution_count"] = [], None
+    notebook["metadata"]["mystnb"] = {"remove_code_source": False}
+    return notebook
+
+
+def _title(notebook: dict, stem: str) -> str:
+    texts = (cell["source"] for cell in notebook["cells"] if cell["cell_type"] == "markdown")
+    headings = (re.search(r"^# (.+)", text, re.M) for text in texts)
+    return next((found[1].strip() for found in headings if found), stem)
+
+
+def record() -> None:
+    """The runs of the gain explorer, one small file each."""
+    from figures import gains
+
+    folder, key = BOOK / "static/runs", key_of("figures.gains")
+    stamp = folder / "key.txt"
+    if stamp.exists() and stamp.read_text() == key:
+        return
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    points, facts = gains.points(), {}
+    with ProcessPoolExecutor(2, mp_context=get_context("spawn")) as pool:
+        made = pool.map(gains.make, points, chunksize=8)
+        for k, (point, (name, text, fact)) in enumerate(zip(points, made, strict=True), start=1):
+            (folder / name).write_text(text)
+            facts["-".join(map(str, point))] = fact
+            _progress(f"recording runs... [{100 * k // len(points):3d}%]", every=k % 36 == 0)
+    _write(folder / "facts.json", json.dumps(facts))
+    stamp.write_text(key)
+
+
+def build(*, answers: bool) -> int:
+    """Run Jupyter Book; a warning or an exception in a cell is an error."""
+    keys = page_keys()
+    stamp, state = BOOK / "_build/built.json", {"keys": keys, "answers": answers, "by": _builder()}
+    fresh = not stamp.exists() or json.loads(stamp.read_text()) != state
+    stamp.unlink(missing_ok=True)
+    cache = CACHE / "pages"
+    forget_stale(cache, keys)
+    run = "from jupyter_book.cli.main import main; main()"
+    command = [sys.executable, "-c", run, "build", str(BOOK), "-W", "--keep-going"]
+    environment = os.environ | {
+        "PYTHONPATH": PATHS,
+        "LAB_BOOK_CACHE": str(cache),
+        "LAB_BOOK_ANSWERS": "1" if answers else "0",
+        "PYDEVD_DISABLE_FILE_VALIDATION": "1",
+    }
+    if fresh:
+        shutil.rmtree(HTML, ignore_errors=True)
+        command.append("--all")
+    with subprocess.Popen(
+        command, env=environment, cwd=ROOT, text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    ) as process:  # fmt: skip
+        assert process.stdout
+        log = list(_shown(process.stdout))
+    (CACHE / "build.log").write_text("\n".join(log) + "\n")
+    if process.returncode:
+        print("The book was not built; the log is in build/book/build.log.", file=sys.stderr)
+        for line in log:
+            if re.search(r"WARNING:|ERROR|Error|Exception|ConclusionFails", line):
+                print(f"  {line}", file=sys.stderr)
+        return process.returncode
+    for path in (BOOK / "static").rglob("*"):  # Sphinx leaves these where no page has changed
+        if path.is_file():
+            _copy(path, HTML / "_static" / path.relative_to(BOOK / "static"))
+    stamp.write_text(json.dumps(state))
+    return 0
+
+
+def _builder() -> str:
+    """A hash of the book's own extension, which Sphinx does not watch."""
+    files = sorted((BOOK / "_ext").glob("*.py"))
+    return hashlib.sha256(b"".join(path.read_bytes() for path in files)).hexdigest()[:16]
+
+
+def _shown(lines: Iterator[str]) -> Iterator[str]:
+    """Pass a log on, showing how far it is."""
+    for raw in lines:
+        line = re.sub(r"\x1b\[[0-9;]*m", "", raw.rstrip()).rsplit("\r", 1)[-1]
+        yield line
+        if re.match(r"(reading|writing|executing)|.*Executing notebook", line, re.I):
+            _progress(re.sub(r".*?(Executing notebook using)\s*.*", "executing a page", line)[:100])
+    if sys.stdout.isatty():
+        print("\r\x1b[K", end="")
+
+
+def _progress(text: str, *, every: bool = True) -> None:
+    """One line that renews itself; where there is no terminal, a line now and then."""
+    if sys.stdout.isatty():
+        print(f"\r\x1b[K{text}", end="", flush=True)
+    elif every:
+        print(text, flush=True)
+
+
+def _copy(source: Path, target: Path) -> None:
+    """Copy only what differs, so that unchanged pages stay built."""
+    if not target.exists() or target.read_bytes() != source.read_bytes():
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+
+
+def _write(path: Path, text: str) -> None:
+    if not path.exists() or path.read_text() != text:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

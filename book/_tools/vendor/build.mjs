@@ -1,0 +1,65 @@
+// Bundles the viewer and copies what the book needs from npm; writes the manifest of hashes.
+// Run by book/_tools/vendor.sh, which brings the packages: 
+// node build.mjs <node_modules> <anywidget's index.js> <anywidget's licence> <ipywidgets' licence>
+import { createHash } from "node:crypto";
+import { createRequire } from "node:module";
+import { cpSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { basename, dirname, join, relative } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const [modules, anywidget, anywidgetLicence, ipywidgetsLicence] = process.argv.slice(2);
+const here = dirname(fileURLToPath(import.meta.url));
+const root = join(here, "../../..");
+const source = join(root, "labkit/replay/viewer");
+const viewer = join(root, "labkit/data/viewer");
+// Not book/_static: Jupyter Book 1 would put every script in a folder of that name on every page.
+const vendor = join(root, "book/static/vendor");
+const tests = join(root, "tests/vendor");
+const esbuild = createRequire(join(modules, "x.js"))("esbuild");
+const wanted = JSON.parse(readFileSync(join(here, "package.json"))).dependencies;
+
+const common = {
+  bundle: true, minify: true, format: "iife", target: "es2022", legalComments: "none",
+  loader: { ".css": "text" }, nodePaths: [modules], logLevel: "warning" };
+const three = `/* three.js ${wanted.three}, MIT, see LICENSE-three */`;
+for (const [name, more] of [
+  ["viewer", { globalName: "labkitViewer", banner: { js: three }, footer: { js: "globalThis.labkitViewer=labkitViewer;" } }],
+  ["boot", {}]]) {
+  await esbuild.build({ ...common, ...more, entryPoints: [join(source, `${name}.js`)], outfile: join(viewer, `${name}.js`) });
+}
+cpSync(join(source, "widget.js"), join(viewer, "widget.js"));
+cpSync(join(modules, "three/LICENSE"), join(viewer, "LICENSE-three"));
+
+rmSync(vendor, { recursive: true, force: true });
+const fonts = join(vendor, "npm/@jupyter-widgets/html-manager/dist");
+mkdirSync(fonts, { recursive: true });
+mkdirSync(tests, { recursive: true });
+const manager = join(modules, "@jupyter-widgets/html-manager");
+const take = (from, to) => cpSync(from, join(vendor, to));
+take(join(modules, "mathjax/es5/tex-svg-full.js"), "tex-svg-full.js");
+take(join(modules, "requirejs/require.js"), "require.js");
+take(join(manager, "dist/embed-amd.js"), "embed-amd.js");
+for (const name of readdirSync(join(manager, "dist")).filter((n) => /\.(woff2?|ttf)$/.test(n))) {
+  cpSync(join(manager, "dist", name), join(fonts, name));
+}
+take(anywidget, "npm/anywidget.js");
+for (const name of ["mathjax-config.js", "require-config.js"]) take(join(here, name), name);
+take(join(modules, "mathjax/LICENSE"), "LICENSE-mathjax");
+take(join(here, "LICENSE-requirejs"), "LICENSE-requirejs"); // the npm packages carry none
+take(ipywidgetsLicence, "LICENSE-html-manager");
+take(join(manager, "dist/embed.js.LICENSE.txt"), "LICENSE-html-manager-parts");
+take(join(modules, "@fortawesome/fontawesome-free/LICENSE.txt"), "LICENSE-fontawesome");
+take(anywidgetLicence, "LICENSE-anywidget");
+cpSync(join(modules, "axe-core/axe.min.js"), join(tests, "axe.min.js"));
+cpSync(join(modules, "axe-core/LICENSE"), join(tests, "LICENSE-axe"));
+
+const walk = (folder) => readdirSync(folder, { withFileTypes: true, recursive: true })
+  .filter((e) => e.isFile()).map((e) => join(e.parentPath, e.name)).sort();
+const sha = (file) => createHash("sha256").update(readFileSync(file)).digest("hex");
+const hashes = (files) => Object.fromEntries(files.map((f) => [relative(root, f).replaceAll("\\", "/"), sha(f)]));
+const built = walk(viewer).filter((f) => basename(f) !== "robot.js"); // that one is make_robot.py's
+writeFileSync(join(vendor, "MANIFEST.json"), `${JSON.stringify({
+  made_by: "sh book/_tools/vendor.sh", packages: wanted,
+  files: hashes([...walk(vendor), ...built, ...walk(tests)]),
+  sources: hashes([...walk(source), ...walk(here)]),
+}, null, 1)}\n`);

@@ -1,0 +1,126 @@
+"""Control: the state that a controller sees, the commands it answers with, and three given laws.
+
+The type of a command carries its unit and its mode, so a torque cannot be taken for a speed.  A
+controller is any function ``controller(state, target) -> command``; `hold`, `feedforward` and
+`springs` are given, the others are the course.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .errors import ControllerError
+from .robot import DOF
+from .shapes import Array, as_gains, as_vector, locked
+from .trajectory import Sample
+
+NOTHING = locked(np.zeros(DOF))
+"""No torque, or no speed."""
+
+
+class State(NamedTuple):
+    """The joints as the arm reports them.
+
+    Attributes:
+        t: When it was measured, in [s] of the simulation's clock.
+        q: Joint angles, shape (7,) in [rad], read-only.
+        dq: Joint speeds, shape (7,) in [rad/s], read-only.
+        tau_ext: What the world outside puts on the joints, as the arm estimates it from its torque
+            sensors, shape (7,) in [N m], read-only; `Model.tip_wrench` makes it a wrench.
+    """
+
+    t: float
+    q: Array
+    dq: Array
+    tau_ext: Array = NOTHING
+
+
+@dataclass(frozen=True, eq=False)
+class _ForJoints:
+    value: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", as_vector(self.value, DOF, type(self).__name__))
+
+
+class JointPosition(_ForJoints):
+    """Go to these joint angles, as fast as speed and torque allow.
+
+    Attributes:
+        value: Joint angles, shape (7,) in [rad].
+    """
+
+
+class JointVelocity(_ForJoints):
+    """Turn the joints at these speeds.
+
+    Attributes:
+        value: Joint speeds, shape (7,) in [rad/s].
+    """
+
+
+class JointTorque(_ForJoints):
+    """Drive the joints with these torques, on top of the arm's own gravity compensation, if any.
+
+    Attributes:
+        value: Joint torques, shape (7,) in [N m].
+    """
+
+
+Command = JointPosition | JointVelocity | JointTorque
+COMMANDS = (JointPosition, JointVelocity, JointTorque)
+
+
+def still() -> JointVelocity:
+    """The command that stops the arm where it is."""
+    return JointVelocity(NOTHING)
+
+
+def hold(q: Any) -> Callable[[State, Any], JointPosition]:
+    """A controller that asks for the joint angles ``q``, whatever the target: as stiff as it gets.
+
+    Args:
+        q: Shape (7,) in [rad].
+    """
+    command = JointPosition(q)
+
+    def hold(state: State, target: Any) -> JointPosition:
+        return command
+
+    return hold
+
+
+def feedforward(state: State, target: Sample) -> JointVelocity:
+    """The target's own speeds and nothing else: what errors there are stay, and grow.
+
+    Raises:
+        ControllerError: The target is not one of joint angles.
+    """
+    if not isinstance(target, Sample) or target.velocity.shape != state.q.shape:
+        raise ControllerError(
+            "feedforward needs a target of joint angles; model.joint_trajectory(target, q0) "
+            "makes one"
+        )
+    return JointVelocity(target.velocity)
+
+
+def springs(kp: Any, kd: Any) -> Callable[[State, Sample], JointTorque]:
+    """A spring and a damper at each joint and no model behind them, as in Rethink's own example.
+
+    The arm must carry its own weight, or it sags.
+
+    Args:
+        kp: Stiffness, shape (7,) or one number, in [N m/rad].
+        kd: Damping, shape (7,) or one number, in [N m s/rad].
+    """
+    stiffness, damping = as_gains(kp, DOF, "kp"), as_gains(kd, DOF, "kd")
+
+    def springs(state: State, target: Sample) -> JointTorque:
+        e, de = target.position - state.q, target.velocity - state.dq
+        return JointTorque(stiffness * e + damping * de)
+
+    return springs

@@ -1,0 +1,136 @@
+r"""One joint's loop on paper: margins and ultimate gain, by python-control.
+
+A joint is a transfer function from its command to its angle, and a delay.  In velocity mode
+
+.. math:: G(s) = \frac{e^{-sd}}{s\,(\tau s + 1)}, \qquad u = \dot q_d + K_p e + K_d \dot e,
+
+and the loop is :math:`L(s) = (K_p + K_d s)\,G(s)`.  Åström & Murray, *Feedback Systems*, chapters
+10 and 12.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf, radians
+from typing import Any, NamedTuple
+
+import control
+import numpy as np
+
+from .errors import OutOfRange
+from .plant import Plant
+from .shapes import as_number
+
+_PADE = 4  # order of the rational stand-in for the delay; where a delay can be exact, it is
+
+
+@dataclass(frozen=True)
+class VelocityJoint:
+    """A joint in velocity mode as its controller meets it: first-order lag, integrator, delay.
+
+    Attributes:
+        lag: Time constant with which its speed follows a command, in [s].
+        delay: Between command and effect, measuring included, in [s].
+    """
+
+    lag: float
+    delay: float = 0.0
+
+    def __post_init__(self) -> None:
+        as_number(self.lag, "lag", least=0.0)
+        as_number(self.delay, "delay", least=0.0)
+
+    @property
+    def denominator(self) -> tuple[float, ...]:
+        """Of its transfer function without the delay, highest power first."""
+        return (self.lag, 1.0, 0.0) if self.lag else (1.0, 0.0)
+
+
+def velocity_joint_of(plant: Plant, rate: float = 200.0) -> VelocityJoint:
+    """What a plant's velocity mode is to a controller asked ``rate`` times a second.
+
+    The delay is the mean age of the state that the controller sees plus half a period, for which a
+    command is on average already out of date.
+    """
+    return VelocityJoint(plant.velocity_lag, mean_age(plant, rate) + 0.5 / rate)
+
+
+def mean_age(plant: Plant, rate: float) -> float:
+    """How old, on average, the state is that a controller sees, in [s].
+
+    Args:
+        plant: Its state rate and delay.
+        rate: How often the controller is asked, in [Hz].
+    """
+    ticks = 1.0 + np.arange(2000) / as_number(rate, "rate", above=0.0)
+    if plant.state_rate == 0.0:
+        return 0.0
+    newest = np.floor((ticks - plant.state_delay) * plant.state_rate + 1e-9) / plant.state_rate
+    return float(np.mean(ticks - newest))
+
+
+class Margins(NamedTuple):
+    """How far a loop is from instability.
+
+    Attributes:
+        gain: Factor by which the gain may grow; infinite if by any.
+        phase: Phase that may be lost at the crossover, in [degrees].
+        crossover: Where the loop's gain is 1, in [rad/s]; infinite if it is so nowhere.
+        delay: Further delay that may come in, in [s].
+        stable: Whether the closed loop is stable.
+    """
+
+    gain: float
+    phase: float
+    crossover: float
+    delay: float
+    stable: bool
+
+
+@dataclass(frozen=True)
+class PDLoop:
+    """A joint under proportional and derivative feedback with feed-forward.
+
+    Attributes:
+        joint: What is controlled.
+        Kp: Proportional gain, at least 0.
+        Kd: Derivative gain, at least 0.
+    """
+
+    joint: VelocityJoint
+    Kp: float
+    Kd: float = 0.0
+
+    def __post_init__(self) -> None:
+        as_number(self.Kp, "Kp", least=0.0)
+        as_number(self.Kd, "Kd", least=0.0)
+
+    def open(self) -> Any:
+        """The loop L(s), the delay by Padé's approximation: a control.TransferFunction."""
+        L = control.tf((self.Kd, self.Kp), self.joint.denominator)
+        return L * control.tf(*control.pade(self.joint.delay, _PADE)) if self.joint.delay else L
+
+    def margins(self) -> Margins:
+        """Gain, phase and delay margins from the exact frequency response.
+
+        Raises:
+            OutOfRange: Both gains are zero, so there is no loop.
+        """
+        if self.Kp == 0.0 and self.Kd == 0.0:
+            raise OutOfRange("Kp and Kd are both 0, so there is no loop that could have margins")
+        omega = np.logspace(-2, 4, 1000)
+        s = 1j * omega
+        L = (self.Kp + self.Kd * s) / np.polyval(self.joint.denominator, s)
+        L = L * np.exp(-s * self.joint.delay)
+        data = control.FrequencyResponseData(L, omega, smooth=True)
+        gain, phase, _, _, crossover, _ = (
+            inf if x is None or np.isnan(x) else float(x) for x in control.stability_margins(data)
+        )
+        room = radians(phase) / crossover if crossover < inf else inf
+        # An integrator and falling gain: stable exactly when both margins are on the right side.
+        return Margins(gain, phase, crossover, room, stable=gain > 1.0 and phase > 0.0)
+
+
+def ultimate_gain(joint: VelocityJoint) -> float:
+    """The proportional gain at which the joint would oscillate for ever; infinite if none does."""
+    return PDLoop(joint, 1.0).margins().gain

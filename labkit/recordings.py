@@ -1,0 +1,170 @@
+"""Runs and trials that were recorded once and come with labkit, for who lacks planner or time.
+
+They are made by ``solutions/study``: `baseline`, `campaign`, `maps` and `trials`.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, field
+from math import inf, isfinite, log
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .errors import OutOfRange, UnknownName
+from .log import Log, load_log
+from .shapes import Array, as_number
+
+DATA = Path(__file__).parent / "data"
+LINE = DATA / "trials_line.json"
+"""Trials of the joint velocity PD along the line on Baxter's plant, five seeds."""
+
+
+def names(folder: str = "recorded") -> tuple[str, ...]:
+    """The recorded runs; of the folder "maps", the error maps."""
+    return tuple(sorted(path.stem for path in (DATA / folder).iterdir()))
+
+
+def load(name: str) -> Log:
+    """A recorded run, one of `names`; its numbers are good to a micrometre.
+
+    Raises:
+        UnknownName: There is no such recording.
+    """
+    if name not in names():
+        raise UnknownName("recorded run", name, names())
+    return load_log(DATA / "recorded" / f"{name}.npz")
+
+
+def campaign() -> Any:
+    """Every controller on every task over five seeds, one row for each run.
+
+    Returns:
+        Dicts with the run's "way", "task", "plant" and "seed", and its errors.
+    """
+    return json.loads((DATA / "campaign.json").read_text())
+
+
+def error_map(name: str) -> Trials:
+    """A recorded map of errors over gains, one of ``names("maps")``.
+
+    Raises:
+        UnknownName: There is no such map.
+    """
+    if name not in names("maps"):
+        raise UnknownName("error map", name, names("maps"))
+    return read_trials(DATA / "maps" / f"{name}.json")
+
+
+def read_trials(path: Path) -> Trials:
+    """The trials of a file that `solutions.study.trials` or `solutions.study.maps` wrote."""
+    return Trials(**{key: tuple(value) for key, value in json.loads(path.read_text()).items()})
+
+
+@dataclass(frozen=True)
+class Trials:
+    """RMS errors of the tip recorded over a plane of gains.
+
+    Attributes:
+        cases: Names of the cases, such as "line, seed 0".
+        Kp: Proportional gains, ascending, m of them.
+        Kd: Derivative gains, ascending, n of them.
+        rms_mm: For each case m rows of n RMS errors in [mm]; None where the arm was lost.
+    """
+
+    cases: tuple[str, ...]
+    Kp: tuple[float, ...]
+    Kd: tuple[float, ...]
+    rms_mm: tuple[Any, ...]
+
+    def __post_init__(self) -> None:
+        """Make rows that nobody can write to, for a student is given them."""
+        rows = tuple(tuple(map(tuple, table)) for table in self.rms_mm)
+        object.__setattr__(self, "rms_mm", rows)
+
+    def array(self, case: int = 0) -> Array:
+        """The errors of a case, shape (m, n) in [mm], NaN where the arm was lost."""
+        return np.array(self.rms_mm[case], dtype=float)
+
+    def error(self, case: int, Kp: float, Kd: float) -> float:
+        """The error of one case, in [mm], infinite where the arm is lost.
+
+        Between the recorded gains it is interpolated, evenly in Kd and in the logarithm of Kp.
+
+        Args:
+            case: Which.
+            Kp: Within the recorded range.
+            Kd: Within the recorded range.
+
+        Raises:
+            OutOfRange: There is no such case, or the gains lie outside what was recorded.
+        """
+        if not isinstance(case, int | np.integer) or not 0 <= case < len(self.cases):
+            raise OutOfRange(f"there are cases 0 to {len(self.cases) - 1}, not {case!r}")
+        i, x = _place(as_number(Kp, "Kp"), self.Kp, "Kp", log)
+        j, y = _place(as_number(Kd, "Kd"), self.Kd, "Kd", float)
+        weights = np.outer([1.0 - x, x], [1.0 - y, y])
+        used = weights > 1e-12
+        value = np.sum(weights[used] * self.array(case)[i : i + 2, j : j + 2][used])
+        return float(value) if isfinite(value) else inf
+
+    def worst(self, Kp: float, Kd: float) -> float:
+        """The largest error over all cases, in [mm]."""
+        return max(self.error(case, Kp, Kd) for case in range(len(self.cases)))
+
+    def describe(self) -> str:
+        """The first case in words, for readers who do not see its figure."""
+        e, Kp, Kd = self.array(), self.Kp, self.Kd
+        i, j = np.unravel_index(int(np.nanargmin(e)), e.shape)
+        return (
+            f"RMS error of {self.cases[0]} for Kp from {Kp[0]:g} to {Kp[-1]:g} and Kd from "
+            f"{Kd[0]:g} to {Kd[-1]:g}: least {e[i, j]:.3g} mm at Kp = {Kp[i]:.3g}, Kd = "
+            f"{Kd[j]:.3g}; largest {np.nanmax(e):.3g} mm; {np.isnan(e).sum()} of {e.size} pairs "
+            "lost the arm."
+        )
+
+
+@dataclass(frozen=True)
+class Runner:
+    """Tries gains, a limited number of times.
+
+    Attributes:
+        trials: What was recorded.
+        budget: How many tries there are.
+    """
+
+    trials: Trials
+    budget: int = 20
+    _tried: list[tuple[float, float, int]] = field(default_factory=list, init=False, compare=False)
+
+    def __call__(self, Kp: float, Kd: float, seed: int = 0) -> float:
+        """The RMS error of a run with these gains, in [mm]; infinite if the arm was lost.
+
+        Args:
+            Kp: Proportional gain, in [1/s].
+            Kd: Derivative gain.
+            seed: Which noise and which start; 0 to 4.
+
+        Raises:
+            OutOfRange: The tries are used up, or the gains lie outside what was recorded.
+        """
+        if len(self._tried) >= self.budget:
+            raise OutOfRange(f"all {self.budget} tries are used up; choose with what you have seen")
+        self._tried.append((Kp, Kd, seed))
+        return self.trials.error(seed, Kp, Kd)
+
+    @property
+    def left(self) -> int:
+        """How many tries are left."""
+        return self.budget - len(self._tried)
+
+
+def _place(value: float, grid: tuple[float, ...], name: str, scale: Any) -> tuple[int, float]:
+    """The cell of a grid that a value falls in, and where in it, from 0 to 1."""
+    if not grid[0] <= value <= grid[-1]:
+        raise OutOfRange(f"{name} = {value:g} was not recorded; take {grid[0]:g} to {grid[-1]:g}")
+    i = min(int(np.searchsorted(grid, value, side="right")) - 1, len(grid) - 2)
+    low, high = scale(grid[i]), scale(grid[i + 1])
+    return i, float((scale(value) - low) / (high - low))

@@ -1,0 +1,77 @@
+"""A motion as a figure of a page: HTML without inline code, for feedback and for the book."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from html import escape
+from pathlib import Path
+from typing import Any
+
+VIEWER = Path(__file__).parents[1] / "data" / "viewer"
+
+
+def recorded_html(data: Mapping[str, Any], description: str, caption: str) -> str:
+    """A replay from the data of `Motion.data`, for a page that brings the viewer with it.
+
+    Args:
+        data: What the viewer reads.
+        description: The motion in words.
+        caption: Text under it.
+
+    Returns:
+        HTML; see `viewer_scripts`.
+    """
+    return figure_html(compact(data), caption, str(data["alt"]), description)
+
+
+@cache
+def viewer_scripts() -> tuple[str, ...]:
+    """The viewer and the robot as scripts to put into a page that must be one file, 1.7 MB."""
+    return tuple((VIEWER / name).read_text(encoding="utf-8") for name in ("viewer.js", "robot.js"))
+
+
+def figure_html(
+    data: str,
+    caption: str,
+    alt: str,
+    description: str,
+    poster: str | None = None,
+    root: str | None = None,
+) -> str:
+    """The figure around some data.
+
+    Args:
+        data: What the viewer reads, as JSON.
+        caption: Text under it.
+        alt: One or two sentences for whoever does not see it.
+        description: A paragraph, opened on demand.
+        poster: Address of a picture for print, for phones before the tap and for browsers without
+            WebGL.
+        root: Address of the folder with the viewer's files, ending in "/"; None if the page loads
+            boot.js already, or brings the viewer with it.
+    """
+    picture = (
+        f'<img class="lk-poster" src="{escape(poster)}" alt="{escape(alt)}">'
+        if poster
+        else f'<p class="lk-alt">{escape(alt)}</p>'
+    )
+    more = (
+        ""
+        if description == caption
+        else "<details><summary>Description in words</summary>"
+        f"<p>{escape(description)}</p></details>"
+    )
+    boot = f'\n<script defer src="{escape(root)}boot.js"></script>' if root is not None else ""
+    safe = data.replace("<", "\\u003c")  # nothing in it can end the script element
+    return (
+        f'<figure class="lk-embed">\n{picture}\n'
+        f'<script type="application/json">{safe}</script>\n'
+        f"<figcaption>{escape(caption)}{more}</figcaption>\n</figure>{boot}\n"
+    )
+
+
+def compact(data: Any) -> str:
+    """Data as JSON without spaces."""
+    return json.dumps(data, separators=(",", ":"), ensure_ascii=False)

@@ -1,0 +1,22 @@
+"""Tags: boards that carry them, cameras that see them, and where a picture says that they are."""
+
+from __future__ import annotations
+
+from .board import Board
+from .camera import Camera, looking_at
+from .detection import detect_tags, find_tag
+from .intrinsics import Intrinsics
+from .stream import TagStream, TagTarget
+from .tag import Tag
+
+__all__ = [
+    "Board",
+    "Camera",
+    "Intrinsics",
+    "Tag",
+    "TagStream",
+    "TagTarget",
+    "detect_tags",
+    "find_tag",
+    "looking_at",
+]

@@ -1,0 +1,282 @@
+r"""Detection: from a picture to the poses of the tags in it.
+
+OpenCV finds the tags and refines their corners as AprilTag does; `edges` makes the corners exact.
+A flat square seen from afar looks the same tilted one way or the other, so there are two poses to
+choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE); the ratio
+of their errors says how safe the choice is.
+
+The covariance is that of least squares, :math:`\sigma^2 (J^T J)^{-1}`, with J the derivative of the
+corners' pixels with respect to a small motion of the tag.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import cv2
+import numpy as np
+
+from .. import se3
+from ..errors import LabkitError, OutOfRange, TypeMismatch
+from ..shapes import Array, as_array, as_number, locked, shown
+from .edges import sharpened
+from .intrinsics import Intrinsics
+from .tag import APRILTAG, Picture, as_picture, pattern, tag_corners
+
+if TYPE_CHECKING:
+    from .camera import Camera
+
+CORNER_NOISE = 0.035
+"""Standard deviation of a corner's coordinate, in [px], without image noise: `make tag-bench`."""
+
+_APRILTAG_OFFSET = 0.5  # OpenCV's AprilTag code counts pixels from their corners
+
+
+class TagNotFound(LabkitError, LookupError):
+    """The tag asked for is not in the picture."""
+
+
+class DuplicateTag(LabkitError, ValueError):
+    """Two tags in the picture have the same number."""
+
+
+@dataclass(frozen=True, eq=False)
+class Detection:
+    """One tag in one picture.
+
+    Attributes:
+        id: Its number.
+        corners: Its corners in the picture, clockwise from its upper left, shape (4, 2) in [px].
+        T_cm: Pose of the tag in the camera's frame, shape (4, 4).
+        other_T_cm: The pose that fits second best, shape (4, 4).
+        error: What is left between the corners and the pose's, root mean square, in [px].
+        ratio: How many times worse the other pose fits, at least 1; near 1 the tilt is a guess.
+        covariance: Of the position [m] and of the orientation, as a rotation vector [rad], in the
+            camera's axes, shape (6, 6).
+    """
+
+    id: int
+    corners: Array
+    T_cm: Array
+    other_T_cm: Array
+    error: float
+    ratio: float
+    covariance: Array
+
+
+def detect_tags(
+    image: Any,
+    camera: Camera | Intrinsics,
+    size: float | Mapping[int, float],
+    dictionary: str = APRILTAG,
+) -> tuple[Detection, ...]:
+    """Find the tags in a picture.
+
+    Args:
+        image: Grey levels (height, width) or RGB (height, width, 3), uint8.
+        camera: The camera that took it, or its intrinsics.
+        size: Side of the black square, in [m]; or a size for each number, and tags of other numbers
+            are passed over.
+        dictionary: `tags.APRILTAG` or `tags.ARUCO`.
+
+    Returns:
+        What was found, by number; empty if there is none.
+
+    Raises:
+        TypeMismatch: The image is not a picture, or the camera not a camera.
+        OutOfRange: A size is not positive.
+        UnknownName: No such dictionary.
+    """
+    grey, lens = as_picture(image), _intrinsics(camera)
+    sizes = size if isinstance(size, Mapping) else None
+    for one in [size] if sizes is None else sizes.values():
+        as_number(one, "size", above=0.0)
+    cells = int(pattern(dictionary).markerSize) + 2
+    found = _corners(grey, dictionary, cells, [] if sizes is None else list(sizes))
+    seen = []
+    for number, corners in found:
+        side = size if sizes is None else sizes.get(number)
+        if side is not None:
+            seen.append(_detection(number, corners, lens, float(side)))  # type: ignore[arg-type]
+    return tuple(sorted(seen, key=lambda d: (d.id, d.error)))
+
+
+def find_tag(detections: Sequence[Detection], id: int) -> Detection:
+    """The detection with a number.
+
+    Args:
+        detections: From `detect_tags`.
+        id: The number.
+
+    Raises:
+        TagNotFound: It is not among them.
+        DuplicateTag: It is there twice.
+    """
+    hits = [d for d in detections if d.id == id]
+    if not hits:
+        others = ", ".join(str(d.id) for d in detections) or "none at all"
+        raise TagNotFound(
+            f"tag {id} is not in the picture (found: {others}); is it in view, large enough, not "
+            "hidden, and of this dictionary?"
+        )
+    if len(hits) > 1:
+        raise DuplicateTag(
+            f"tag {id} is in the picture {len(hits)} times, so its pose is anyone's guess; give "
+            "each board a number of its own"
+        )
+    return hits[0]
+
+
+def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Array]:
+    """The two poses at which a tag's corners look about as they do, best first, by IPPE alone.
+
+    Args:
+        corners: Pixels, clockwise from the tag's upper left, shape (4, 2).
+        camera: The camera, or its intrinsics.
+        size: Side of the black square, in [m].
+
+    Returns:
+        Two `T_cm`, shape (4, 4) each.
+
+    Raises:
+        OutOfRange: No square looks like that from anywhere.
+    """
+    lens, pixels = _intrinsics(camera), as_array(corners, (4, 2), "corners")
+    _, turns, places, _ = cv2.solvePnPGeneric(
+        tag_corners(size), pixels, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+    )
+    if not turns:
+        raise OutOfRange(
+            f"no square has its corners at the pixels {pixels.tolist()}; are they four different "
+            "ones, clockwise from the tag's upper left?"
+        )
+    poses = [_pose(turn, place) for turn, place in zip(turns, places, strict=True)]
+    return sorted(poses, key=lambda T: reprojection_error(T, pixels, lens, size))
+
+
+def tag_pose(corners: Any, camera: Camera | Intrinsics, size: float) -> Array:
+    """The pose at which a tag's corners look most as they do: IPPE's best, then least squares.
+
+    Args:
+        corners: Pixels, clockwise from the tag's upper left, shape (4, 2).
+        camera: The camera, or its intrinsics.
+        size: Side of the black square, in [m].
+
+    Returns:
+        `T_cm`, shape (4, 4).
+
+    Raises:
+        OutOfRange: No square looks like that from anywhere.
+    """
+    pixels, lens = as_array(corners, (4, 2), "corners"), _intrinsics(camera)
+    return _polished(tag_poses(pixels, lens, size)[0], pixels, lens, size)
+
+
+def reprojection_error(T_cm: Any, corners: Any, camera: Camera | Intrinsics, size: float) -> float:
+    """How far a pose's corners are from those seen, root mean square, in [px]; behind, infinitely.
+
+    Args:
+        T_cm: Pose of the tag in the camera's frame, shape (4, 4).
+        corners: Pixels, shape (4, 2).
+        camera: The camera, or its intrinsics.
+        size: Side of the black square, in [m].
+    """
+    pixels, T = as_array(corners, (4, 2), "corners"), se3.as_pose(T_cm, "T_cm")
+    points = tag_corners(size) @ T[:3, :3].T + T[:3, 3]
+    if points[:, 2].min() <= 0.0:
+        return float("inf")
+    off = _intrinsics(camera).project(points) - pixels
+    return float(np.sqrt(np.mean(np.sum(off**2, axis=1))))
+
+
+def pose_covariance(
+    T_cm: Any, camera: Camera | Intrinsics, size: float, noise: float = CORNER_NOISE
+) -> Array:
+    """What an error of the corners means for the pose.
+
+    Args:
+        T_cm: Pose of the tag in the camera's frame, shape (4, 4).
+        camera: The camera, or its intrinsics.
+        size: Side of the black square, in [m].
+        noise: Standard deviation of a corner's coordinate, in [px].
+
+    Returns:
+        Shape (6, 6), as `Detection.covariance`.
+    """
+    lens, T = _intrinsics(camera), se3.as_pose(T_cm, "T_cm")
+    arms = tag_corners(size) @ T[:3, :3].T
+    turn, place = np.zeros(3), np.array(T[:3, 3])  # small turns of what is turned already
+    J = cv2.projectPoints(arms, turn, place, lens.matrix, None)[1][:, [3, 4, 5, 0, 1, 2]]
+    return locked(np.array(as_number(noise, "noise", above=0.0) ** 2 * np.linalg.inv(J.T @ J)))
+
+
+def _detection(id: int, corners: Array, lens: Intrinsics, size: float) -> Detection:
+    first, other = tag_poses(corners, lens, size)
+    best = _polished(first, corners, lens, size)
+    error, first_error, other_error = (
+        reprojection_error(T, corners, lens, size) for T in (best, first, other)
+    )
+    return Detection(
+        id=id,
+        corners=locked(corners),
+        T_cm=best,
+        other_T_cm=other,
+        error=error,
+        ratio=other_error / max(first_error, 1e-9),
+        covariance=pose_covariance(best, lens, size),
+    )
+
+
+def _polished(T_cm: Array, corners: Array, lens: Intrinsics, size: float) -> Array:
+    """The nearest pose that fits the pixels best."""
+    turn, place = se3.rotation_log(T_cm[:3, :3])[:, None], np.array(T_cm[:3, 3:])
+    return _pose(*cv2.solvePnPRefineLM(tag_corners(size), corners, lens.matrix, None, turn, place))
+
+
+def _pose(turn: Any, place: Any) -> Array:
+    return locked(se3.pose(se3.rotation(np.ravel(turn)), np.ravel(place)))
+
+
+def _intrinsics(camera: Any) -> Intrinsics:
+    lens = camera if isinstance(camera, Intrinsics) else getattr(camera, "intrinsics", None)
+    if not isinstance(lens, Intrinsics):
+        raise TypeMismatch(
+            f"camera is {shown(camera)}; give the lk.Camera that took the picture, or its "
+            "lk.Intrinsics"
+        )
+    return lens
+
+
+def _corners(
+    grey: Picture, dictionary: str, cells: int, wanted: list[int]
+) -> list[tuple[int, Array]]:
+    """Numbers and corners.  If one knows what to look for, half of the pixels may be enough."""
+    if wanted:
+        quick = _numbered(grey, dictionary, 2.0)
+        fine = [(number, sharpened(grey, corners, cells)) for number, corners in quick]
+        sharp = [(number, corners) for number, corners in fine if corners is not None]
+        if len(sharp) == len(fine) and {number for number, _ in sharp} >= set(wanted):
+            return sharp
+    result = []
+    for number, corners in _numbered(grey, dictionary, 0.0):
+        sharp_corners = sharpened(grey, corners, cells)
+        result.append((number, corners if sharp_corners is None else sharp_corners))
+    return result
+
+
+def _numbered(grey: Picture, dictionary: str, decimate: float) -> list[tuple[int, Array]]:
+    found, numbers, _ = _detector(dictionary, decimate).detectMarkers(grey)
+    corners = [rough.reshape(4, 2).astype(float) - _APRILTAG_OFFSET for rough in found]
+    return list(zip([] if numbers is None else numbers.ravel().tolist(), corners, strict=True))
+
+
+@cache
+def _detector(dictionary: str, decimate: float) -> Any:
+    settings = cv2.aruco.DetectorParameters()
+    settings.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_APRILTAG
+    settings.aprilTagQuadDecimate = decimate
+    settings.perspectiveRemovePixelPerCell = 8  # reads small and tilted tags that 4 does not
+    return cv2.aruco.ArucoDetector(pattern(dictionary), settings)

@@ -1,0 +1,69 @@
+r"""Estimation: making one good reading out of several noisy ones.
+
+Sources: the Kalman filter, Thrun, Burgard & Fox, *Probabilistic Robotics*, section 3.2; constant
+velocity under white acceleration, Bar-Shalom, Li & Kirubarajan, *Estimation with Applications*,
+section 6.2.2.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..shapes import Array, as_array, as_number, locked
+
+
+class Estimate(NamedTuple):
+    """Where something is and how it moves, as far as one knows.
+
+    Attributes:
+        t: At which time, in [s].
+        mean: Position [m] and velocity [m/s], shape (6,).
+        covariance: Of the mean, shape (6, 6).
+    """
+
+    t: float
+    mean: Array
+    covariance: Array
+
+
+def first_estimate(t: float, position: Any, noise: Any, speed: float) -> Estimate:
+    """What one reading of a position tells, the velocity being anything.
+
+    Args:
+        t: When the picture was taken, in [s].
+        position: Shape (3,) in [m].
+        noise: Its covariance, shape (3, 3) in [m^2].
+        speed: Standard deviation of the velocity's coordinates that one expects, in [m/s].
+    """
+    covariance = np.zeros((6, 6))
+    covariance[:3, :3] = as_array(noise, (3, 3), "noise")
+    covariance[3:, 3:] = as_number(speed, "speed", above=0.0) ** 2 * np.eye(3)
+    mean = np.concatenate([as_array(position, (3,), "position"), np.zeros(3)])
+    return Estimate(t, locked(mean), locked(covariance))
+
+
+def update(estimate: Estimate, position: Any, noise: Any) -> Estimate:
+    r"""Take in a reading of the position at the estimate's own time.
+
+    .. math:: K = P H^T (H P H^T + R)^{-1}, \quad
+       m' = m + K (z - H m), \quad P' = (I - KH) P (I - KH)^T + K R K^T
+
+    Args:
+        estimate: What is known so far, predicted to the time of the picture.
+        position: z, shape (3,) in [m].
+        noise: R, its covariance, shape (3, 3) in [m^2].
+
+    Returns:
+        The better estimate, at the same time.
+    """
+    z, R = as_array(position, (3,), "position"), as_array(noise, (3, 3), "noise")
+    mean, P = estimate.mean, estimate.covariance
+    K = np.linalg.solve(P[:3, :3] + R, P[:3, :]).T  # (6, 3); H picks the position
+    keep = np.eye(6)
+    keep[:, :3] -= K
+    covariance = keep @ P @ keep.T + K @ R @ K.T
+    return Estimate(
+        estimate.t, locked(mean + K @ (z - mean[:3])), locked(0.5 * (covariance + covariance.T))
+    )

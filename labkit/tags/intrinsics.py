@@ -1,0 +1,95 @@
+r"""Intrinsics: how a camera without lens distortion turns points into pixels.
+
+.. math:: u = f_x X/Z + c_x, \qquad v = f_y Y/Z + c_y
+
+The camera's frame c has z forward, x to the right and y down in the picture.  Pixel (0, 0) is the
+middle of the upper left pixel (OpenCV's convention), so the middle of a picture 640 pixels wide is
+at u = 319.5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..errors import OutOfRange, ShapeError
+from ..shapes import Array, as_number, as_numbers, locked
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """A camera's lens and sensor, as a value.
+
+    Attributes:
+        width: Of the picture, in [px].
+        height: Of the picture, in [px].
+        fx: Focal length along x, in [px].
+        fy: Focal length along y, in [px].
+        cx: Where the optical axis meets the picture, along x, in [px]; None is the middle.
+        cy: The same along y.
+    """
+
+    width: int = 640
+    height: int = 480
+    fx: float = 515.0
+    fy: float = 515.0
+    cx: Any = None
+    cy: Any = None
+
+    def __post_init__(self) -> None:
+        for name, middle in (("width", "cx"), ("height", "cy")):
+            n = getattr(self, name)
+            if not isinstance(n, int | np.integer) or not 8 <= n <= 8192:
+                raise OutOfRange(f"{name} is {n!r}; give a whole number of pixels from 8 to 8192")
+            given = getattr(self, middle)
+            at = 0.5 * (n - 1) if given is None else as_number(given, middle)
+            object.__setattr__(self, middle, at)
+        as_number(self.fx, "fx", above=0.0)
+        as_number(self.fy, "fy", above=0.0)
+
+    @property
+    def matrix(self) -> Array:
+        """The matrix K, shape (3, 3)."""
+        return locked(np.array([[self.fx, 0, self.cx], [0, self.fy, self.cy], [0, 0, 1.0]]))
+
+    def resized(self, factor: float) -> Intrinsics:
+        """The same lens over a sensor with more or fewer pixels.
+
+        Args:
+            factor: How many times as many along each side.
+        """
+        k = as_number(factor, "factor", above=0.0)
+        return Intrinsics(
+            round(self.width * k),
+            round(self.height * k),
+            self.fx * k,
+            self.fy * k,
+            (self.cx + 0.5) * k - 0.5,  # the picture's corner is at -0.5
+            (self.cy + 0.5) * k - 0.5,
+        )
+
+    def project(self, points: Any) -> Array:
+        """Where points appear in the picture.
+
+        Args:
+            points: In the camera's frame, shape (n, 3) in [m].
+
+        Returns:
+            Pixels (u, v), shape (n, 2); they may lie outside the picture.
+
+        Raises:
+            OutOfRange: A point is not in front of the camera.
+        """
+        p = as_numbers(points, "points")
+        if p.ndim != 2 or p.shape[1] != 3:
+            raise ShapeError("points", (len(np.atleast_2d(p)), 3), p.shape)
+        if (behind := p[:, 2] <= 0.0).any():
+            i = int(behind.argmax())
+            raise OutOfRange(
+                f"point {i} is at z = {p[i, 2]:.3g} m in the camera's frame: it is behind the "
+                "camera; are these coordinates of the world?"
+            )
+        K: Array = self.matrix
+        return np.asarray((p[:, :2] / p[:, 2:]) * K.diagonal()[:2] + K[:2, 2])

@@ -1,0 +1,205 @@
+"""Looking: pictures and detections beside the control loop, with rate, delay and losses as dials.
+
+Nothing runs in parallel: the simulation's clock says when a picture is taken and when its reading
+arrives, and every chance is drawn from a seed, so a run can be repeated to the last bit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .. import se3
+from ..errors import OutOfRange
+from ..shapes import Array, as_number, locked
+from ..trajectory import AnySample
+from .camera import Camera
+from .detection import TagNotFound, detect_tags, find_tag
+from .tag import Tag
+
+
+class Reading(NamedTuple):
+    """What one look-up tells.
+
+    Attributes:
+        stamp: When the picture was taken, in [s].
+        arrived: When the reading could first be used, in [s].
+        T_wm: Where the tag was by this picture, shape (4, 4).
+        covariance: Of its position [m] and orientation [rad], world axes, shape (6, 6).
+        ratio: How many times worse the other pose fits; see `Detection`.
+    """
+
+    stamp: float
+    arrived: float
+    T_wm: Array
+    covariance: Array
+    ratio: float
+
+    @property
+    def age(self) -> float:
+        """How old the picture was when the reading arrived, in [s]."""
+        return self.arrived - self.stamp
+
+
+@dataclass
+class Count:
+    """How the look-ups of one `TagStream` went.
+
+    Attributes:
+        taken: Pictures taken.
+        dropped: Lost on the way, by the dial.
+        unseen: In which the tag was not found.
+        arrived: Readings handed over.
+    """
+
+    taken: int = 0
+    dropped: int = 0
+    unseen: int = 0
+    arrived: int = 0
+
+
+class TagStream:
+    """Regular look-ups of one tag by one camera.
+
+    Attributes:
+        camera: The camera.
+        tag: The tag.
+        count: How they went so far.
+    """
+
+    def __init__(
+        self,
+        camera: Camera,
+        tag: Tag,
+        rate: float = 10.0,
+        delay: float = 0.1,
+        *,
+        jitter: float = 0.0,
+        dropout: float = 0.0,
+        blind: Iterable[tuple[float, float]] = (),
+        seed: int = 0,
+        T_wc: Any = None,
+    ) -> None:
+        """Start looking, with the first picture at the first `poll`.
+
+        Args:
+            camera: The camera.
+            tag: Which tag, of what size.
+            rate: Pictures per second, in [Hz].
+            delay: From picture to reading, in [s].
+            jitter: Up to this much later, at random, in [s].
+            dropout: Share of the readings that never arrive, from 0 to 1.
+            blind: Stretches (from, to) in which no picture shows the tag, in [s] since the first.
+            seed: Of jitter and dropout.
+            T_wc: Where the robot believes the camera to be, shape (4, 4); None is where it is, or,
+                in a hand, where the reported joint angles put it.
+        """
+        self.camera, self.tag, self.count = camera, tag, Count()
+        self._period = 1.0 / as_number(rate, "rate", above=0.0)
+        self._delay = as_number(delay, "delay", least=0.0)
+        self._jitter = as_number(jitter, "jitter", least=0.0)
+        self._dropout = as_number(dropout, "dropout", least=0.0)
+        if self._dropout > 1.0:
+            raise OutOfRange(f"dropout is {dropout:g}; it is a share, from 0 to 1")
+        self._blind = tuple((float(a), float(b)) for a, b in blind)
+        self._random = np.random.default_rng(seed)
+        self._believed = None if T_wc is None else locked(np.array(se3.as_pose(T_wc, "T_wc")))
+        self._due: float | None = None
+        self._under_way: list[tuple[float, Reading | None]] = []
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture was taken whose reading has not arrived yet."""
+        return bool(self._under_way)
+
+    def poll(self) -> tuple[Reading, ...]:
+        """Take the picture that is due, if any; what has arrived since the last call, by stamp.
+
+        Raises:
+            DuplicateTag: The tag is in the picture twice.
+        """
+        now = self.camera.world.t
+        if self._due is None:
+            self._due = self._first = now
+        if now >= self._due - 1e-9:
+            while self._due <= now + 1e-9:
+                self._due += self._period
+            arrives = now + self._delay + self._jitter * float(self._random.random())
+            lost = float(self._random.random()) < self._dropout
+            self._under_way.append((arrives, self._look(now, arrives, lost)))
+        here = [reading for arrives, reading in self._under_way if arrives <= now + 1e-9]
+        self._under_way = [item for item in self._under_way if item[0] > now + 1e-9]
+        readings = sorted((r for r in here if r is not None), key=lambda r: r.stamp)
+        self.count.arrived += len(readings)
+        return tuple(readings)
+
+    def _look(self, now: float, arrives: float, lost: bool) -> Reading | None:
+        self.count.taken += 1
+        if lost:
+            self.count.dropped += 1
+            return None
+        if any(a <= now - self._first < b for a, b in self._blind):
+            self.count.unseen += 1
+            return None
+        try:
+            return detect_once(self.camera, self.tag, self._believed, arrives - now)
+        except TagNotFound:
+            self.count.unseen += 1
+            return None
+
+
+def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Reading:
+    """Look up a tag once.
+
+    Args:
+        camera: The camera.
+        tag: Which tag, of what size.
+        T_wc: Where the camera is believed to be, shape (4, 4); None is `Camera.reported_T_wc`.
+        age: How old the reading will be when it is used, in [s].
+
+    Raises:
+        TagNotFound: It is not in the picture.
+        DuplicateTag: It is there twice.
+    """
+    now = camera.world.t
+    T_wc = camera.reported_T_wc if T_wc is None else se3.as_pose(T_wc, "T_wc")
+    seen = detect_tags(camera.tag_image(), camera, {int(tag.id): tag.size}, tag.dictionary)
+    found = find_tag(seen, tag.id)
+    turn = np.kron(np.eye(2), T_wc[:3, :3])
+    return Reading(
+        stamp=now,
+        arrived=now + age,
+        T_wm=locked(T_wc @ found.T_cm),
+        covariance=locked(turn @ found.covariance @ turn.T),
+        ratio=found.ratio,
+    )
+
+
+class TagTarget:
+    """A target for `run`: what a follower makes of the readings that have arrived.
+
+    Attributes:
+        stream: Where the readings come from.
+        follower: A function of the time since the run began and of the readings that arrived since
+            it was last asked, their times counted from there too; returns a `Sample` or a
+            `PoseSample`.  It sees no world, camera or arm.
+    """
+
+    def __init__(
+        self, lookups: TagStream, follower: Callable[[float, tuple[Reading, ...]], AnySample]
+    ) -> None:
+        """Join look-ups to a follower."""
+        self.lookups, self.follower = lookups, follower
+        self.__name__ = getattr(follower, "__name__", type(follower).__name__)
+
+    def __call__(self, t: float) -> AnySample:
+        """The follower's sample at time ``t`` [s]."""
+        began = self.lookups.camera.world.t - t
+        readings = tuple(
+            r._replace(stamp=r.stamp - began, arrived=r.arrived - began)
+            for r in self.lookups.poll()
+        )
+        return self.follower(t, readings)

@@ -1,1 +1,0 @@
-"""Vision: tags and the boards that carry them, cameras, and what a picture says."""

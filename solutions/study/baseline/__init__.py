@@ -1,0 +1,37 @@
+"""The built-in way, to compare with: plan, time, execute, as MoveIt and Rethink's server do.
+
+Needs the extra ``labkit[baseline]`` (ompl, toppra); its recorded runs need nothing.
+"""
+
+from __future__ import annotations
+
+try:
+    from .collision import Blocked, Box, PlanningScene
+    from .planning import NoWay, along, first_hit, plan
+    from .server import RATE, PathTolerance, PositionServer, VelocityServer
+    from .timing import HARDWARE, MOVEIT, JointLimits, Schedule, quickest
+except ModuleNotFoundError as missing:
+    raise ModuleNotFoundError(
+        f'the baseline needs {missing.name}, which is not installed: pip install "labkit[baseline]"'
+        "; its recorded runs need nothing: labkit.recordings.names()",
+        name=missing.name,
+    ) from missing
+
+__all__ = [
+    "HARDWARE",
+    "MOVEIT",
+    "RATE",
+    "Blocked",
+    "Box",
+    "JointLimits",
+    "NoWay",
+    "PathTolerance",
+    "PlanningScene",
+    "PositionServer",
+    "Schedule",
+    "VelocityServer",
+    "along",
+    "first_hit",
+    "plan",
+    "quickest",
+]

@@ -1,0 +1,328 @@
+"""The report's comparison, run honestly: ``make campaign``.
+
+Seven ways to follow every task, on the ideal arm and on Baxter's, over seeds.  A seed draws where
+the arm begins (about 10 mm off the path), the measurement noise and the ticks that come late; one
+seed means the same start for every way, so their differences can be taken in pairs.  Gains stand in
+`gains`; what the report claimed of the outcome is judged in `claims`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import math
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from labkit import (
+    BAXTER,
+    IDEAL,
+    Arm,
+    Hold,
+    JointVelocity,
+    LabkitError,
+    Log,
+    Model,
+    Plant,
+    Sample,
+    State,
+    Table,
+    metrics,
+    run,
+)
+
+from . import tasks
+from .claims import Finding, verdicts
+from .gains import Candidate, known
+from .grid import Job, Meter, Row, cells, pick, table, work_through
+from .joint_velocity import JointVelocityPD
+from .recording import save_campaign
+from .tag_task import Chase, followed, sequential
+from .tasks import Task
+
+PLANTS = {
+    "ideal": IDEAL,
+    "baxter": BAXTER,
+    "baxter without noise": replace(BAXTER, velocity_noise=0.0),
+}
+TASKS = ("line", "circle", "square", "tag")
+FEED_FORWARD, BASELINE = "feed-forward only", "baseline"
+FIVE = (
+    "joint velocity",
+    "workspace velocity",
+    "joint torque",
+    "joint impedance",
+    "workspace impedance",
+)
+"""The report's order: figures 4 to 7, 8 to 11, and so on."""
+WAYS = (*FIVE, FEED_FORWARD, BASELINE)
+
+
+def grid(seeds: int, ways: Sequence[str] = WAYS) -> list[dict[str, Any]]:
+    """The campaign's cells: 7 ways, every task, 2 plants, the seeds."""
+    return cells(way=ways, task=TASKS, plant=("ideal", "baxter"), seed=range(seeds))
+
+
+@cache
+def _chase(kind: str, seed: int) -> Chase:
+    return sequential(seed) if kind == BASELINE else followed(seed)
+
+
+def chase(way: str, seed: int) -> Chase:
+    """The tag task: of the report's kind for the baseline, which cannot follow a moving goal."""
+    return _chase(BASELINE if way == BASELINE else "", seed)
+
+
+@cache
+def _path(name: str) -> Task:
+    makers: dict[str, Callable[[], Task]]
+    makers = {"line": tasks.line, "circle": tasks.circle, "square": tasks.square}
+    return makers[name]()
+
+
+def task_of(name: str, way: str, seed: int) -> Task:
+    """A task by name; made once, for its inverse kinematics takes a moment."""
+    if name == "tag":
+        return chase(way, seed).task
+    return _path(name)
+
+
+@cache
+def built_in(name: str) -> Any:
+    """The baseline's own schedule along a task's path, planned as MoveIt does."""
+    from . import baseline  # an extra that only these runs need
+
+    goal = _path(name)
+    scene = baseline.PlanningScene(goal.side, (Table(),))
+    return baseline.along(scene, Model(goal.side), goal.target, goal.q0)
+
+
+def feed_forward(state: State, target: Sample) -> JointVelocity:
+    """The target's speeds and nothing else: what happens without looking."""
+    return JointVelocity(target.velocity)
+
+
+def _tuned(way: str, plant: Plant, side: Any) -> Candidate:
+    if way == FEED_FORWARD:
+        return Candidate(feed_forward, 200.0, True)
+    if way == BASELINE:
+        from . import baseline
+
+        return Candidate(baseline.PositionServer(), baseline.RATE, True)
+    knows = Plant(name=plant.name, armature=plant.armature)  # the rotors, and no payload
+    return known(Model(side, knows), plant)[way]
+
+
+def joints(way: str, task: str, seed: int) -> Any:
+    """The joint angles that belong to a way's target, a function of time."""
+    planned = way == BASELINE and task != "tag"
+    return built_in(task) if planned else task_of(task, way, seed).joints
+
+
+def perform(way: str, task: str, plant: str, seed: int) -> Log:
+    """One run of the campaign."""
+    goal, arm_is = task_of(task, way, seed), PLANTS[plant]
+    tuned = _tuned(way, arm_is, goal.side)
+    target = joints(way, task, seed) if tuned.joints else goal.target
+    with Arm(goal.side, arm_is, seed, q0=goal.start(seed)) as arm:
+        return replace(run(arm, target, tuned.controller, rate=tuned.rate), controller=way)
+
+
+def numbers(way: str, task: str, plant: str, seed: int) -> Mapping[str, Any]:
+    """The campaign's job: one run, in numbers."""
+    log = perform(way, task, plant, seed)
+    told = measured(log, joints(way, task, seed))
+    if task == "tag":
+        late = log.t >= 2.0
+        tips = metrics.tip_poses(log)[late, :3, 3]
+        miss = chase(way, seed).miss(log.t[late], tips)
+        told["tag_rms_mm"] = 1e3 * metrics.rms(miss)
+    return told
+
+
+def measured(log: Log, wanted: Any) -> dict[str, Any]:
+    """What is told of a run.
+
+    Args:
+        log: The run.
+        wanted: The joint angles that belong to its target, a function of time.
+
+    Returns:
+        The fields of `metrics.Summary`; the error of tracking alone, after the first second; the
+        last error; the joints' RMS error; and a digest of the motion, to compare bit for bit.
+    """
+    model = Model(log.side, log.plant)
+    e, late = metrics.tip_error(log, model), log.t >= 1.0
+    off = np.array([wanted(t).position for t in log.t]) - log.q
+    told = asdict(metrics.summary(log, model)) | {
+        "late_rms_mm": 1e3 * metrics.rms(e[late, :3]),
+        "late_max_mm": 1e3 * float(np.linalg.norm(e[late, :3], axis=1).max()),
+        "late_rms_deg": float(np.degrees(metrics.rms(e[late, 3:]))),
+        "end_mm": 1e3 * float(np.linalg.norm(e[-1, :3])),
+        "rms_joint_deg": float(np.degrees(metrics.rms(off))),
+        "digest": hashlib.sha256(log.q.tobytes() + log.tau.tobytes()).hexdigest()[:16],
+    }
+    return {key: None if value == math.inf else value for key, value in told.items()}
+
+
+# Two questions more, about gains
+
+
+def gain_grid(seeds: int) -> list[dict[str, Any]]:
+    """Cells that ask whether larger gains converge faster."""
+    return cells(Kp=(1.5, 3.0, 6.0, 12.0), plant=("ideal", "baxter"), seed=range(seeds))
+
+
+def converge(Kp: float, plant: str, seed: int) -> Mapping[str, float]:
+    """Joint velocity PD comes back to the ready pose: how long until a tenth of the error is left.
+
+    Returns:
+        "tenth_s" in [s], and "rest_mm": the RMS error of the tip in the last second.
+    """
+    goal = _path("line")
+    with Arm(goal.side, PLANTS[plant], seed, q0=goal.start(seed)) as arm:
+        log = run(arm, Hold(goal.q0, 4.0), JointVelocityPD(Kp))
+    off = np.linalg.norm(metrics.joint_error(log), axis=1)
+    e = metrics.tip_error(log)[log.t >= 3.0, :3]
+    tenth = metrics.settling_time(log.t, off, 0.1 * float(off[0]))
+    return {"tenth_s": tenth, "rest_mm": 1e3 * metrics.rms(e)}
+
+
+def noise_grid(seeds: int) -> list[dict[str, Any]]:
+    """Cells that ask what keeps the derivative gain small."""
+    plants = ("baxter", "baxter without noise")
+    return cells(Kd=(0.0, 0.1, 0.5, 1.0, 2.0, 3.0), plant=plants, seed=range(seeds))
+
+
+def derivative(Kd: float, plant: str, seed: int) -> Mapping[str, float]:
+    """Joint velocity PD on the line with a derivative gain.
+
+    Returns:
+        "late_rms_mm": the RMS error after the first second; "shake_mm_s": how much the tip's speed
+        jitters in the last half second, when it should stand still.
+    """
+    goal = _path("line")
+    with Arm(goal.side, PLANTS[plant], seed, q0=goal.start(seed)) as arm:
+        log = run(arm, goal.joints, JointVelocityPD(3.0, Kd))
+    still = log.t >= log.t[-1] - 0.5
+    model = metrics.model_of(log)
+    e, v = metrics.tip_error(log, model), metrics.tip_velocities(log, model)
+    return {
+        "late_rms_mm": 1e3 * metrics.rms(e[log.t >= 1.0, :3]),
+        "shake_mm_s": 1e3 * metrics.rms(v[still]),
+    }
+
+
+TABLES = {
+    "late_rms_mm": "RMS position error after the first second [mm]",
+    "late_max_mm": "Largest position error after the first second [mm]",
+    "late_rms_deg": "RMS orientation error after the first second [degrees]",
+    "rms_mm": "RMS position error, the start included [mm]",
+    "rms_velocity_mm_s": "RMS velocity error of the tip [mm/s]",
+    "rms_joint_deg": "RMS joint error, all joints together [degrees]",
+    "settling": "Time until the tip stays within 5 mm [s]",
+    "effort": "RMS motor torque [N m]",
+    "saturated": "Share of the ticks in which a limit cut the command",
+    "duration": "Time for the task [s]",
+}
+
+
+def tables(rows: list[Row]) -> str:
+    """The campaign in Markdown: a table for each number and plant."""
+    seeds = len({row["seed"] for row in rows})
+    parts = [
+        f"# Campaign, {seeds} seed{'s' * (seeds > 1)}\n\nMean over the seeds [least, largest]."
+    ]
+    for number, title in TABLES.items():
+        for plant in dict.fromkeys(row["plant"] for row in rows):
+            body = table(pick(rows, plant=plant), "way", "task", number)
+            parts.append(f"## {title}, {plant} arm\n\n{body}")
+    if chased := pick(rows, task="tag"):
+        title = "Distance from where the tag really put the tip, RMS after two seconds [mm]"
+        parts.append(f"## {title}\n\n{table(chased, 'way', 'plant', 'tag_rms_mm')}")
+    return "\n\n".join(parts) + "\n"
+
+
+def claims(judged: list[Finding]) -> str:
+    """The verdicts in Markdown."""
+    said = "\n".join(f"- {v}" for v in judged) or "One seed judges no claim; take two or more."
+    return f"\n## What the report claimed\n\n{said}\n"
+
+
+def _without(row: Row, key: str) -> Row:
+    return {name: value for name, value in row.items() if name != key}
+
+
+def main() -> None:
+    """Run the campaign and write build/campaign.json and build/campaign/."""
+    from . import pictures
+
+    parser = argparse.ArgumentParser(prog="python -m solutions.study.campaign", description=__doc__)
+    parser.add_argument("--seeds", type=int, default=3, help="how many seeds (3)")
+    parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
+    parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
+    parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
+    parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
+    parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
+    ways = [*known(Model("left")), FEED_FORWARD, BASELINE]
+    help_on_ways = "only this, and only print it; more than once for more: " + ", ".join(ways)
+    parser.add_argument("--way", action="append", choices=ways, metavar="WAY", help=help_on_ways)
+    options = parser.parse_args()
+    where = {"jobs": options.jobs, "dask": options.dask}
+    began = time.monotonic()
+
+    def done(job: Job, grid: list[Row], what: str) -> list[Row]:
+        return work_through(job, grid, progress=Meter(what), **where)
+
+    if options.way:
+        print(tables(done(numbers, grid(options.seeds, options.way), "runs")))
+        return
+    rows = done(numbers, grid(options.seeds), "runs")
+    seconds = time.monotonic() - began
+    gains = done(converge, gain_grid(options.seeds), "gains")
+    noise = done(derivative, noise_grid(options.seeds), "noise")
+    judged = verdicts(rows, gains, noise) if options.seeds > 1 else []
+    folder = options.out / "campaign"
+    folder.mkdir(parents=True, exist_ok=True)
+    text = tables(rows) + claims(judged)
+    (folder / "tables.md").write_text(text)
+    drawn, shot = [], []
+    if not options.no_pictures:  # on this machine, for they write files
+        where["dask"] = None
+        drawn = done(pictures.draw, pictures.grid(folder), "figures")
+        shot = done(pictures.shoot, pictures.film_grid(folder), "films")
+    found = {
+        "seeds": options.seeds,
+        "seconds": round(seconds, 1),
+        "rows": rows,
+        "gains": gains,
+        "noise": noise,
+        "verdicts": [{**asdict(v), "outcome": v.outcome.value} for v in judged],
+        "figures": [_without(row, "folder") for row in drawn],
+        "films": [_without(row, "folder") for row in shot],
+    }
+    path = options.out / "campaign.json"
+    path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    if options.keep:
+        save_campaign(rows)
+    print(text)
+    made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
+    print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
+
+
+if __name__ == "__main__":
+    from solutions.study import campaign  # by its own name, so that workers find the jobs
+
+    try:
+        campaign.main()
+    except LabkitError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,246 @@
+"""Impedance you can feel: push the arm, let it run into a wall, tie it to a spring.
+
+Each experiment sends the same contenders through the same thing and gives frozen results to draw:
+a stiff position controller, computed torque, and the two impedance controllers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from labkit import (
+    IDEAL,
+    Arm,
+    Hold,
+    JointPosition,
+    Line,
+    Log,
+    Model,
+    Plant,
+    PosePath,
+    Push,
+    Quintic,
+    Sample,
+    Spring,
+    State,
+    Trajectory,
+    Wall,
+    World,
+    metrics,
+    run,
+)
+from labkit.scene import TIP_RADIUS, contact_stiffness
+from labkit.shapes import Array, locked
+from labkit.world import Thing
+
+from .gains import TIP_SPRING, Candidate, five
+
+CONTENDERS = ("position", "joint torque", "joint impedance", "workspace impedance")
+
+
+@dataclass(frozen=True, eq=False)
+class Encounter:
+    """One contender's meeting with something.
+
+    Attributes:
+        name: Of the controller.
+        t: Time, shape (N,) in [s].
+        displacement: Actual minus target position of the tip, world axes, shape (N, 3) in [m].
+        turn: Actual minus target orientation, world axes, shape (N, 3) in [rad].
+        wrench: On the arm, as its torque sensors tell, world axes, shape (N, 6) in [N], [N m].
+        log: The run.
+    """
+
+    name: str
+    t: Array
+    displacement: Array
+    turn: Array
+    wrench: Array
+    log: Log
+
+    @property
+    def at_rest(self) -> Array:
+        """Mean displacement over the last tenth of the run, shape (3,) in [m]."""
+        return np.asarray(self.displacement[-max(1, len(self.t) // 10) :].mean(axis=0))
+
+    @property
+    def force_at_rest(self) -> Array:
+        """Mean force over the last tenth of the run, shape (3,) in [N]."""
+        return np.asarray(self.wrench[-max(1, len(self.t) // 10) :, :3].mean(axis=0))
+
+
+def push(
+    force: Any = (0.0, 10.0, 0.0),
+    *,
+    moment: Any = (0.0, 0.0, 0.0),
+    duration: float = 3.0,
+    rest: float = 0.0,
+    plant: Plant = IDEAL,
+    seed: int = 0,
+    names: tuple[str, ...] = CONTENDERS,
+) -> tuple[Encounter, ...]:
+    """Push the arm while it is to stay where it is.
+
+    Args:
+        force: On the tip, world axes, shape (3,) in [N].
+        moment: On the tip, world axes, shape (3,) in [N m].
+        duration: Of the push, in [s].
+        rest: How long to go on after it, in [s].
+        plant: What the arm is like.
+        seed: Of its noise.
+        names: Which contenders.
+    """
+    things = (Push(force, moment, duration=duration),)
+    return _meet(things, lambda T: Hold(T, duration + rest), plant, seed, names)
+
+
+def wall(
+    *,
+    gap: float = 0.05,
+    beyond: float = 0.03,
+    stiffness: float = 5_000.0,
+    plant: Plant = IDEAL,
+    seed: int = 0,
+    names: tuple[str, ...] = CONTENDERS,
+) -> tuple[Encounter, ...]:
+    """Send the tip along x to a place behind a wall, in 2 s, and wait there for 2 s.
+
+    Args:
+        gap: From the tip's ball to the wall, in [m].
+        beyond: How far behind the touching place the target ends, in [m].
+        stiffness: Of the wall alone, in [N/m].
+        plant: What the arm is like.
+        seed: Of its noise.
+        names: Which contenders.
+    """
+    face = the_wall(gap, stiffness)
+    way = (gap + beyond) * np.eye(3)[0]
+    return _meet((face,), lambda T: _there(T, way), plant, seed, names)
+
+
+def the_wall(gap: float = 0.05, stiffness: float = 5_000.0) -> Wall:
+    """The wall of the experiment, facing the ready arm's tip."""
+    p = Model().pose(Model().robot.ready)[:3, 3]
+    return Wall(p + (gap + TIP_RADIUS) * np.eye(3)[0], (-1.0, 0.0, 0.0), stiffness=stiffness)
+
+
+def predicted_wall_force(face: Wall, K: float, beyond: float) -> float:
+    """What a tip of stiffness ``K`` [N/m] presses with: the springs in series, in [N]."""
+    return beyond / (1.0 / K + 1.0 / contact_stiffness(face))
+
+
+def spring(
+    *,
+    stiffness: float = 200.0,
+    way: float = 0.1,
+    plant: Plant = IDEAL,
+    seed: int = 0,
+    names: tuple[str, ...] = CONTENDERS,
+) -> tuple[Encounter, ...]:
+    """Tie the tip to where it starts and send it away along y, in 2 s, then wait for 2 s.
+
+    Args:
+        stiffness: Of the spring, in [N/m].
+        way: How far, in [m].
+        plant: What the arm is like.
+        seed: Of its noise.
+        names: Which contenders.
+    """
+    anchor = Model().pose(Model().robot.ready)[:3, 3]
+    return _meet(
+        (Spring(anchor, stiffness),),
+        lambda T: _there(T, way * np.eye(3)[1]),
+        plant,
+        seed,
+        names,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class DeadBand:
+    """How far a tip gives way to pushes of rising force, and where it stays afterwards.
+
+    Attributes:
+        force: Each push, shape (k,) in [N].
+        pushed: Displacement along it at the end of the push, shape (k,) in [m].
+        released: Displacement along it long after the push, shape (k,) in [m].
+        stiffness: What the controller was asked for, in [N/m].
+    """
+
+    force: Array
+    pushed: Array
+    released: Array
+    stiffness: float
+
+    @property
+    def width(self) -> float:
+        """The largest of the pushes, in [N], that moved the tip by less than a tenth of F/K."""
+        stuck = self.pushed < 0.1 * self.force / self.stiffness
+        return float(self.force[stuck].max(initial=0.0))
+
+
+def dead_band(
+    plant: Plant, *, axis: int = 2, forces: Any = (0.5, 1.0, 2.0, 4.0, 8.0), seed: int = 0
+) -> DeadBand:
+    """Push the workspace impedance controller along one axis for 2 s, harder and harder.
+
+    Dry friction holds a joint until the torque on it is larger: below that nothing gives way, and
+    after a push the spring leaves the joint where friction can hold it.  Noise in the measured
+    speeds shakes the joints through the damping and so narrows the band.
+
+    Args:
+        plant: What the arm is like.
+        axis: 0, 1 or 2 for x, y, z.
+        forces: The pushes, shape (k,) in [N].
+        seed: Of the plant's noise.
+    """
+    along = np.eye(3)[axis]
+    name = "workspace impedance"
+    pushed, released = [], []
+    for force in forces:
+        met = push(force * along, duration=2.0, rest=2.0, plant=plant, seed=seed, names=(name,))[0]
+        way = met.displacement @ along
+        pushed.append(way[np.searchsorted(met.t, 2.0 - 1e-9)])
+        released.append(way[-1])
+    return DeadBand(
+        force=locked(np.array(forces, dtype=float)),
+        pushed=locked(np.array(pushed)),
+        released=locked(np.array(released)),
+        stiffness=TIP_SPRING[axis],
+    )
+
+
+def position(state: State, target: Sample) -> JointPosition:
+    """Baxter's position mode, told where to be at each tick: as stiff as the motors are strong."""
+    return JointPosition(target.position)
+
+
+def _contender(name: str, model: Model) -> Candidate:
+    return Candidate(position, 200.0, True) if name == "position" else five(model)[name]
+
+
+def _there(T_wt: Array, way: Array) -> Trajectory:
+    line = Line(T_wt[:3, 3], T_wt[:3, 3] + way)
+    return Trajectory(PosePath(line, T_wt[:3, :3]), Quintic(2.0))
+
+
+def _meet(
+    things: tuple[Thing, ...], make_target: Any, plant: Plant, seed: int, names: tuple[str, ...]
+) -> tuple[Encounter, ...]:
+    model = Model("left", plant)
+    ready = model.robot.ready
+    target = make_target(model.pose(ready))
+    wait = 2.0 if isinstance(target, Trajectory) else 0.0
+    out = []
+    for name in names:
+        tuned = _contender(name, model)
+        goal = tuned.target(model, target, ready)
+        with Arm("left", plant, seed, q0=ready, world=World(things=things)) as arm:
+            log = run(arm, goal, tuned.controller, tuned.rate, target.duration + wait)
+        off = -metrics.tip_error(log, model)
+        wrench = locked(metrics.felt_wrench(log, model))
+        out.append(Encounter(name, log.t, locked(off[:, :3]), locked(off[:, 3:]), wrench, log))
+    return tuple(out)

@@ -1,0 +1,114 @@
+"""The gains with which the five controllers are compared, and how often each is asked.
+
+Two sets: one for arms whose state is exact and fresh, one for arms that publish it late and noisy,
+as Baxter does.  There a loop must be slower than the age of what it knows: the state is up to 14 ms
+old and a command acts for 5 ms, so bandwidths stay below about 20 rad/s.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from labkit import Model, Plant
+from labkit.run import Controller
+
+from .joint_impedance import JointImpedance
+from .joint_torque import AugmentedPD, ComputedTorque
+from .joint_velocity import JointVelocityPD
+from .workspace_impedance import WorkspaceImpedance
+from .workspace_velocity import WorkspaceVelocityPD
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A controller ready to run.
+
+    Attributes:
+        controller: The controller.
+        rate: How often to ask it, in [Hz].
+        joints: Whether it follows joint angles; if not, poses.
+    """
+
+    controller: Controller
+    rate: float
+    joints: bool
+
+    def target(self, model: Model, trajectory: Any, q0: Any) -> Any:
+        """The target it can follow along a trajectory of poses, from joint angles q0, (7,)."""
+        return model.joint_trajectory(trajectory, q0) if self.joints else trajectory
+
+
+def five(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
+    """The five controllers of the course.
+
+    Args:
+        model: What they are told of the arm.
+        plant: What the arm is like; None takes the model's own plant.
+    """
+    plant = plant or model.plant
+    gravity, slow = not plant.gravity_compensation, _slow(plant)
+    fast = 200.0 if slow else 1000.0
+    K, D = _JOINT_SPRING[slow], _JOINT_DAMPER[slow]
+    return {
+        "workspace velocity": Candidate(WorkspaceVelocityPD(model, Kp=_SPEED[slow]), 200.0, False),
+        "joint velocity": Candidate(JointVelocityPD(Kp=_SPEED[slow]), 200.0, True),
+        "joint torque": Candidate(ComputedTorque(model, *_COMPUTED[slow], gravity), fast, True),
+        "workspace impedance": Candidate(
+            WorkspaceImpedance(model, K=TIP_SPRING, gravity=gravity), fast, False
+        ),
+        "joint impedance": Candidate(JointImpedance(model, K, D, gravity=gravity), fast, True),
+    }
+
+
+def variants(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
+    """The other form of the torque law, and both impedances with an inertia of their own."""
+    plant = plant or model.plant
+    gravity, slow = not plant.gravity_compensation, _slow(plant)
+    fast = 200.0 if slow else 1000.0
+    K, D = _JOINT_SPRING[slow], _JOINT_DAMPER[slow]
+    return {
+        "augmented PD": Candidate(AugmentedPD(model, *_AUGMENTED[slow], gravity), fast, True),
+        "shaped workspace impedance": Candidate(
+            WorkspaceImpedance(model, K=TIP_SPRING, inertia=_TIP_INERTIA[slow], gravity=gravity),
+            fast,
+            False,
+        ),
+        "shaped joint impedance": Candidate(
+            JointImpedance(model, K, D, inertia=_JOINT_INERTIA[slow], gravity=gravity), fast, True
+        ),
+    }
+
+
+def known(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
+    """All controllers that the campaign can run."""
+    return {**five(model, plant), **variants(model, plant)}
+
+
+def _slow(plant: Plant) -> bool:
+    """Whether the arm's state comes late, seldom or noisy."""
+    return bool(plant.state_rate or plant.state_delay or any(plant.velocity_noise))
+
+
+# Each pair: for fresh states, for late ones.  Stiffness falls towards the wrist with the inertia,
+# which without rotors is below 0.001 kg m^2 at w2.
+_SPEED = (10.0, 3.0)  # 1/s
+_COMPUTED = ((400.0, 40.0), (225.0, 30.0))  # 1/s^2, 1/s
+_AUGMENTED = (
+    ((400.0, 400.0, 200.0, 200.0, 10.0, 10.0, 1.0), (80.0, 80.0, 20.0, 20.0, 2.0, 2.0, 0.2)),
+    ((200.0, 200.0, 100.0, 100.0, 15.0, 15.0, 10.0), (30.0, 30.0, 15.0, 15.0, 2.0, 2.0, 1.5)),
+)  # N m/rad, N m s/rad
+_JOINT_SPRING = (
+    (200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0),
+    (100.0, 100.0, 60.0, 60.0, 10.0, 10.0, 5.0),
+)  # N m/rad
+_JOINT_DAMPER = (
+    (40.0, 40.0, 15.0, 12.0, 1.0, 1.0, 0.05),
+    (20.0, 20.0, 12.0, 12.0, 2.0, 2.0, 1.5),
+)  # N m s/rad
+_JOINT_INERTIA = (
+    (2.0, 2.0, 1.0, 0.5, 0.1, 0.1, 0.05),
+    (3.0, 3.0, 1.0, 1.0, 0.2, 0.2, 0.1),
+)  # kg m^2
+TIP_SPRING = (300.0, 300.0, 300.0, 20.0, 20.0, 20.0)  # N/m, N m/rad
+_TIP_INERTIA = ((5.0, 5.0, 5.0, 0.1, 0.1, 0.1), (5.0, 5.0, 5.0, 0.3, 0.3, 0.3))  # kg, kg m^2

@@ -1,0 +1,116 @@
+"""Following a tag, as a task on which controllers can be compared.
+
+What a follower makes of a camera's readings is recorded once for each seed, with the arm out of
+play: the camera stands still beside the table, so what it sees does not depend on the arm.  Every
+controller then follows the same reference, and is also judged by how far the tip is from where the
+tag really was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from labkit import Chain, Circle, Hold, PosePath, Quintic, Trajectory, World, robot, se3
+from labkit.paths import Spline
+from labkit.shapes import Array
+from labkit.tags.board import Board
+from labkit.tags.camera import Camera, looking_at
+from labkit.tags.stream import TagStream, TagTarget
+from labkit.tags.tag import Tag
+
+from ..tag_following import TagFollower
+from .tasks import Task, ready_pose
+from .visual_servoing import SequentialServoing
+
+DURATION = 8.0
+"""How long to follow, in [s]."""
+RATE = 200.0
+"""How often the follower is asked while it is recorded, in [Hz]."""
+LAP = 6.5
+"""How long the tag takes for its circle, in [s]."""
+RADIUS = 0.06
+"""Of the tag's circle, in [m]."""
+OFFSET = np.array([0.0, 0.0, 0.2])
+"""From the tag to where the tip should be, world axes, in [m]."""
+NOISE = 2.0
+"""Of the camera, in grey levels."""
+
+
+@dataclass(frozen=True)
+class Even:
+    """Even pace, s = t / duration, in motion at both ends.
+
+    Attributes:
+        duration: In [s].
+    """
+
+    duration: float
+
+    def __call__(self, t: float) -> tuple[float, float, float]:
+        """s, ds/dt and d2s/dt2 at time ``t`` [s]."""
+        return min(max(t / self.duration, 0.0), 1.0), 1.0 / self.duration, 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class Chase:
+    """A recorded reference and the truth behind it.
+
+    Attributes:
+        task: The reference as a task.
+        t: Times, shape (n,) in [s].
+        goal: Where the tip should have been, shape (n, 3) in [m].
+    """
+
+    task: Task
+    t: Array
+    goal: Array
+
+    def miss(self, t: Any, tips: Any) -> Array:
+        """How far tips (k, 3) [m] were from their goal at times (k,) [s], shape (k,) in [m]."""
+        goal = np.column_stack([np.interp(t, self.t, x) for x in self.goal.T])
+        return np.asarray(np.linalg.norm(goal - tips, axis=1))
+
+
+def followed(seed: int) -> Chase:
+    """The course's way: ten pictures a second, a filter, a reference that never jumps."""
+    return _record(seed, 10.0, 0.1, lambda: TagFollower(ready_pose(), OFFSET))
+
+
+def sequential(seed: int) -> Chase:
+    """The report's way (its Algorithm 1): look every 5 s for a second, then a line from rest."""
+    return _record(seed, 0.2, 1.0, lambda: SequentialServoing(ready_pose(), OFFSET))
+
+
+def _record(seed: int, rate: float, delay: float, make: Callable[[], Any]) -> Chase:
+    times = np.arange(round(DURATION * RATE) + 1) / RATE
+    path, goal = np.empty((len(times), 3)), np.empty((len(times), 3))
+    with World() as world:
+        board, camera = staged(world, seed)
+        following = TagTarget(TagStream(camera, board.tag, rate, delay, seed=seed), make())
+        for k, t in enumerate(times):
+            path[k] = following(float(t)).pose[:3, 3]  # type: ignore[union-attr]
+            goal[k] = board.T_wm[:3, 3] + OFFSET
+            world.step(round(1.0 / (RATE * world.dt)))
+    curve = PosePath(Spline(times / DURATION, path), ready_pose()[:3, :3])
+    target = Trajectory(curve, Even(DURATION))
+    return Chase(Task("tag", target, robot("left").ready, samples=401), times, goal)
+
+
+def staged(world: World, seed: int) -> tuple[Board, Camera]:
+    """A board under the ready tip that rests, goes once round a circle and rests; a camera beside.
+
+    Args:
+        world: Where to put them; the board moves from now on.
+        seed: Of the camera's noise.
+    """
+    start = ready_pose()[:3, 3] - OFFSET
+    centre = start - (0.0, RADIUS, 0.0)
+    board = Board(world, Tag(), se3.pose(np.eye(3), start))
+    round_once = Trajectory(Circle(start, centre), Quintic(LAP))
+    board.move(Chain([Hold(start, 0.5), round_once, Hold(start, 1.0)]))
+    eye = centre + (0.75, -0.1, 0.45)
+    return board, Camera(world, looking_at(eye, centre), noise=NOISE, seed=seed)

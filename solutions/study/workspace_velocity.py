@@ -1,0 +1,67 @@
+r"""Workspace velocity PD with feed-forward, the elbow's freedom spent on a posture.
+
+.. math::
+
+   V &= V_d + K_p\,e + K_d\,(V_d - J \dot q), \qquad
+   e = \bigl(p_d - p,\ \log(R_d R^T)^\vee\bigr) \\
+   u &= J^+ V + (I - J^\dagger J)\, k\,(q_{posture} - q)
+
+Lynch & Park, section 11.3.3; Siciliano, sections 3.5 and 3.7.  J is the tip Jacobian in world axes,
+J^+ its inverse damped near singularities; the null space takes the undamped one, or the posture
+would push the tip.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from labkit import JointVelocity, Model, PoseSample, State, se3
+from labkit.shapes import as_gains, as_number
+
+from .singular import Watch, damped_inverse
+
+
+@dataclass(frozen=True, eq=False)
+class WorkspaceVelocityPD:
+    """Joint speeds that make the tip follow a trajectory of poses.
+
+    Attributes:
+        model: Of the arm.
+        Kp: Gains on the position [1/s] and orientation [1/s] error, shape (6,) or one number.
+        Kd: Gains on the error of the twist, shape (6,) or one number, without unit.
+        posture: Joint angles to stay near, shape (7,) in [rad]; None is `Robot.ready`.
+        pull: How fast the free motion goes there, in [1/s].
+        damping: The largest lambda squared.
+        watch: Decides when to damp.
+    """
+
+    model: Model
+    Kp: Any = 5.0
+    Kd: Any = 0.0
+    posture: Any = None
+    pull: float = 1.0
+    damping: float = 4e-3
+    watch: Watch = field(default_factory=Watch)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "Kp", as_gains(self.Kp, 6, "Kp"))
+        object.__setattr__(self, "Kd", as_gains(self.Kd, 6, "Kd"))
+        posture = self.model.robot.ready if self.posture is None else self.posture
+        object.__setattr__(self, "posture", self.model.within_limits(posture, "posture"))
+        as_number(self.pull, "pull", least=0.0)
+        as_number(self.damping, "damping", least=0.0)
+
+    def __call__(self, state: State, target: PoseSample) -> JointVelocity:
+        """The command at this tick; the target's samples are poses."""
+        J = self.model.tip_jacobian(state.q)
+        e = se3.pose_error(target.pose, self.model.pose(state.q))
+        V = target.twist + self.Kp * e + self.Kd * (target.twist - J @ state.dq)
+        free = self.pull * (self.posture - state.q)
+        damping = self.watch.share(J) * self.damping
+        if damping == 0.0:
+            return JointVelocity(free + damped_inverse(J, 0.0) @ (V - J @ free))
+        free = free - np.linalg.pinv(J) @ (J @ free)
+        return JointVelocity(damped_inverse(J, damping) @ V + free)

@@ -1,0 +1,19 @@
+"""A course away from this one, to measure in."""
+
+import shutil
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+from labkit.grade.course import Course
+
+ROOT = Path(__file__).parents[2]
+
+
+@contextmanager
+def fresh_course():
+    """A course of these sources with nothing released yet; gone with the block."""
+    with tempfile.TemporaryDirectory(prefix="labkit-bench-") as folder:
+        (Path(folder) / "solutions").symlink_to(ROOT / "solutions")
+        shutil.copy(ROOT / "nbgrader_config.py", folder)
+        yield Course(Path(folder))

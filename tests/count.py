@@ -1,0 +1,72 @@
+"""How large labkit is, in lines of code and statements per storey: `make count`.
+
+A line of code has a token on it that is neither a comment nor a part of a docstring.
+"""
+
+import ast
+import io
+import tokenize
+from collections import Counter
+from pathlib import Path
+
+LABKIT = Path(__file__).parents[1] / "labkit"
+STOREYS = {"check": "course", "course": "course", "grade": "grader", "grader": "grader",
+           "cli.py": "grader", "verbs.py": "grader"}  # fmt: skip
+"""Of each folder and of the command line; what is none of them is the lab."""
+LARGE = 200
+BLANK = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
+         tokenize.ENDMARKER}  # fmt: skip
+
+
+def lines(text):
+    """Lines of code in a module's text."""
+    found = set()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type not in BLANK:
+            found.update(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(ast.parse(text)):
+        if is_text(node):
+            found -= set(range(node.lineno, node.end_lineno + 1))
+    return len(found)
+
+
+def statements(text):
+    """Statements in a module's text, docstrings apart."""
+    return sum(isinstance(n, ast.stmt) and not is_text(n) for n in ast.walk(ast.parse(text)))
+
+
+def is_text(node):
+    """Whether a statement is a docstring, or words under a constant."""
+    match node:
+        case ast.Expr(ast.Constant(str())):
+            return True
+    return False
+
+
+def main():
+    """Print the table, the large files and how many names ``lk.`` offers."""
+    code, stated, files, large = Counter(), Counter(), Counter(), []
+    for path in sorted(LABKIT.rglob("*.py")):
+        storey = STOREYS.get(path.relative_to(LABKIT).parts[0], "lab")
+        text = path.read_text(encoding="utf-8")
+        count = lines(text)
+        code[storey] += count
+        stated[storey] += statements(text)
+        files[storey] += 1
+        if count > LARGE:
+            large.append(f"{path.relative_to(LABKIT.parent)} ({count})")
+    print("storey   files   lines   statements")
+    for storey in ("lab", "course", "grader"):
+        print(f"{storey:8}{files[storey]:6}{code[storey]:8}{stated[storey]:13}")
+    print(f"together{files.total():6}{code.total():8}{stated.total():13}")
+    print(f"files over {LARGE} lines of code: {', '.join(large) or 'none'}")
+    tree = ast.parse((LABKIT / "__init__.py").read_text(encoding="utf-8"))
+    (names,) = (
+        n.value for n in tree.body
+        if isinstance(n, ast.Assign) and getattr(n.targets[0], "id", "") == "__all__"
+    )  # fmt: skip
+    print(f"names exported by labkit: {len(names.elts)}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,180 @@
+"""Detection: poses against the truth of two independent pictures, and sentences when it fails."""
+
+import cv2
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit import se3
+from labkit.errors import LabkitError, OutOfRange, TypeMismatch, UnknownName
+from labkit.tags.detection import (
+    DuplicateTag,
+    TagNotFound,
+    pose_covariance,
+    reprojection_error,
+    tag_pose,
+    tag_poses,
+)
+from labkit.tags.tag import APRILTAG, ARUCO
+from solutions.study.sensing import Setup, random_poses, read
+
+LENS = lk.Intrinsics()
+
+
+def painted(tag, T_cm, fine=8):
+    """A picture of a tag made without PyBullet: its image warped, many times as fine, averaged."""
+    lens = LENS.resized(fine)
+    half = 0.5 * tag.paper
+    paper = np.array([[-half, half, 0], [half, half, 0], [half, -half, 0], [-half, -half, 0]])
+    seen = lens.project(paper @ T_cm[:3, :3].T + T_cm[:3, 3])
+    image = tag.image(cell=32)
+    n = len(image)
+    flat = np.array([[0, 0], [n, 0], [n, n], [0, n]]) - 0.5
+    H = cv2.getPerspectiveTransform(flat.astype(np.float32), seen.astype(np.float32))
+    size = (lens.width, lens.height)
+    large = cv2.warpPerspective(image, H, size, flags=cv2.INTER_LINEAR, borderValue=120)
+    return cv2.resize(large, (LENS.width, LENS.height), interpolation=cv2.INTER_AREA)
+
+
+def tilted(tilt, distance=0.7, roll=0.4):
+    lean = se3.rotation(np.array([tilt, 0.0, 0.0])) @ se3.rotation(np.array([0.0, 0.0, roll]))
+    return se3.pose(np.diag([1.0, -1.0, -1.0]) @ lean, np.array([0.03, -0.02, distance]))
+
+
+@pytest.mark.parametrize("dictionary", [APRILTAG, ARUCO])
+def test_the_pose_in_rendered_pictures_is_the_true_one(dictionary):
+    """All of 30 random tags are found, to 2 mm, and to half a degree where they are tilted."""
+    setup = Setup(tag=lk.Tag(5, dictionary=dictionary))
+    readings = read(setup, random_poses(setup, 30, np.random.default_rng(3)))
+    assert readings.found.all()
+    assert np.linalg.norm(readings.error[:, :3], axis=1).max() < 2.5e-3
+    steep = readings.tilt > np.pi / 12
+    assert np.degrees(np.linalg.norm(readings.error[steep, 3:], axis=1)).max() < 0.8
+
+
+def test_corners_have_no_bias():
+    """The corners' mean error over random poses is a few thousandths of a pixel, both ways."""
+    setup = Setup()
+    readings = read(setup, random_poses(setup, 60, np.random.default_rng(8)))
+    np.testing.assert_allclose(readings.corner_error.mean(axis=(0, 1)), 0.0, atol=0.01)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.4, 0.9])
+def test_the_pose_in_a_picture_made_without_the_renderer_is_the_true_one(tilt):
+    tag, T_cm = lk.Tag(11), tilted(tilt)
+    found = lk.tags.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 11)
+    np.testing.assert_allclose(found.T_cm[:3, 3], T_cm[:3, 3], atol=1.5e-3)
+    assert np.degrees(se3.angle_between(found.T_cm[:3, :3], T_cm[:3, :3])) < 1.0
+
+
+def test_knowing_the_number_changes_nothing_but_the_time():
+    """With a size for each number OpenCV searches half of the pixels; the pose is as good."""
+    tag = lk.Tag(11)
+    for tilt in (0.2, 0.7):
+        picture = painted(tag, tilted(tilt))
+        (slow,), (quick,) = (lk.detect_tags(picture, LENS, size) for size in (0.1, {11: 0.1}))
+        np.testing.assert_allclose(slow.corners, quick.corners, atol=0.02)
+
+
+def test_the_better_of_the_two_poses_comes_first_and_their_ratio_is_told():
+    """At 45 degrees the other pose, leaning the other way, fits many times worse."""
+    tag, T_cm = lk.Tag(), tilted(0.8)
+    pixels = LENS.project(tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3])
+    best, other = tag_poses(pixels, LENS, 0.1)
+    np.testing.assert_allclose(best, T_cm, atol=1e-6)
+    lean = [se3.inverse(T)[2, 1] for T in (best, other)]
+    assert lean[0] * lean[1] < 0.0
+    assert reprojection_error(other, pixels, LENS, 0.1) > 1.0
+    found = lk.tags.find_tag(lk.detect_tags(painted(tag, T_cm), LENS, 0.1), 0)
+    assert found.ratio > 5.0 and found.error < 0.1
+
+
+def test_corners_may_be_a_list_and_must_be_those_of_a_square():
+    pixels = LENS.project(lk.Tag().corners @ tilted(0.8)[:3, :3].T + tilted(0.8)[:3, 3])
+    np.testing.assert_array_equal(tag_pose(pixels.tolist(), LENS, 0.1), tag_pose(pixels, LENS, 0.1))
+    for none in (np.zeros((4, 2)), [[0, 0], [9, 9], [9, 0], [0, 9]]):
+        with pytest.raises(lk.errors.OutOfRange, match="no square has its corners at the pixels"):
+            tag_pose(none, LENS, 0.1)
+
+
+def test_seen_from_the_front_the_tilt_is_a_guess():
+    """The ratio of the two errors falls towards 1 as the tag turns to the camera."""
+    tag = lk.Tag()
+    ratios = []
+    for tilt in (0.02, 0.8):
+        picture = painted(tag, tilted(tilt, distance=1.5))
+        ratios.append(lk.detect_tags(picture, LENS, 0.1)[0].ratio)
+    assert 1.0 <= ratios[0] < 3.0 < ratios[1]
+
+
+def test_the_covariance_is_what_noise_on_the_corners_does():
+    """Against 3000 poses from corners with noise drawn at random."""
+    tag, T_cm, noise = lk.Tag(), tilted(0.7), 0.1
+    pixels = LENS.project(tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3])
+    random = np.random.default_rng(1)
+    drawn = [pixels + noise * random.standard_normal((4, 2)) for _ in range(3000)]
+    errors = [se3.pose_error(T_cm, tag_pose(p, LENS, 0.1)) for p in drawn]
+    expected = pose_covariance(T_cm, LENS, 0.1, noise)
+    scale = np.sqrt(np.diag(expected))
+    seen = np.cov(np.array(errors).T)
+    np.testing.assert_allclose(seen / np.outer(scale, scale), expected / np.outer(scale, scale),
+                               atol=0.12)  # fmt: skip
+
+
+def test_no_tag_in_view_is_an_empty_answer_and_a_named_error():
+    blank = np.full((480, 640), 200, np.uint8)
+    found = lk.detect_tags(blank, LENS, 0.1)
+    assert found == ()
+    with pytest.raises(TagNotFound, match=r"tag 4 is not in the picture .found: none at all."):
+        lk.tags.find_tag(found, 4)
+
+
+def test_two_tags_with_one_number_are_a_named_error():
+    left, right = (
+        painted(lk.Tag(7), se3.pose(tilted(0.3)[:3, :3], np.array([x, 0.0, 0.7])))
+        for x in (-0.15, 0.15)
+    )
+    both = np.hstack([left[:, :320], right[:, 320:]])
+    for size in (0.1, {7: 0.1}):
+        found = lk.detect_tags(both, LENS, size)
+        assert [d.id for d in found] == [7, 7]
+        with pytest.raises(DuplicateTag, match="tag 7 is in the picture 2 times"):
+            lk.tags.find_tag(found, 7)
+
+
+def test_tags_of_other_numbers_are_passed_over_when_sizes_are_named():
+    picture = painted(lk.Tag(7), tilted(0.3))
+    assert lk.detect_tags(picture, LENS, {8: 0.1}) == ()
+
+
+def test_a_covered_tag_is_not_found_and_does_no_harm():
+    picture = painted(lk.Tag(7), tilted(0.3))
+    picture[230:, :] = 60
+    assert lk.detect_tags(picture, LENS, 0.1) == ()
+
+
+def test_noise_in_the_picture_is_survived():
+    random = np.random.default_rng(0)
+    picture = painted(lk.Tag(7), tilted(0.5)) + 15.0 * random.standard_normal((480, 640))
+    noisy = np.clip(picture, 0, 255).astype(np.uint8)
+    found = lk.tags.find_tag(lk.detect_tags(noisy, LENS, 0.1), 7)
+    np.testing.assert_allclose(found.T_cm[:3, 3], tilted(0.5)[:3, 3], atol=3e-3)
+
+
+@pytest.mark.parametrize(
+    ("ask", "error", "says"),
+    [
+        (lambda im: lk.detect_tags(im, LENS, 0.0), OutOfRange, "size is 0"),
+        (lambda im: lk.detect_tags(im, LENS, {3: -1.0}), OutOfRange, "size is -1"),
+        (lambda im: lk.detect_tags(im, LENS, 0.1, "36h12"), UnknownName, "tag dictionary '36h12'"),
+        (lambda im: lk.detect_tags(im / 255.0, LENS, 0.1), TypeMismatch, "array of uint8"),
+        (lambda im: lk.detect_tags(None, LENS, 0.1), TypeMismatch, "image is NoneType"),
+        (lambda im: lk.detect_tags(im[..., None], LENS, 0.1), TypeMismatch, "has shape"),
+        (lambda im: lk.detect_tags(im[:0], LENS, 0.1), TypeMismatch, "has shape"),
+        (lambda im: lk.detect_tags(im, 515.0, 0.1), TypeMismatch, "give the lk.Camera"),
+    ],
+)
+def test_what_cannot_be_used_is_refused_in_a_sentence(ask, error, says):
+    with pytest.raises(error, match=says) as caught:
+        ask(np.zeros((480, 640), np.uint8))
+    assert isinstance(caught.value, LabkitError)

@@ -1,0 +1,136 @@
+"""Look-ups beside the loop: rate, delay, losses, waiting; the same again from the same seed."""
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit import se3
+from labkit.errors import ControllerError, OutOfRange
+from labkit.tags.stream import detect_once
+
+EYE = lk.looking_at((3.0, 3.0, 0.7), (3.0, 3.0, 0.0), up=(1, 0, 0))
+
+
+@pytest.fixture
+def scene():
+    with lk.World() as world:
+        place = se3.pose(se3.rotation(np.array([0.1, 0.2, 0.3])), np.array([3.02, 2.97, 0.0]))
+        yield lk.Board(world, lk.Tag(2), place), lk.Camera(world, EYE)
+
+
+def polled(lookups, seconds, every=5):
+    world, found = lookups.camera.world, []
+    for _ in range(round(1000 * seconds / every)):
+        found += [(world.t, r) for r in lookups.poll()]
+        world.step(every)
+    return found
+
+
+def test_a_look_tells_where_the_tag_is_in_the_world(scene):
+    board, camera = scene
+    reading = detect_once(camera, board.tag)
+    off = se3.pose_error(board.T_wm, reading.T_wm)
+    assert np.linalg.norm(off[:3]) < 2e-3
+    spread = np.sqrt(np.diag(reading.covariance))
+    assert spread[2] > 3 * spread[0], "the camera looks down, so the height is worst"
+
+
+def test_a_believed_place_of_the_camera_may_be_a_list_and_must_be_a_pose(scene):
+    board, camera = scene
+    believed = detect_once(camera, board.tag, EYE.tolist())
+    np.testing.assert_array_equal(believed.T_wm, detect_once(camera, board.tag).T_wm)
+    with pytest.raises(OutOfRange, match="T_wc's last row"):
+        detect_once(camera, board.tag, np.ones((4, 4)))
+
+
+def test_readings_come_at_the_rate_and_as_late_as_stated(scene):
+    board, camera = scene
+    readings = polled(lk.TagStream(camera, board.tag, rate=10, delay=0.1), 1.0)
+    stamps = [r.stamp for _, r in readings]
+    np.testing.assert_allclose(stamps, np.arange(9) * 0.1, atol=1e-9)
+    for seen_at, reading in readings:
+        assert seen_at == pytest.approx(reading.arrived, abs=1e-9)
+        assert reading.age == pytest.approx(0.1)
+
+
+def test_a_late_reading_tells_of_the_moment_of_its_picture(scene):
+    """The tag moves 20 mm while the reading is under way; the reading does not know it."""
+    board, camera = scene
+    start = board.T_wm[:3, 3]
+    board.move(
+        lk.Trajectory(lk.Line(start, start + np.array([0.2, 0, 0])), lk.Trapezoid(0.2, 0.1, 100.0))
+    )
+    (_, reading), *_ = polled(lk.TagStream(camera, board.tag, rate=1, delay=0.2), 0.3)
+    assert abs(reading.T_wm[0, 3] - start[0]) < 2e-3
+
+
+def test_losses_are_the_stated_share_and_repeat_with_the_seed(scene):
+    board, camera = scene
+
+    def arrivals(seed):
+        lookups = lk.TagStream(
+            camera, board.tag, rate=50, delay=0.05, jitter=0.03, dropout=0.3, seed=seed
+        )
+        times = [t for t, _ in polled(lookups, 1.2, every=10)]
+        return lookups.count, np.round(np.array(times) - times[0], 6)
+
+    (count, first), (_, again), (_, other) = arrivals(1), arrivals(1), arrivals(2)
+    assert count.taken == 60
+    assert 0.15 < count.dropped / count.taken < 0.45
+    np.testing.assert_array_equal(first, again)
+    assert first.shape != other.shape or (first != other).any()
+
+
+def test_a_tag_out_of_view_gives_no_reading_and_no_error(scene):
+    board, camera = scene
+    board.place(se3.pose(np.eye(3), np.array([8.0, 8.0, 0.0])))
+    lookups = lk.TagStream(camera, board.tag)
+    assert polled(lookups, 0.5) == []
+    assert lookups.count.unseen == 5
+
+
+def test_a_blind_stretch_is_blind(scene):
+    board, camera = scene
+    readings = polled(lk.TagStream(camera, board.tag, delay=0.0, blind=[(0.25, 0.65)]), 1.0)
+    np.testing.assert_allclose([r.stamp for _, r in readings], [0, 0.1, 0.2, 0.7, 0.8, 0.9])
+
+
+def test_two_boards_with_one_number_stop_the_run_with_a_sentence(scene):
+    board, camera = scene
+    lk.Board(board.world, lk.Tag(2), se3.pose(np.eye(3), np.array([3.0, 3.2, 0.0])))
+    with lk.Arm("left", world=board.world) as arm:
+        pose = arm.model.pose(arm.truth().q)
+
+        def follower(t, readings):
+            return lk.PoseSample(pose, np.zeros(6), np.zeros(6))
+
+        target = lk.TagTarget(lk.TagStream(camera, board.tag), follower)
+        with pytest.raises(ControllerError, match="tag 2 is in the picture 2 times"):
+            lk.run(arm, target, lambda s, _: lk.JointVelocity(np.zeros(7)), duration=0.1)
+
+
+def test_a_follower_counts_its_times_from_the_start_of_the_run(scene):
+    board, camera = scene
+    board.world.step(300)
+    got = []
+
+    def follower(t, readings):
+        got.extend((t, r.stamp, r.arrived) for r in readings)
+        return lk.Sample(np.zeros(7), np.zeros(7), np.zeros(7))
+
+    target = lk.TagTarget(lk.TagStream(camera, board.tag, delay=0.05), follower)
+    for k in range(40):
+        target(k * 0.005)
+        board.world.step(5)
+    np.testing.assert_allclose(got, [[0.05, 0, 0.05], [0.15, 0.1, 0.15]], atol=1e-9)
+
+
+def test_dials_out_of_range_are_refused(scene):
+    board, camera = scene
+    for options, says in (
+        ({"rate": 0}, "rate"),
+        ({"delay": -1}, "delay"),
+        ({"dropout": 2}, "share"),
+    ):
+        with pytest.raises(OutOfRange, match=says):
+            lk.TagStream(camera, board.tag, **options)

@@ -1,0 +1,128 @@
+"""Tags to print, and boards that carry them."""
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+import labkit as lk
+from labkit import se3
+from labkit.errors import LabkitError, OutOfRange, TypeMismatch, UnknownName
+from labkit.tags.tag import APRILTAG, ARUCO, tag_corners
+
+
+@pytest.mark.parametrize("dictionary", [APRILTAG, ARUCO])
+def test_the_printed_image_reads_as_its_number(dictionary):
+    """An independent detector reads the tag's number off its image."""
+    kind = {APRILTAG: cv2.aruco.DICT_APRILTAG_36h11, ARUCO: cv2.aruco.DICT_4X4_250}[dictionary]
+    detector = cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(kind))
+    for number in (0, 7, 249):
+        picture = np.pad(lk.Tag(number, 0.1, dictionary).image(), 20, constant_values=90)
+        _, ids, _ = detector.detectMarkers(picture)
+        assert ids.ravel().tolist() == [number]
+
+
+def test_the_border_is_white_and_as_wide_as_stated():
+    tag = lk.Tag(3, border=2)
+    picture = tag.image(cell=10)
+    assert picture.shape == (120, 120)
+    inside = picture[20:-20, 20:-20]
+    outside = picture.astype(int).sum() - inside.astype(int).sum()
+    assert outside == 255 * (picture.size - inside.size)
+    assert (inside[:10] == 0).all() and (inside[:, -10:] == 0).all()
+    assert tag.paper == pytest.approx(0.1 * 12 / 8)
+
+
+@pytest.mark.parametrize("size", [0.05, 0.1, 0.173])
+def test_the_file_prints_at_the_stated_size(tmp_path, size):
+    """Pixels of the black square over the file's pixels per metre is its size, to 0.1 %."""
+    tag = lk.Tag(1, size)
+    with Image.open(tag.save(tmp_path / "tag.png")) as file:
+        (dpi, _), (wide, _) = file.info["dpi"], file.size
+    side = wide * tag.cells / (tag.cells + 2)
+    assert side / dpi * 0.0254 == pytest.approx(size, rel=1e-3)
+
+
+def test_corners_go_clockwise_for_who_looks_at_the_tag():
+    """From the upper left; z comes out of the paper, so clockwise is a negative turn about z."""
+    corners = tag_corners(0.2)
+    np.testing.assert_array_equal(corners[0], [-0.1, 0.1, 0.0])
+    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        assert np.linalg.norm(b - a) == pytest.approx(0.2)
+        assert np.cross(a, b)[2] < 0.0
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "says"),
+    [
+        (lambda: lk.Tag(size=0.0), OutOfRange, "size is 0, it must be greater than 0"),
+        (lambda: lk.Tag(587), OutOfRange, "numbered 0 to 586"),
+        (lambda: lk.Tag(dictionary="36h12"), UnknownName, "there is 'apriltag_36h11', 'aruco_4x4'"),
+        (lambda: lk.Tag(border=0), OutOfRange, "never found"),
+        (lambda: tag_corners(-1.0), OutOfRange, "size is -1"),
+    ],
+)
+def test_a_tag_that_cannot_be_is_refused_in_a_sentence(make, error, says):
+    with pytest.raises(error, match=says) as caught:
+        make()
+    assert isinstance(caught.value, LabkitError)
+
+
+def turned(angle, place=(0.7, 0.0, 0.0)):
+    return se3.pose(se3.rotation(np.array([0.0, 0.0, angle])), np.array(place))
+
+
+def test_a_board_stays_is_moved_by_hand_and_moves_on_a_trajectory():
+    with lk.World() as world:
+        board = lk.Board(world, lk.Tag(), turned(0.3))
+        world.step(100)
+        np.testing.assert_array_equal(board.T_wm, turned(0.3))
+        board.place(turned(0.5))
+        np.testing.assert_array_equal(board.T_wm, turned(0.5))
+        path = lk.Line([0.7, 0, 0], [0.9, 0, 0])
+        board.move(lk.Trajectory(path, lk.Quintic(0.2)))
+        world.step(100)
+        np.testing.assert_allclose(board.T_wm[:3, 3], [0.8, 0, 0], atol=1e-12)
+        np.testing.assert_array_equal(board.T_wm[:3, :3], turned(0.5)[:3, :3])
+        world.step(500)
+        np.testing.assert_allclose(board.T_wm[:3, 3], [0.9, 0, 0], atol=1e-12)
+
+
+def test_a_board_follows_a_trajectory_of_poses():
+    with lk.World() as world:
+        board = lk.Board(world, lk.Tag(), turned(0.0))
+        line = lk.Line([0.7, 0, 0], [0.7, 0.2, 0])
+        path = lk.PosePath(line, np.eye(3), turned(1.0)[:3, :3])
+        board.move(lk.Trajectory(path, lk.Cubic(1.0)))
+        world.step(500)
+        np.testing.assert_allclose(board.T_wm, turned(0.5, (0.7, 0.1, 0.0)), atol=1e-12)
+
+
+def test_several_boards_are_seen_at_once():
+    """Each with its own number, place and size."""
+    with lk.World() as world:
+        down = np.diag([1.0, -1.0, -1.0])
+        for number, x, size in ((4, 2.9, 0.1), (9, 3.1, 0.06)):
+            lk.Board(world, lk.Tag(number, size), turned(0.0, (x, 3.0, 0.0)))
+        camera = lk.Camera(world, se3.pose(down, np.array([3.0, 3.0, 0.7])))
+        seen = lk.detect_tags(camera.image(), camera, {4: 0.1, 9: 0.06})
+        assert [d.id for d in seen] == [4, 9]
+        for found, x in zip(seen, (2.9, 3.1), strict=True):
+            place = (camera.T_wc @ found.T_cm)[:3, 3]
+            np.testing.assert_allclose(place, [x, 3.0, 0.0], atol=2e-3)
+
+
+def test_a_motion_of_joint_angles_moves_no_board():
+    with lk.World() as world:
+        board = lk.Board(world, lk.Tag(), turned(0.0))
+        with pytest.raises(TypeMismatch, match=r"lk\.PoseSample"):
+            board.move(lk.Hold(np.zeros(7), 1.0))
+        with pytest.raises(TypeMismatch, match=r"expected a function of time; board\.place"):
+            board.move(turned(0.0))
+
+
+def test_a_board_is_a_tag_in_a_world():
+    with lk.Arm("left") as arm:
+        for world, tag in ((arm.world, 5), (arm, lk.Tag(5))):
+            with pytest.raises(TypeMismatch, match=r"a World .an arm's is arm.world. and a Tag"):
+                lk.Board(world, tag, turned(0.0))

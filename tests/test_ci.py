@@ -1,0 +1,88 @@
+"""The scripts that look for Python, packages and a browser, on machines that lack them."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+
+import chromium
+import pytest
+from handmade import ROOT
+
+
+@pytest.fixture
+def machine(tmp_path):
+    """A machine that has a shell, a Python 3.13, and ``apt-get``, which writes down its calls."""
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name in ("sh", "dirname", "tr", "cat"):
+        (programs / name).symlink_to(shutil.which(name))
+
+    def put(name, script):
+        (programs / name).write_text(f"#!/bin/sh\n{script}\n")
+        (programs / name).chmod(0o755)
+
+    def run(tool, *arguments):
+        return subprocess.run(
+            ["sh", str(ROOT / ".ci" / tool), *arguments],
+            env={"PATH": str(programs)},
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+
+    put("python3", "exit 1")
+    put("id", "echo 0")
+    put("apt-get", f'echo "$*" >> {tmp_path}/apt')
+    run.put, run.calls = put, tmp_path / "apt"
+    return run
+
+
+def test_a_newer_python_is_said_before_anything_is_installed(machine):
+    """Without a Python 3.11 the ways to get one are said, once, and nothing is installed."""
+    done = machine("need.sh", "ensurepip.py:python3.11-venv", "bwrap:bubblewrap")
+    assert done.returncode == 1
+    assert not machine.calls.exists()
+    assert done.stderr.count("needs Python 3.11") == 1
+    for way in ("python3.11-venv", "uv python install 3.11", "environment.yml", "PYTHON="):
+        assert way in done.stderr
+
+
+def test_a_python_that_uv_brought_is_found(machine):
+    """After `uv python install 3.11` there is nothing else to set."""
+    machine.put("uv", f'[ "$*" = "python find --system 3.11" ] && echo {sys.executable}')
+    assert machine("find_python.sh").stdout.strip() == sys.executable
+
+
+def test_what_is_missing_is_installed_for_root_and_named_for_others(machine):
+    """Root gets the missing packages and no others; anybody else gets the one line."""
+    machine.put("python3.11", "exit 0")
+    machine.put("there", "")
+    wanted = ["need.sh", "there:have", "not-there,nor-this:bubblewrap", "json.py:python3.11-venv"]
+    assert machine(*wanted).returncode == 0
+    assert machine.calls.read_text().splitlines()[1].split()[-2:] == [
+        "--no-install-recommends",
+        "bubblewrap",
+    ]
+    machine.put("id", "echo 1000")
+    done = machine(*wanted)
+    assert done.returncode == 1
+    assert done.stderr.rstrip().endswith("sudo apt-get install -y bubblewrap")
+
+
+def test_chromium_is_the_systems_or_playwrights_but_no_snap(tmp_path, monkeypatch):
+    """A snap is passed over for the one that Playwright brought; without any, the ways are said."""
+    snap = tmp_path / "snap" / "bin" / "chromium"
+    own = tmp_path / "own" / "chromium-1200" / "chrome-linux64" / "chrome"
+    monkeypatch.setenv("PATH", str(snap.parent))
+    monkeypatch.setenv("PLAYWRIGHT_BROWSERS_PATH", str(tmp_path / "own"))
+    for path in (snap, own):
+        path.parent.mkdir(parents=True)
+    snap.write_text("")
+    snap.chmod(0o755)
+    with pytest.raises(SystemExit, match="playwright install"):
+        chromium.program()
+    own.write_text("")
+    assert chromium.program() == str(own)

@@ -1,0 +1,95 @@
+"""Recorded runs and trials: what was recorded, what lies between, what nobody recorded."""
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit import metrics, recordings
+from labkit.errors import OutOfRange
+from labkit.log import load_log
+from labkit.recordings import LINE, Runner, Trials, read_trials
+from solutions.study import tasks
+from solutions.study.recording import save, save_trials
+
+
+def test_a_saved_log_reads_back_to_single_precision(tmp_path):
+    task = tasks.line()
+
+    def forward(state, target):
+        return lk.JointVelocity(target.velocity)
+
+    with lk.Arm(plant=lk.BAXTER, q0=task.q0) as arm:
+        log = lk.run(arm, task.joints, forward, duration=0.5)
+    save(log, tmp_path / "run.npz")
+    back = load_log(tmp_path / "run.npz")
+    for name in ("t", "q", "dq", "tau", "command", "saturated"):
+        np.testing.assert_allclose(getattr(back, name), getattr(log, name), rtol=1e-6, atol=1e-7)
+    np.testing.assert_allclose(back.measured.dq, log.measured.dq, rtol=1e-6, atol=1e-7)
+    assert (back.plant, back.side, back.controller) == (log.plant, log.side, "forward")
+    assert back.command_type is lk.JointVelocity
+    assert metrics.summary(back).rms_mm == pytest.approx(metrics.summary(log).rms_mm, rel=1e-3)
+
+
+def test_every_recording_that_ships_is_a_run_one_can_study():
+    assert recordings.names()
+    for name in recordings.names():
+        assert metrics.summary(recordings.load(name)).rms_mm < 100.0
+
+
+def test_an_unknown_recording_is_a_sentence_with_the_known_ones():
+    with pytest.raises(
+        lk.errors.UnknownName, match="no recorded run 'bsaeline'; there is 'baseline"
+    ):
+        recordings.load("bsaeline")
+
+
+def test_a_map_says_itself_in_words():
+    found = Trials(("a test",), (1.0, 2.0), (0.0, 0.1), (((3.0, 2.0), (1.0, None)),))
+    assert "RMS error of a test" in found.describe()
+    assert "least 1 mm at Kp = 2, Kd = 0" in found.describe()
+    assert "1 of 4 pairs lost the arm" in found.describe()
+
+
+def test_an_unknown_map_is_a_sentence():
+    with pytest.raises(lk.errors.UnknownName, match="no error map 'x'; there is"):
+        recordings.error_map("x")
+
+
+TRIALS = Trials(("a", "b"), (1.0, 100.0), (0.0, 0.5), (((4.0, 2.0), (8.0, None)), ((1, 1), (1, 1))))
+
+
+def test_between_recorded_gains_the_error_is_interpolated():
+    """Evenly in the logarithm of Kp and in Kd; infinite where the arm was lost."""
+    assert TRIALS.error(0, 1.0, 0.5) == 2.0
+    assert TRIALS.error(0, 10.0, 0.0) == pytest.approx(6.0)
+    assert TRIALS.error(0, 1.0, 0.25) == pytest.approx(3.0)
+    assert TRIALS.error(0, 100.0, 0.1) == np.inf
+    assert TRIALS.worst(1.0, 0.0) == 4.0
+
+
+def test_what_nobody_recorded_is_a_sentence():
+    for case in (2, -1, 0.5, "0"):
+        with pytest.raises(OutOfRange, match=f"there are cases 0 to 1, not {case!r}"):
+            TRIALS.error(case, 1.0, 0.0)
+    with pytest.raises(OutOfRange, match="Kp = 200 was not recorded; take 1 to 100"):
+        TRIALS.error(0, 200.0, 0.0)
+
+
+def test_tries_are_counted():
+    runner = Runner(TRIALS, budget=1)
+    assert runner(1.0, 0.0, seed=1) == 1.0 and runner.left == 0
+    with pytest.raises(OutOfRange, match="all 1 tries are used up"):
+        runner(1.0, 0.0)
+
+
+def test_trials_are_the_same_from_their_file(tmp_path):
+    trials = read_trials(LINE)
+    save_trials(trials, tmp_path / "again.json")
+    assert read_trials(tmp_path / "again.json") == trials
+
+
+def test_nobody_writes_to_what_was_recorded():
+    """A runner is handed to students: what one of them does to it is nothing to the next."""
+    runner = Runner(read_trials(LINE))
+    with pytest.raises(TypeError, match="does not support item assignment"):
+        runner.trials.rms_mm[0][0][0] = 0.0

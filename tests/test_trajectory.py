@@ -1,0 +1,224 @@
+"""Trajectories, chains, pose paths and holds: every velocity is a slope, every end at rest."""
+
+import numpy as np
+import pytest
+from curves import assert_at_rest, assert_pose_slopes, assert_slopes
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from numpy.testing import assert_allclose
+
+from labkit import (
+    BangBang,
+    Chain,
+    Circle,
+    Cubic,
+    Hold,
+    Line,
+    PosePath,
+    PoseSample,
+    Quintic,
+    Sample,
+    Trajectory,
+    Trapezoid,
+    se3,
+)
+from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError, TypeMismatch
+
+A, B, C = [0.6, 0.2, 0.1], [0.5, -0.2, 0.3], [0.4, 0.0, 0.0]
+PATHS = {"line": Line(A, B), "circle": Circle(A, C)}
+SCALINGS = (BangBang(2.0), Cubic(2.0), Quintic(2.0), Trapezoid(1.0, 0.8, 1.6))
+turns = arrays(np.float64, 3, elements=st.floats(-1.7, 1.7))
+paths, scalings = st.sampled_from(list(PATHS.values())), st.sampled_from(SCALINGS)
+fractions = st.floats(0.01, 0.99)
+CORNERS = (0.5, 2.0 * 0.25, 0.5 / 1.75, 1.25 / 1.75)  # where an acceleration jumps
+
+
+@given(paths, scalings, fractions)
+def test_a_trajectorys_velocity_and_acceleration_are_its_slopes(path, scaling, x):
+    assume(all(abs(x - c) > 1e-3 for c in CORNERS))
+    assert_slopes(Trajectory(path, scaling), x * scaling.duration)
+
+
+@given(paths, scalings, st.floats(0.0, 1e3))
+def test_before_the_start_and_after_the_end_a_trajectory_rests(path, scaling, t):
+    trajectory = Trajectory(path, scaling)
+    assert_at_rest(trajectory(-1e-9 - t), path(0.0).position)
+    assert_at_rest(trajectory(scaling.duration + t), path(1.0).position)
+
+
+def test_no_distance_in_no_time_is_the_place_itself():
+    there = Trajectory(Line(A, A), Trapezoid(0.0, 1.0, 1.0))
+    assert there.duration == 0.0
+    for t in (-1.0, 0.0, 1.0):
+        assert_at_rest(there(t), A)
+
+
+def test_a_target_written_by_a_student_works_as_path_and_as_scaling():
+    class Ramp:
+        duration = 2.0
+
+        def __call__(self, t):
+            return t / 2.0, 0.5, 0.0
+
+    def parabola(s):
+        return Sample(np.array([s, s * s]), np.array([1, 2 * s]), np.array([0, 2.0]))
+
+    assert_slopes(Trajectory(parabola, Ramp()), 0.7)
+
+
+def chain():
+    parts = [Trajectory(Line(A, B), Quintic(1.0)), Trajectory(Line(B, C), Trapezoid(0.5, 1, 2))]
+    return Chain([*parts, Hold(C, 0.5)])
+
+
+@pytest.mark.parametrize(
+    ("path", "scaling", "words"),
+    [
+        (lambda s: np.zeros(3), Cubic(1.0), r"the path returned array.* expected lk\.Sample"),
+        (
+            lambda s: (s, 1.0, 0.0),
+            Cubic(1.0),
+            r"the path returned .* \(tuple\), expected lk\.Sample",
+        ),
+        (lambda s: None, Cubic(1.0), r"the path returned None"),
+        (lambda s: Sample([s], [1], [0]), Cubic(1.0), r"the path returned .*\[1\].* of arrays"),
+        (
+            lambda s: Sample(A, np.ones(3), np.ones(2)),
+            Cubic(1.0),
+            r"the path returned .* of arrays",
+        ),
+        (
+            Line(A, B),
+            "half",
+            r"the scaling returned 0\.5 \(float\), expected three",
+        ),
+    ],
+)
+def test_what_is_no_sample_is_a_sentence(path, scaling, words):
+    class Half:
+        duration = 1.0
+
+        def __call__(self, t):
+            return 0.5
+
+    with pytest.raises(TypeMismatch, match=words):
+        Trajectory(path, Half() if scaling == "half" else scaling)(0.5)
+
+
+def test_a_chain_starts_each_part_when_the_one_before_has_ended():
+    c = chain()
+    assert c.starts == [0.0, 1.0, 2.0]
+    assert c.duration == 2.5
+    assert_at_rest(c(-1.0), A)
+    assert_allclose(c(1.0).position, B, atol=1e-15)
+    assert_allclose(c(2.0).position, C, atol=1e-15)
+    assert_at_rest(c(9.0), C)
+
+
+@given(st.floats(0.01, 2.4))
+def test_a_chains_velocity_and_acceleration_are_its_slopes(t):
+    assume(all(abs(t - x) > 1e-3 for x in (1.0, 1.5, 2.0)))
+    assert_slopes(chain(), t)
+
+
+def test_a_chain_is_continuous_in_position_and_velocity_at_its_joints():
+    c = chain()
+    for t in c.starts[1:]:
+        before, after = c(t - 1e-9), c(t)
+        assert_allclose(before.position, after.position, atol=1e-8)
+        assert_allclose(before.velocity, after.velocity, atol=1e-7)
+
+
+def test_chains_nest_and_parts_without_duration_are_passed_over():
+    still = Trajectory(Line(B, B), Cubic(0.0))
+    c = Chain([Trajectory(Line(A, B), Cubic(1.0)), still, Chain([Hold(B, 1.0)])])
+    assert c.duration == 2.0
+    assert_at_rest(c(1.0), B)
+
+
+def test_an_empty_chain_is_refused():
+    with pytest.raises(OutOfRange, match="at least one trajectory"):
+        Chain([])
+
+
+@given(paths, turns, turns, fractions)
+def test_a_pose_paths_twist_is_the_slope_of_its_pose(path, a, b, s):
+    pose_path = PosePath(path, se3.rotation(a), se3.rotation(b))
+    assert_pose_slopes(pose_path, s, tolerance=1e-5)
+
+
+@given(scalings, turns, turns, fractions)
+def test_a_pose_trajectorys_twist_is_the_slope_of_its_pose(scaling, a, b, x):
+    assume(all(abs(x - c) > 1e-3 for c in CORNERS))
+    trajectory = Trajectory(PosePath(Line(A, B), se3.rotation(a), se3.rotation(b)), scaling)
+    assert_pose_slopes(trajectory, x * scaling.duration, tolerance=1e-5)
+
+
+@given(turns, turns)
+def test_a_pose_path_turns_evenly_from_its_first_to_its_last_orientation(a, b):
+    R_wt, R_goal = se3.rotation(a), se3.rotation(b)
+    path = PosePath(Line(A, B), R_wt, R_goal)
+    assert_allclose(path(0.0).pose[:3, :3], R_wt, atol=1e-14)
+    assert_allclose(path(1.0).pose[:3, :3], R_goal, atol=1e-8)
+    whole = se3.angle_between(R_wt, R_goal)
+    assert se3.angle_between(R_wt, path(0.25).pose[:3, :3]) == pytest.approx(whole / 4, abs=1e-7)
+
+
+def test_a_pose_path_without_goal_keeps_its_orientation():
+    R = se3.rotation([0.1, 0.2, 0.3])
+    for s in (0.0, 0.4, 1.0):
+        T, twist, _ = PosePath(Line(A, B), R)(s)
+        assert_allclose(T[:3, :3], R)
+        assert not twist[3:].any()
+
+
+def test_a_pose_trajectory_rests_before_and_after():
+    trajectory = Trajectory(PosePath(Line(A, B), np.eye(3), se3.rotation([0, 0, 1.0])), Cubic(2.0))
+    assert_at_rest(trajectory(-1.0), se3.pose(np.eye(3), A))
+    assert_at_rest(trajectory(3.0), se3.pose(se3.rotation([0, 0, 1.0]), B))
+
+
+@pytest.mark.parametrize("place", [np.zeros(7), A, se3.pose(np.eye(3), A)])
+def test_a_hold_holds_angles_a_point_or_a_pose(place):
+    hold = Hold(place, 2.0)
+    assert hold.duration == 2.0
+    assert isinstance(hold(0.0), PoseSample if np.ndim(place) == 2 else Sample)
+    for t in (-1.0, 0.0, 5.0):
+        assert_at_rest(hold(t), place)
+
+
+skewed = np.diag([1.0, 1.0, 1.1])
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: PosePath(Line(A, B), skewed), OutOfRange, "R_wt is not a rotation"),
+        (lambda: PosePath(Line(A, B), np.eye(3), skewed), OutOfRange, "R_goal is not a rotation"),
+        (lambda: PosePath(Line(A, B), np.eye(4)), ShapeError, "R_wt has shape"),
+        (lambda: PosePath(Line(A, B), "down"), LabkitError, "R_wt is 'down'"),
+        (
+            lambda: PosePath(Line([0] * 7, [1] * 7), np.eye(3))(0.0),
+            ShapeError,
+            "position has shape",
+        ),
+        (lambda: Hold([0, 0, np.nan], 1.0), NotFinite, "place holds nan"),
+        (lambda: Hold([0, 0, 0], -1.0), OutOfRange, "duration is -1"),
+        (lambda: Hold(np.eye(4) * 2, 1.0), OutOfRange, "place"),
+        (lambda: Hold(np.zeros((7, 1)), 1.0), ShapeError, "place has shape"),
+        (lambda: Hold("here", 1.0), LabkitError, "place is 'here'"),
+        (lambda: Chain([Line(A, B)]), LabkitError, "Line.*no duration"),
+        (lambda: Trajectory(Line(A, B), 2.0), LabkitError, "scaling is 2.0"),
+        (lambda: Trajectory(A, Cubic(1.0)), LabkitError, "path is"),
+        (lambda: Trajectory(Cubic(1.0), Line(A, B)), LabkitError, "path is Cubic.*a function of t"),
+        (lambda: Trajectory(Line(A, B), Line(A, B)), LabkitError, "scaling is .*Line"),
+        (lambda: Trajectory(chain(), Cubic(1.0)), LabkitError, "path is .*Chain.*a function of t"),
+        (lambda: PosePath(chain(), np.eye(3)), LabkitError, r"Trajectory\(PosePath"),
+        (lambda: PosePath(A, np.eye(3)), LabkitError, "path is .*a function of s"),
+    ],
+)
+def test_a_motion_that_cannot_be_is_refused_in_a_sentence(call, error, words):
+    with pytest.raises(error, match=words) as caught:
+        call()
+    assert isinstance(caught.value, LabkitError)
