@@ -17,15 +17,15 @@ c.Execute.timeout = 120
 # What students wrote is shown to teachers without anything in it that runs.
 c.HTMLExporter.sanitize_html = True
 c.HTMLExporter.filters = {
-    "markdown2html": "labkit.grade.markup.markdown",
-    "clean_html": "labkit.grade.markup.clean",
+    "markdown2html": "labkit.grader.markup.markdown",
+    "clean_html": "labkit.grader.markup.clean",
 }
 
 # Students' code never runs in nbgrader's own process: a submission is brought into the release's
 # form and graded in a sandbox.  `labkit grade --engine nbgrader` takes nbgrader's steps instead.
-c.Autograde.pre_convert_hook = "labkit.grade.autograde.unlink_foreign"
+c.Autograde.pre_convert_hook = "labkit.grader.autograde.unlink_foreign"
 c.Autograde.sanitize_preprocessors = [
-    "labkit.grade.autograde.Repair",
+    "labkit.grader.autograde.Repair",
     "nbgrader.preprocessors.ClearOutput",
     "nbgrader.preprocessors.DeduplicateIds",
     "nbgrader.preprocessors.OverwriteKernelspec",
@@ -33,7 +33,7 @@ c.Autograde.sanitize_preprocessors = [
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
 c.Autograde.autograde_preprocessors = [
-    "labkit.grade.autograde.Isolated",
+    "labkit.grader.autograde.Isolated",
     "nbgrader.preprocessors.LimitOutput",
     "nbgrader.preprocessors.SaveAutoGrades",
     "nbgrader.preprocessors.AssignLatePenalties",

@@ -13,8 +13,8 @@ import sys
 import time
 from pathlib import Path
 
-from labkit.grade.course import Course
-from labkit.grade.synthetic import differences
+from labkit.course.layout import Course
+from labkit.grader.synthetic import differences
 
 ROOT = Path(__file__).resolve().parents[1]
 DEMO = ROOT / "build" / "demo"

@@ -46,7 +46,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     """What is loaded when first asked for: OpenCV, Matplotlib and IPython are slow to import."""
-    if name in ("check", "plotting", "replay", "tags"):
+    if name in ("course", "plotting", "replay", "tags"):
         return import_module(f".{name}", __name__)
     if name not in __all__:
         raise AttributeError(f"module 'labkit' has no attribute {name!r}")

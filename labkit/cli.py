@@ -31,7 +31,7 @@ FOR_INSTRUCTORS = ("nbgrader", "jupytext", "msgspec", "sqlalchemy")
 
 def parser() -> argparse.ArgumentParser:
     """The command's words; a students' repository comes without those of instructors."""
-    instructors = find_spec("labkit.grade") is not None
+    instructors = find_spec("labkit.grader") is not None
     top = argparse.ArgumentParser(
         prog="labkit",
         description="A teaching laboratory for robot control.",
@@ -54,8 +54,8 @@ def parser() -> argparse.ArgumentParser:
     verb.add_argument("--to", type=Path, required=True, metavar="FILE", help="where to write")
 
     if instructors:
-        from .grade import verbs as verbs_grading
-        from .grade import verbs_course, verbs_students, verbs_term
+        from .grader import verbs as verbs_grading
+        from .grader import verbs_course, verbs_students, verbs_term
 
         verbs_course.add(verbs)
         verbs_grading.add(verbs)
@@ -100,7 +100,7 @@ def _printable(text: str) -> str:
 
 
 def _submit_check(args: argparse.Namespace) -> int:
-    from .check.handin import look
+    from .course.handin import look
 
     found = look(args.notebook)
     print(found.for_the_forum() if args.forum else found)
@@ -108,8 +108,8 @@ def _submit_check(args: argparse.Namespace) -> int:
 
 
 def _merge(args: argparse.Namespace) -> int:
-    from .check.handin import read_cells
-    from .check.merging import merge
+    from .course.handin import read_cells
+    from .course.merging import merge
 
     mine, new = read_cells(args.mine), read_cells(args.new)
     if args.to.exists():

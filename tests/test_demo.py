@@ -8,7 +8,7 @@ from subprocess import CompletedProcess
 import demo
 import pytest
 
-from labkit.grade.results import Result, Results
+from labkit.grader.results import Result, Results
 
 
 @pytest.fixture

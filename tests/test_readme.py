@@ -18,7 +18,7 @@ PAGES = [
         "CHANGELOG.md",
         "book/architecture.md",
         "solutions/README.md",
-        "labkit/grade/README.md",
+        "labkit/grader/README.md",
     )
 ]
 each = pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

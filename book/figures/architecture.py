@@ -21,8 +21,8 @@ LAYERS = (
     ("What moves", ("control", "world", "scene", "sensors", "body", "motors", "arm")),
     ("The loop, and what it did", ("log", "run", "metrics", "recordings", "loop")),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
-    ("What judges", ("check",)),
-    ("For instructors, and what one types", ("grade", "verbs", "cli")),
+    ("What judges", ("course",)),
+    ("For instructors, and what one types", ("grader", "verbs", "cli")),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from IPython.display import HTML
 from myst_nb import glue
 
-from labkit.grade.doctor import elsewhere
-from labkit.grade.limits import Limits
+from labkit.grader.doctor import elsewhere
+from labkit.grader.sandbox.limits import Limits
 
 from .page import table
 

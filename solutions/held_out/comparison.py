@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call, Choice
-from labkit.grade.problem import call
+from labkit.course import Call, Choice
+from labkit.course.problem import call
 from labkit.recordings import LINE, Trials, read_trials
 
 Random = np.random.Generator

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call, Loop
-from labkit.check.cases import Case
-from labkit.grade.problem import call
+from labkit.course import Call, Loop
+from labkit.course.cases import Case
+from labkit.course.problem import call
 
 Random = np.random.Generator
 

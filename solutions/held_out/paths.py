@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call
-from labkit.grade.problem import call
+from labkit.course import Call
+from labkit.course.problem import call
 
 Random = np.random.Generator
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from labkit import Sample, se3
-from labkit.check import Call
-from labkit.grade.problem import call
+from labkit.course import Call
+from labkit.course.problem import call
 from labkit.shapes import Array
 from labkit.tags.tag import tag_corners
 

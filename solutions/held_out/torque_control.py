@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call, Loop, Tuned
-from labkit.check.cases import Case
-from labkit.grade.problem import call
+from labkit.course import Call, Loop, Tuned
+from labkit.course.cases import Case
+from labkit.course.problem import call
 
 from ..torque_control import choose_gains
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call, Loop
-from labkit.grade.problem import call
+from labkit.course import Call, Loop
+from labkit.course.problem import call
 
 Random = np.random.Generator
 MODEL = lk.Model("left")

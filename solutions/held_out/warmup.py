@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call
-from labkit.grade.problem import call
+from labkit.course import Call
+from labkit.course.problem import call
 
 Random = np.random.Generator
 DOWN = np.diag([1.0, -1.0, -1.0])

@@ -24,7 +24,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.check import check, hint, use
+from labkit.course import check, hint, use
 
 lk.ready()
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from labkit.check import Choice, Close, Response
-from labkit.grade.problem import Problem, Trial, Wrong, call
+from labkit.course import Choice, Close, Response
+from labkit.course.problem import Problem, Trial, Wrong, call
 
 from .. import comparison as answers
 from ..held_out import comparison as held_out

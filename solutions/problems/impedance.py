@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import labkit as lk
-from labkit.check import AtTip, Call, Close, Loop, TipTorque
-from labkit.grade.problem import Problem, Trial, Wrong, call
+from labkit.course import AtTip, Call, Close, Loop, TipTorque
+from labkit.course.problem import Problem, Trial, Wrong, call
 
 from .. import impedance as answers
 from ..held_out import impedance as held_out

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import labkit as lk
-from labkit.check import Close, Within
-from labkit.grade.problem import Problem, Trial, Wrong, call
+from labkit.course import Close, Within
+from labkit.course.problem import Problem, Trial, Wrong, call
 
 from .. import paths as answers
 from ..held_out import paths as held_out

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from labkit import Sample
-from labkit.check import Close
-from labkit.grade.problem import Problem, Trial, Wrong, call
+from labkit.course import Close
+from labkit.course.problem import Problem, Trial, Wrong, call
 
 from .. import tag_following
 from .. import tags as answers

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 import labkit as lk
-from labkit.check import Call, Close, Gains, Loop, Tuned
-from labkit.grade.problem import Problem, Trial, Wrong, call
+from labkit.course import Call, Close, Gains, Loop, Tuned
+from labkit.course.problem import Problem, Trial, Wrong, call
 
 from .. import torque_control as answers
 from ..held_out import torque_control as held_out

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from labkit.check import Close
-from labkit.grade.problem import Problem, Trial, Wrong, call
+from labkit.course import Close
+from labkit.course.problem import Problem, Trial, Wrong, call
 
 from .. import velocity_control as answers
 from ..held_out import velocity_control as held_out

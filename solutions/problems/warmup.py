@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 import labkit as lk
-from labkit.check import Close
-from labkit.grade.problem import Problem, Trial, Wrong, call
+from labkit.course import Close
+from labkit.course.problem import Problem, Trial, Wrong, call
 
 from .. import warmup as answers
 from ..held_out import warmup as held_out

@@ -3,9 +3,9 @@
 import shutil
 import time
 
-from labkit.grade.batch import How, grade_class, workers
-from labkit.grade.engines import grade_with_nbgrader, students
-from labkit.grade.release import release
+from labkit.course.release import release
+from labkit.grader.batch import How, grade_class, workers
+from labkit.grader.engines import grade_with_nbgrader, students
 
 from .courses import fresh_course
 

@@ -4,7 +4,7 @@ import tempfile
 
 import nbformat
 
-from labkit.grade.release import release
+from labkit.course.release import release
 
 from .courses import fresh_course
 

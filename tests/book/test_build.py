@@ -27,7 +27,7 @@ def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
     names = {p.relative_to(ROOT).as_posix() for p in book_pages.imports("figures.gains")}
     assert {"book/figures/gains.py", "labkit/run.py", "solutions/study/joint_velocity.py"} <= names
     assert not any(
-        n.startswith(("labkit/grade", "labkit/check", "solutions/notebooks")) for n in names
+        n.startswith(("labkit/grader", "labkit/course", "solutions/notebooks")) for n in names
     )
 
 
@@ -40,9 +40,9 @@ def test_the_reference_has_every_module():
     """What can be imported is described; commands and the inside of the sandbox are no library."""
     told = "".join(p.read_text() for p in (ROOT / "book/reference").glob("*.md"))
     described = set(re.findall(r"automodule:: labkit\.([\w.]+)$", told, re.M))
-    whole = {"check", "grade", "replay"}  # what these give stands in their __init__
+    whole = {"course", "grader", "replay"}  # what these give stands in their __init__
     folders = {p.parent for p in (ROOT / "labkit").glob("*/__init__.py")}
-    there = {p.stem for p in (ROOT / "labkit").glob("*.py")} | whole - {"grade"}
+    there = {p.stem for p in (ROOT / "labkit").glob("*.py")} | whole - {"grader"}
     for folder in folders:
         if folder.name not in whole:
             there |= {f"{folder.name}.{p.stem}" for p in folder.glob("*.py")}

@@ -13,9 +13,9 @@ import matplotlib
 import nbformat
 
 import labkit
-from labkit.check import notebook as desk
-from labkit.grade.course import Course
-from labkit.grade.solved import inlined
+from labkit.course import student as desk
+from labkit.course.layout import Course
+from labkit.course.solved import inlined
 
 matplotlib.use("Agg")
 COURSE = Course.here(Path(__file__))

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from labkit.check import Call, Choice, Loop, Outcome, Tuned, fingerprint, mark
-from labkit.check.mark import recognise
-from labkit.grade.course import Course
+from labkit.course import Call, Choice, Loop, Outcome, Tuned, fingerprint
+from labkit.course.layout import Course
+from labkit.course.marking import mark, recognise
 
 COURSE = Course.here(Path(__file__))
 NAMES = COURSE.names()

@@ -12,8 +12,9 @@ import pytest
 from scipy import stats
 
 import labkit as lk
-from labkit.check import Outcome, mark
-from labkit.grade.course import Course
+from labkit.course import Outcome
+from labkit.course.layout import Course
+from labkit.course.marking import mark
 from solutions.held_out.comparison import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
 
 COURSE = Course.here(Path(__file__))

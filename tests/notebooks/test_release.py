@@ -12,12 +12,12 @@ import numpy as np
 import pytest
 from courses import copied
 
-from labkit.check import question_data
-from labkit.check.codec import encode
-from labkit.check.question_codec import KINDS
-from labkit.grade.course import Course
-from labkit.grade.notebook import source_notebook
-from labkit.grade.release import FORBIDDEN, release
+from labkit.course import question_data
+from labkit.course.layout import Course
+from labkit.course.notebook import source_notebook
+from labkit.course.question_codec import KINDS
+from labkit.course.release import FORBIDDEN, release
+from labkit.course.serialize import encode
 
 COURSE = Course.here(Path(__file__))
 NAMES = COURSE.names()

@@ -14,7 +14,7 @@ from soak.attacks.place import NAME, released
 from soak.attacks.undefended import COMMANDS
 
 from labkit.cli import main
-from labkit.grade.course import Course
+from labkit.course.layout import Course
 
 GATE = (
     "a number in the file's name",

@@ -9,9 +9,9 @@ import pytest
 from soak.attacks.attack import code_cell
 from soak.attacks.place import ROOT
 
-from labkit.grade.batch import Graded, How, grade_class
-from labkit.grade.course import Course
-from labkit.grade.release import release
+from labkit.course.layout import Course
+from labkit.course.release import release
+from labkit.grader.batch import Graded, How, grade_class
 
 NAMES = sorted(p.stem for p in (ROOT / "solutions" / "notebooks").glob("[0-9]*.py"))
 CASES = [pytest.param(n, marks=() if n == "01_paths" else pytest.mark.soak) for n in NAMES]
@@ -19,7 +19,7 @@ CASES = [pytest.param(n, marks=() if n == "01_paths" else pytest.mark.soak) for 
 BY_HEART = """
 def {name}(*args, **kwargs):
     import json
-    from labkit.check import codec
+    from labkit.course import codec
     def numbers(x):
         if isinstance(x, bool) or x is None or isinstance(x, str): return []
         if isinstance(x, (int, float)): return [float(x)]

@@ -17,7 +17,7 @@ from soak.attacks.place import NAME, ROOT, place, released
 from soak.attacks.shown import MARKUP
 
 from labkit.cli import main
-from labkit.grade.course import Course
+from labkit.course.layout import Course
 
 soak = pytest.mark.soak
 WRITES = "open({loot!r}, 'w').write('it ran')\n"

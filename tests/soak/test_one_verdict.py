@@ -12,18 +12,18 @@ import nbformat
 import pytest
 from handmade import put, raw
 
-from labkit.check import question_data
-from labkit.check.handin import look
-from labkit.check.output import verdict_in
-from labkit.check.withheld import find
-from labkit.grade.checker import grade
-from labkit.grade.course import Course
-from labkit.grade.inline import inline
-from labkit.grade.limits import Limits
-from labkit.grade.notebook import source_notebook
-from labkit.grade.release import manifest
-from labkit.grade.results import Bundle
-from labkit.grade.sandbox import Sandbox
+from labkit.course import question_data
+from labkit.course.handin import look
+from labkit.course.inline import inline
+from labkit.course.layout import Course
+from labkit.course.notebook import source_notebook
+from labkit.course.output import verdict_in
+from labkit.course.release import manifest
+from labkit.course.withheld import find
+from labkit.grader.grade import grade
+from labkit.grader.results import Bundle
+from labkit.grader.sandbox.launch import Sandbox
+from labkit.grader.sandbox.limits import Limits
 
 COURSE = Course.here(Path(__file__))
 IN_THE_GATE = ("00_warmup", "01_paths")

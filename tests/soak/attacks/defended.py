@@ -20,10 +20,10 @@ from soak.attacks.place import NAME, Place
 from soak.attacks.undefended import COMMANDS, started
 
 from labkit.cli import main
+from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grade.batch import How, grade_class
-from labkit.grade.course import Course
-from labkit.grade.limits import Limits
+from labkit.grader.batch import How, grade_class
+from labkit.grader.sandbox.limits import Limits
 
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)
 HONEST = ("adam", "s0", VICTIM)

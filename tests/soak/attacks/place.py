@@ -18,8 +18,8 @@ import numpy
 from soak.attacks.attack import CANARY, Attack, Notebook
 from soak.attacks.others import VICTIM
 
-from labkit.grade.course import Course
-from labkit.grade.release import release
+from labkit.course.layout import Course
+from labkit.course.release import release
 
 NAME = "01_paths"
 ROOT = Path(__file__).parents[3]
@@ -130,7 +130,7 @@ def _plant(course: Course) -> None:
 
 
 def _name_in_the_gradebook(course: Course) -> None:
-    from labkit.grade.gradebook import open_gradebook
+    from labkit.grader.gradebook import open_gradebook
 
     with open_gradebook(course) as book:
         book.update_or_create_student(VICTIM, first_name=CANARY)

@@ -44,9 +44,9 @@ PATCHES = patched(
     "threading.Thread(target=again, daemon=True).start()",
     trace_that_writes_globals="import sys\ndef trace(frame, event, arg):\n"
     "    if 'off' in frame.f_globals: frame.f_globals['off'] = 0.0\n    return trace\nsys.settrace(trace)",
-    code_of_check_replaced="from labkit.check import check\n"
+    code_of_check_replaced="from labkit.course import check\n"
     "check.__code__ = (lambda name, function: 2.0).__code__",
-    check_in_the_module="import labkit.check\nlabkit.check.check = lambda *a, **k: 2.0",
+    check_in_the_module="import labkit.course\nlabkit.course.check = lambda *a, **k: 2.0",
 )  # fmt: skip
 PATCHES["check in the module"] = Attack("labkit's points", PATCHES["check in the module"].cells)
 PATCHES["code of check replaced"] = Attack(

@@ -205,7 +205,7 @@ def _alone(here: Place, attack: Attack, won: Won) -> None:
     )
     planted = here.filled(attack).planted(json.loads(json.dumps(blank)))
     if name == NAME:
-        planted["cells"].insert(0, code_cell("from labkit.check import check", "first"))
+        planted["cells"].insert(0, code_cell("from labkit.course import check", "first"))
     here.hand_in("eve", planted, name)
     here.hand_in(VICTIM, json.loads(json.dumps(blank)), name)
     nbgrader(here, "autograde", name, "--create")

@@ -1,0 +1,111 @@
+"""Margins: how many sigmas lie between an answer and the tolerance.
+
+Distances from what is expected are measured in tolerances: right answers lie below 1, a mistake
+lies above it wherever it is found out.  Over draws of the hidden cases, disturbed inputs, starts
+and seeds of the noise these distances spread; the margin is how many of their standard deviations
+lie between their mean and the tolerance.  Logarithms are compared, since distances spread over
+decades.  Where nothing spreads there is no sigma.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from . import Call, Loop, Question, Tuned
+from .cases import Case
+from .judges import AtMost
+from .problem import Problem
+from .remembered import Remembered
+
+ROUNDING = 1e-3
+"""Distances below this, in tolerances, are rounding, and count as this much."""
+HUGE = 1e12
+"""Distances above this count as this much."""
+
+
+def least(
+    questions: Sequence[Question],
+    problem: Problem,
+    right: Mapping[str, Callable[..., Any]],
+    wrong: Mapping[str, Callable[..., Any]],
+) -> tuple[float | None, str]:
+    """The least distance from a tolerance in sigmas, and whose it is."""
+    found: list[tuple[float, str]] = []
+    for k, test in enumerate(questions[0].tests):
+        for label, function in right.items():
+            apart: dict[type, list[float]] = {}  # runs and calls have tolerances of different kinds
+            for q, case in _cases(questions, k):
+                spread = apart.setdefault(_kind(case), [])
+                spread.append(_distance(q, case, function))
+                spread.append(_disturbed(q, case, function, problem))
+            for spread in apart.values():
+                found += _sigmas(spread, -1.0, f"{label}: {test.name}")
+        for label, function in wrong.items():
+            distances = [
+                max(_distance(q, case, function) for case in q.tests[k].cases) for q in questions
+            ]
+            if min(distances) > 1.0:
+                found += _sigmas(distances, 1.0, f"{label}: {test.name}")
+    return min(found, default=(None, ""))
+
+
+def _cases(questions: Sequence[Question], k: int) -> list[tuple[Question, Case]]:
+    """All cases of the k-th test over all draws, public ones once."""
+    hidden = [(q, case) for q in questions for case in q.tests[k].cases if case.hidden]
+    return [(questions[0], c) for c in questions[0].tests[k].cases if not c.hidden] + hidden
+
+
+def _kind(case: Case | Remembered) -> type:
+    """What sort of case it is, remembered or not."""
+    return type(case.run if isinstance(case, Remembered) else case)
+
+
+def _sigmas(distances: Sequence[float], sign: float, whose: str) -> list[tuple[float, str]]:
+    """How many standard deviations the mean lies beyond the tolerance, on the side ``sign``."""
+    logs = np.log10(np.clip([d for d in distances if np.isfinite(d)], ROUNDING, HUGE))
+    if len(logs) < 2 or float(np.std(logs)) < 1e-9:
+        return []
+    return [(sign * float(np.mean(logs)) / float(np.std(logs, ddof=1)), whose)]
+
+
+def _distance(question: Question, case: Case | Remembered, function: Callable[..., Any]) -> float:
+    """How far an answer is off, in tolerances; infinite where none came."""
+    try:
+        answer: Any = case.ask(function)
+        if isinstance(case, Call):
+            return question.judge.distance(answer, case.expected)
+        return AtMost().distance(case.measured(answer), case.expected)
+    except Exception:
+        return float("inf")
+
+
+def _disturbed(
+    question: Question, case: Case | Remembered, function: Callable[..., Any], problem: Problem
+) -> float:
+    """The same with the input disturbed: rounded numbers, or another seed of the arm's noise."""
+    if isinstance(case, Remembered):
+        return _distance(question, replace(case, run=_another_noise(case.run)), function)
+    if isinstance(case, Call):
+        case = replace(case, args=tuple(map(_rounded, case.args)))
+        case = replace(case, expected=case.ask(problem.expected or problem.answer))
+    return _distance(question, case, function)
+
+
+def _another_noise(run: Loop | Tuned) -> Loop | Tuned:
+    loop = run.loop if isinstance(run, Tuned) else run
+    if any(loop.plant.velocity_noise) or loop.plant.lost_ticks > 0.0:
+        loop = replace(loop, seed=loop.seed + 1)
+    return replace(run, loop=loop) if isinstance(run, Tuned) else loop
+
+
+def _rounded(x: Any) -> Any:
+    """Numbers and arrays to seven digits; anything else as it is."""
+    if isinstance(x, float):
+        return float(f"{x:.7g}")
+    if isinstance(x, np.ndarray):
+        return np.round(x, 7)
+    return x

@@ -1,0 +1,318 @@
+"""Marking: put a question to a function and come to a verdict.
+
+The function may live here or in another process; marking does not care.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from ..errors import Diverged, LabkitError
+from ..log import Log
+from .advice import told
+from .cases import Call, Case, Choice, Loop, Tuned
+from .judges import AtMost, Judge
+from .question import Mistake, Question, Raised, Test
+from .reply import Failed
+from .withheld import Withheld
+
+
+class Outcome(Enum):
+    """What came of a question, or of one of its tests."""
+
+    NOT_ATTEMPTED = "not attempted"
+    NOT_TRIED = "not tried"  # of a test without a case
+    NOT_COUNTED = "not counted"
+    ERROR = "error"
+    WRONG = "wrong"
+    RIGHT = "right"
+
+
+@dataclass(frozen=True)
+class TestResult:
+    """What came of one test.
+
+    Attributes:
+        name: What it looked at.
+        weight: Its share of the points; 0 is a gate.
+        outcome: Never partly right.
+        says: Why not right; empty where it is.
+        hidden: Whether a hidden case decided; ``says`` then names its class only.
+        tool: The withheld tool that was used, if that decided.
+    """
+
+    __test__ = False
+
+    name: str
+    weight: float
+    outcome: Outcome
+    says: str = ""
+    hidden: bool = False
+    tool: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Ran:
+    """A run of the arm on a case that the student can see.
+
+    Attributes:
+        test: The name of the test that it belongs to.
+        case: What was asked.
+        log: What the arm did; up to the moment when it ran away, if it did.
+        complete: Whether it came to its end.
+    """
+
+    test: str
+    case: Loop | Tuned
+    log: Log
+    complete: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Verdict:
+    """What came of a question.
+
+    Attributes:
+        name: The question's.
+        outcome: Right only if every test is that was tried.
+        earned: Points.
+        points: What full marks would be.
+        tests: One result each.
+        withheld: The tools that it used and that the question asks to write.
+        complete: Whether no hidden case is left that could change it.
+        mistake: The known mistake that gives the same answers, if there is one.
+        answers: What came back from each public call, for figures.
+        runs: The public runs of the arm, for replays.
+    """
+
+    name: str
+    outcome: Outcome
+    earned: float
+    points: float
+    tests: tuple[TestResult, ...] = ()
+    withheld: tuple[str, ...] = ()
+    complete: bool = True
+    mistake: Mistake | None = None
+    answers: tuple[Any, ...] = ()
+    runs: tuple[Ran, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """What came of the public cases alone.
+
+    Attributes:
+        results: One for each test, as far as its public cases tell.
+        answers: What came back from each case that was asked.
+    """
+
+    results: tuple[TestResult, ...]
+    answers: Mapping[Case, Any]
+
+    @property
+    def outcome(self) -> Outcome:
+        """What they come to together."""
+        return _outcome(self.results)
+
+
+def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
+    """Try every test of a question, its public cases before any hidden one.
+
+    Args:
+        question: With its hidden cases, or without.
+        function: The student's, or one that asks the student's in another process; that one raises
+            `Failed`.
+        tried: What came of the public cases, if they were tried already.
+
+    Returns:
+        The verdict.  Gates come first; without them nothing is earned.
+    """
+    tried = tried or try_public(question, function)
+    results = tuple(
+        result
+        if result.outcome not in (Outcome.RIGHT, Outcome.NOT_TRIED)
+        else _try(test, [c for c in test.cases if c.hidden], question, function, {}, result)
+        for test, result in zip(question.tests, tried.results, strict=True)
+    )
+    outcome, mistake = _outcome(results), None
+    answers = [tried.answers.get(call) for call in question.calls]
+    asked = all(call in tried.answers for call in question.calls)
+    if outcome in (Outcome.WRONG, Outcome.ERROR) and asked:
+        mistake = recognise(question, answers)
+    return Verdict(
+        name=question.name,
+        outcome=outcome,
+        earned=_earned(question, outcome, results),
+        points=question.points,
+        tests=results,
+        withheld=tuple(dict.fromkeys(result.tool for result in results if result.tool)),
+        complete=question.complete,
+        mistake=mistake,
+        answers=tuple(answers),
+        runs=tuple(_runs(question, tried)),
+    )
+
+
+def not_counted(question: Question, tools: tuple[str, ...]) -> Verdict:
+    """The verdict on an answer whose text uses withheld tools; it is not tried."""
+    tests = tuple(TestResult(t.name, t.weight, Outcome.NOT_COUNTED) for t in question.tests)
+    outcome = Outcome.NOT_COUNTED
+    return Verdict(question.name, outcome, 0.0, question.points, tests, withheld=tools)
+
+
+def _runs(question: Question, tried: Tried) -> Iterator[Ran]:
+    for test in question.tests:
+        for case in test.cases:
+            answer = tried.answers.get(case)
+            log = answer.log if isinstance(answer, _Failure) else answer
+            if isinstance(case, Loop | Tuned) and isinstance(log, Log):
+                yield Ran(test.name, case, log, complete=log is answer)
+
+
+def try_public(question: Question, function: Callable[..., Any]) -> Tried:
+    """Try the public cases of every test.
+
+    Where one fails, all public calls are made, by which a known mistake can be told.
+    """
+    answers: dict[Case, Any] = {}
+    results = tuple(
+        _try(test, [c for c in test.cases if not c.hidden], question, function, answers)
+        for test in question.tests
+    )
+    if _outcome(results) in (Outcome.WRONG, Outcome.ERROR):
+        for call in question.calls:
+            if call not in answers:
+                answers[call] = _answer(call, function)
+    return Tried(results, answers)
+
+
+def _outcome(results: Iterable[TestResult]) -> Outcome:
+    """What the tests come to together; one that was not tried has nothing to say."""
+    outcomes = {result.outcome for result in results}
+    if len(outcomes) > 1:
+        outcomes.discard(Outcome.NOT_TRIED)
+    if len(outcomes) == 1:
+        return outcomes.pop()
+    for worst in (Outcome.NOT_COUNTED, Outcome.WRONG):
+        if worst in outcomes:
+            return worst
+    return Outcome.ERROR
+
+
+def recognise(question: Question, answers: list[Any]) -> Mistake | None:
+    """The known mistake that gives just these answers on the public calls, if there is one."""
+    for mistake in question.mistakes:
+        if (
+            answers
+            and len(answers) == len(mistake.answers)
+            and all(
+                _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
+            )
+        ):
+            return mistake
+    return None
+
+
+def fingerprint(question: Question, function: Callable[..., Any]) -> tuple[Any, ...]:
+    """What a function gives on each public call; `Raised` where it raises."""
+    given = (_answer(call, function) for call in question.calls)
+    return tuple(Raised(a.kind) if isinstance(a, _Failure) else a for a in given)
+
+
+@dataclass(frozen=True)
+class _Failure(Raised):
+    """An exception as an answer."""
+
+    sentence: str
+    log: Log | None = None
+    tool: str = ""
+
+
+def _answer(case: Case, function: Callable[..., Any]) -> Any:
+    try:
+        return case.ask(function)
+    except (Exception, SystemExit) as error:  # exit() in a function must not end the notebook
+        return _failure(error)
+
+
+def _failure(error: BaseException) -> _Failure:
+    """What to say of an exception that came out of the student's code, or of the loop around it."""
+    cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
+    kind = cause.kind if isinstance(cause, Failed) else type(cause).__name__
+    known = isinstance(error, Failed) or (isinstance(error, LabkitError) and error.__cause__)
+    sentence = str(error) if known else told(error)
+    log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
+    return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
+
+
+_OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Outcome.WRONG}
+"""Of exceptions that are no error."""
+
+
+def _try(
+    test: Test,
+    cases: Iterable[Case],
+    question: Question,
+    function: Callable[..., Any],
+    answers: dict[Case, Any],
+    before: TestResult | None = None,
+) -> TestResult:
+    """Put some cases of one test, until one fails; without any, what came of it before stays."""
+    for case in cases:
+        answer = _answer(case, function)
+        if not case.hidden:
+            answers[case] = answer
+        hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
+        where = hidden if case.hidden else case.shown(question.name)
+        if isinstance(answer, _Failure):
+            changed = answer.kind == "ArgumentChanged"
+            what = answer.kind if case.hidden else answer.sentence
+            says = f"{where}: {what}" if changed else f"{where} raised {what}"
+            outcome = Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind)
+            outcome = outcome or Outcome.ERROR
+            return TestResult(test.name, test.weight, outcome, says, case.hidden, answer.tool)
+        found = _difference(question, case, answer)
+        if found is not None:
+            says = where if case.hidden else f"{where}: {found}"
+            return TestResult(test.name, test.weight, Outcome.WRONG, says, case.hidden)
+        before = TestResult(test.name, test.weight, Outcome.RIGHT)
+    return before or TestResult(test.name, test.weight, Outcome.NOT_TRIED)
+
+
+def _difference(question: Question, case: Case, answer: Any) -> str | None:
+    """How an answer differs from what is expected; None if it does not."""
+    if answer is None and isinstance(case, Call | Choice):
+        return "it gave nothing back (None); does every way through it end in a return?"
+    try:
+        if isinstance(case, Call):
+            return question.judge(answer, case.expected)
+        return AtMost()(case.measured(answer), case.expected)
+    except LabkitError as error:
+        return str(error)
+    except Exception:  # there is no end to what an answer can be
+        return "the answer cannot be compared with what is expected"
+
+
+def _same(judge: Judge, answer: Any, known: Any) -> bool:
+    if isinstance(answer, Raised) or isinstance(known, Raised):
+        return (
+            isinstance(answer, Raised) and isinstance(known, Raised) and answer.kind == known.kind
+        )
+    try:
+        return judge.same(answer, known)
+    except Exception:
+        return False
+
+
+def _earned(question: Question, outcome: Outcome, results: tuple[TestResult, ...]) -> float:
+    if outcome is Outcome.RIGHT:
+        return float(question.points)
+    failed = {r.outcome for r in results if not r.weight} - {Outcome.RIGHT, Outcome.NOT_TRIED}
+    if failed or outcome is Outcome.NOT_COUNTED:
+        return 0.0
+    whole = sum(r.weight for r in results)
+    share = sum(r.weight for r in results if r.outcome is Outcome.RIGHT) / whole
+    return round(question.points * share, 2)

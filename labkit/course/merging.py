@@ -1,0 +1,111 @@
+"""Bring a student's work into a corrected release of the same assignment."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import re
+from collections.abc import Callable
+from typing import Any
+
+from ..errors import LabkitError
+from .handin import defines, grade_id
+from .source import is_stub, plain
+
+Cells = list[dict[str, Any]]
+
+
+def merge(mine: Cells, new: Cells) -> Cells:
+    """The new release's cells with the student's answers, and the cells that he added.
+
+    Args:
+        mine: The student's cells.
+        new: The cells of the new release.
+
+    Returns:
+        The new release, in its order.  An answer is found by the function that it defines, else by
+        the question that its cell was made for; a cell of the student's own follows the cell that
+        it followed.
+
+    Raises:
+        LabkitError: The new notebook is not a release, or none of the student's cells answers any
+            of its questions.
+    """
+    if not new or not all(isinstance(cell.get("id"), str) for cell in new):
+        raise LabkitError("the new notebook is not a release; fetch the assignment's folder again")
+    merged = copy.deepcopy(new)
+    home = _homes(new)
+    asked = [cell for cell in merged if _is_asked(cell)]
+    answers = [_answer(mine, grade_id(cell)) for cell in asked]
+    if asked and not any(_cells_for(mine, grade_id(cell)) for cell in asked):
+        raise LabkitError(
+            f"your notebook answers nothing that the new one asks ({grade_id(asked[0])}, ...); "
+            "are they two releases of the same assignment?"
+        )
+    for cell, answer in zip(asked, answers, strict=True):
+        if answer is not None:
+            cell["source"] = answer
+    anchor = -1
+    after: dict[int, Cells] = {}
+    for cell in mine:
+        place = home(cell)
+        if place is not None:
+            anchor = place
+        elif _is_own(cell, new):
+            after.setdefault(anchor, []).append(copy.deepcopy(cell))
+    result = after.get(-1, [])
+    for k, cell in enumerate(merged):
+        result += [cell, *after.get(k, [])]
+    return result
+
+
+def _homes(new: Cells) -> Callable[[dict[str, Any]], int | None]:
+    """A function that tells where in the new release a released cell belongs.
+
+    Ids count the cells of a release, so where a question was added they mean other cells from there
+    on; what a cell is for and what it says are better signs.
+    """
+    purposes = {grade_id(cell): k for k, cell in enumerate(new) if grade_id(cell)}
+    sources = {cell["source"]: k for k, cell in enumerate(new)}
+    ids = {cell["id"]: k for k, cell in enumerate(new)}
+
+    def home(cell: dict[str, Any]) -> int | None:
+        for found in (purposes.get(grade_id(cell)), sources.get(cell["source"])):
+            if found is not None:
+                return found
+        return ids.get(str(cell.get("id")))
+
+    return home
+
+
+def _is_asked(cell: dict[str, Any]) -> bool:
+    nbgrader = cell["metadata"].get("nbgrader")
+    return isinstance(nbgrader, dict) and bool(nbgrader.get("solution"))
+
+
+def _is_own(cell: dict[str, Any], new: Cells) -> bool:
+    """Whether the student added a cell; one of an older release has an id of the release's form."""
+    stem = new[0]["id"].rpartition("-")[0]
+    released = re.fullmatch(rf"{re.escape(stem)}-\d+", str(cell.get("id", "")))
+    return not grade_id(cell) and not released and bool(cell["source"].strip())
+
+
+def _answer(mine: Cells, name: str) -> str | None:
+    """The last cell in which something was written, which is the one that counts in marking."""
+    sources = [str(cell["source"]) for cell in _cells_for(mine, name)]
+    return next((source for source in reversed(sources) if not _is_unwritten(source)), None)
+
+
+def _cells_for(mine: Cells, name: str) -> Cells:
+    """The cells that define an answer, else those that were made for it."""
+    defining = [cell for cell in mine if defines(cell, name)]
+    return defining or [cell for cell in mine if grade_id(cell) == name]
+
+
+def _is_unwritten(source: str) -> bool:
+    """Whether a cell holds nothing but functions that say that they are still to be written."""
+    try:
+        written = ast.parse(plain(source)).body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    return all(is_stub(x) for x in written if not isinstance(x, ast.Import | ast.ImportFrom))

@@ -1,0 +1,177 @@
+"""How a student's function answers: as data, in a notebook as in a grader's sandbox.
+
+The answer crosses the same border in both, so what one understands the other understands too.
+"""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from ..errors import LabkitError, TypeMismatch
+from .advice import explained
+from .calling import ArgumentChanged, call
+from .serialize import decode_answer, encode
+from .withheld import Withheld
+
+LONGEST = 400
+"""Characters of an exception's message that are kept."""
+MOST_ITEMS = 100_000
+"""Of an answer that is no list but behaves as one."""
+
+
+class TimeUp(BaseException):
+    """A cell or a call took too long."""
+
+
+class Failed(LabkitError):
+    """A student's function did not answer.
+
+    Attributes:
+        kind: The type of the exception there.
+    """
+
+    def __init__(self, kind: str, sentence: str) -> None:
+        """What happened there."""
+        self.kind = kind
+        super().__init__(sentence)
+
+
+def reply(
+    function: Callable[..., Any], args: Sequence[Any], kwargs: Mapping[str, Any]
+) -> dict[str, Any]:
+    """What a function does with some arguments, as JSON data, whatever that is.
+
+    Returns:
+        What it ``is``; or the tool that is ``withheld`` and that it used; or the type of what it
+        ``raised``, and what that ``says``.
+
+    Raises:
+        KeyboardInterrupt, TimeUp: Somebody stopped it.
+    """
+    try:
+        return {"is": _as_data(call(function, args, kwargs))}
+    except (KeyboardInterrupt, TimeUp):
+        raise
+    except Withheld as error:
+        return {"withheld": error.tool}
+    except BaseException as error:
+        return {"raised": kind(error), "says": sentence(error)}
+
+
+def answer(data: Mapping[str, Any], withheld: Sequence[str]) -> Any:
+    """The answer that a `reply` holds.
+
+    Args:
+        data: From `reply`, perhaps from another process.
+        withheld: The tools that the question withholds.
+
+    Raises:
+        Failed: There is none.
+        Withheld: The function used a tool that the question withholds.
+    """
+    if "is" in data:
+        try:
+            return decode_answer(data["is"])
+        except TypeMismatch as error:
+            raise Failed("TypeMismatch", f"TypeMismatch: {error}") from None
+    if data.get("withheld") in withheld:
+        raise Withheld(data["withheld"])
+    raised, says = str(data.get("raised", "Exception")), str(data.get("says", ""))
+    if raised == ArgumentChanged.__name__:
+        raise Failed(raised, says)
+    raise Failed(raised, f"{raised}: {says}" if says else raised)
+
+
+def kind(error: BaseException) -> str:
+    """The type of an exception, whatever its author made of that."""
+    try:
+        return str(type(error).__name__)
+    except BaseException:
+        return "Exception"
+
+
+def sentence(error: BaseException) -> str:
+    """What an exception says, whatever its author made of it."""
+    try:
+        return explained(error)[:LONGEST]
+    except BaseException:
+        return "(its message cannot be shown)"
+
+
+class Here:
+    """A student's function of this process, asked as one in a sandbox is.
+
+    Args:
+        function: It.
+        withheld: The tools that the question withholds.
+        seconds: After so long a call is stopped, and no other is made.
+    """
+
+    def __init__(
+        self, function: Callable[..., Any], withheld: Sequence[str], seconds: float = 10.0
+    ) -> None:
+        self.function, self.withheld, self.seconds = function, withheld, seconds
+        self.stopped: Failed | None = None
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """The answer to one call.
+
+        Raises:
+            Failed: There is none.
+            Withheld: A withheld tool was used.
+        """
+        if self.stopped is not None:
+            raise self.stopped
+        try:
+            with stopped_after(self.seconds):
+                data = reply(self.function, args, kwargs)
+        except TimeUp:
+            says = f"it did not come back within {self.seconds:g} s; does every loop in it end?"
+            self.stopped = Failed("TimeoutError", f"TimeoutError: {says}")
+            raise self.stopped from None
+        return answer(data, self.withheld)
+
+
+@contextmanager
+def stopped_after(seconds: float) -> Iterator[None]:
+    """Raise `TimeUp` in the block after some seconds, and again, should it be caught.
+
+    Only where Python can: in the main thread, and not on Windows.
+    """
+    if threading.current_thread() is not threading.main_thread() or not hasattr(
+        signal, "setitimer"
+    ):
+        yield
+        return
+    before = signal.signal(signal.SIGALRM, _time_up)
+    signal.setitimer(signal.ITIMER_REAL, seconds, 0.5)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _time_up(number: int, frame: Any) -> None:
+    raise TimeUp
+
+
+def _as_data(given: Any) -> Any:
+    """An answer as JSON data; what behaves as an array or as a sequence is taken as one."""
+    try:
+        return encode(given)
+    except TypeMismatch:
+        if hasattr(given, "__array__"):
+            return encode(np.asarray(given))
+        if hasattr(given, "__float__"):
+            return encode(float(given))
+        if not hasattr(given, "__iter__"):
+            raise
+        return encode(list(islice(given, MOST_ITEMS)))

@@ -1,0 +1,257 @@
+"""The report card: how well the checks tell right from wrong, and by what margin.
+
+Every answer, known mistake and right variant is marked with many draws of the hidden cases; how
+near the nearest of them comes to the tolerance, `margins` says.  A question where nothing spreads
+has no margin and is listed apart.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError, UnknownName
+from . import Outcome, margins
+from .layout import Course
+from .marking import mark
+from .problem import Problem
+from .remembered import remembering
+
+Functions = Mapping[str, Sequence[Callable[..., Any]]]
+"""Functions by their question, its name, or "assignment/name" where two assignments ask it."""
+
+DRAWS = 20
+
+
+@dataclass(frozen=True)
+class Row:
+    """What the card says of one question.
+
+    Attributes:
+        assignment: Where it is asked.
+        question: Its name.
+        mistakes: Wrong answers tried.
+        rejected: Of these, how many earned less than half.
+        named: Of the course's own, how many were called by their name.
+        variants: Right answers tried, the reference included.
+        accepted: Of these, how many earned full marks.
+        seeds_agree: Draws of the hidden cases after which every mark is that of the first draw.
+        margin_sigma: Distance of the nearest answer from the tolerance, in sigmas; None where
+            nothing spreads.
+        nearest: Which answer that is.
+        failures: What went wrong, in words.
+    """
+
+    assignment: str
+    question: str
+    mistakes: int
+    rejected: int
+    named: int
+    variants: int
+    accepted: int
+    seeds_agree: int
+    margin_sigma: float | None
+    nearest: str
+    failures: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Card:
+    """The whole card.
+
+    Attributes:
+        seed: Of the first draw.
+        seeds: How many draws.
+        rows: One for each question.
+    """
+
+    seed: int
+    seeds: int
+    rows: tuple[Row, ...]
+
+    def data(self) -> dict[str, Any]:
+        """Totals and rows, as JSON data."""
+        totals: dict[str, Any] = {
+            key: sum(getattr(row, key) for row in self.rows)
+            for key in ("mistakes", "rejected", "named", "variants", "accepted")
+        }
+        margins = [row.margin_sigma for row in self.rows if row.margin_sigma is not None]
+        return {
+            "seed": self.seed,
+            "seeds": self.seeds,
+            **totals,
+            "seeds_agree": min((row.seeds_agree for row in self.rows), default=0),
+            "min_margin_sigma": min(margins, default=None),
+            "without_spread": [row.question for row in self.rows if row.margin_sigma is None],
+            "questions": [asdict(row) for row in self.rows],
+        }
+
+
+def make(
+    course: Course,
+    names: Iterable[str],
+    seed: int,
+    mistakes: Functions | None = None,
+    variants: Functions | None = None,
+    progress: Callable[[Row], None] = lambda row: None,
+) -> Card:
+    """Mark everything that is known of some assignments.
+
+    Args:
+        course: The course.
+        names: Of the assignments.
+        seed: Of the first draw of hidden cases; the others follow it.
+        mistakes: More wrong answers, from outside; these have no name to be called by.
+        variants: More right answers, from outside.
+        progress: Told each row when it is done.
+
+    Raises:
+        UnknownName: No such assignment, or an answer to a question that nobody asks.
+    """
+    problems = [(name, problem) for name in names for problem in course.problems(name)]
+    asked = [question for name, problem in problems for question in _names(name, problem)]
+    for question in (*(mistakes or {}), *(variants or {})):
+        if question not in asked:
+            raise UnknownName("question", question, asked)
+    rows = []
+    for name, problem in problems:
+        more = (
+            [f for question in _names(name, problem) for f in (given or {}).get(question, ())]
+            for given in (mistakes, variants)
+        )
+        rows.append(_row(name, problem, seed, *more))
+        progress(rows[-1])
+    return Card(seed, DRAWS, tuple(rows))
+
+
+def _names(assignment: str, problem: Problem) -> tuple[str, str]:
+    return problem.name, f"{assignment}/{problem.name}"
+
+
+def _row(
+    name: str,
+    problem: Problem,
+    seed: int,
+    mistakes: Sequence[Callable[..., Any]],
+    variants: Sequence[Callable[..., Any]],
+) -> Row:
+    questions = remembering([problem.question(seed + k) for k in range(DRAWS)])
+    own = {w.name: w.function for w in problem.wrong}
+    wrong = own | _labelled("from outside: ", mistakes)
+    right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])
+    verdicts = {
+        label: [mark(question, function) for question in questions]
+        for label, function in (wrong | right).items()
+    }
+    marks = {label: [verdict.earned for verdict in found] for label, found in verdicts.items()}
+    failures = []
+    rejected = named = accepted = 0
+    for label in wrong:
+        if max(marks[label]) < 0.5 * problem.points:
+            rejected += 1
+        else:
+            failures.append(f"{label}: earned {max(marks[label]):g} of {problem.points:g}")
+        known = verdicts[label][0].mistake
+        if known is not None and known.name == label:
+            named += 1
+        elif label in own:
+            failures.append(f"{label}: taken for {known.name if known else 'nothing known'}")
+    for label in right:
+        if all(verdict.outcome is Outcome.RIGHT for verdict in verdicts[label]):
+            accepted += 1
+        else:
+            failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
+    agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(DRAWS))
+    margin, nearest = margins.least(questions, problem, right, wrong)
+    return Row(
+        name,
+        problem.name,
+        len(wrong),
+        rejected,
+        named,
+        len(right),
+        accepted,
+        agree,
+        margin,
+        nearest,
+        tuple(failures),
+    )
+
+
+def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
+    """Functions by their names; those of one name are numbered, so that none is left out."""
+    names = [f"{whose}{getattr(f, '__name__', type(f).__name__)}" for f in functions]
+    before = [names[:k].count(name) for k, name in enumerate(names)]
+    labels = [f"{name} ({n + 1})" if n else name for name, n in zip(names, before, strict=True)]
+    return dict(zip(labels, functions, strict=True))
+
+
+def functions_from(file: Path, table: str) -> Functions:
+    """Answers from outside: a dict of a Python file.
+
+    Args:
+        file: Holds a dict {question: [function, ...]}; a question is named as its stub.
+        table: The dict's name, "MISTAKES" or "VARIANTS".
+
+    Raises:
+        LabkitError: There is no such file, it does not run, or there is no such dict in it.
+    """
+    spec = importlib.util.spec_from_file_location("answers_from_outside", file)
+    if spec is None or spec.loader is None or not file.exists():
+        raise LabkitError(f"{file} is no Python file; give one with a dict {table}")
+    module = importlib.util.module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise LabkitError(f"{file} does not run: {type(error).__name__}: {error}") from error
+    found: Functions | None = getattr(module, table, None)
+    form = f"write {table} = {{question: [functions]}}"
+    if not isinstance(found, dict):
+        raise LabkitError(f"{file} has no dict {table}; {form}")
+    for question, functions in found.items():
+        if not isinstance(functions, list | tuple) or not all(map(callable, functions)):
+            raise LabkitError(f"{table}[{question!r}] of {file} is no list of functions; {form}")
+    return found
+
+
+def write(card: Card, folder: Path) -> tuple[Path, Path]:
+    """Write ``report_card.json`` and ``report_card.md`` into a folder; returns both paths."""
+    folder.mkdir(parents=True, exist_ok=True)
+    table, page = folder / "report_card.json", folder / "report_card.md"
+    table.write_text(json.dumps(card.data(), indent=1, ensure_ascii=False) + "\n", "utf-8")
+    page.write_text(markdown(card), "utf-8")
+    return table, page
+
+
+def markdown(card: Card) -> str:
+    """The card as a page."""
+    data = card.data()
+    least = data["min_margin_sigma"]
+    lines = [
+        "# Report card of the checks",
+        "",
+        f"Hidden cases drawn {card.seeds} times, from seed {card.seed} on.",
+        "",
+        f"- mistakes rejected: {data['rejected']} of {data['mistakes']}, named: {data['named']}",
+        f"- right answers accepted: {data['accepted']} of {data['variants']}",
+        f"- draws that agree: {data['seeds_agree']} of {card.seeds}",
+        f"- least margin: {'none measured' if least is None else f'{least:.1f} sigma'}",
+        "",
+        "| assignment | question | rejected | named | accepted | draws | margin [σ] | nearest |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for row in card.rows:
+        margin = "no spread" if row.margin_sigma is None else f"{row.margin_sigma:.1f}"
+        lines.append(
+            f"| {row.assignment} | {row.question} | {row.rejected}/{row.mistakes} | {row.named} "
+            f"| {row.accepted}/{row.variants} | {row.seeds_agree}/{card.seeds} | {margin} "
+            f"| {row.nearest} |"
+        )
+    failures = [f"- {row.question}: {words}" for row in card.rows for words in row.failures]
+    return (
+        "\n".join([*lines, *(["", "## What failed", "", *failures] if failures else [""])]) + "\n"
+    )

@@ -1,0 +1,195 @@
+"""Values as JSON and back: how inputs travel to a student's code, and answers from it.
+
+Only the kinds named here travel; never pickle, never code.  `decode` builds whatever labkit wrote;
+`decode_answer` builds only plain data, because an answer was written by somebody else.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from types import MethodType
+from typing import Any
+
+import numpy as np
+
+from .. import control, paths, plant, scene, trajectory
+from ..errors import TypeMismatch
+from ..log import Log
+from ..model import Model
+from ..recordings import Runner, Trials
+from ..shapes import locked
+from .judges import Ratio
+
+DATA = (
+    control.State,
+    trajectory.Sample,
+    trajectory.PoseSample,
+    control.JointPosition,
+    control.JointVelocity,
+    control.JointTorque,
+    Ratio,
+)
+"""What a student's function may give back, beside numbers, arrays, texts, lists and tables."""
+
+GIVEN = (
+    paths.Line,
+    paths.Circle,
+    paths.Polyline,
+    paths.BangBang,
+    paths.Cubic,
+    paths.Quintic,
+    paths.Trapezoid,
+    paths.Spline,
+    trajectory.Trajectory,
+    trajectory.PosePath,
+    trajectory.Chain,
+    trajectory.Hold,
+    Model,
+    plant.Plant,
+    scene.Push,
+    scene.Spring,
+    scene.Table,
+    scene.Wall,
+    Log,
+    Trials,
+    Runner,
+)
+"""What a student's function may be given on top, values that are sent as what they are made of."""
+
+_MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
+    paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
+    trajectory.Chain: lambda chain: {"parts": chain.parts},
+    trajectory.Hold: lambda hold: {"place": hold(0.0)[0], "duration": hold.duration},
+    Model: lambda model: {"side": model.robot.side, "plant": model.plant},
+}
+"""The arguments to make those of again that are neither a dataclass nor a named tuple."""
+
+Kinds = Mapping[str, Any]
+"""Types by their names."""
+
+_DATA: Kinds = {kind.__name__: kind for kind in DATA}
+TRUSTED: Kinds = {kind.__name__: kind for kind in (*DATA, *GIVEN)}
+"""What `decode` builds, beside methods."""
+
+_COMMANDS: dict[str, type] = {kind.__name__: kind for kind in control.COMMANDS}
+
+
+def encode(value: Any, kinds: Kinds = TRUSTED) -> Any:
+    """A value as JSON data.
+
+    Args:
+        value: None, a truth value, number, text, list, tuple, dict with text keys, array of
+            numbers, one of ``kinds``, a method of one of these, or a type of command.
+        kinds: What may travel beside plain data.
+
+    Returns:
+        What `json.dumps` takes; numbers keep every bit.
+
+    Raises:
+        TypeMismatch: It is none of these.
+    """
+
+    def inner(x: Any) -> Any:
+        return encode(x, kinds)
+
+    if value is None or isinstance(value, bool | str):
+        return value
+    if isinstance(value, np.bool_):
+        return bool(value)
+    if isinstance(value, int | np.integer):
+        return int(value)
+    if isinstance(value, float | np.floating):
+        return _number(float(value))
+    if isinstance(value, np.ndarray):
+        if value.dtype.kind not in "fiub":
+            raise TypeMismatch(f"an array of {value.dtype} cannot be compared; give real numbers")
+        numbers = [_number(x) for x in value.ravel().tolist()]
+        return {"$": "array", "shape": list(value.shape), "numbers": numbers}
+    name = type(value).__name__
+    if type(value) is kinds.get(name):
+        return {"$": name, **{key: inner(x) for key, x in _made_of(value).items()}}
+    if isinstance(value, list):
+        return [inner(x) for x in value]
+    if isinstance(value, tuple):
+        return {"$": "tuple", "items": [inner(x) for x in value]}
+    if isinstance(value, dict):
+        if not all(isinstance(key, str) for key in value):
+            raise TypeMismatch("a dict travels only with text keys")
+        return {"$": "dict", "items": {key: inner(x) for key, x in value.items()}}
+    if isinstance(value, MethodType):
+        return {"$": "method", "of": inner(value.__self__), "name": value.__name__}
+    if type(value).__module__.startswith("control.") and hasattr(value, "num"):
+        num, den = (tuple(float(x) for x in part[0][0]) for part in (value.num, value.den))
+        return inner(Ratio(num, den))
+    if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
+        return {"$": "command type", "name": value.__name__}
+    raise TypeMismatch(
+        f"a value of type {name} cannot be compared; give numbers, arrays, lists or "
+        + ", ".join(kind.__name__ for kind in DATA)
+    )
+
+
+def _made_of(value: Any) -> dict[str, Any]:
+    if type(value) in _MADE_OF:
+        return _MADE_OF[type(value)](value)
+    if dataclasses.is_dataclass(value):
+        return {f.name: getattr(value, f.name) for f in dataclasses.fields(value) if f.init}
+    fields: dict[str, Any] = value._asdict()
+    return fields
+
+
+def decode(data: Any, kinds: Kinds = TRUSTED) -> Any:
+    """The value that `encode` wrote; arrays come read-only.
+
+    Args:
+        data: From `json.loads`, written by labkit itself.
+        kinds: As `encode` was given.
+    """
+    return _decode(data, kinds)
+
+
+def decode_answer(data: Any) -> Any:
+    """Plain data from an answer that somebody else wrote; see `DATA`.
+
+    Raises:
+        TypeMismatch: It is not of the form that `encode` writes.
+    """
+    try:
+        return _decode(data, _DATA)
+    except Exception as error:  # what else may come of it, its author chooses
+        raise TypeMismatch(f"the answer did not arrive in one piece: {error}") from None
+
+
+def _decode(data: Any, kinds: Kinds) -> Any:
+    def inner(x: Any) -> Any:
+        return _decode(x, kinds)
+
+    if isinstance(data, list):
+        return [inner(x) for x in data]
+    if not isinstance(data, dict):
+        return data
+    kind = data["$"]
+    if kind == "float":
+        return float(data["value"])
+    if kind == "array":
+        numbers = [
+            x if isinstance(x, bool | int | float) else float(x["value"]) for x in data["numbers"]
+        ]
+        return locked(np.array(numbers, dtype=float).reshape([int(n) for n in data["shape"]]))
+    if kind == "tuple":
+        return tuple(inner(x) for x in data["items"])
+    if kind == "dict":
+        return {str(key): inner(x) for key, x in data["items"].items()}
+    if kind in kinds:
+        return kinds[kind](**{key: inner(x) for key, x in data.items() if key != "$"})
+    if kinds is not _DATA and kind == "method":
+        return getattr(inner(data["of"]), data["name"])
+    if kinds is not _DATA and kind == "command type":
+        return _COMMANDS[data["name"]]
+    raise TypeMismatch(f"no value of kind {kind!r} can be read here")
+
+
+def _number(x: Any) -> Any:
+    """JSON has no word for NaN and the infinities."""
+    return x if isinstance(x, bool | int) or np.isfinite(x) else {"$": "float", "value": repr(x)}

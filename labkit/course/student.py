@@ -1,0 +1,241 @@
+"""What a notebook says: ``check``, ``hint`` and ``use``.
+
+The questions lie in a file ``checks.json`` beside the notebook.
+"""
+
+from __future__ import annotations
+
+import inspect
+import json
+import linecache
+import sys
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError, UnknownName
+from . import messages as words
+from .advice import line_of
+from .calling import heard
+from .evidence import evidence
+from .marking import Outcome, Verdict, mark, not_counted
+from .output import as_metadata
+from .question import Question
+from .question_codec import read_question, with_hidden
+from .reply import Here
+from .source import look
+from .withheld import withhold
+from .withheld_names import withheld_tools
+
+FILE = "checks.json"
+
+
+def read_checks(folder: Path) -> dict[str, Any]:
+    """What lies beside a notebook: the name of its ``assignment``, and its ``questions`` as data.
+
+    Raises:
+        LabkitError: It is not there, or damaged.
+    """
+    file = folder / FILE
+    try:
+        data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    except (FileNotFoundError, ValueError) as error:
+        there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
+        raise LabkitError(
+            f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
+            "beside it, so fetch the assignment's whole folder again"
+        ) from None
+    return data
+
+
+class Desk:
+    """The questions of one notebook, and what has come of them so far."""
+
+    def __init__(self, questions: dict[str, Question]) -> None:
+        self.questions = questions
+        self.seen: dict[str, tuple[Any, Verdict]] = {}
+        self.badges: set[str] = set()
+
+    @classmethod
+    def beside(cls, folder: Path) -> Desk:
+        """The desk of the notebook in ``folder``.
+
+        Raises:
+            LabkitError: No questions lie there, or damaged ones.
+        """
+        questions = map(read_question, read_checks(folder)["questions"])
+        return cls({question.name: question for question in questions})
+
+    def question(self, name: str) -> Question:
+        """One question.
+
+        Raises:
+            UnknownName: There is none of that name.
+        """
+        if name not in self.questions:
+            raise UnknownName("question", name, self.questions)
+        return self.questions[name]
+
+    def verdict(self, name: str, function: Callable[..., Any]) -> tuple[Verdict, str]:
+        """Try a function, and what it printed meanwhile.
+
+        Raises:
+            KeyboardInterrupt: The student stopped it; says in which line.
+        """
+        question = self.question(name)
+        cells = map(look, cells_run(function))
+        used = withheld_tools(cells, name, question.withheld)
+        student = shell().user_ns if shell() else getattr(function, "__globals__", {})
+        try:
+            with heard() as out, withhold(question.withheld, student):
+                verdict = (
+                    not_counted(question, used)
+                    if used
+                    else mark(question, Here(function, question.withheld))
+                )
+        except KeyboardInterrupt as stop:
+            line = line_of(stop)
+            where = f" in the line `{line}`" if line else ""
+            raise KeyboardInterrupt(
+                f"{name} was stopped{where}; does every loop in it come to its end?"
+            ) from None
+        self.seen[name] = (function, verdict)
+        return verdict, out.text
+
+    def leaning(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
+        """Other answers that a function calls by name, and that were tried and are not right."""
+        called = getattr(getattr(function, "__code__", None), "co_names", ())
+        seen = {other: verdict for other, (_, verdict) in self.seen.items() if other != name}
+        return tuple(
+            other
+            for other in dict.fromkeys(called)
+            if other in seen and seen[other].outcome is not Outcome.RIGHT
+        )
+
+
+def shell() -> Any:
+    """The shell of the notebook that runs here; None where there is none."""
+    if "IPython" not in sys.modules:
+        return None
+    from IPython.core.getipython import get_ipython
+
+    return get_ipython()
+
+
+def cells_run(function: Callable[..., Any]) -> list[str]:
+    """The text of all cells that ran in this notebook; elsewhere, of the function's own file."""
+    notebook = shell()
+    if notebook is not None:
+        return list(notebook.history_manager.input_hist_raw)
+    try:
+        file = inspect.getsourcefile(inspect.unwrap(function)) or ""
+    except (TypeError, ValueError):
+        return []
+    return ["".join(linecache.getlines(file))]
+
+
+_desks: dict[Path, Desk] = {}
+
+
+def desk() -> Desk:
+    """The desk of the notebook that runs here."""
+    folder = Path.cwd()
+    if folder not in _desks:
+        _desks[folder] = Desk.beside(folder)
+    return _desks[folder]
+
+
+def check(name: str, function: Callable[..., Any]) -> float:
+    """Try your function and print what came of it.
+
+    Args:
+        name: The question's name.
+        function: What you wrote.
+
+    Returns:
+        The points earned, a plain float, which is what nbgrader reads.
+
+    Raises:
+        UnknownName: No such question.
+    """
+    question = desk().question(name)
+    verdict, printed = desk().verdict(name, function)
+    _say(words.tell(question, verdict, printed, desk().leaning(name, function)), verdict)
+    if verdict.mistake is not None:
+        _show_evidence(question, verdict)
+    return float(verdict.earned)
+
+
+def also(name: str, packed: str) -> None:
+    """Add hidden cases to a question; the teacher's copy of a notebook does so."""
+    desk().questions[name] = with_hidden(desk().question(name), packed)
+
+
+def hint(name: str, level: int = 1) -> None:
+    """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
+
+    Beyond the last one it says so, and where else to ask.
+
+    Raises:
+        UnknownName: No such question.
+    """
+    print(words.hint(desk().question(name), level))
+
+
+def use(
+    name: str,
+    function: Callable[..., Any],
+    given: Callable[..., Any],
+    yours: Callable[..., Any] | None = None,
+) -> Callable[..., Any]:
+    """Your function if it is right, else the one given; so the notebook always goes on.
+
+    Args:
+        name: The question's name.
+        function: What you wrote.
+        given: What takes its place: a tool of labkit's, or something simpler.
+        yours: What to use instead of `function` itself, where the notebook wraps it first.
+
+    Returns:
+        One of them; a badge says once which, if it is not yours.
+    """
+    known, verdict = desk().seen.get(name, (None, None))
+    if known is not function or verdict is None:
+        verdict, _ = desk().verdict(name, function)
+    if verdict.outcome is Outcome.RIGHT:
+        return yours or function
+    if name not in desk().badges:
+        desk().badges.add(name)
+        print(f"[stand-in] {name}: yours is not ready, so a stand-in takes its place.")
+    return given
+
+
+def _say(text: str, verdict: Verdict) -> None:
+    """Print a verdict; in a notebook its output also keeps it as data, for `handin`."""
+    if shell() is None:
+        print(text)
+        return
+    from IPython.display import display
+
+    display({"text/plain": text}, metadata=as_metadata(verdict), raw=True)
+
+
+def _show_evidence(question: Question, verdict: Verdict) -> None:
+    """A small figure of the answers that gave a known mistake away, where there is a notebook."""
+    found = evidence(question, verdict)
+    if found is None or shell() is None:
+        return
+    from IPython.display import Image, display
+
+    from .. import plotting
+
+    picture = BytesIO()  # a notebook draws figures only once pyplot has made one
+    plotting.answers(*found).savefig(picture, format="png")
+    call, expected, given = found
+    alt = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
+    display(Image(picture.getvalue(), format="png", alt=alt))
+
+
+def _list(numbers: Any) -> str:
+    return ", ".join(f"{x:.3g}" for x in numbers)

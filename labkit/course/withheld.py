@@ -1,0 +1,185 @@
+"""Tools that a question asks to write: while it is tried, they stop working for the student's code.
+
+labkit's own code goes on using them, because inputs may be made of them.  This keeps an honest
+student honest; whoever goes around it is listed for the instructor, not stopped.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager
+from importlib import import_module
+from inspect import isclass, isfunction
+from itertools import count
+from types import FrameType, FunctionType, ModuleType
+from typing import Any
+
+from ..errors import LabkitError
+from .advice import in_labkit, in_library
+
+_numbers = count()
+
+
+class Withheld(LabkitError):
+    """A tool was used that the question asks the student to write.
+
+    Attributes:
+        tool: Its dotted name, such as "labkit.Circle".
+    """
+
+    def __init__(self, tool: str) -> None:
+        """Name the tool."""
+        super().__init__(tool)
+        self.tool = tool
+
+    def __str__(self) -> str:
+        return f"{spoken(self.tool)} may not be used in this answer"
+
+
+def spoken(tool: str) -> str:
+    """A tool as a notebook calls it: "lk.Circle"."""
+    return f"lk.{tool.removeprefix('labkit.')}" if tool.startswith("labkit.") else tool
+
+
+@contextmanager
+def withhold(tools: Iterable[str], student: dict[str, Any]) -> Iterator[None]:
+    """Make tools raise `Withheld` when the student's code calls them, while the block runs.
+
+    Args:
+        tools: Dotted names, such as "labkit.Circle" or "pinocchio".
+        student: The student's globals, where a reference may lie already.
+    """
+    with ExitStack() as undo:
+        for tool in tools:
+            owner, target = find(tool)
+            if isinstance(target, ModuleType):
+                _stop_module(tool, student, undo)
+            elif target is not None:
+                _stop(tool, owner, tool.rpartition(".")[2], target, student, undo)
+        yield
+
+
+def _stop_module(tool: str, student: dict[str, Any], undo: ExitStack) -> None:
+    """Every public function that a package defines, and class, in whatever part of it is loaded.
+
+    Classes written in C stay: without functions they answer nothing.
+    """
+    stopped: set[int] = set()
+    for name, module in list(sys.modules.items()):
+        if isinstance(module, ModuleType) and (name == tool or name.startswith(f"{tool}.")):
+            for key, thing in list(vars(module).items()):
+                home = str(getattr(thing, "__module__", None))
+                public = callable(thing) and not key.startswith("_") and home.startswith(tool)
+                in_c = isclass(thing) and not isfunction(thing.__init__)
+                if public and not in_c and id(thing) not in stopped:
+                    _stop(tool, module, key, thing, student, undo)
+                if isclass(thing) or isfunction(thing):  # stopped wherever it is called
+                    stopped.add(id(thing))
+
+
+def _stop(
+    tool: str, owner: Any, key: str, target: Any, student: dict[str, Any], undo: ExitStack
+) -> None:
+    if isclass(target) and isfunction(target.__init__):
+        for base, name, function in _methods(target):
+            if not function.__closure__:
+                _stop_function(function, _guard(tool, _copied(function), target), undo)
+            elif vars(base)[name] is function:
+                undo.callback(type.__setattr__, base, name, function)
+                type.__setattr__(base, name, _guard(tool, function, target))
+    elif isfunction(target) and not target.__closure__:
+        _stop_function(target, _guard(tool, _copied(target)), undo)
+    else:
+        guard = _guard(tool, target)
+        undo.callback(setattr, owner, key, target)
+        setattr(owner, key, guard)
+        for name in [name for name, value in student.items() if value is target]:
+            undo.callback(student.__setitem__, name, target)
+            student[name] = guard
+
+
+def _methods(kind: type) -> Iterator[tuple[type, str, FunctionType]]:
+    """The functions through which a class of labkit's is used, where it has them from."""
+    for base in kind.__mro__:
+        if not base.__module__.startswith("labkit."):
+            continue
+        for key, thing in list(vars(base).items()):
+            function = getattr(thing, "__func__", thing)
+            public = not key.startswith("_") or key in ("__init__", "__call__")
+            if public and isinstance(function, FunctionType):
+                yield base, key, function
+
+
+def _copied(function: FunctionType) -> FunctionType:
+    """The function as it was, to be called by the guard that takes its place."""
+    copy = FunctionType(
+        function.__code__, function.__globals__, function.__name__, function.__defaults__
+    )
+    copy.__kwdefaults__ = function.__kwdefaults__
+    return copy
+
+
+def _stop_function(function: FunctionType, guard: Callable[..., Any], undo: ExitStack) -> None:
+    """Change a function itself, so that references taken earlier stop too."""
+    name = f"_withheld_{next(_numbers)}"
+    made: dict[str, Any] = {}
+    program = f"def stub(*args, **kwargs):\n    return {name}(*args, **kwargs)\n"
+    exec(compile(program, _HERE, "exec"), made)
+    for key, value in (
+        ("__code__", made["stub"].__code__), ("__defaults__", None), ("__kwdefaults__", None)
+    ):  # fmt: skip
+        undo.callback(setattr, function, key, getattr(function, key))
+        setattr(function, key, value)
+    function.__globals__[name] = guard
+    undo.callback(function.__globals__.pop, name)
+
+
+def _guard(tool: str, function: Callable[..., Any], kind: type | None = None) -> Callable[..., Any]:
+    def guard(*args: Any, **kwargs: Any) -> Any:
+        if (kind is None or _is_of(kind, args)) and _student_asks():
+            raise Withheld(tool)
+        return function(*args, **kwargs)
+
+    return guard
+
+
+def _is_of(kind: type, args: tuple[Any, ...]) -> bool:
+    """Whether a method is that of a class, not of a sister that shares it."""
+    return bool(args) and (
+        issubclass(args[0], kind) if isclass(args[0]) else isinstance(args[0], kind)
+    )
+
+
+def _student_asks() -> bool:
+    """Whether the code that asks is neither labkit's nor asked by labkit through a library."""
+    frame: FrameType | None = sys._getframe(1)
+    while frame is not None:
+        file = frame.f_code.co_filename
+        if file != _HERE:
+            if in_labkit(file):
+                return False
+            if not in_library(file):
+                return True
+        frame = frame.f_back
+    return False
+
+
+_HERE = _student_asks.__code__.co_filename
+
+
+def find(name: str) -> tuple[Any, Any]:
+    """What holds a dotted name, and the thing itself; None where there is no such thing."""
+    parts = name.split(".")
+    for cut in range(len(parts), 0, -1):
+        try:
+            owner: Any = None
+            thing: Any = import_module(".".join(parts[:cut]))
+        except ImportError:
+            continue
+        for part in parts[cut:]:
+            owner, thing = thing, getattr(thing, part, None)
+        if cut == len(parts) and cut > 1:
+            owner = sys.modules[".".join(parts[: cut - 1])]
+        return owner, thing
+    return None, None

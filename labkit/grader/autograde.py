@@ -1,0 +1,101 @@
+"""Steps for nbgrader's own ``autograde``, so that it and formgrader's button are safe too.
+
+`unlink_foreign` comes before nbgrader copies what lies beside a notebook; `Repair` is the first of
+``Autograde.sanitize_preprocessors`` and brings a submission into the release's form; `Isolated`
+takes the place of nbgrader's ``Execute`` and runs nothing here.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+from nbgrader.preprocessors import NbGraderPreprocessor
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .batch import job
+from .engines import is_name
+from .lock import alone
+from .pool import Worker, result_of
+from .results import Bundle, Result, Results
+from .sandbox.limits import Limits
+from .submission import Submission
+from .written import in_release_form, release_source, with_verdicts
+
+
+class Isolated(NbGraderPreprocessor):  # type: ignore[misc]
+    """Grades a submission in the sandbox and writes its marks where nbgrader looks for them."""
+
+    def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """The notebook with verdicts for outputs."""
+        return with_verdicts(nb, _grade(resources["nbgrader"])), resources
+
+
+class Repair(NbGraderPreprocessor):  # type: ignore[misc]
+    """Brings a submission into the release's form: no doubled cells, no metadata of its own."""
+
+    def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        """The release's cells with the student's answers."""
+        about = resources["nbgrader"]
+        _check(Course.here(), about["assignment"], about["student"])
+        source = release_source(Course.here(), about["assignment"])
+        return in_release_form(source, _grade(about)), resources
+
+
+def unlink_foreign(notebooks: Iterable[str], **_: str) -> None:
+    """Put a note in the place of each link and special file beside notebooks that are graded next.
+
+    nbgrader copies what it finds there into ``autograded/`` and from there into ``feedback/``: what
+    a link leads to would come to the student, and a device would fill the disk.
+
+    Args:
+        notebooks: As nbgrader's ``pre_convert_hook`` names them.
+    """
+    for folder in {Path(notebook).parent for notebook in notebooks}:
+        for path in _foreign(folder):
+            led = f" to {os.readlink(path)!a}" if path.is_symlink() else ""
+            path.unlink()
+            path.write_text(f"Here was a link{led} or a special file; only files are graded.\n")
+
+
+def _foreign(folder: Path) -> list[Path]:
+    """Links and special files in a folder, which is none itself."""
+    if folder.is_symlink() or folder.parent.is_symlink():
+        return []
+    found = (Path(top, name) for top, *names in os.walk(folder) for part in names for name in part)
+    return [x for x in found if x.is_symlink() or not (x.is_file() or x.is_dir())]
+
+
+def _check(course: Course, assignment: str, student: str) -> None:
+    """Refuse a submission of which nbgrader must not copy anything."""
+    folder = Submission.of(course, assignment, student).folder
+    if not is_name(student):
+        raise LabkitError(f"{student!a} is not fit for a name; rename the folder in submitted/")
+    if folder.is_symlink() or folder.parent.is_symlink():
+        raise LabkitError(f"{folder} is a link; put the student's own files there")
+    if _foreign(folder):
+        raise LabkitError(f"{_foreign(folder)[0]} is a link or no file; take it away")
+
+
+_known: dict[tuple[str, str], Result] = {}
+
+
+def _grade(about: dict[str, Any]) -> Result:
+    """The result of the submission that nbgrader is at, graded once for both steps, and kept."""
+    course = Course.here()
+    key = (about["assignment"], about["student"])
+    result = _known.pop(key, None)
+    if result is None:
+        bundle = Bundle.of(course, about["assignment"])
+        submission = Submission.of(course, about["assignment"], about["student"])
+        todo = job(course, bundle, submission, Limits())
+        results = Results(course, about["assignment"])
+        with alone(results.folder), closing(Worker()) as worker:
+            result = Result.read(result_of(todo, worker.ask(todo)))
+            results.keep(result)
+        _known[key] = result
+    return result

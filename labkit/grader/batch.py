@@ -1,0 +1,199 @@
+"""A batch: grade a class, resume where it stopped, say what the class has in common."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .each import for_student
+from .grade import hashes
+from .lock import WHOLE, alone
+from .pool import Done, Job, locally, through_dask
+from .results import Bundle, Result, Results, digest
+from .sandbox.limits import Limits
+from .sandbox.mounts import NoIsolation
+from .submission import Submission
+
+LOUD = 0.3
+"""Above this share of a class that fails one test, the run says so; is the test to blame?"""
+FEW = 5
+"""Of fewer who tried nothing is concluded."""
+
+
+@dataclass(frozen=True)
+class How:
+    """How to grade.
+
+    Attributes:
+        jobs: Workers at once.
+        isolated: False only where somebody asked for it in so many words.
+        dask: Address of a scheduler, or None for this machine.
+        shard: (i, n): the i-th of n parts of the class, from 1.
+        again: Whether results that are there already are made anew.
+        limits: What a submission may use, on a quick machine.
+    """
+
+    jobs: int = 1
+    isolated: bool = True
+    dask: str | None = None
+    shard: tuple[int, int] = WHOLE
+    again: bool = False
+    limits: Limits = field(default_factory=Limits)
+
+
+@dataclass(frozen=True)
+class Graded:
+    """One submission, graded.
+
+    Attributes:
+        result: The one that counts.
+        says: How it stands to the one before; empty if there was none.
+    """
+
+    result: Result
+    says: str = ""
+
+
+def workers() -> int:
+    """How many workers fit this machine."""
+    return max(1, len(os.sched_getaffinity(0)))
+
+
+def in_shard(student: str, shard: tuple[int, int]) -> bool:
+    """Whether a student is in this part of the class; the same wherever it is asked."""
+    return int(digest(student.encode())[:8], 16) % shard[1] == shard[0] - 1
+
+
+def grade_class(
+    course: Course, assignment: str, students: Sequence[str], how: How
+) -> Iterator[Graded | LabkitError]:
+    """Grade submissions, each into a result file of its own.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        students: Whose.
+        how: In which way.
+
+    Yields:
+        Each result, or what failed.
+
+    Raises:
+        LabkitError: The assignment was not released, or another run is under way.
+        NoIsolation: There is no sandbox to be had.
+    """
+    bundle, results = Bundle.of(course, assignment), Results(course, assignment)
+    todo: list[Submission] = []
+    with alone(results.folder, how.shard):
+        for student in students:
+            if not in_shard(student, how.shard):
+                continue
+            submission = Submission.of(course, assignment, student)
+            before = None if how.again else _still_good(results, submission, bundle, how)
+            if before is not None:
+                yield Graded(before, "as before")
+                continue
+            todo.append(submission)
+        for result in grade_aside(course, bundle, todo, how):
+            yield (
+                result
+                if isinstance(result, LabkitError)
+                else for_student(result.student, partial(_keep, results, result))
+            )
+
+
+def grade_aside(
+    course: Course, bundle: Bundle, submissions: Iterable[Submission], how: How
+) -> Iterator[Result | LabkitError]:
+    """Grade submissions and keep nothing of it.
+
+    Yields:
+        Each result, or what failed.
+
+    Raises:
+        NoIsolation: There is no sandbox to be had.
+    """
+    jobs = [job(course, bundle, submission, how.limits) for submission in submissions]
+    done: Iterator[Done] = (
+        through_dask(jobs, how.dask, isolated=how.isolated)
+        if how.dask
+        else locally(jobs, how.jobs, isolated=how.isolated)
+    )
+    for text in done:
+        if isinstance(text, NoIsolation):
+            raise text  # it would be so for all of them
+        yield text if isinstance(text, LabkitError) else _read(text)
+
+
+def _read(text: str) -> Result | LabkitError:
+    try:
+        return Result.read(text)
+    except LabkitError as error:
+        return error
+
+
+def _keep(results: Results, result: Result) -> Graded:
+    """Let a result count, unless a mark would fall that nobody has earned worse."""
+    before = results.get(result.student)
+    same = before is not None and before.hashes["submission"] == result.hashes["submission"]
+    if before is not None and same and result.score < before.score:
+        return Graded(before, f"kept; it would be {result.score:g} now, see `labkit regrade`")
+    results.keep(result)
+    return Graded(result, "" if before is None else f"was {before.score:g}")
+
+
+def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) -> Job:
+    """What a worker is told of a submission."""
+    return {
+        "student": submission.student,
+        "assignment": submission.assignment,
+        "folder": str(submission.folder),
+        "bundle": str(course.bundle / f"{submission.assignment}.json"),
+        "hash": bundle.data["hash"],
+        "hidden": [str(course.root)],
+        "limits": limits.data(),
+    }
+
+
+def common_failures(results: Sequence[Result]) -> Iterator[str]:
+    """Questions with a test that so many fail that it, or the lecture, may be to blame.
+
+    Yields:
+        One sentence for each question, the test that most fail in it.
+    """
+    graded = [r for r in results if not r.rejected]
+    failed: Counter[tuple[str, str]] = Counter()
+    tried: Counter[str] = Counter()
+    for result in graded:
+        for question in result.questions:
+            if question["outcome"] in ("not attempted", "not counted"):
+                continue
+            tried[question["name"]] += 1
+            for one in question["tests"]:
+                failed[question["name"], one["name"]] += one["outcome"] != "right"
+    loud: dict[str, list[tuple[int, str]]] = {}
+    for (name, test), count in failed.most_common():
+        if count > LOUD * tried[name] and tried[name] >= FEW:
+            loud.setdefault(name, []).append((count, test))
+    for name, ((count, test), *others) in loud.items():
+        more = f"; so it is with {len(others)} more of its tests" if others else ""
+        yield (
+            f"{count} of {tried[name]} who tried {name} fail the test {test!r}{more}: "
+            "is it the test, the text or the lecture?"
+        )
+
+
+def _still_good(
+    results: Results, submission: Submission, bundle: Bundle, how: How
+) -> Result | None:
+    """A result that came from these very contents."""
+    before = results.get(submission.student)
+    if before is None or (how.isolated and before.isolation.startswith("none")):
+        return None
+    data, _, _ = submission.read(how.limits.notebook)
+    return before if before.hashes == hashes(data, bundle) else None

@@ -1,0 +1,176 @@
+"""What the class understood: marks, success, misconceptions by name, look-alikes."""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import combinations, islice
+from pathlib import Path
+from statistics import mean, median
+
+from ..course.messages import uses
+from ..course.problem import Problem
+from .batch import common_failures
+from .clean import clean_line
+from .results import Result
+
+ALIKE = 0.9
+"""Answers that share this much of their structure are looked at together."""
+SLOW = 30.0
+
+
+def report(
+    assignment: str,
+    results: Sequence[Result],
+    problems: Mapping[str, Problem],
+    called: Callable[[str], str],
+    left_out: int = 0,
+) -> str:
+    """The report, in Markdown.
+
+    Args:
+        assignment: Which.
+        results: Of the class.
+        problems: By name, for what to say in the lecture.
+        called: What a student is called in it: ``str``, or `pseudonyms`.
+        left_out: How many more have no result that counts.
+    """
+    who = {r.student: _as_text(called(r.student)) for r in results}
+    graded = [r for r in results if not r.rejected]
+    lines = [f"# {assignment}: what the class understood", ""]
+    lines += _marks(graded, len(results) - len(graded), left_out)
+    lines += _questions(graded)
+    lines += _mistakes(graded, problems)
+    lines += _listed("Withheld tools, and what may be a way around one", _tools(graded, who))
+    lines += _listed("Tests to doubt", common_failures(graded))
+    rejected = (f"{who[r.student]}: {_as_text(r.rejected)}" for r in results if r.rejected)
+    lines += _listed("Rejected", rejected)
+    times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
+    slow = (f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW)
+    lines += _listed(f"Slower than {SLOW:g} s", slow)
+    lines += _listed("Look-alikes", _alike(graded, who))
+    return "\n".join(lines) + "\n"
+
+
+def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
+    """Write the answers as JPlag wants them, a folder for each student; returns how many."""
+    count = 0
+    for result in results:
+        for question in result.questions:
+            if question["source"] and question["outcome"] != "not attempted":
+                path = folder / called(result.student) / f"{question['name']}.py"
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(question["source"], encoding="utf-8", errors="replace")
+                count += 1
+    return count
+
+
+def _marks(graded: Sequence[Result], rejected: int, left_out: int) -> Iterator[str]:
+    more = f", {rejected} rejected" if rejected else ""
+    more += f", {left_out} left out, without a result that counts" if left_out else ""
+    handed_in = len(graded) + rejected + left_out
+    yield f"{handed_in} handed in, {len(graded)} graded{more}."
+    if graded:
+        scores = sorted(r.score for r in graded)
+        yield (
+            f"Mean {mean(scores):.1f}, median {median(scores):.1f} of {graded[0].points:g} points; "
+            f"{scores[0]:g} to {scores[-1]:g}."
+        )
+    yield ""
+
+
+def _questions(graded: Sequence[Result]) -> Iterator[str]:
+    outcomes: dict[str, Counter[str]] = defaultdict(Counter)
+    shares: dict[str, list[float]] = defaultdict(list)
+    for result in graded:
+        for question in result.questions:
+            outcomes[question["name"]][question["outcome"]] += 1
+            if question["points"]:
+                shares[question["name"]].append(question["earned"] / question["points"])
+    yield from ("## Questions", "")
+    yield "| question | right | wrong | error | not counted | not tried | mean |"
+    yield "|---|---:|---:|---:|---:|---:|---:|"
+    for name, count in outcomes.items():
+        cells = [count[x] for x in ("right", "wrong", "error", "not counted", "not attempted")]
+        share = f"{mean(shares[name]):.0%}" if shares[name] else "voided"
+        yield f"| {name} | {' | '.join(map(str, cells))} | {share} |"
+    yield ""
+
+
+def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[str]:
+    count: Counter[tuple[str, str]] = Counter()
+    for result in graded:
+        for question in result.questions:
+            if question["mistake"]:
+                count[question["name"], question["mistake"]["name"]] += 1
+    if not count:
+        return
+    yield from ("## Misconceptions, and what to say in the next lecture", "")
+    for (name, mistake), n in count.most_common():
+        known = problems[name].wrong if name in problems else ()
+        say = next((w.lecture or w.says for w in known if w.name == mistake), "")
+        yield f"- **{n} x {name}: {mistake}.** {say}"
+    yield ""
+
+
+def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
+    """What each student used that a question withholds, and what in a cell needs a look."""
+    for result in graded:
+        used = [f"{q['name']} {uses(q['withheld'])}" for q in result.questions if q.get("withheld")]
+        if used:
+            yield f"{who[result.student]}, not counted: {'; '.join(used)}"
+        if result.tricks:
+            yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
+
+
+def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
+    """Pairs whose wrong or unusual answers have one structure, and what to ask them."""
+    shapes: dict[str, dict[str, frozenset[str]]] = {}
+    common: Counter[tuple[str, frozenset[str]]] = Counter()
+    for result in graded:
+        shapes[result.student] = {
+            q["name"]: _shape(q["source"])
+            for q in result.questions
+            if q["outcome"] != "not attempted"
+        }
+        common.update((name, shape) for name, shape in shapes[result.student].items() if shape)
+    rare = max(2, len(graded) // 20)
+    pairs = []
+    for a, b in combinations(sorted(shapes), 2):
+        alike = [
+            (name, len(x & y) / len(x | y))
+            for name, x in shapes[a].items()
+            if (y := shapes[b].get(name)) and len(x) > 12 and common[name, x] <= rare
+        ]
+        alike = [(name, share) for name, share in alike if share >= ALIKE]
+        if len(alike) >= 2:
+            pairs.append((sum(share for _, share in alike), a, b, [name for name, _ in alike]))
+    for _, a, b, names in sorted(pairs, reverse=True)[:10]:
+        ask = " and ".join(f"`{name}`" for name in names[:2])
+        yield f"{who[a]} and {who[b]}: {len(names)} answers alike; ask both how they came to {ask}"
+
+
+def _shape(source: str) -> frozenset[str]:
+    """The structure of an answer, without names and texts: triples of neighbouring nodes."""
+    try:
+        with warnings.catch_warnings(action="ignore"):
+            some = islice(ast.walk(ast.parse(source)), 404)
+            nodes = [type(node).__name__ for node in some]
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return frozenset()
+    windows = ["".join(nodes[k : k + 5]) for k in range(len(nodes) - 4)]
+    return frozenset(f"{w}{windows[:k].count(w)}" for k, w in enumerate(windows[:400]))
+
+
+def _as_text(text: str) -> str:
+    """A line in which Markdown sees no markup."""
+    return re.sub(r"([\\`*\[\]<>|&])", r"\\\1", clean_line(text))
+
+
+def _listed(title: str, items: Iterator[str]) -> Iterator[str]:
+    lines = list(items)
+    if lines:
+        yield from (f"## {title}", "", *(f"- {line}" for line in lines), "")

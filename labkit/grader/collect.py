@@ -1,0 +1,235 @@
+"""Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
+
+Whose a file is comes from the platform's own field (``platforms``, ``downloads``) and from the
+roster (``identity``); which of a student's notebooks counts is settled in ``attempts``.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .attempts import Seen, adopt, attempts, counts, install, keep
+from .downloads import File, in_exchange, in_zip, open_zip
+from .each import Failed, for_student
+from .enrol import settle
+from .identity import places
+from .lms import Known, alone, known_all_term, remember
+from .platforms import Named
+from .results import digest
+from .roster import Roster, read_roster
+
+
+@dataclass(frozen=True)
+class Taken:
+    """One file, and what was done with it.
+
+    Attributes:
+        student: Whose, as the folder is called; empty if nobody's.
+        file: Its name in the download; empty if it is of none in particular.
+        says: What was done.
+        fine: Whether nobody need look at it.
+    """
+
+    student: str
+    file: str
+    says: str
+    fine: bool = True
+
+    def __str__(self) -> str:
+        return ": ".join(filter(None, (self.student, self.file, self.says)))
+
+
+@dataclass(frozen=True)
+class _HandedIn:
+    """A file with its one owner."""
+
+    file: File
+    named: Named
+
+
+def collect(
+    course: Course, assignment: str, source: Path, *, unverified: bool = False
+) -> Iterator[Taken]:
+    """Take notebooks from a download; the same once more changes nothing.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
+        unverified: Whether users of the exchange whom this machine does not know are taken at
+            their word.
+
+    Yields:
+        What was done with each file.
+
+    Raises:
+        LabkitError: It is neither, it is damaged, or it holds nothing; or a record of the course
+            is damaged.
+    """
+    if not source.exists():
+        raise LabkitError(f"there is no {source}")
+    with alone(course):
+        if source.is_dir():
+            files = list(in_exchange(source, assignment, unverified=unverified))
+            yield from _take(course, assignment, source, files)
+        elif not zipfile.is_zipfile(source):
+            raise LabkitError(
+                f"{source} is neither a folder nor a zip file; give the download as it is"
+            )
+        else:
+            with open_zip(source) as archive:
+                made = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
+                yield from _take(course, assignment, source, list(in_zip(archive, made)))
+
+
+def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
+    if not files:
+        kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
+        raise LabkitError(f"nothing in {source} was handed in for {assignment}, read as {kind}")
+    roster = read_roster(course)
+    for sentence in settle(course, roster):
+        yield Taken("", "", sentence, fine=False)
+    known = known_all_term(course)
+    handed_in: list[_HandedIn] = []
+    for file in files:
+        named = _whose(file, roster)
+        if isinstance(named, str):
+            yield Taken("", file.label, named, fine=False)
+        else:
+            handed_in.append(_HandedIn(file, named))
+    people = {one.named.who.key: one.named.who for one in handed_in}
+    there = [path.name for path in course.submitted.glob("*")]
+    found = places(people.values(), assignment, known, roster, there)
+    if not roster.students:
+        yield from _namesakes(people.values())
+        yield from _known_by_name(
+            assignment, {place.folder: people[key] for key, place in found.items()}, known
+        )
+    for place in found.values():
+        if place.doubt:
+            yield Taken(place.folder, "", place.doubt, fine=False)
+    remember(course, assignment, {place.folder: people[key] for key, place in found.items()})
+    by_student: dict[str, list[_HandedIn]] = {}
+    for one in handed_in:
+        by_student.setdefault(found[one.named.who.key].folder, []).append(one)
+    for student, mine in sorted(by_student.items()):
+        yield from _keep(course, assignment, student, mine)
+
+
+def _whose(file: File, roster: Roster) -> Named | str:
+    """The one reading of a file's name that is right, or why there is none."""
+    if file.refused or not file.readings:
+        return file.refused or "not taken; its name does not say whose it is"
+    if len(file.readings) == 1:
+        return file.readings[0]
+    fits = [named for named in file.readings if _is_called_so(named.who, roster)]
+    if len(fits) == 1:
+        return fits[0]
+    people = " or ".join(str(named.who) for named in file.readings)
+    return f"not taken; it is of {people}; the roster does not say which"
+
+
+def _is_called_so(who: Known, roster: Roster) -> bool:
+    """Whether the roster has this user of Canvas, under this name."""
+    names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
+    return _letters(who.name) in map(_letters, names)
+
+
+def _letters(name: str) -> str:
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
+    called = Counter(one.name for one in people if one.system == "moodle")
+    for name, count in called.items():
+        if count > 1:
+            yield Taken(name, "", f"{count} students are called so; told apart by their number")
+
+
+def _known_by_name(
+    assignment: str, people: Mapping[str, Known], known: Mapping[str, Mapping[str, Known]]
+) -> Iterator[Taken]:
+    """Who is taken for somebody of an earlier assignment by name alone, which people can change.
+
+    Moodle's numbers are new in each assignment, so without a roster there is nothing else to go by.
+    """
+    pairs = [
+        f"{who.name} ({before.number} for {other}, {who.number} for {assignment})"
+        for folder, who in people.items()
+        for other, there in known.items()
+        if other != assignment and who.system == "moodle"
+        if (before := there.get(folder)) is not None and before.number != who.number
+    ]
+    if pairs:
+        some = ", ".join(pairs[:3]) + (", ..." if len(pairs) > 3 else "")
+        yield Taken(
+            "",
+            "",
+            f"{len(pairs)} are known by their name alone, which people can change: {some}; "
+            "`labkit students import` reads the class list, which knows them for certain",
+        )
+
+
+def _keep(
+    course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
+) -> Iterator[Taken]:
+    """Keep one student's notebooks, and let the right one count."""
+    notebooks = [one for one in mine if not _no_notebook(one.named)]
+    for one in mine:
+        if one not in notebooks:
+            says = f"not taken; {_no_notebook(one.named)}"
+            yield Taken(student, one.named.file, says, fine=bool(notebooks))
+    done = for_student(
+        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
+    )
+    if isinstance(done, Failed):
+        done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
+    yield from done
+
+
+def _no_notebook(named: Named) -> str:
+    file = named.file.lower()
+    if named.kind != "file":
+        return f"it came as Moodle's {named.kind} and not as a file"
+    if file.endswith(".zip"):
+        return "it is a zip; ask for the notebook itself"
+    return "" if file.endswith(".ipynb") else "it is not a notebook"
+
+
+def _keep_notebooks(
+    course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
+) -> Iterator[Taken]:
+    now = str(datetime.now(UTC))
+    adopt(course, student, assignment, now)
+    before = counts(attempts(course, student, assignment), assignment)
+    shown = max((one.file.when for one in notebooks), default=datetime.now(UTC))
+    kept: list[tuple[Seen, str, bool]] = []
+    for one in notebooks:
+        file, named = one.file, one.named
+        try:
+            data, secret = file.read(), file.secret()
+        except LabkitError as error:
+            yield Taken(student, named.file, f"not taken; {error}", fine=False)
+            continue
+        when = file.when if file.exact else shown  # a download shows them all at once
+        seen = Seen(when, *named.who.key, named.file, file.exact, named.late, now)
+        kept.append((seen, digest(data), keep(course, student, assignment, data, seen, secret)))
+    after = install(course, student, assignment)
+    for seen, sha256, new in kept:
+        if after is None or after.attempt.sha256 != sha256:
+            beside = {x.when: x.file for x in after.attempt.seen} if after else {}
+            which = beside.get(seen.when, "a later one")
+            says = f"{'kept' if new else 'there already'}, but {which} counts"
+        elif before is not None and before.attempt.sha256 == sha256:
+            says = "there already"
+        else:
+            says = "taken" + (", in place of an earlier one, which is kept" if before else "")
+            says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
+        yield Taken(student, seen.file, says + (", late" if seen.late else ""))

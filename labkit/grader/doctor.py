@@ -1,0 +1,200 @@
+"""What isolation this machine gives, and how to get the rest."""
+
+from __future__ import annotations
+
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+from textwrap import wrap
+
+from .sandbox import seccomp
+from .sandbox.launch import Broken, Sandbox
+from .sandbox.limits import Limits, slowness
+from .sandbox.mounts import NoIsolation
+
+_APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
+_NAMESPACES = Path("/proc/sys/user/max_user_namespaces")
+_CLONE = Path("/proc/sys/kernel/unprivileged_userns_clone")
+
+DOCKER = (
+    "--security-opt=seccomp=unconfined",
+    "--security-opt=apparmor=unconfined",
+    "--security-opt=systempaths=unconfined",
+    "--cap-add=SYS_ADMIN",
+    "--cap-add=NET_ADMIN",
+)
+"""What a container needs in which sandboxes are made; namespaces, mounts, and a network that is a
+loopback without anything behind it.  The sandbox has a filter of system calls of its own."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at.
+
+    Attributes:
+        what: It.
+        fine: Whether it is as it should be.
+        says: What was found, or the line that mends it.
+        needed: Whether grading refuses without it.
+    """
+
+    what: str
+    fine: bool
+    says: str
+    needed: bool = True
+
+    def __str__(self) -> str:
+        mark = "ok  " if self.fine else ("FAIL" if self.needed else "note")
+        return f"[{mark}] {self.what}: {self.says}"
+
+
+def examine() -> Iterator[Finding]:
+    """Look at everything that grading needs, the sandbox last, by making one and trying it."""
+    fine = sys.version_info[:2] == (3, 11)
+    says = platform.python_version() if fine else "PyBullet's newest wheels are for Python 3.11"
+    yield Finding("Python", fine, says)
+    missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
+    mend = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
+    yield Finding("instructor's packages", not missing, mend if missing else "there")
+    program = shutil.which("bwrap")
+    yield Finding("bubblewrap", program is not None, program or f"missing; {_install()}")
+    fine = seccomp.supported()
+    yield Finding("filter of system calls", fine, platform.machine())
+    yield from _namespaces()
+    yield from sandbox()
+    yield Finding(
+        "speed", True, f"time limits are multiplied by {slowness():g} on this machine", needed=False
+    )
+
+
+def sandbox() -> Iterator[Finding]:
+    """Make a sandbox and try to get out of it."""
+    try:
+        with Sandbox() as made, made.enter("student", Limits()) as inside:
+            inside.line.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
+            failed = str(inside.line.read(30.0).get("error", "it did not answer"))
+            yield Finding("sandbox", not failed, failed or made.level)
+            counted = made.group is not None
+            says = made.group.says if made.group else (
+                "no cgroup here: memory is limited for each process, not for all together; "
+                "grade as root, or under `systemd-run --user --scope -p Delegate=yes`; "
+                "a container's own --memory and --pids-limit hold for it as a whole"
+            )  # fmt: skip
+            yield Finding("limits of a whole sandbox", counted, says, needed=False)
+            away = os.geteuid() == 0
+            says = f"user {made.uid}" if away else "yours, without any rights, in a user namespace"
+            yield Finding("a user of its own", away, says, needed=False)
+    except (NoIsolation, Broken) as error:
+        yield Finding("sandbox", False, f"{error}\n\n{elsewhere()}")
+
+
+_TRY = """
+import os, socket
+bad = []
+try:
+    socket.create_connection(("192.0.2.1", 80), 1)
+    bad.append("it has a network")
+except PermissionError:
+    pass
+except OSError as error:
+    bad.append(f"sockets are not refused: {error}")
+if len([x for x in os.listdir("/proc") if x.isdigit()]):
+    bad.append("it sees processes")
+try:
+    open("/usr/x", "w")
+    bad.append("it can write to /usr")
+except OSError:
+    pass
+if any(map(os.path.exists, ("/etc/passwd", "/etc/hostname", "/usr/share/doc", "/var/log", "/sys"))):
+    bad.append("it sees files of the machine")
+try:
+    os.utime("/dev/null")
+    bad.append("it can change devices")
+except OSError:
+    pass
+import ctypes
+if ctypes.CDLL(None).unshare(0x10000000) == 0:
+    bad.append("it can make namespaces")
+if bad:
+    raise RuntimeError("; ".join(bad))
+"""
+
+
+def _namespaces() -> Iterator[Finding]:
+    if os.geteuid() == 0:
+        return
+    if _CLONE.exists() and _CLONE.read_text().strip() == "0":
+        yield Finding(
+            "user namespaces",
+            False,
+            "switched off; type: sudo sysctl kernel.unprivileged_userns_clone=1",
+        )
+    elif _NAMESPACES.exists() and _NAMESPACES.read_text().strip() == "0":
+        yield Finding(
+            "user namespaces",
+            False,
+            "switched off; type: sudo sysctl user.max_user_namespaces=10000",
+        )
+    elif _APPARMOR.exists() and _APPARMOR.read_text().strip() == "1":
+        yield Finding(
+            "user namespaces",
+            Path("/etc/apparmor.d/bwrap").exists(),
+            "Ubuntu's AppArmor restricts them; give bubblewrap a profile (as below), or for this "
+            "boot: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0",
+            needed=False,
+        )
+    else:
+        yield Finding("user namespaces", True, "allowed")
+
+
+def _install() -> str:
+    for tool, line in (
+        ("apt-get", "sudo apt-get install bubblewrap"),
+        ("dnf", "sudo dnf install bubblewrap"),
+        ("pacman", "sudo pacman -S bubblewrap"),
+    ):
+        if shutil.which(tool):
+            return f"type: {line}"
+    return "grade on Linux; macOS and Windows have no bubblewrap, so use the container"
+
+
+def elsewhere() -> str:
+    """How isolation is had in the places where people grade."""
+    options = " ".join([*DOCKER, "--memory=8g", "--pids-limit=500", "IMAGE"])
+    lines = " \\\n    ".join(wrap(f"docker run {options}", 80, break_on_hyphens=False))
+    rights = [x.removeprefix("--cap-add=") for x in DOCKER if x.startswith("--cap-add=")]
+    return f"""Debian
+  sudo apt-get install bubblewrap
+
+Ubuntu 24.04, WSL 2
+  sudo apt-get install bubblewrap apparmor-utils
+  write this to /etc/apparmor.d/bwrap, then: sudo systemctl reload apparmor
+    abi <abi/4.0>,
+    include <tunables/global>
+    profile bwrap /usr/bin/bwrap flags=(unconfined) {{
+      userns,
+    }}
+  where there is a profile that leaves its children no rights (Ubuntu 25.04), first:
+    sudo aa-disable /etc/apparmor.d/bwrap-userns-restrict
+
+Docker, for a container that grades and does nothing else
+  {lines}
+
+Kubernetes, a Job of its own and no pod of the students' hub
+  spec:
+    hostUsers: false
+    containers:
+      - securityContext:
+          capabilities: {{add: [{", ".join(rights)}]}}
+          procMount: Unmasked
+          seccompProfile: {{type: Unconfined}}
+          appArmorProfile: {{type: Unconfined}}
+  An indexed Job shares a class out: labkit grade NAME --shard i/n
+
+macOS, Windows
+  the container, or WSL 2"""

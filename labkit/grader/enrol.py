@@ -1,0 +1,200 @@
+"""Takes a list of students into the roster: who is new, and who is there already.
+
+A row is a student of the roster if they share a login, an address or a number; or the name, if
+nobody else has it and nothing speaks against it.  Nobody leaves the roster by a list that does not
+name them.  A student keeps the folder in which work of theirs lies.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, count
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .attempts import move
+from .clean import safe_name
+from .identity import places
+from .lms import Known, known, known_all_term, remember
+from .roster import Roster, Student, same_name
+from .student_list import Entry
+
+_Mark = tuple[str, object]
+_KEYS = ("login", "email", "lms_user_id", "id_number")
+_FIELDS = ("first_name", "last_name", *_KEYS)
+
+
+@dataclass(frozen=True)
+class Enrolled:
+    """What came of a list.
+
+    Attributes:
+        roster: With the list's students in it.
+        rows: Each row of the list with its student.
+        new: Those who were not there before.
+    """
+
+    roster: Roster
+    rows: tuple[tuple[Entry, Student], ...]
+    new: tuple[Student, ...]
+
+
+def enrol(
+    roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, Known]]
+) -> Enrolled:
+    """Take a list into the roster.
+
+    Args:
+        roster: As it was.
+        entries: The list's rows.
+        collected: Whose work was collected before, by assignment, then by folder.
+
+    Raises:
+        LabkitError: Two rows, or a row and the roster, contradict each other.
+    """
+    _refuse_contradictions(entries)
+    names = Counter(name for name, *_ in {(same_name(e.name), *_keys(e)) for e in entries})
+    students = {student.id: student for student in roster.students}
+    by_mark: dict[_Mark, set[str]] = {}
+    for student in roster.students:
+        _index(student, by_mark)
+    rows: list[tuple[Entry, str]] = []
+    for entry in entries:
+        alone = names[same_name(entry.name)] == 1
+        id = _find(entry, alone, students, by_mark) or f"\n{entry.line}"  # for want of a folder
+        said = {k: getattr(entry, k) for k in _FIELDS if getattr(entry, k)}
+        students[id] = replace(students.get(id, Student(id)), **said)
+        _index(students[id], by_mark)
+        rows.append((entry, id))
+    new = [id for id in students if id not in roster]
+    folders = _folders(Roster(tuple(students.values())), new, collected)
+    done = {id: replace(s, id=folders.get(id, id)) for id, s in students.items()}
+    return Enrolled(
+        Roster(tuple(done.values())),
+        tuple((entry, done[id]) for entry, id in rows),
+        tuple(done[id] for id in new),
+    )
+
+
+def settle(course: Course, roster: Roster) -> list[str]:
+    """Bring all work to those whom the roster has come to know since it was collected.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    left: list[str] = []
+    collected = known_all_term(course)
+    for assignment, people in collected.items():
+        found = places(people.values(), assignment, collected, roster, ())
+        moved = {
+            folder: to for folder, one in people.items() if (to := found[one.key].folder) != folder
+        }
+        left += [move(course, assignment, folder, to) for folder, to in moved.items()]
+        remember(course, assignment, {to: people[folder] for folder, to in moved.items()})
+    return [sentence for sentence in left if sentence]
+
+
+def keep_numbers(
+    course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
+) -> list[str]:
+    """Keep whose each participant's number is, and bring earlier work to its owner.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    mine = {s.id: Known("moodle", e.participant, s.name) for e, s in rows if e.participant}
+    before = {one.key: folder for folder, one in known(course, assignment).items()}
+    left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
+    remember(course, assignment, mine)
+    return [sentence for sentence in left if sentence]
+
+
+def _keys(one: Entry | Student) -> tuple[str, ...]:
+    return tuple(getattr(one, key).casefold() for key in _KEYS)
+
+
+def _shared(one: Entry | Student, other: Entry | Student) -> list[bool]:
+    """For each key that both have, whether it is the same."""
+    return [a == b for a, b in zip(_keys(one), _keys(other), strict=True) if a and b]
+
+
+def _refuse_contradictions(entries: Sequence[Entry]) -> None:
+    by: dict[tuple[str, object], list[Entry]] = {}
+    for entry in entries:
+        name = same_name(entry.name)
+        for key in {*zip(_KEYS, _keys(entry), strict=True), ("name", name)}:
+            for other in by.get(key, ()) if key[1] else ():
+                shared = _shared(entry, other)
+                lines = f"lines {other.line} and {entry.line}"
+                if key[0] == "name" and not shared:
+                    raise LabkitError(
+                        f"{lines} are both {entry.name}, and nothing tells them apart; give each a "
+                        "login, an address or a number, or delete one"
+                    )
+                if any(shared) and not (all(shared) and same_name(other.name) == name):
+                    raise LabkitError(f"{lines} contradict each other: {_says(other, entry)}")
+            by.setdefault(key, []).append(entry)
+
+
+def _says(one: Entry, other: Entry) -> str:
+    pairs = [(getattr(one, k), getattr(other, k)) for k in ("name", *_KEYS)]
+    same = " and ".join(a for a, b in pairs if a and a.casefold() == b.casefold())
+    differ = " and ".join(
+        f"{a} here and {b} there" for a, b in pairs if a and b and a.casefold() != b.casefold()
+    )
+    return f"{same} stands in both, with {differ}"
+
+
+def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
+    marks = (*zip(_KEYS, _keys(student), strict=True), ("name", same_name(student.name)))
+    for mark in marks:
+        by_mark.setdefault(mark, set()).add(student.id)
+
+
+def _find(
+    entry: Entry, alone: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
+) -> str:
+    """The student whom a row means; empty if they are new."""
+    keys = [mark for mark in zip(_KEYS, _keys(entry), strict=True) if mark[1]]
+    found = set().union(*(by_mark.get(mark, set()) for mark in keys))
+    if len(found) > 1:
+        people = " or ".join(str(students[id]) for id in sorted(found))
+        raise LabkitError(
+            f"line {entry.line} could be {people} of the roster; mend the list, or "
+            "course_private/roster.csv"
+        )
+    name = same_name(entry.name)
+    called = by_mark.get(("name", name), set()) if name and alone and not found else set()
+    if len(called) == 1 and not _shared(students[min(called)], entry):
+        return min(called)
+    return min(found, default="")
+
+
+def _folders(
+    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, Known]]
+) -> dict[str, str]:
+    """A folder for each new student: the one of their earlier work, or a new one."""
+    used: dict[str, Counter[str]] = {id: Counter() for id in new}
+    for people in collected.values():
+        for folder, one in people.items():
+            whose = everybody.whose(one)
+            if len(whose) == 1 and whose[0].id in used and folder == safe_name(folder):
+                used[whose[0].id][folder] += 1
+    taken = {student.id.casefold() for student in everybody.students}
+    alike = {student.id for group in everybody.namesakes() for student in group}
+    found: dict[str, str] = {}
+    for student in everybody.students:
+        if student.id in used:
+            plain = safe_name(student.login or student.name)
+            others = (student.email.partition("@")[0], student.id_number, student.lms_user_id)
+            names = chain(
+                (folder for folder, _ in used[student.id].most_common()),
+                [plain] * bool(student.login or student.id not in alike),
+                (safe_name(f"{plain}-{other}") for other in others if other),
+                (f"{plain}-{k}" for k in count(2)),
+            )
+            found[student.id] = next(name for name in names if name.casefold() not in taken)
+            taken.add(found[student.id].casefold())
+    return found

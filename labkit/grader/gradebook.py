@@ -1,0 +1,197 @@
+"""nbgrader's gradebook: one writer, who changes the automatic scores and nothing else.
+
+Manual grades and comments stay; formgrader finds a notebook to open for every submission.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import logging
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from datetime import datetime
+from functools import partial
+from typing import Any
+
+from sqlalchemy import text as sql
+from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .each import Failed, for_student
+from .engines import nbgrader_api
+from .results import Bundle, Result, write
+from .written import as_text, in_release_form, release_source, with_verdicts
+
+
+def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
+    """Write results into the gradebook, and a notebook for each; every student by himself.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        results: Of its students.
+
+    Returns:
+        What a person should look at, a sentence each; and whose scores could not be written.
+
+    Raises:
+        LabkitError: The gradebook does not know the assignment, or cannot be used.
+    """
+    said: list[str | Failed] = []
+    source, late = release_source(course, assignment), _late_rule(course)
+    with open_gradebook(course) as book:
+        if assignment not in {known.name for known in book.assignments}:
+            seed = Bundle.of(course, assignment).data["seed"]
+            raise LabkitError(
+                f"the gradebook does not know {assignment}, as if it were a new one; type: "
+                f"labkit release {assignment} --seed {seed}"
+            )
+        for result in results:
+            step = partial(_record, course, book, source, late, result)
+            done = for_student(result.student, step, of_all=(OperationalError,))
+            if isinstance(done, Failed):
+                book.db.rollback()
+            said += [done] if isinstance(done, Failed) else done
+    return said
+
+
+def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -> list[str]:
+    """Write one student's scores, whole or not at all; nbgrader commits who the student is first.
+
+    Returns:
+        What a person should look at.
+    """
+    written = as_text(with_verdicts(in_release_form(source, result), result))
+    when, note = timestamp(course, result)
+    known = {} if when is None else {"timestamp": when}
+    book.update_or_create_student(result.student)
+    submission = book.update_or_create_submission(result.assignment, result.student, **known)
+    notes = [f"{result.student}: {note}"] if note else []
+    notes += _write_scores(submission, result)
+    submission.late_submission_penalty = None
+    for notebook in submission.notebooks:
+        notebook.late_submission_penalty = late(result.student, notebook, submission)
+    book.db.flush()
+    folder = course.root / "autograded" / result.student / result.assignment
+    write(folder / f"{result.assignment}.ipynb", written)
+    book.db.commit()
+    return notes
+
+
+def automatic(result: Result, cell: str) -> float | None:
+    """The automatic score of a cell of the gradebook; None for one that is marked by hand."""
+    if not cell.endswith("-check") and not result.rejected:
+        return None
+    earned = {f"{q['name']}-check": q["earned"] for q in result.questions}
+    return float(earned.get(cell, 0.0))
+
+
+def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
+    """What was written by hand: by student, then by question."""
+    found: dict[str, dict[str, str]] = {}
+    with open_gradebook(course) as book:
+        for submission in book.assignment_submissions(assignment):
+            said = {c.name: c.manual_comment for n in submission.notebooks for c in n.comments}
+            found[str(submission.student.id)] = {k: v for k, v in said.items() if v}
+    return found
+
+
+@contextmanager
+def open_gradebook(course: Course) -> Iterator[Any]:
+    """The gradebook as nbgrader sees it; whatever is wrong, nothing is written by halves.
+
+    A second one, in another terminal, waits until the first is closed.
+
+    Raises:
+        LabkitError: The file is damaged, or cannot be read or written now.
+    """
+    course.build.mkdir(parents=True, exist_ok=True)
+    try:
+        with (
+            open(course.build / ".gradebook", "w") as writer,
+            quiet_database(),
+            nbgrader_api(course).gradebook as book,
+        ):
+            fcntl.flock(writer, fcntl.LOCK_EX)
+            if book.db.execute(sql("PRAGMA quick_check(1)")).scalar() != "ok":
+                raise _damaged("parts of it are lost")
+            try:
+                yield book
+            except BaseException:
+                book.db.rollback()
+                raise
+    except OperationalError as error:
+        raise LabkitError(
+            f"gradebook.db: {error.orig}; mend that and type the same again"
+        ) from None
+    except DatabaseError as error:
+        raise _damaged(error.orig) from None
+
+
+def _damaged(why: object) -> LabkitError:
+    return LabkitError(
+        f"gradebook.db is damaged: {why}; restore a copy of it, which has the marks and comments "
+        "given by hand. Without one, move the file away and type labkit release, then labkit grade "
+        "for each assignment: automatic marks come back from results/"
+    )
+
+
+@contextmanager
+def quiet_database() -> Iterator[None]:
+    """Keep back what SQLAlchemy warns of in nbgrader's queries; nobody here can change them."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=SAWarning)
+        yield
+
+
+def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
+    """When a submission came in, as whoever collected it says; and a note if that is unreadable."""
+    from dateutil.parser import parse
+
+    path = course.submitted / result.student / result.assignment / "timestamp.txt"
+    if path.is_symlink() or not path.is_file() or path.stat().st_size > 200:
+        return None, ""
+    text = path.read_text(encoding="utf-8", errors="replace").strip()
+    try:
+        return parse(text), ""
+    except (ValueError, OverflowError):
+        return None, f"timestamp.txt says {text[:40]!r}, which is no time; counted as in time"
+
+
+def _write_scores(submission: Any, result: Result) -> Iterator[str]:
+    for notebook in submission.notebooks:
+        for grade in notebook.grades:
+            score = automatic(result, grade.name)
+            by_hand = grade.manual_score is not None
+            if by_hand and score is not None and grade.auto_score not in {None, score}:
+                yield (
+                    f"{result.student}: {grade.name} was marked {grade.manual_score:g} by hand and "
+                    f"is {score:g} now by itself; look at it again"
+                )
+                grade.needs_manual_grade = True
+            elif not by_hand:
+                grade.needs_manual_grade = score is None
+            grade.auto_score = score
+
+
+def _late_rule(course: Course) -> Any:
+    """The course's own rule for late work, from nbgrader's settings."""
+    from nbgrader.plugins import LateSubmissionPlugin
+    from traitlets.utils.importstring import import_item
+
+    config = nbgrader_api(course).config
+    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
+    plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
+    plugin.log.setLevel(logging.CRITICAL)
+
+    def late(student: str, notebook: Any, submission: Any) -> float | None:
+        if submission.total_seconds_late <= 0:
+            return None
+        penalty: float | None = plugin.late_submission_penalty(
+            student, notebook.score, submission.total_seconds_late
+        )
+        return penalty
+
+    return late

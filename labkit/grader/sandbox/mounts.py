@@ -1,0 +1,180 @@
+"""The command that makes a sandbox: bubblewrap, and what of the disk it shows.
+
+Shown, read-only, are the folders with the system's programs and libraries, those of each Python
+that takes part (a virtual environment and what it was made from), the system's fonts, and labkit.
+The rest of the disk is not there: no ``/usr/share``, no ``/opt``, no ``/home``.  Where a course or
+a checkout lies in a shown folder, an empty one covers it.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+
+import labkit
+
+from ...errors import LabkitError
+from . import seccomp
+from .confine import DEVICES
+
+INSTALL = "apt-get install bubblewrap"
+_PACKAGE = Path(labkit.__file__).parent
+_LAB = "/lab"
+_PARTS = ("bin", "lib", "lib32", "lib64", "pyvenv.cfg")
+"""What is shown of the system, of ``/usr`` and of each Python."""
+_MORE = ("/usr/share/fonts", "/etc/ld.so.cache", "/etc/alternatives")
+_FORKSERVER = (sys.executable, "-P", "-s", "-m", "labkit.grader.sandbox.forkserver")
+_VARIABLES = {
+    "PYTHONHASHSEED": "0",
+    "PYTHONDONTWRITEBYTECODE": "1",
+    "MPLBACKEND": "Agg",
+    "OPENBLAS_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "LC_ALL": "C.UTF-8",
+    "IPYTHONDIR": "/tmp/ipython",
+}
+_INSIDE = _VARIABLES | {
+    "PATH": "/usr/bin:/bin",
+    "HOME": "/tmp",
+    "PYTHONPATH": _LAB,
+    "MPLCONFIGDIR": "/tmp/mpl",
+}
+
+
+class NoIsolation(LabkitError):
+    """This machine cannot keep a student's code apart; the sentence says how it could."""
+
+
+def command(hidden: Iterable[Path] = ()) -> list[str]:
+    """The command that makes a sandbox with the forkserver in it.
+
+    Args:
+        hidden: Folders of which nothing may be seen inside, such as the course's.
+
+    Raises:
+        NoIsolation: There is no bubblewrap, or no filter for this processor.
+    """
+    program = shutil.which("bwrap")
+    if program is None:
+        raise NoIsolation(f"bubblewrap is missing; get it with: {INSTALL}")
+    if not seccomp.supported():
+        raise NoIsolation("no system call filter for this processor; grade on x86-64 or arm64")
+    words = [program, "--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts"]
+    words += ["--unshare-cgroup-try", "--die-with-parent", "--new-session", "--clearenv"]
+    if os.geteuid():
+        words += ["--unshare-user", "--uid", "0", "--gid", "0"]
+    for capability in ("SYS_ADMIN", "SETUID", "SETGID", "SETPCAP", "KILL"):
+        words += ["--cap-add", f"CAP_{capability}"]
+    words += ["--perms", "1777", "--tmpfs", "/tmp", "--perms", "0755", "--tmpfs", "/dev"]
+    for device in DEVICES:
+        words += ["--dev-bind", device, device]
+    words += ["--dir", "/dev/shm", "--proc", "/proc"]
+    words += view(needed(), [*hidden, *_checkout()])
+    words += ["--perms", "0755", "--dir", _LAB, "--ro-bind", str(_PACKAGE), f"{_LAB}/labkit"]
+    words += ["--ro-bind", str(_font_list()), f"{_LAB}/mpl"]
+    for name, value in _INSIDE.items():
+        words += ["--setenv", name, value]
+    return [*words, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/", *_FORKSERVER]
+
+
+def environment() -> dict[str, str]:
+    """What bubblewrap itself is given."""
+    return {"PATH": os.environ.get("PATH", "/usr/bin:/bin")}
+
+
+def bare_command() -> list[str]:
+    """The command that starts the forkserver without a sandbox."""
+    return [*_FORKSERVER, "--bare"]
+
+
+def bare_environment() -> dict[str, str]:
+    """What the forkserver is given without a sandbox."""
+    return {**os.environ, **_VARIABLES, "PYTHONPATH": str(_PACKAGE.parent)}
+
+
+def needed() -> list[Path]:
+    """What must be shown for Python and its packages to work."""
+    program = Path(sys.executable)
+    prefixes = {Path("/"), Path("/usr"), Path("/usr/local")}
+    prefixes |= {Path(sys.prefix), Path(sys.base_prefix), program.parents[1]}
+    while program.is_symlink():  # a virtual environment's, which leads to the one it was made from
+        program = Path(os.path.normpath(program.parent / os.readlink(program)))
+        prefixes.add(program.parents[1])
+    places = [*(prefix / part for prefix in prefixes for part in _PARTS), *map(Path, _MORE)]
+    return sorted(place for place in places if place.exists())
+
+
+def view(shown: Iterable[Path], hidden: Iterable[Path]) -> list[str]:
+    """Bubblewrap's words for a disk on which some places are shown and nothing else is.
+
+    Args:
+        shown: To be seen, read-only; a link stays a link, and what it leads to is shown too.
+        hidden: Folders that are empty inside, even within a shown one; a shown place within a
+            hidden folder is shown.
+    """
+    links: dict[Path, str] = {}
+    kinds = {_without_links(place, links): "show" for place in shown}
+    kinds |= {place.resolve(): "hide" for place in hidden}
+    words: list[str] = []
+    covers: list[str] = []
+    made: set[Path] = set()
+    done: dict[Path, str] = {}
+    for place in sorted(kinds, key=lambda place: len(place.parts)):
+        around = next((done[above] for above in place.parents if above in done), "hide")
+        if kinds[place] == around:
+            continue
+        done[place] = kinds[place]
+        if around == "hide":
+            words += [*_folders(place.parent, made), "--ro-bind", str(place), str(place)]
+        else:
+            words += ["--perms", "0755", "--tmpfs", str(place)]
+            covers += ["--remount-ro", str(place)]
+            made.add(place)
+    for link, target in links.items():
+        if "show" not in (done.get(above) for above in link.parents):
+            words += [*_folders(link.parent, made), "--symlink", target, str(link)]
+    return words + covers
+
+
+def _without_links(place: Path, links: dict[Path, str]) -> Path:
+    """The place without links on the way to it; those that were there are noted."""
+    for above in (*reversed(place.parents), place):
+        if above.is_symlink():
+            links[above] = os.readlink(above)
+            target = Path(os.path.normpath(above.parent / links[above]))
+            return _without_links(target / place.relative_to(above), links)
+    return place
+
+
+def _folders(folder: Path, made: set[Path]) -> Iterator[str]:
+    """Make the folders above a place, readable: bubblewrap would close them to all but root."""
+    for above in (*reversed(folder.parents), folder):
+        if above not in made and above not in {Path("/"), Path("/tmp"), Path("/dev")}:
+            yield from ("--perms", "0755", "--dir", str(above))
+            made.add(above)
+
+
+def _checkout() -> Sequence[Path]:
+    """The folder around labkit, where that is a course with its solutions."""
+    around = _PACKAGE.parent
+    return [around] if (around / "nbgrader_config.py").exists() else []
+
+
+def _font_list() -> Path:
+    """Where Matplotlib keeps its list of fonts; made once, as that takes a while."""
+    base = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    folder = base / "labkit" / "matplotlib"
+    if not any(folder.glob("fontlist*")):
+        folder.mkdir(parents=True, exist_ok=True)
+        subprocess.run(
+            [sys.executable, "-P", "-c", "import matplotlib.font_manager"],
+            env=dict(os.environ) | {"MPLCONFIGDIR": str(folder)},
+            check=False,
+            capture_output=True,
+        )
+    return folder

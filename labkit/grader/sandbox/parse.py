@@ -1,0 +1,90 @@
+"""Read a notebook that somebody else wrote: its sources, and what each cell defines and uses.
+
+Outputs are dropped unread, so a notebook full of pictures is as welcome as any.  Text is cleaned
+here, where it enters: what runs is what an instructor reads.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from ...course.source import look
+from ..clean import clean_line, clean_text
+from .tricks import tricks
+
+MOST_CELLS = 1000
+MOST_SOURCE = 2_000_000  # characters, in all cells together
+
+
+class Rejected(Exception):
+    """The file is no notebook that can be graded; the message says why, in one sentence."""
+
+
+def read(data: bytes) -> dict[str, Any]:
+    """The cells of a notebook, or why there are none.
+
+    Args:
+        data: The file.
+
+    Returns:
+        ``{"cells": [...]}``, or ``{"rejected": sentence}``.  Each cell has ``id``, ``grade_id``,
+        ``type``, ``source``; code also has what `labkit.course.source.look` finds, and ``tricks``.
+    """
+    try:
+        return {"cells": list(_cells(_notebook(data)))}
+    except Rejected as why:
+        return {"rejected": str(why)}
+
+
+def _notebook(data: bytes) -> dict[str, Any]:
+    if not data.strip():
+        raise Rejected("the file is empty")
+    try:
+        notebook = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        what = "nested too deeply" if isinstance(error, RecursionError) else f"broken: {error}"
+        raise Rejected(f"the file is not a notebook; its JSON is {what}"[:200]) from None
+    except MemoryError:
+        raise Rejected("the file is too large to read") from None
+    if not isinstance(notebook, dict) or not isinstance(notebook.get("cells"), list):
+        raise Rejected("the file is not a notebook of format 4: it has no cells")
+    if notebook.get("nbformat") != 4:
+        raise Rejected(f"the notebook's format is {str(notebook.get('nbformat'))[:20]}, not 4")
+    if len(notebook["cells"]) > MOST_CELLS:
+        raise Rejected(f"{len(notebook['cells'])} cells are too many; the limit is {MOST_CELLS}")
+    return notebook
+
+
+def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    total = 0
+    for cell in notebook["cells"]:
+        if not isinstance(cell, dict):
+            continue
+        source = cell.get("source", "")
+        if isinstance(source, list):
+            source = "".join(x for x in source if isinstance(x, str))
+        if not isinstance(source, str):
+            source = ""
+        total += len(source)
+        if total > MOST_SOURCE:
+            raise Rejected(f"the sources are over {MOST_SOURCE // 10**6} MB of text")
+        source = clean_text(source.replace("\r\n", "\n").replace("\r", "\n"))
+        kind = "code" if cell.get("cell_type") == "code" else "text"
+        yield {
+            "id": _text(cell.get("id")),
+            "grade_id": _text(_within(_within(cell, "metadata"), "nbgrader").get("grade_id")),
+            "type": kind,
+            "source": source,
+            **({**look(source), "tricks": tricks(source)} if kind == "code" else {}),
+        }
+
+
+def _within(cell: Any, key: str) -> dict[str, Any]:
+    inner = cell.get(key)
+    return inner if isinstance(inner, dict) else {}
+
+
+def _text(x: Any) -> str:
+    return clean_line(x, 100) if isinstance(x, str) else ""

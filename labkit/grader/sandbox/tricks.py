@@ -1,0 +1,110 @@
+"""What in a cell may be a way around a withheld tool; for the instructor to look at.
+
+Nothing here changes a mark.  It names what no answer to the course's questions needs: labkit's
+insides, text that is run as code, modules loaded by hand.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+import warnings
+from collections.abc import Iterable, Iterator, Mapping
+
+from ...course.source import dotted, imported, plain
+
+MODULES = {
+    "builtins", "ctypes", "dill", "gc", "imp", "importlib", "marshal", "pickle", "pkgutil", "runpy",
+    "solutions", "zipimport",
+}  # fmt: skip
+"""Modules that load, rebuild or find things that have a name of their own."""
+CALLS = {"__import__", "compile", "eval", "exec"}
+ATTRIBUTES = {
+    "__bases__", "__closure__", "__code__", "__dict__", "__getattribute__", "__globals__",
+    "__init__", "__loader__", "__mro__", "__new__", "__reduce__", "__reduce_ex__", "__setattr__",
+    "__spec__", "__subclasses__", "__wrapped__", "_getframe", "_pin",
+}  # fmt: skip
+"""Attributes by which one gets at what has been put away."""
+INSIDE = ("labkit.course.", "labkit.grader.", "sys.modules.", "sys.meta_path.", "sys.path_hooks.")
+OURS = ("labkit", "numpy", "pinocchio", "builtins", "sys")
+"""Modules that no answer changes."""
+STUDENTS = {"labkit.course"} | {
+    f"labkit.course.{name}" for name in ("also", "check", "hint", "use")
+}
+
+_WORTH_A_LOOK = re.compile(
+    r"__|\b(_\w|eval|exec|compile|getattr|setattr|vars|sys|labkit|pinocchio)"
+    rf"|\b({'|'.join(MODULES)})\b|\b(lk|np|numpy)(\.\w+)+\s*(=[^=]|,)"
+)
+"""What every cell with a trick has; with it a look at a notebook takes half the time."""
+
+
+def tricks(source: str) -> list[str]:
+    """What a code cell does that no answer needs.
+
+    Args:
+        source: Python as a notebook understands it.
+
+    Returns:
+        The ends of sentences that begin with the cell: "imports pickle".
+    """
+    if not _WORTH_A_LOOK.search(source):
+        return []
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            tree = ast.parse(plain(source))
+            return list(dict.fromkeys(_found(tree)))
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return []
+
+
+def _found(tree: ast.AST) -> Iterator[str]:
+    nodes = list(ast.walk(tree))
+    means = {"lk": "labkit", "np": "numpy"}
+    for node in nodes:
+        means |= imported(node)
+    for node in nodes:
+        match node:
+            case ast.Import():
+                yield from _imports(alias.name for alias in node.names)
+            case ast.ImportFrom():
+                yield from _imports(imported(node).values())
+            case ast.Name("__name__", ast.Store()):
+                yield "sets __name__"
+            case ast.Attribute():
+                yield from _attribute(node, _full(node, means))
+            case ast.Call(ast.Name(name)) if name in CALLS:
+                yield f"calls {name}"
+            case ast.Call(ast.Name("getattr" | "setattr" | "vars" as name), [first, *_]):
+                if (_full(first, means) + ".").startswith("labkit."):
+                    yield f"reaches into {_full(first, means)} by {name}"
+
+
+def _full(node: ast.AST, means: Mapping[str, str]) -> str:
+    """A dotted name with its first part as it was imported."""
+    root, dot, rest = dotted(node).partition(".")
+    return means.get(root, root) + dot + rest
+
+
+def _imports(names: Iterable[str]) -> Iterator[str]:
+    for name in names:
+        if name.partition(".")[0] in MODULES or name.startswith("pinocchio."):
+            yield f"imports {name}"
+        elif _is_inside(name):
+            yield f"uses {name}"
+
+
+def _attribute(node: ast.Attribute, name: str) -> Iterator[str]:
+    ours = name.partition(".")[0] in OURS
+    private = name.startswith("labkit.") and re.match("_[^_]", node.attr)
+    if ours and not isinstance(node.ctx, ast.Load):
+        yield f"changes {name}"
+    elif _is_inside(name) or (ours and node.attr == "__file__") or private:
+        yield f"uses {name}"
+    elif node.attr in ATTRIBUTES and dotted(node.value) != "super":
+        yield f"uses {node.attr}"
+
+
+def _is_inside(name: str) -> bool:
+    return name not in STUDENTS and f"{name}.".startswith(INSIDE)

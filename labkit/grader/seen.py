@@ -1,0 +1,105 @@
+"""What a student may see of his own work: runs of the arm and numbers, on public cases alone.
+
+It goes into the result file, small, so that a page can be made from the result and nothing else.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+
+from ..course.cases import Tuned
+from ..course.evidence import evidence
+from ..course.marking import Ran, Verdict
+from ..course.question import Question
+from ..log import Log
+from ..replay import Motion, motion_of
+
+LARGEST = 60_000
+"""Bytes that one motion may take in a result."""
+RATES = (25.0, 12.5, 6.25, 3.0)
+"""Samples per second of a motion; the finest that fits is taken."""
+FEWEST = 50
+"""A short motion gets so many samples at least."""
+MOST = 400
+"""So many numbers of an answer are kept beside those expected."""
+
+
+def runs(question: Question, verdict: Verdict) -> list[dict[str, Any]]:
+    """The public runs of a question as data: measures, their limits, and the motion.
+
+    Args:
+        question: What was asked.
+        verdict: What came of it.
+
+    Returns:
+        One table for each run.  ``motion`` is what the viewer reads, as text, and empty where there
+        is nothing to be seen; ``words`` describes it; a measure that is infinite is None.
+    """
+    return [_run(question, ran) for ran in verdict.runs]
+
+
+def numbers(question: Question, verdict: Verdict) -> dict[str, Any] | None:
+    """The numbers of the first public call whose answer differs; None if there are none.
+
+    Returns:
+        ``call``, the first `MOST` numbers ``expected`` and ``given``, and ``of`` how many.
+    """
+    found = evidence(question, verdict)
+    if found is None or not len(found.given) or not np.isfinite(found.expected).all():
+        return None
+    return {
+        "call": found.call,
+        "expected": [_short(x) for x in found.expected[:MOST]],
+        "given": [_short(x) for x in found.given[:MOST]],
+        "of": len(found.given),
+    }
+
+
+def _run(question: Question, ran: Ran) -> dict[str, Any]:
+    loop = ran.case.loop if isinstance(ran.case, Tuned) else ran.case
+    says = ran.case.shown(question.name)
+    motion = _motion(ran.log, f"Your run: {ran.test}")
+    measures = ran.case.measured(ran.log) if ran.complete else {}
+    return {
+        "test": ran.test,
+        "says": says,
+        "complete": ran.complete,
+        "since": loop.settle,
+        "measures": {key: _short(x) for key, x in measures.items()},
+        "limits": {key: _short(x) for key, x in ran.case.expected.items()},
+        "words": "" if motion is None else motion.description,
+        "motion": "" if motion is None else _fitting(motion),
+    }
+
+
+def _motion(log: Log, title: str) -> Motion | None:
+    """What the viewer shows of a run, as far as its numbers are numbers."""
+    log = _finite(log)
+    return motion_of(log, title, label="your arm") if len(log) > 1 else None
+
+
+def _finite(log: Log) -> Log:
+    """The rows of a log before the first that is not finite; an arm that runs away leaves some."""
+    bad = np.flatnonzero(~np.isfinite(np.hstack([log.q, log.dq])).all(axis=1))
+    rows = int(bad[0]) if bad.size else len(log)
+
+    def cut(x: Any) -> Any:
+        if isinstance(x, tuple):
+            return type(x)(*(part[:rows] for part in x))
+        return x[:rows] if isinstance(x, np.ndarray) else x
+
+    return Log(**{f.name: cut(getattr(log, f.name)) for f in fields(log)})
+
+
+def _fitting(motion: Motion) -> str:
+    """The motion as the viewer reads it, as fine as fits."""
+    short = FEWEST / (motion.t[-1] - motion.t[0])
+    texts = (motion.to_json(max(rate, short)) for rate in RATES)
+    return next((text for text in texts if len(text.encode()) <= LARGEST), "")
+
+
+def _short(x: Any) -> float | None:
+    return float(f"{float(x):.6g}") if np.isfinite(x) else None

@@ -1,0 +1,88 @@
+"""Submissions: the files that came back, found and read with care."""
+
+from __future__ import annotations
+
+import os
+import stat
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..course.layout import Course
+from ..errors import LabkitError
+
+
+@dataclass(frozen=True)
+class Submission:
+    """One student's files for one assignment.
+
+    Attributes:
+        student: Whose.
+        assignment: Which.
+        folder: Where.
+    """
+
+    student: str
+    assignment: str
+    folder: Path
+
+    @classmethod
+    def of(cls, course: Course, assignment: str, student: str) -> Submission:
+        """Where nbgrader keeps it."""
+        return cls(student, assignment, course.submitted / student / assignment)
+
+    def read(self, most: int) -> tuple[bytes, str, str]:
+        """The notebook's bytes, a note, and why there are none; at least one is empty.
+
+        Args:
+            most: The largest size, in [MiB].
+        """
+        if self.folder.is_symlink() or self.folder.parent.is_symlink():
+            return b"", "", "the folder is a link; hand in the file itself"
+        found = sorted(x for x in self.folder.glob("*.ipynb") if not x.name.startswith("."))
+        named = [x for x in found if x.stem == self.assignment] or found
+        if not named:
+            return b"", "", f"there is no {self.assignment}.ipynb among the files"
+        if len(named) > 1:
+            names = ", ".join(x.name[:60] for x in named[:5])
+            return b"", "", f"which notebook counts? there is {names}"
+        path = named[0]
+        note = "" if path.stem == self.assignment else f"the file is called {path.name[:80]}"
+        try:
+            return read_file(path, most), note, ""
+        except LabkitError as error:
+            return b"", "", str(error)
+
+
+def read_file(path: Path, most: int) -> bytes:
+    """A file that somebody else may have put there.
+
+    Links are not followed: they could lead to somebody else's file.
+
+    Args:
+        path: Where.
+        most: The largest size, in [MiB].
+
+    Raises:
+        LabkitError: It is too large, is not a plain file, or cannot be read.
+    """
+    name = path.name[:80]
+    try:
+        kind = path.lstat().st_mode  # before it is opened: opening a device may do something
+        if not (stat.S_ISREG(kind) or stat.S_ISLNK(kind)):
+            raise LabkitError(f"{name} is not a file; hand in the notebook itself")
+        with open(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:
+            about = os.fstat(file.fileno())
+            if not stat.S_ISREG(about.st_mode):
+                raise LabkitError(f"{name} is not a file; hand in the notebook itself")
+            check_size(about.st_size, most)
+            return file.read()
+    except OSError:
+        raise LabkitError(
+            f"{name} is a link or cannot be opened; hand in the file itself"
+        ) from None
+
+
+def check_size(size: int, most: int) -> None:
+    """Refuse a file of more than so many [MiB]."""
+    if size > most * 2**20:
+        raise LabkitError(f"the file has {size / 2**20:.0f} MB, the limit is {most} MB")

@@ -1,0 +1,131 @@
+"""A new term: a seed of one's own, and a record of what was released."""
+
+from __future__ import annotations
+
+import json
+import secrets
+import shutil
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+from ..course.layout import PUBLIC_SEED, Course
+from ..course.release import release
+from ..errors import LabkitError
+from . import attempts, lms, pseudonyms, roster
+from .results import write
+
+NAMED = (
+    *("submitted", "autograded", "feedback", "results", "gradebook.db"),
+    *(attempts.FOLDER, roster.FILE, lms.FILE, pseudonyms.FILE),
+)
+"""Where students' names stand, or what leads to them; all of it is ignored by git."""
+
+
+def _private(course: Course) -> Path:
+    return course.root / "course_private"
+
+
+def seed_of(course: Course) -> int:
+    """The course's own seed, or the public one if no term was begun.
+
+    Raises:
+        LabkitError: The term's record cannot be read.
+    """
+    file = _private(course) / "term.json"
+    if not file.exists():
+        return PUBLIC_SEED
+    try:
+        return int(json.loads(file.read_text(encoding="utf-8"))["seed"])
+    except (ValueError, KeyError, TypeError):
+        raise LabkitError(
+            f"{file} is damaged and holds no seed; restore it, or write the term's as "
+            '{"seed": 123}'
+        ) from None
+
+
+def seed_for(course: Course, assignment: str) -> int:
+    """The seed of an assignment that is released without one.
+
+    It is the term's.  Where no term was begun, it is that of the last release, so that a
+    correction leaves hidden cases as they are; and the public one where that is the first.
+    """
+    seed = seed_of(course)
+    bundle = course.bundle / f"{assignment}.json"
+    if seed == PUBLIC_SEED and bundle.exists():
+        seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
+    return seed
+
+
+def said_of(seed: int) -> str:
+    """What to say of cases that are made with a seed; nothing if it is no public one."""
+    if seed != PUBLIC_SEED:
+        return ""
+    return (
+        f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
+        "them; begin a term with: labkit new-term"
+    )
+
+
+def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Begin a term: archive the last one's, release with a new seed, keep a record.
+
+    Args:
+        course: The course.
+        seed: Of the hidden cases; None draws one.
+        names: What to release; all by default.
+
+    Returns:
+        The record: seed, date, and the hash of each bundle, which every result names.
+
+    Raises:
+        LabkitError: The seed is the public one, or the last term's; or a name is unknown.
+    """
+    names = names or course.names()
+    for name in names:
+        course.notebook_source(name)
+    if seed in (PUBLIC_SEED, seed_of(course)):
+        raise LabkitError(f"seed {seed} was used before, so its cases may be known; take another")
+    seed = secrets.randbelow(2**31) if seed is None else seed
+    archive(course)
+    record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": {}}
+    _keep(course, record)  # first, so that a release that fails is made again with this seed
+    for name in names:
+        release(course, name, seed)
+    record["bundles"] = {
+        path.stem: json.loads(path.read_text(encoding="utf-8"))["hash"]
+        for path in sorted(course.bundle.glob("*.json"))
+    }
+    _keep(course, record)
+    return record
+
+
+def _keep(course: Course, record: dict[str, Any]) -> None:
+    write(_private(course) / "term.json", json.dumps(record, indent=1) + "\n")
+
+
+def archive(course: Course) -> Path | None:
+    """Move what holds the last term's names into one folder; None if there is nothing."""
+    there = [course.root / name for name in NAMED if (course.root / name).exists()]
+    if not there:
+        return None
+    folder = _private(course) / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
+    folder.mkdir(parents=True)
+    for path in there:
+        shutil.move(path, folder / path.name)
+    record = _private(course) / "term.json"
+    if record.exists():
+        shutil.move(record, folder / record.name)
+    return folder
+
+
+def forget(course: Course) -> list[Path]:
+    """Delete every archived term, and the names with it.
+
+    Returns:
+        The folders that are gone.
+    """
+    folders = sorted(_private(course).glob("archive-*"))
+    for folder in folders:
+        shutil.rmtree(folder)
+    return folders

@@ -1,0 +1,298 @@
+"""Before handing in: what a look at the file tells."""
+
+import copy
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from labkit import LabkitError
+from labkit.cli import main
+from labkit.course.handin import look, read_cells
+from labkit.course.marking import Outcome, Verdict
+from labkit.course.merging import merge
+from labkit.course.output import as_metadata
+
+ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    return Path(shutil.copytree(ASSIGNMENT, tmp_path / "01_paths"))
+
+
+def output(name, outcome, points=2.0, **more):
+    """What a check leaves in its cell."""
+    earned = points if outcome is Outcome.RIGHT else 0.0
+    metadata = as_metadata(Verdict(name, outcome, earned, points, **more))
+    return {"output_type": "display_data", "data": {}, "metadata": metadata}
+
+
+def edited(path, change):
+    """Change the notebook's cells and save it."""
+    data = json.loads(path.read_text())
+    data["cells"] = change(data["cells"])
+    path.write_text(json.dumps(data))
+    return path
+
+
+def test_an_untouched_notebook_is_whole_and_not_run(folder):
+    """The release itself has nothing to mend, and says that nothing was run."""
+    found = look(folder / "01_paths.ipynb")
+    assert found.problems == ()
+    assert set(found.verdicts.values()) == {None}
+    assert "  bang_bang: not run" in str(found).splitlines()
+    assert str(found).endswith("whole; when it was last run, 0 of 6 tasks were right.")
+
+
+def test_what_is_not_yet_right_is_named(folder):
+    """A wrong answer may be handed in, and is told beforehand."""
+
+    def change(cells):
+        for cell in cells:
+            if 'check("witness"' in "".join(cell["source"]):
+                cell["outputs"] = [output("witness", Outcome.WRONG)]
+        return cells
+
+    found = look(edited(folder / "01_paths.ipynb", change))
+    assert any(note.startswith("not yet right: witness;") for note in found.notes)
+    assert "  witness: not yet right. 0 of 2 points." in str(found).splitlines()
+
+
+def test_a_verdict_older_than_its_function_is_told(folder):
+    """A function that was run after its check has a verdict that says nothing of it."""
+
+    def ran(stub, check):
+        def change(cells):
+            for cell in cells:
+                text = "".join(cell["source"])
+                if "def witness" in text:
+                    cell["execution_count"] = stub
+                if 'check("witness"' in text:
+                    cell["execution_count"] = check
+            return cells
+
+        return look(edited(folder / "01_paths.ipynb", change)).notes
+
+    assert any(note.startswith("changed since it was checked: witness;") for note in ran(9, 8))
+    assert not any(note.startswith("changed") for note in ran(8, 9))
+
+
+def answered(folder, name, source, outputs=()):
+    """The notebook with one answer, and what its check has left."""
+
+    def change(cells):
+        for cell in cells:
+            if cell["metadata"].get("nbgrader", {}).get("grade_id") == name:
+                cell["source"] = source
+            if f'check("{name}"' in "".join(cell["source"]):
+                cell["outputs"] = list(outputs)
+        return cells
+
+    return look(edited(folder / "01_paths.ipynb", change))
+
+
+CIRCLE = "def circle(s, start, centre):\n    return lk.Circle(start, centre)(s)"
+
+
+@pytest.mark.parametrize("ran", [(), [output("circle", Outcome.RIGHT, 4.0, complete=False)]])
+def test_a_withheld_tool_is_to_be_mended(folder, ran):
+    """Whatever an older check said, and whether it ran or not, what is there uses the tool."""
+    found = answered(folder, "circle", CIRCLE, ran)
+    says = (
+        "circle: not counted: uses lk.Circle, which this question asks you to write. 0 of 4 points."
+    )
+    assert found.problems == (f"{says} Write it yourself.",)
+    assert f"  {says}" in str(found).splitlines()
+
+
+def test_what_the_check_said_is_repeated(folder):
+    """The same words, from the data in the output, not from its text."""
+    ran = [output("circle", Outcome.RIGHT, 4.0, complete=False)]
+    found = answered(folder, "circle", "def circle(*a): return 1", ran)
+    says = "  circle: right on all public cases; 4 points if the hidden ones agree."
+    assert says in str(found).splitlines()
+    assert str(found).endswith("1 of 6 tasks were right.")
+    lies = [{"output_type": "stream", "name": "stdout", "text": "circle: right. 4 of 4 points.\n"}]
+    assert answered(folder, "circle", "x = 1", lies).verdicts["circle"] is None
+
+
+@pytest.mark.parametrize("magic", ["%%timeit", "%%bash"])
+def test_a_magic_that_keeps_an_answer_to_itself_is_to_be_mended(folder, magic):
+    """Where a notebook would define nothing, the sentence says which line to take away."""
+    found = answered(folder, "circle", f"{magic}\ndef circle(s, start, centre):\n    return 1")
+    assert found.problems == (
+        f"the cell of circle begins with {magic}, which keeps what it defines to itself; "
+        "take that line away",
+    )
+    assert answered(folder, "circle", "%%time\ndef circle(*a): return 1").problems == ()
+
+
+@pytest.mark.parametrize(
+    "odd",
+    [
+        3, [3], [None], [{"metadata": 3}], [{"metadata": {"labkit": 3}}],
+        [{"metadata": {"labkit": {"question": "circle", "outcome": "best", "earned": 1}}}],
+        [{"metadata": {"labkit": {"question": "circle", "outcome": "right", "earned": "x",
+                                  "points": [], "withheld": 0, "complete": 1}}}],
+    ],
+)  # fmt: skip
+def test_odd_outputs_are_passed_over(folder, odd):
+    """What no check has written is no verdict, and no traceback."""
+
+    def change(cells):
+        cells[-1]["outputs"] = odd
+        return [*cells, {"cell_type": "code", "source": "1", "metadata": {"nbgrader": [1]}}]
+
+    assert look(edited(folder / "01_paths.ipynb", change)).verdicts["circle"] is None
+
+
+def test_another_name_is_to_be_mended(folder):
+    """A notebook that a browser renamed is told its right name."""
+    path = (folder / "01_paths.ipynb").rename(folder / "01_paths(3).ipynb")
+    assert look(path).problems == (
+        "the file is called 01_paths(3).ipynb; rename it to 01_paths.ipynb",
+    )
+
+
+def test_missing_and_doubled_cells_are_named(folder):
+    """A stub that is gone and one that is there twice are named."""
+
+    def change(cells):
+        stub = next(c for c in cells if "def circle" in "".join(c["source"]))
+        kept = [c for c in cells if "def bang_bang" not in "".join(c["source"])]
+        return [*kept, stub]
+
+    problems = look(edited(folder / "01_paths.ipynb", change)).problems
+    assert any(text.startswith("no cell defines bang_bang") for text in problems)
+    assert any("circle is there 2 times" in text for text in problems)
+
+
+def test_the_forum_block_holds_verdicts_and_no_answer(folder):
+    """The block for the forum has a line for each question and none of the code."""
+    block = look(folder / "01_paths.ipynb").for_the_forum()
+    assert "witness: not run" in block
+    assert "def " not in block
+
+
+@pytest.mark.parametrize("text", ["", "{", '{"cells": 3}', "\x00\x01"])
+def test_a_damaged_file_is_a_sentence(folder, text):
+    """What is no notebook is said to be none, with the way out."""
+    path = folder / "01_paths.ipynb"
+    path.write_text(text)
+    with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
+        look(path)
+
+
+@pytest.mark.parametrize("cell", [1, {"source": "x"}, {"cell_type": "code", "metadata": {}}])
+def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
+    path = folder / "01_paths.ipynb"
+    path.write_text(json.dumps({"cells": [cell]}))
+    with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
+        look(path)
+
+
+def test_a_cell_may_come_without_metadata(folder):
+    path = folder / "01_paths.ipynb"
+    path.write_text(json.dumps({"cells": [{"cell_type": "code", "source": ["def bang_bang(t):"]}]}))
+    found = look(path)
+    assert not any("no cell defines bang_bang" in text for text in found.problems)
+
+
+def test_a_notebook_without_its_questions_is_a_sentence(folder):
+    """A missing or damaged checks.json is named, with the way out."""
+    file = folder / "checks.json"
+    for text, says in (("{", "only a damaged"), (None, "no")):
+        file.unlink() if text is None else file.write_text(text)
+        with pytest.raises(LabkitError, match=rf"there is {says} checks\.json in .*whole folder"):
+            look(folder / "01_paths.ipynb")
+
+
+def test_merging_keeps_answers_and_own_cells(folder):
+    """A corrected release takes over the answer and the student's own cell, in its place."""
+    new = read_cells(folder / "01_paths.ipynb")
+    mine = read_cells(folder / "01_paths.ipynb")
+    at = next(k for k, c in enumerate(mine) if c["source"].startswith("def witness"))
+    mine[at]["source"] = "def witness(theta, duration):\n    return duration / 2"
+    mine.insert(
+        at + 1, {"cell_type": "code", "metadata": {}, "source": "print('mine')", "outputs": []}
+    )
+    new[0]["source"] = "# corrected"
+    merged = merge(mine, new)
+    assert merged[0]["source"] == "# corrected"
+    where = next(k for k, c in enumerate(merged) if c["source"].startswith("def witness"))
+    assert "duration / 2" in merged[where]["source"]
+    assert merged[where + 1]["source"] == "print('mine')"
+    assert len(merged) == len(new) + 1
+
+
+def test_merging_after_a_question_was_added(folder):
+    """Where a question was added all ids below it move on; answers and own cells find theirs."""
+    new = read_cells(folder / "01_paths.ipynb")
+    at = next(k for k, c in enumerate(new) if c["source"].startswith("def compose"))
+    mine = [dict(c) for c in new[:at] + new[at + 2 :]]  # its check goes with it
+    for k, cell in enumerate(mine):
+        cell["id"] = f"01-paths-{k:02d}"
+    there = next(k for k, c in enumerate(mine) if c["source"].startswith("def witness"))
+    mine[there]["source"] = "def witness(theta, duration):\n    return duration / 2"
+    own = {"cell_type": "code", "id": "0badcafe", "metadata": {}, "source": "print('mine')"}
+    mine.insert(there + 1, own)
+    merged = merge(mine, new)
+    where = next(k for k, c in enumerate(merged) if c["source"].startswith("def witness"))
+    assert "duration / 2" in merged[where]["source"]
+    assert merged[where + 1] == own
+    kept = [k for k in range(len(merged)) if k not in (where, where + 1)]
+    assert [merged[k] for k in kept] == [
+        c for c in new if not c["source"].startswith("def witness")
+    ]
+
+
+def test_merging_keeps_an_answer_whatever_stands_around_it(folder):
+    """The stub's line left below an answer, or an empty stub further down, takes nothing away."""
+    new = read_cells(folder / "01_paths.ipynb")
+    mine = copy.deepcopy(new)
+    (cell,) = (c for c in mine if "def witness" in c["source"])
+    stub = copy.deepcopy(cell) | {"id": "pasted"}
+    cell["source"] = cell["source"].replace("    raise", "    return 2.0\n    raise")
+    for place in (mine, [*mine, stub]):
+        assert cell["source"] in [c["source"] for c in merge(place, new)]
+    cell["source"] = "def witness(theta, duration):\n    return (1.0"
+    assert cell["source"] in [c["source"] for c in merge(mine, new)], "though Python cannot read it"
+
+
+def test_a_stub_below_a_magic_is_still_a_stub(folder):
+    """A magic above an empty stub is no answer; above an answer it goes with it."""
+    new = read_cells(folder / "01_paths.ipynb")
+    mine = copy.deepcopy(new)
+    (cell,) = (c for c in mine if "def witness" in c["source"])
+    cell["source"] = f"%%time\n{cell['source']}"
+    assert merge(mine, new) == new
+    cell["source"] = "%%time\ndef witness(theta, duration):\n    return 1"
+    assert cell["source"] in [c["source"] for c in merge(mine, new)]
+
+
+@pytest.mark.parametrize("new", [[], [{"cell_type": "code", "metadata": {}, "source": "x"}]])
+def test_what_is_no_release_is_a_sentence(folder, new):
+    with pytest.raises(LabkitError, match="the new notebook is not a release"):
+        merge(read_cells(folder / "01_paths.ipynb"), new)
+
+
+def test_text_that_no_file_can_hold_is_merged_all_the_same(folder, tmp_path):
+    """A lone surrogate in an answer becomes a question mark; nothing is lost beside it."""
+    path = folder / "01_paths.ipynb"
+    data = json.loads(path.read_text())
+    for cell in data["cells"]:
+        if "def witness" in "".join(cell["source"]):
+            cell["source"] = "def witness(theta, duration):\n    return 1  # \ud800"
+    mine = tmp_path / "mine.ipynb"
+    mine.write_text(json.dumps(data))
+    assert main(["merge", str(mine), str(path), "--to", str(tmp_path / "merged.ipynb")]) == 0
+    merged = (tmp_path / "merged.ipynb").read_text(encoding="utf-8")
+    assert "return 1  # ?" in merged
+
+
+def test_merging_an_untouched_notebook_gives_the_new_release(folder):
+    """Without any work of the student's, the merge is the new release."""
+    cells = read_cells(folder / "01_paths.ipynb")
+    assert merge(cells, cells) == cells

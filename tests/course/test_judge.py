@@ -1,0 +1,199 @@
+"""Judges: the same, or how it differs."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import labkit as lk
+from labkit.course import (
+    AtMost,
+    AtTip,
+    Call,
+    Close,
+    Outcome,
+    Question,
+    Response,
+    Test,
+    TipTorque,
+    Within,
+    question_data,
+    read_question,
+)
+from labkit.course.judges import Ratio
+from labkit.course.marking import mark
+
+CLOSE = Close(rtol=1e-6, atol=1e-9)
+V = np.array([1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize("answer", [V, [1, 2, 3], (1.0, 2.0, 3.0), V + 1e-7, np.float32(V)])
+def test_lists_and_rounding_are_the_same(answer):
+    """Whatever numpy reads as the same numbers passes."""
+    assert CLOSE(answer, V) is None
+    assert CLOSE.distance(answer, V) <= 1.0
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (V + 1e-3, "expected"),
+        (V[:, None], "shape"),
+        (V[:2], "shape"),
+        (None, "expected 3 real numbers"),
+        ("abc", "real numbers"),
+        ([1, 2, np.nan], "nan"),
+        ([1, 2, np.inf], "inf"),
+        (np.float64("nan"), "shape"),
+        (lk.JointVelocity(np.zeros(7)), "plain numbers are asked for, not a JointVelocity"),
+        ([[1], [2, 3]], "different lengths"),
+    ],
+)
+def test_differences_are_sentences(answer, words):
+    """A wrong shape, a NaN, a missing return: each says what came."""
+    assert words in CLOSE(answer, V)
+    assert CLOSE.distance(answer, V) > 1.0
+
+
+def test_a_command_is_asked_for_by_name():
+    """Plain numbers are told how to become a command, another command is called by its name."""
+    velocity = lk.JointVelocity(np.zeros(7))
+    assert "plain numbers; give lk.JointVelocity(...)" in CLOSE(np.ones(7), velocity)
+    assert CLOSE(lk.JointTorque(np.ones(7)), velocity).endswith("not a JointTorque")
+
+
+def test_mistakes_are_alike_within_a_rounding():
+    """A mistake is known by its number, however far it was written out; an answer is not."""
+    assert CLOSE.same(1.96 * V, 1.959964 * V) and CLOSE(1.96 * V, 1.959964 * V) is not None
+
+
+def test_a_number_is_told_its_sign_but_no_chance_factor():
+    """The other sign of a single number tells something, twice the number does not."""
+    assert CLOSE(-4.0, 4.0).endswith("the same with the other sign")
+    assert CLOSE(8.0, 4.0) == "expected 4, got 8"
+
+
+def test_numbers_are_numbers():
+    """Python's, numpy's and zero-dimensional arrays are one number; None is not."""
+    for answer in (2, 2.0, np.float64(2.0), np.int64(2), np.array(2.0)):
+        assert CLOSE(answer, 2.0) is None
+    assert "got 3" in CLOSE(3.0, 2.0)
+    assert CLOSE(None, 2.0) is not None
+    assert CLOSE(float("nan"), 2.0) is not None
+
+
+def test_commands_keep_their_type():
+    """A torque is not a speed, an array is no command, and the numbers count too."""
+    wanted = lk.JointVelocity(np.zeros(7))
+    assert CLOSE(lk.JointVelocity(np.zeros(7)), wanted) is None
+    assert "JointVelocity" in CLOSE(lk.JointTorque(np.zeros(7)), wanted)
+    assert "JointVelocity" in CLOSE(np.zeros(7), wanted)
+    assert "expected" in CLOSE(lk.JointVelocity(np.ones(7)), wanted)
+
+
+def test_parts_are_named():
+    """In a tuple the part that differs is called by its name; too few parts are counted."""
+    judge = Close(parts=("s", "ds", "dds"))
+    assert judge((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)) is None
+    assert judge([1.0, 2.0, 4.0], (1.0, 2.0, 3.0)).startswith("dds")
+    assert "3 things (s, ds, dds), not 2" in judge((1.0, 2.0), (1.0, 2.0, 3.0))
+    assert "3 things" in judge(1.0, (1.0, 2.0, 3.0))
+
+
+def test_samples_tables_and_texts():
+    """A tuple passes for a sample; a dict misses a key; a text is compared as it is."""
+    sample = lk.Sample(V, V, V)
+    assert CLOSE((V, V, V), sample) is None
+    assert CLOSE((V, V, 2 * V), sample).startswith("acceleration")
+    assert "'b' is missing" in CLOSE({"a": 1.0}, {"a": 1.0, "b": 2.0})
+    assert CLOSE("yes", "yes") is None
+    assert CLOSE("no", "yes") is not None
+    assert CLOSE(1, True) is not None
+
+
+@given(st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=5), st.floats(-1e-3, 1e-3))
+def test_distance_and_verdict_agree(numbers, off):
+    """An answer passes if and only if its distance is at most one tolerance."""
+    expected = np.array(numbers)
+    answer = expected + off
+    passed = CLOSE(answer, expected) is None
+    distance = CLOSE.distance(answer, expected)
+    assert passed == (distance <= 1.0) or abs(distance - 1.0) < 1e-6
+
+
+def test_within_intervals():
+    """Several numbers may be right; the distance grows from the middle."""
+    judge, intervals = Within(), [[0.9, 1.1], [2.0, 3.0]]
+    assert judge(1.0, intervals) is None and judge(2.5, intervals) is None
+    assert "got 1.5" in judge(1.5, intervals)
+    assert judge(None, intervals) is not None
+    assert judge(float("nan"), intervals) is not None
+    assert judge.distance(1.0, intervals) < 1.0 < judge.distance(1.5, intervals)
+
+
+def test_at_most():
+    """The first measure beyond its limit is told with its unit; NaN is beyond any."""
+    judge = AtMost()
+    assert judge({"max_mm": 1.0, "effort": 2.0}, {"max_mm": 1.5}) is None
+    assert judge({"max_mm": 2.0}, {"max_mm": 1.5}) == (
+        "the largest error of the tip is 2 mm, allowed 1.5 mm"
+    )
+    assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None
+
+
+def test_a_mistake_that_is_not_a_number_is_known_by_it():
+    """NaN where the known mistake has NaN; a right answer is no such mistake."""
+    nan = np.array([1.0, np.nan, 3.0])
+    assert CLOSE.same(nan, nan) and CLOSE(nan, V) is not None
+    assert not CLOSE.same(V, nan) and not CLOSE.same(nan, V)
+
+
+def test_a_transfer_function_is_no_plain_function():
+    """What cannot be multiplied and plotted is told so, though it gives the right numbers."""
+    judge, right = Response((1.0, 10.0)), Ratio((2.0,), (1.0, 0.0))
+    assert judge(right, right) is None
+    assert "it should be a transfer function, not <function" in judge(lambda s: 2.0 / s, right)
+
+
+def at_tip():
+    """An arm's torque as the tip feels it, and a joint acceleration that it does not feel."""
+    model = lk.Model("left", lk.BAXTER)
+    q = model.robot.ready + 0.1
+    M, J = model.mass_matrix(q), model.tip_jacobian(q)
+    unfelt = np.linalg.svd(J)[2][-1]
+    tau = np.linspace(-20.0, 30.0, 7)
+    return TipTorque(tau, np.linalg.solve(M, J.T).T), M @ unfelt
+
+
+def test_torques_are_judged_by_what_the_tip_does():
+    """Any torque with the expected acceleration of the tip is right, and none with another."""
+    judge, (expected, unfelt) = AtTip(), at_tip()
+    assert np.linalg.norm(unfelt) > 0.05, "a torque of which the joints feel a good deal"
+    for share in (0.0, 1.0, -30.0):
+        answer = lk.JointTorque(expected.value + share * unfelt)
+        assert judge(answer, expected) is None and judge.distance(answer, expected) < 1.0
+    for joint in np.eye(7):
+        answer = lk.JointTorque(expected.value + 0.01 * joint)
+        assert judge.distance(answer, expected) > 1.0
+        words = judge(answer, expected)
+        assert words.startswith("expected [") and "or any that moves the tip alike, got [" in words
+
+
+@pytest.mark.parametrize("answer", [np.zeros(7), None, lk.JointVelocity(np.zeros(7))])
+def test_a_torque_is_asked_for_by_name(answer):
+    """What is no torque has no acceleration to be judged by, and is told what it should be."""
+    judge, (expected, _) = AtTip(), at_tip()
+    assert "it should be a JointTorque" in judge(answer, expected)
+    assert judge.distance(answer, expected) == np.inf
+
+
+def test_a_question_of_torques_travels():
+    """Its expected answers come out of JSON as they went in."""
+    expected, unfelt = at_tip()
+    test = Test("torques", (Call((1.0,), expected=expected),))
+    question = Question("torque", 1.0, "Give a torque.", AtTip(), (test,))
+    again = read_question(json.loads(json.dumps(question_data(question))))
+    answer = lk.JointTorque(expected.value + unfelt)
+    assert mark(again, lambda x: answer).outcome is Outcome.RIGHT

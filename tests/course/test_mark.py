@@ -1,0 +1,161 @@
+"""Marking: four outcomes, gates first, mistakes named."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit.course import (
+    Call,
+    Failed,
+    Loop,
+    Outcome,
+    Raised,
+    Test,
+    fingerprint,
+    question_data,
+    read_question,
+)
+from labkit.course.marking import mark
+from labkit.course.question_codec import pack_hidden, with_hidden
+
+sys.path.insert(0, str(Path(__file__).parent))
+from questions import CALLS, DOUBLE, HIDDEN, double, square
+
+
+def stub(x):
+    raise NotImplementedError
+
+
+def broken(x):
+    return x["two"]
+
+
+@pytest.mark.parametrize(
+    ("function", "outcome", "earned"),
+    [
+        (double, Outcome.RIGHT, 4.0),
+        (lambda x: x + x, Outcome.RIGHT, 4.0),
+        (lambda x: np.float64(2 * x), Outcome.RIGHT, 4.0),
+        (stub, Outcome.NOT_ATTEMPTED, 0.0),
+        (broken, Outcome.ERROR, 0.0),
+        (sys.exit, Outcome.ERROR, 0.0),
+        (square, Outcome.WRONG, 0.0),
+        (lambda x: 0.0, Outcome.WRONG, 0.0),
+        (lambda x: None, Outcome.WRONG, 0.0),
+        (lambda x: float("nan"), Outcome.WRONG, 0.0),
+        (lambda x: abs(2.0 * x), Outcome.WRONG, 3.0),
+    ],
+)
+def test_outcomes_and_points(function, outcome, earned):
+    """Not attempted, error, wrong, right; a failed gate leaves nothing, a failed test its share."""
+    verdict = mark(DOUBLE, function)
+    assert (verdict.outcome, verdict.earned) == (outcome, earned)
+
+
+def test_a_gate_that_fails_takes_everything():
+    """What passes all tests but the gate earns nothing."""
+    assert mark(DOUBLE, lambda x: 0.0 if x == 2.0 else 2.0 * x).earned == 0.0
+
+
+def test_a_mistake_is_named_only_by_all_its_answers():
+    """The square is recognised; one answer more or less like it is not."""
+    assert mark(DOUBLE, square).mistake.name == "squared"
+    assert mark(DOUBLE, lambda x: x * x if x > 0 else 5.0).mistake is None
+    assert mark(DOUBLE, double).mistake is None
+
+
+def test_a_mistake_may_be_an_exception():
+    """A function that raises where a known mistake raises is that mistake."""
+    question = replace(
+        DOUBLE, mistakes=(replace(DOUBLE.mistakes[0], answers=fingerprint(DOUBLE, broken)),)
+    )
+    assert fingerprint(DOUBLE, broken) == (Raised("TypeError"),) * 3
+    assert mark(question, broken).mistake.name == "squared"
+    assert mark(question, lambda x: 1 / 0).mistake is None
+
+
+def test_hidden_cases_decide_and_are_not_told():
+    """A hidden case counts; its sentence holds its class, not its numbers."""
+    question = replace(
+        DOUBLE, tests=(*DOUBLE.tests[:2], Test("more", (CALLS[2], HIDDEN), 1.0, "any number"))
+    )
+    crammed = {2.0: 4.0, 3.0: 6.0, -1.0: -2.0}
+    for cheat in (lambda x: crammed.get(x, 0.0), crammed.__getitem__):
+        verdict = mark(question, cheat)
+        assert verdict.earned == 3.0
+        (failed,) = [t for t in verdict.tests if t.outcome is not Outcome.RIGHT]
+        assert failed.hidden and "any number" in failed.says and "7.5" not in failed.says
+
+
+def test_packing_hidden_cases():
+    """Hidden cases leave with `public`, travel packed, and come back."""
+    question = replace(DOUBLE, tests=(Test("more", (CALLS[2], HIDDEN), 1.0, "any number"),))
+    again = with_hidden(question.public(), pack_hidden(question))
+    assert [case.args for case in again.tests[0].cases] == [(-1.0,), (7.5,)]
+    assert [case.hidden for case in again.tests[0].cases] == [False, True]
+    assert question_data(with_hidden(again, pack_hidden(question))) == question_data(again)
+
+
+def test_a_question_is_data():
+    """Written and read again, a question marks the same."""
+    again = read_question(question_data(DOUBLE))
+    assert question_data(again) == question_data(DOUBLE)
+    assert mark(again, square).mistake.name == "squared"
+
+
+def test_answers_from_another_process_may_fail():
+    """`Failed` from a process that died counts as an error, with its sentence."""
+
+    def ask(x):
+        raise Failed("MemoryError", "it needed more than 1 GB")
+
+    verdict = mark(DOUBLE, ask)
+    assert verdict.outcome is Outcome.ERROR
+    assert "more than 1 GB" in verdict.tests[0].says
+
+
+def test_keyboard_interrupts_pass_through():
+    """Nobody's code is marked wrong because somebody pressed stop."""
+
+    def interrupted(x):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        mark(DOUBLE, interrupted)
+
+
+def loop_question(**settings):
+    q0 = lk.robot("left").ready
+    loop = Loop(lk.Hold(q0, 0.4), q0=q0 + 0.05, expected={"max_mm": 5.0}, **settings)
+    return replace(DOUBLE, tests=(Test("closed loop", (loop,)),), mistakes=())
+
+
+def test_a_closed_loop_after_it_has_settled():
+    """A run is measured from its settling time on; without one, the start counts."""
+
+    def controller(state, target):
+        return lk.JointVelocity(20.0 * (target.position - state.q))
+
+    assert mark(loop_question(settle=0.3), controller).outcome is Outcome.RIGHT
+    verdict = mark(loop_question(), controller)
+    assert verdict.outcome is Outcome.WRONG and "allowed 5 mm" in verdict.tests[0].says
+
+
+def test_a_closed_loop_that_breaks():
+    """A controller that raises, or has no return, or is a stub, ends in its own outcome."""
+    for controller, outcome in (
+        (lambda state, target: None, Outcome.ERROR),
+        (lambda state, target: 1 / 0, Outcome.ERROR),
+        (lambda state, target: stub(0), Outcome.NOT_ATTEMPTED),
+    ):
+        assert mark(loop_question(), controller).outcome is outcome
+
+
+def test_calls_are_shown_as_typed():
+    """A call reads as a student would write it, long arguments cut."""
+    assert Call((1.0,), {"kp": 2}).shown("f") == "f(1.0, kp=2)"
+    assert len(Call((np.zeros(100),)).shown("f")) < 60

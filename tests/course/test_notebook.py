@@ -1,0 +1,245 @@
+"""What a notebook says: check, hint and use."""
+
+import ast
+import json
+import os
+import subprocess
+import sys
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from questions import CALLS, DOUBLE, HIDDEN, double, square
+
+import labkit
+from labkit.course import Test, also, check, hint, question_data, use
+from labkit.course import student as notebook
+from labkit.course.question_codec import pack_hidden
+from labkit.errors import LabkitError, UnknownName
+
+
+def stub(x):
+    raise NotImplementedError
+
+
+@pytest.fixture(autouse=True)
+def desk(tmp_path, monkeypatch):
+    """A folder with questions in it."""
+    questions = [question_data(DOUBLE), question_data(replace(DOUBLE, name="again"))]
+    data = {"assignment": "sample", "questions": questions}
+    (tmp_path / notebook.FILE).write_text(json.dumps(data))
+    monkeypatch.chdir(tmp_path)
+    notebook._desks.clear()
+    return tmp_path
+
+
+def test_check_prints_and_ends_in_a_plain_float(capfd):
+    """The last line's value, which nbgrader reads, is a Python float, whatever the answer was."""
+    for function, points in ((double, 4.0), (square, 0.0), (stub, 0.0), (lambda x: 1 / 0, 0.0)):
+        earned = check("double", function)
+        assert type(earned) is float and earned == points
+        out, err = capfd.readouterr()
+        assert out.startswith("double: ") and err == ""
+
+
+def test_streams_and_warnings_are_caught(capfd):
+    """Prints, stderr, C's streams and warnings do not get through; they are told instead."""
+
+    def loud(x):
+        print("to stdout")
+        print("to stderr", file=sys.stderr)
+        warnings.warn("careful", stacklevel=1)
+        os.write(2, b"from below\n")
+        return 2 * x
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert check("double", loud) == 4.0
+    out, err = capfd.readouterr()
+    assert err == ""
+    assert "your code printed" in out and "to stderr" in out
+
+
+def test_streams_work_again_afterwards(capfd):
+    """After a check both streams are where they were, also if the function raised."""
+    check("double", lambda x: 1 / 0)
+    capfd.readouterr()
+    print("here")
+    os.write(2, b"there\n")
+    assert capfd.readouterr() == ("here\n", "there\n")
+
+
+def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
+    """Where a function calls another answer that is not right, that one is to be mended first."""
+    answers = {"square": square}
+    exec("def double(x):\n    return square(x)\ndef again(x):\n    return double(x)", answers)
+    check("double", answers["double"])
+    assert "it uses your" not in capsys.readouterr().out
+    check("again", answers["again"])
+    assert "it uses your double, which is not right yet" in capsys.readouterr().out
+
+
+def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
+    """By its text where it has one, else by what it calls; the stand-in takes its place."""
+    circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
+    data = {"assignment": "sample", "questions": [question_data(circle)]}
+    (desk / notebook.FILE).write_text(json.dumps(data))
+    notebook._desks.clear()
+    file = desk / "answers.py"
+    file.write_text(
+        "import labkit as lk\ndef double(x):\n    return 2 * x if x < 5 else lk.Circle\n"
+    )  # the branch is for a hidden case
+    names = {"__name__": "answers"}
+    exec(compile(file.read_text(), str(file), "exec"), names)
+    called = {"__name__": "numpy"}
+    exec(
+        "import labkit as lk\ndef double(x): return 2 * x if lk.Circle([x, 0, 0], 0) else 0", called
+    )
+    for function in (names["double"], called["double"]):
+        assert check("double", function) == 0.0
+        assert capsys.readouterr().out.startswith(
+            "double: not counted: uses lk.Circle, which this question asks you to write."
+        )
+        assert use("double", function, None) is None
+        capsys.readouterr()
+    assert check("double", double) == 4.0
+    assert labkit.Circle([1, 0, 0], [0, 0, 0])(0.0).position[0] == 1.0
+
+
+KERNEL = """
+import os
+os.chdir({folder!r})
+from IPython.core.interactiveshell import InteractiveShell
+from IPython.utils.capture import capture_output
+shell = InteractiveShell.instance()
+def run(cell):
+    with capture_output() as out:
+        assert shell.run_cell(cell, store_history=True).success
+    return [(o.data["text/plain"].splitlines()[0], o.metadata["labkit"]) for o in out.outputs]
+run("import labkit as lk; from labkit.course import check")
+"""
+
+
+def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
+    """What an answer leans on counts, by the cells that ran last; others may use what they like."""
+    circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
+    data = {"assignment": "sample", "questions": [question_data(circle)]}
+    (desk / notebook.FILE).write_text(json.dumps(data))
+    program = KERNEL.format(folder=str(desk)) + (
+        "run('def twice(x): return 2 * x or lk.Circle')\n"
+        "run('%%time\\ndef double(x): return twice(x)')\n"
+        "print(run('check(\"double\", double);'))\n"
+        "run('def twice(x): return 2 * x\\nring = lk.Circle([1, 0, 0], [0, 0, 0])(0.5)')\n"
+        "print(run('check(\"double\", double);'))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    (((first, kept),), ((second, then),)) = map(ast.literal_eval, done.stdout.splitlines())
+    assert first.startswith("double: not counted: uses lk.Circle")
+    assert kept == {
+        "question": "double", "outcome": "not counted", "earned": 0.0, "points": 4.0,
+        "withheld": ["labkit.Circle"], "complete": True,
+    }  # fmt: skip
+    assert second == "double: right on all public cases; 4 points if the hidden ones agree."
+    assert (then["outcome"], then["earned"], then["complete"]) == ("right", 4.0, False)
+
+
+def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
+    """Who interrupts a check hears in which line it was, and the streams work again."""
+
+    def endless(x):
+        raise KeyboardInterrupt  # what the button does, wherever the loop is
+
+    with pytest.raises(KeyboardInterrupt, match="double was stopped in the line `raise Keyboard"):
+        check("double", endless)
+    print("heard again")
+    assert capfd.readouterr().out == "heard again\n"
+
+
+def test_hints_lead_on(capsys):
+    """Three hints, each naming the next; there is no fourth and no zeroth."""
+    for level in (1, 2, 3):
+        hint("double", level)
+        said = capsys.readouterr().out
+        assert DOUBLE.hints[level - 1] in said
+        assert (f'hint("double", {level + 1})' in said) == (level < 3)
+    for level in (0, 4, -1, 1.0, "1"):
+        hint("double", level)
+        assert f"double has 3 hints, and no hint {level!r}." in capsys.readouterr().out
+
+
+def test_use_takes_yours_only_if_right(capsys):
+    """A right function is used, or what wraps it; any other is replaced, with one badge."""
+    given, wrapped = object(), object()
+    assert use("double", double, given) is double
+    assert use("double", double, given, yours=wrapped) is wrapped
+    assert capsys.readouterr().out == ""
+    for function in (stub, square, lambda x: 1 / 0):
+        assert use("double", function, given, yours=wrapped) is given
+    assert capsys.readouterr().out.count("[stand-in] double") == 1
+
+
+def test_use_remembers_the_check():
+    """What `check` found is not tried again; a function that was changed is."""
+    calls = []
+
+    def counted(x):
+        calls.append(x)
+        return 2.0 * x
+
+    check("double", counted)
+    tried = len(calls)
+    assert use("double", counted, None) is counted and len(calls) == tried
+    assert use("double", double, None) is double
+
+
+def test_also_adds_hidden_cases(capsys):
+    """The teacher's copy has more cases, and adding them twice changes nothing."""
+    question = replace(DOUBLE, tests=(Test("negative", (CALLS[2], HIDDEN), 1.0, "any number"),))
+    for _ in range(2):
+        also("double", pack_hidden(question))
+        assert check("double", {2.0: 4.0, 3.0: 6.0, -1.0: -2.0}.get) == 3.0
+    assert "a hidden case (any number)" in capsys.readouterr().out
+
+
+def test_unknown_questions_are_a_sentence():
+    """A question that is not there is named, beside those that are."""
+    for call in (lambda: check("treble", double), lambda: hint("treble"), lambda: use("t", 1, 2)):
+        with pytest.raises(UnknownName, match="'double'"):
+            call()
+
+
+def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
+    """Without the questions beside it, a notebook says where they come from."""
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    with pytest.raises(LabkitError, match=r"no checks\.json in 'elsewhere'.*whole folder"):
+        check("double", double)
+    Path("checks.json").write_text('{"assignment": ')
+    with pytest.raises(LabkitError, match=r"only a damaged checks\.json in 'elsewhere'"):
+        check("double", double)
+
+
+def test_a_figure_shows_the_evidence(desk):
+    """In a kernel a known mistake comes with a picture of the numbers, before any other picture."""
+    program = (
+        "from IPython.testing.globalipapp import start_ipython\n"
+        "ip = start_ipython()\n"
+        "from labkit.course import check\n"
+        "shown = []\n"
+        "import labkit.course.student, IPython.display\n"
+        "IPython.display.display = lambda *a, **k: shown.extend(a)\n"
+        "check('double', lambda x: x * x)\n"
+        "print(shown[0]['text/plain'])\n"
+        "print(shown[1].format, shown[1].data[1:4], shown[1].alt)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    assert "well-known one: squared" in done.stdout
+    last = done.stdout.splitlines()[-1]
+    assert last == "png b'PNG' double(3.0), number by number: expected 6; yours 9."

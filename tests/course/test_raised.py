@@ -1,0 +1,43 @@
+"""Exceptions in words: the line they came from and what to do about them."""
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit.course.advice import told
+
+STATE = lk.State(0.0, np.zeros(7), np.zeros(7))
+FIXED = np.zeros(3)
+FIXED.setflags(write=False)
+
+
+def writes():
+    FIXED[0] = 1.0
+
+
+@pytest.mark.parametrize(
+    ("does", "remedy"),
+    [
+        (lambda: STATE.position, "it has t, q, dq, tau_ext"),
+        (lambda: STATE - STATE, "compute with the arrays in it"),
+        (writes, "make a new array"),
+        (lambda: np.eye(4) @ np.zeros(3), "left of the @ are 4 columns, right of it 3 rows"),
+        (lambda: 2.0 @ np.zeros(3), "for a number write *"),
+        (lambda: np.zeros((7, 6)) * np.zeros((6, 6)), "the product of matrices is @"),
+        (lambda: np.linalg.inv(np.zeros((6, 7))), "only square matrices"),
+        (lambda: FIXED(2.0), "is a * missing"),
+        (lambda: writes(1), "leave the names in the function's first line"),
+    ],
+)
+def test_a_usual_slip_has_a_way_out(does, remedy):
+    """What Python and numpy say is followed by what to do."""
+    with pytest.raises(Exception) as caught:
+        does()
+    assert remedy in told(caught.value)
+
+
+def test_the_line_is_the_students():
+    """The last line outside labkit is quoted, not the one in labkit that raised."""
+    with pytest.raises(lk.LabkitError) as caught:
+        lk.JointVelocity(np.zeros(3))
+    assert "in the line `lk.JointVelocity(np.zeros(3))`" in told(caught.value)

@@ -1,0 +1,248 @@
+"""How a student's function is asked: what it is given stays whole, what it gives is data."""
+
+import json
+import sys
+from collections import OrderedDict
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from questions import DOUBLE
+
+import labkit as lk
+from labkit.course import Call, Close, Outcome, Question, Test
+from labkit.course.calling import ArgumentChanged, call
+from labkit.course.marking import mark
+from labkit.course.messages import tell
+from labkit.course.reply import Failed, Here, answer, reply
+from labkit.course.withheld import Withheld
+from labkit.errors import LabkitError
+
+
+def pops(durations, t):
+    return durations.pop(0)
+
+
+def clears(table):
+    table.clear()
+    return 0
+
+
+def writes_deep(rows):
+    rows[0][0] = 5.0
+    return 0
+
+
+class Eats:
+    """A callable without a name."""
+
+    def __call__(self, *things):
+        return things[1].append(1)
+
+
+@pytest.mark.parametrize(
+    ("function", "args", "says"),
+    [
+        (pops, ([2.0, 0.5], 1.5), "pops changes the list `durations` {}, list(durations)"),
+        (clears, ({"a": 1},), "clears changes the dict `table` {}, dict(table)"),
+        (writes_deep, ([[1.0]],), "writes_deep changes the list `rows` {}, copy.deepcopy(rows)"),
+        (writes_deep, (([1.0],),), "writes_deep changes the tuple `rows` {}, copy.deepcopy(rows)"),
+        (Eats(), (0, [1]), "it changes the list {}"),
+    ],
+)  # fmt: skip
+def test_what_is_changed_is_told_and_whole_again(function, args, says):
+    """A function that writes to a list or dict hears of it, and the next call has it whole."""
+    before = json.dumps(args)
+    for _ in range(2):
+        with pytest.raises(ArgumentChanged) as caught:
+            call(function, args, {})
+        assert str(caught.value) == says.format("that it is given; work on a copy")
+    assert json.dumps(args) == before
+
+
+def test_arrays_are_read_only_wherever_they_are():
+    """Arrays that nobody has locked are locked, in lists, dicts and tuples too."""
+    a = np.zeros(3)
+    sample = lk.Sample(a, a, a)
+
+    def write(x):
+        for array in (x[0], x[1]["a"], x[2].position):
+            with pytest.raises(ValueError, match="read-only"):
+                array[0] = 1.0
+        return "tried"
+
+    assert call(write, ([a, {"a": a}, sample],), {}) == "tried"
+    assert a.flags.writeable and not a.any()
+
+
+def test_arguments_by_name_are_copied_too():
+    """A table given by name is as safe as one given by place."""
+
+    def f(*, gains):
+        gains["kp"] = 0
+
+    with pytest.raises(ArgumentChanged, match=r"dict `gains` .* dict\(gains\)"):
+        call(f, (), {"gains": {"kp": 1}})
+
+
+def test_what_cannot_change_is_handed_on_as_it_is():
+    """Nothing is copied that need not be: a grader sends what is the same only once."""
+    a, model = np.zeros(3), lk.Model()
+    a.setflags(write=False)
+    args = (a, model, "text", 2.0, lk.Sample(a, a, a), (1, a))
+    assert all(x is y for x, y in zip(call(lambda *x: x, args, {}), args, strict=True))
+
+
+SEGMENTS = Question(
+    "pops", 3.0, "Which?", Close(), (Test("one", (Call(([2.0, 0.5], 1.5), expected=2.0),)),)
+)
+
+
+def test_an_answer_that_changes_its_argument_is_wrong_every_time():
+    """It is told so, not that its numbers are wrong; a mended one is right at once."""
+    for _ in range(2):
+        verdict = mark(SEGMENTS, Here(pops, ()))
+        assert verdict.outcome is Outcome.WRONG
+        words = " ".join(tell(SEGMENTS, verdict).split())
+        assert "pops([2.0, 0.5], 1.5): pops changes the list `durations`" in words
+    assert mark(SEGMENTS, Here(lambda durations, t: durations[0], ())).outcome is Outcome.RIGHT
+
+
+class Raises:
+    """Whatever is asked of it, it raises."""
+
+    def __getattribute__(self, name):
+        raise RuntimeError
+
+    def __repr__(self):
+        raise RuntimeError
+
+    __eq__ = __hash__ = __len__ = __iter__ = __float__ = __bool__ = __repr__
+
+
+class Mute(Exception):
+    """Has no message."""
+
+    def __str__(self):
+        raise ValueError
+
+
+class Lies(type):
+    """Of a type without a name."""
+
+    @property
+    def __name__(self):
+        raise ValueError
+
+
+class Nameless(Exception, metaclass=Lies):
+    """Has a type without a name."""
+
+
+class Base(BaseException):
+    """Passes by whoever catches exceptions."""
+
+
+class Endless:
+    """Has no last item."""
+
+    def __iter__(self):
+        while True:
+            yield 1.0
+
+
+class Long(float):
+    """Shows itself at length."""
+
+    def __repr__(self):
+        return "x" * 10_000_000
+
+    __str__ = __repr__
+
+
+def throw(error):
+    def f(x):
+        raise error
+
+    return f
+
+
+def deep():
+    x = []
+    for _ in range(100_000):
+        x = [x]
+    return x
+
+
+ODD = [
+    Raises, Endless, deep, OrderedDict,
+    lambda: "\ud800", lambda: "x" * 10_000_000, lambda: b"4", lambda: 1j, lambda: 10**5000,
+    lambda: float("nan"), lambda: Long(2.0), lambda: [Long(4.0)] * 3, lambda: [[1], [1, 2]],
+    lambda: {1: 2}, lambda: {"a": Raises()}, lambda: iter([1]), lambda: range(10**12),
+    lambda: lk.State, lambda: type("T", (), {}), lambda: np.array([Raises(), 1]),
+    lambda: np.zeros((0, 10**9)), lambda: np.float32(4.5), lambda: np.ma.masked,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("make", ODD)
+def test_no_answer_is_too_odd(make):
+    """Whatever comes back, there is a verdict and a sentence, and it is short enough to read."""
+    verdict = mark(DOUBLE, Here(lambda x: make(), ()))
+    words = tell(DOUBLE, verdict)
+    assert verdict.outcome in (Outcome.WRONG, Outcome.ERROR)
+    assert len(words) < 3000 and max(map(len, words.splitlines())) < 300
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        Mute(), Nameless(), Base(), Base("\ud800"), SystemExit("x" * 10_000_000), GeneratorExit(),
+        StopIteration(3), ValueError(Raises()), RecursionError(), MemoryError(), LabkitError("odd"),
+        Failed("TypeError", "forged"), ExceptionGroup("many", [ValueError(1), Mute()]),
+    ],
+)  # fmt: skip
+def test_no_exception_is_too_odd(error):
+    """Whatever is raised is an error of the student's code, told in a sentence."""
+    verdict = mark(DOUBLE, Here(throw(error), ()))
+    assert verdict.outcome is Outcome.ERROR
+    assert len(tell(DOUBLE, verdict)) < 3000
+
+
+def test_an_answer_is_judged_as_the_data_that_a_grader_gets():
+    """What cannot travel is an error here too; what can is judged as it arrives."""
+    assert reply(lambda: lambda s: 1 / s, (), {})["raised"] == "TypeMismatch"
+    given = answer(json.loads(json.dumps(reply(lambda: [np.float64(2), (1, None)], (), {}))), ())
+    assert given == [2.0, (1, None)]
+
+
+def test_only_a_tool_of_the_question_is_withheld():
+    """A student's process may say what it likes of other tools."""
+    with pytest.raises(Withheld):
+        answer({"withheld": "labkit.Circle"}, ("labkit.Circle",))
+    for forged in ("labkit.Line", ["labkit.Circle"], None, 3):
+        with pytest.raises(Failed):
+            answer({"withheld": forged}, ("labkit.Circle",))
+
+
+def test_a_loop_without_end_is_stopped():
+    """A call is stopped after its time, says so, and no further call is made."""
+    calls = []
+
+    def endless(x):
+        calls.append(x)
+        while True:
+            pass
+
+    verdict = mark(DOUBLE, Here(endless, (), seconds=0.2))
+    assert verdict.outcome is Outcome.ERROR and len(calls) == 1
+    assert "TimeoutError: it did not come back within 0.2 s; does every" in verdict.tests[0].says
+
+
+def test_an_interrupt_is_nobodys_answer():
+    """Who presses stop stops the check."""
+    question = replace(DOUBLE, withheld=())
+    with pytest.raises(KeyboardInterrupt):
+        mark(question, Here(throw(KeyboardInterrupt()), ()))

@@ -1,0 +1,90 @@
+"""Withheld tools in an answer's text: found however they are imported, never where none is."""
+
+import pytest
+
+from labkit.course.source import look
+from labkit.course.withheld_names import withheld_tools
+
+WITHHELD = (
+    "labkit.Circle",
+    "labkit.Model.gravity",
+    "labkit.se3.inverse",
+    "labkit.metrics",
+    "pinocchio",
+)
+SETUP = "import labkit as lk\nfrom labkit.course import check, hint, use\nimport numpy as np"
+GIVEN = """\
+def given_f(s):
+    return lk.Circle([1, 0, 0], [0, 0, 0])(s)
+my_f = use("f", f, given_f)
+class Schedule:
+    def __call__(self, t):
+        return t
+"""  # fmt: skip
+
+
+def found(*cells):
+    """What is found in an answer called f, in a notebook with a setup cell and a walk's cell."""
+    return withheld_tools(map(look, (SETUP, GIVEN, *cells)), "f", WITHHELD)
+
+
+@pytest.mark.parametrize(
+    ("cells", "tools"),
+    [
+        (["def f(s): return lk.Circle([1, 0, 0], [0, 0, 0])(s)"], "labkit.Circle"),
+        (["def f(s):\n    from labkit import Circle\n    return Circle(s)"], "labkit.Circle"),
+        (["def f(s):\n    from labkit.paths import Circle as C\n    return C(s)"], "labkit.Circle"),
+        (["import labkit.paths\ndef f(s): return labkit.paths.Circle(s)"], "labkit.Circle"),
+        (["from labkit import *\ndef f(s): return Circle(s)"], "labkit.Circle"),
+        (["from labkit.paths import *\ndef f(s): return Circle(s)"], "labkit.Circle"),
+        (["def f(s): return getattr(lk, 'Circle')(s)"], "labkit.Circle"),
+        (["def f(s): return lk.Circle.__call__(s)"], "labkit.Circle"),
+        (["ring = lk.Circle([1, 0, 0], [0, 0, 0])", "def f(s): return ring(s)"], "labkit.Circle"),
+        (["class f(lk.Circle): pass"], "labkit.Circle"),
+        (["f = np.vectorize(lk.Circle)"], "labkit.Circle"),
+        (["def f(s): return given_f(s)"], "labkit.Circle"),
+        (["def g(s): return f(s) + lk.Circle(s)", "def f(s): return g(s)"], "labkit.Circle"),
+        (["%%time\ndef f(s): return lk.Circle(s)"], "labkit.Circle"),
+        (["def f(q): return lk.Model('left').gravity(q)"], "labkit.Model.gravity"),
+        (["def f(q): return lk.Model.gravity(lk.Model(), q)"], "labkit.Model.gravity"),
+        (["from labkit import se3", "def f(T): return se3.inverse(T)"], "labkit.se3.inverse"),
+        (["def f(q):\n    import pinocchio as pin\n    return pin.rnea(q)"], "pinocchio"),
+        (["def f(q): return lk.metrics.summary(q)"], "labkit.metrics"),
+        (["from labkit.metrics import summary\ndef f(q): return summary(q)"], "labkit.metrics"),
+    ],
+    ids=lambda x: x if isinstance(x, str) else "",
+)  # fmt: skip
+def test_tools_are_found(cells, tools):
+    """Each way to name a withheld tool is seen, in the answer or in what it leans on."""
+    assert found(*cells) == (tools,)
+
+
+@pytest.mark.parametrize(
+    "cells",
+    [
+        ["def f(s):\n    gravity = 9.81  # no Circle here\n    return 'labkit.Circle', gravity"],
+        ["def f(s): return s", "lk.Circle([1, 0, 0], [0, 0, 0])(0.5)"],
+        ["def f(s): return s", "ring = lk.Circle([1, 0, 0], [0, 0, 0])\nplot(ring, f)"],
+        ["def f(s): return lk.Circle(s)", "def f(s): return s"],
+        ["def f(s): return Schedule()(s)"],  # a cell may hold more than what an answer needs of it
+        ["def f(s): return g(s)", "ring = lk.Circle(0)", "def g(s, ring=2): return s * ring"],
+        ["def f(T): return T.inverse()"],
+        ["class Circle: pass", "def f(s): return Circle()(s)"],
+        ["def f(links): return links.gravity"],
+        ["def f(s): return s", "def f(s): raise NotImplementedError"],
+        ["def f(s: return lk.Circle(s)"],
+        ["%%timeit\ndef f(s): return lk.Circle(s)"],
+    ],
+)
+def test_nothing_is_found_where_nothing_is(cells):
+    """Comments, texts, own experiments, names that only look alike are nobody's tools."""
+    assert found(*cells) == ()
+
+
+def test_what_use_chose_is_not_suspected():
+    """Another answer may use what `use` chose, though the stand-in is made of a tool."""
+    walk = 'def given_g(s): return lk.Circle(s)\nmy_g = use("g", g, given_g)'
+    assert found(walk, "def g(s): return s", "def f(s): return my_g(s)") == ()
+    assert found(walk, "def g(s): return lk.Circle(s)", "def f(s): return my_g(s)") == (
+        "labkit.Circle",
+    )

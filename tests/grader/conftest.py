@@ -1,0 +1,69 @@
+"""A released course in a folder of its own, and a sandbox, for the tests of the grader."""
+
+from __future__ import annotations
+
+import copy
+import json
+import shutil
+
+import pytest
+from handmade import ROOT
+
+from labkit.course.layout import Course
+from labkit.course.release import release
+from labkit.grader.results import Bundle
+from labkit.grader.sandbox.launch import Sandbox
+
+SEED = 7
+
+
+@pytest.fixture(scope="session")
+def released(tmp_path_factory):
+    """A course with 01_paths released, never written to again."""
+    root = tmp_path_factory.mktemp("course")
+    (root / "solutions").symlink_to(ROOT / "solutions")
+    shutil.copy(ROOT / "nbgrader_config.py", root)
+    course = Course(root)
+    release(course, "01_paths", SEED)
+    return course
+
+
+@pytest.fixture
+def course(released, tmp_path):
+    """A copy of it, to write to."""
+    root = tmp_path / "course"
+    shutil.copytree(released.root, root, symlinks=True)
+    return Course(root)
+
+
+@pytest.fixture(scope="session")
+def bundle(released):
+    return Bundle.of(released, "01_paths")
+
+
+@pytest.fixture(scope="session")
+def sandbox():
+    with Sandbox() as sandbox:
+        yield sandbox
+
+
+@pytest.fixture(scope="session")
+def _blank(released):
+    return json.loads((released.release / "01_paths" / "01_paths.ipynb").read_text())
+
+
+@pytest.fixture(scope="session")
+def _solved(released):
+    return json.loads((released.solution / "01_paths" / "01_paths.ipynb").read_text())
+
+
+@pytest.fixture
+def blank(_blank):
+    """The assignment as it is handed out, as JSON data."""
+    return copy.deepcopy(_blank)
+
+
+@pytest.fixture
+def solved(_solved):
+    """The assignment with the right answers in it."""
+    return copy.deepcopy(_solved)

@@ -1,0 +1,163 @@
+"""A control for each class of attack: one that pays or harms under plain nbgrader.
+
+The same notebook is given to both engines.  {loot} is a folder, {port} a server and {mark} a
+number, all of the test's own: by them it sees what was taken, who was called and what was left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from attacks import Attack
+
+VICTIM = "honest, graded last"
+
+
+@dataclass
+class After:
+    """What is there once a class has been graded, by class of attack where it says so.
+
+    Attributes:
+        scores: What each student got; None where nobody graded him.
+        written: How many bytes the grader wrote for each.
+        pages: The feedback for those who were given some.
+        loot: What was taken.
+        calls: What a server outside the sandbox was told.
+        left: Processes that still ran.
+    """
+
+    scores: dict[str, float | None]
+    written: dict[str, int]
+    pages: dict[str, str]
+    loot: set[str]
+    calls: bytes
+    left: list[int]
+
+
+def pays(after: After, kind: str) -> bool:
+    """It got points for no answer."""
+    return bool(after.scores[kind])
+
+
+def takes(after: After, kind: str) -> bool:
+    """It had what it should not have, and put it where it should not write."""
+    return kind in after.loot
+
+
+def calls(after: After, kind: str) -> bool:
+    """It told somebody outside."""
+    return kind.encode() in after.calls
+
+
+def kills(after: After, kind: str) -> bool:
+    """It left a process behind, and whoever came after it was not graded."""
+    return bool(after.left) and after.scores[VICTIM] is None
+
+
+def fills(after: After, kind: str) -> bool:
+    """It made the grader write what it pleased, and as much."""
+    return after.written[kind] > 10**7
+
+
+def speaks(after: After, kind: str) -> bool:
+    """Its script runs in the browser of whoever reads the feedback."""
+    return "<script>alert('GOT')" in after.pages[kind]
+
+
+@dataclass(frozen=True)
+class Control:
+    """One attack with what comes of it under nbgrader.
+
+    Attributes:
+        does: What comes of it.
+        attack: The attack; its cell stands at the top.
+        plain: Whether it is aimed at the plain test in `PLAIN`, as labkit's check resists it even
+            in one process.
+    """
+
+    does: Callable[[After, str], bool]
+    attack: Attack
+    plain: bool = False
+
+
+def cell(does: Callable[[After, str], bool], source: str) -> Control:
+    return Control(does, Attack(cell=source))
+
+
+def answer(does: Callable[[After, str], bool], source: str, **options: bool) -> Control:
+    return Control(does, Attack(answer=source), **options)
+
+
+PLAIN = """import numpy as np
+
+off = np.abs(np.subtract(bang_bang(0.5, 2.0), (0.125, 0.5, 1.0))).max()
+float(np.clip(3.0 - off, 0.0, 3.0))"""
+"""A test with partial credit as many are written: three points, less how far the answer is off."""
+
+CONTROLS: dict[str, Control] = {
+    "patched comparison": cell(
+        pays, "import labkit.course\ncheck = labkit.course.check = lambda name, function: 2.0"
+    ),
+    "display and execution hooks": cell(
+        pays,
+        "def drop(lines):\n    return ['2.0\\n'] if 'check(' in ''.join(lines) else lines\n"
+        "get_ipython().input_transformers_cleanup.append(drop)",
+    ),
+    "objects that compare equal": answer(
+        pays,
+        "import numpy as np\nclass All:\n    def __array_ufunc__(self, *args, **options):\n"
+        "        return np.zeros(3)\ndef NAME(t, duration):\n    return All()",
+        plain=True,
+    ),
+    "odd answers": answer(
+        pays, "def NAME(t, duration):\n    return float('nan'), 0.0, 0.0", plain=True
+    ),
+    "frame walking": answer(
+        pays,
+        "import sys\ndef NAME(t, duration):\n    frame = sys._getframe()\n"
+        "    while 'case' not in frame.f_locals: frame = frame.f_back\n"
+        "    return frame.f_locals['case'].expected",
+    ),
+    "fake modules": cell(
+        pays,
+        "import os, sys\nos.makedirs('labkit')\nsys.path.insert(0, '')\n"
+        "open('labkit/__init__.py', 'w').write('')\n"
+        "open('labkit/course.py', 'w').write('check = lambda name, function: 2.0\\n'\n"
+        "    'also = hint = use = check\\n')",
+    ),
+    "files": cell(
+        takes,
+        "text = open('01_paths.ipynb').read()\n"
+        "if 'BEGIN HIDDEN' in text: open('{loot}/files', 'w').write(text)",
+    ),
+    "network": cell(
+        calls,
+        "import socket\n"
+        "with socket.create_connection(('127.0.0.1', {port}), 2) as line: line.sendall(b'network')",
+    ),
+    "endless": cell(fills, "print('x' * 20_000_000)"),
+    "kernel": cell(  # a call to the kernel that gives the grader ten more minutes to live
+        takes,
+        "import os, resource\nresource.prlimit(os.getppid(), resource.RLIMIT_CPU, (600, 600))\n"
+        "open('{loot}/kernel', 'w').write('it is done')",
+    ),
+    "protocol forgery": answer(
+        pays,
+        "def NAME(t, duration):\n    kernel = get_ipython().kernel\n"
+        "    verdict = {'data': {'text/plain': '2.0'}, 'metadata': {}, 'execution_count': 1}\n"
+        "    asked = kernel.get_parent()\n"
+        "    kernel.session.send(kernel.iopub_socket, 'execute_result', verdict, asked)\n"
+        "    return 0.0, 0.0, 0.0",
+    ),
+    "feedback injection": cell(
+        speaks,
+        "from IPython.display import HTML, display\n"
+        "display(HTML(\"<script>alert('GOT')</script>\"))",
+    ),
+    "signals and processes": cell(  # the last one: nobody after it is graded
+        kills,
+        "import os, signal\nos.system('setsid sleep 30 {mark} &')\n"
+        "os.kill(os.getppid(), signal.SIGKILL)",
+    ),
+}

@@ -1,0 +1,76 @@
+"""What platforms hand over, as they write it, and courses that take it."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import zipfile
+from pathlib import Path
+
+from handmade import ROOT
+
+from labkit.course.layout import Course
+
+NAME = "01_paths"
+MOODLE = "{}_{}_assignsubmission_file"
+
+
+def bare_course(root):
+    """A course in which nothing is released: enough to collect into."""
+    root.mkdir(parents=True, exist_ok=True)
+    (root / "solutions").symlink_to(ROOT / "solutions")
+    shutil.copy(ROOT / "nbgrader_config.py", root)
+    return Course(root)
+
+
+def zipped(path, entries, when=(2026, 3, 1, 12, 0, 0)):
+    """A zip of entries, all from one moment."""
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, data in entries:
+            archive.writestr(zipfile.ZipInfo(name, when), data)
+    return path
+
+
+def from_moodle(path, files, when=(2026, 3, 1, 12, 0, 0)):
+    """Moodle's zip of ((name, number), file, data)."""
+    entries = [(f"{MOODLE.format(*who)}/{file}", data) for who, file, data in files]
+    return zipped(path, entries, when)
+
+
+def moodle_writes(name, number, file, in_folders=True):
+    """The name that Moodle gives an entry (``mod/assign/classes/downloader.php``)."""
+    name = re.sub(r"[\x00-\x1f\x7f&<>\"`|':\\/]", "", name.replace("_", " "))
+    name = re.sub(r"\.\.+", "", name)
+    return MOODLE.format(name, number) + ("/" if in_folders else "_") + file
+
+
+def canvas_writes(name, user, attachment, file, late):
+    """The name that Canvas gives an entry (``lib/content_zipper.rb``)."""
+    name = re.sub(r"_([0-9]+)_", r"\1", name).lower()
+    name = re.sub(r"\W", "", "_".join([name, *["LATE"] * late, str(user)]))
+    return f"{name}_{attachment}_" + re.sub(r'[\x00/\\:*?"<>|]+', "_", file)
+
+
+def handed_in(inbound, user, data, when="2026-03-01 10:00:00 UTC", name=NAME, owner=None):
+    """A hand-in as nbgrader's exchange holds it."""
+    import os
+
+    folder = inbound / f"{user}+{name}+{when}+{len(list(inbound.glob('*')))}"
+    folder.mkdir(parents=True)
+    (folder / f"{name}.ipynb").write_text(data)
+    (folder / "submission_secret.txt").write_text(f"secret of {data}")
+    if owner is not None:
+        os.chown(folder, owner, owner)
+    return folder
+
+
+def counting(course, name=NAME):
+    """What counts, by student."""
+    found = course.submitted.glob(f"*/{name}/{name}.ipynb")
+    return {path.parents[1].name: path.read_text() for path in found}
+
+
+def kept(course, student, name=NAME):
+    """The contents of a student's attempts."""
+    folder = Path(course.root, "attempts", student, name)
+    return {path.read_text() for path in folder.glob("*/*.ipynb")}

@@ -1,0 +1,195 @@
+"""A question that is added, or taken away, when submissions are there already."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from dataclasses import replace
+
+import pytest
+from handmade import QUICK, ROOT, hand_in
+
+from labkit.cli import main
+from labkit.course.handin import read_cells
+from labkit.course.layout import Course
+from labkit.course.merging import merge
+from labkit.course.release import release
+from labkit.errors import LabkitError
+from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.class_report import report
+from labkit.grader.engines import nbgrader_api
+from labkit.grader.feedback import page
+from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.results import Results
+
+pytestmark = pytest.mark.slow  # whole classes are graded
+
+NAME, LATER = "01_paths", "compose"
+SEED = 7
+
+
+def becomes(course, monkeypatch, *, complete):
+    """The course's sources with the later question, or without it."""
+    whole = (ROOT / "solutions/notebooks" / f"{NAME}.py").read_text()
+    cell = re.search(rf'^# %% question="{LATER}"\n.*?(?=^# %%)', whole, re.MULTILINE | re.DOTALL)
+    text = whole if complete else whole.replace(cell.group(), "")
+    course.notebook_source(NAME).write_text(text)
+    problems = Course(ROOT).problems(NAME)
+    kept = tuple(p for p in problems if complete or p.name != LATER)
+    monkeypatch.setattr(Course, "problems", lambda self, name: kept)
+
+
+@pytest.fixture(scope="module")
+def early(tmp_path_factory):
+    """A question less at first; two hand in, are graded, and one gets a mark by hand."""
+    root = tmp_path_factory.mktemp("early") / "course"
+    (root / "solutions").mkdir(parents=True)
+    shutil.copytree(ROOT / "solutions/notebooks", root / "solutions/notebooks")
+    shutil.copy(ROOT / "nbgrader_config.py", root)
+    course = Course(root)
+    with pytest.MonkeyPatch.context() as monkeypatch:
+        becomes(course, monkeypatch, complete=False)
+        release(course, NAME, SEED)
+    for student, folder in (("ada", course.solution), ("bob", course.release)):
+        hand_in(course, NAME, student, (folder / NAME / f"{NAME}.ipynb").read_bytes())
+    record(course, NAME, graded(course))
+    with open_gradebook(course) as book:
+        book.find_grade("circle-check", NAME, NAME, "bob").manual_score = 1.5
+        book.find_comment("circle", NAME, NAME, "bob").manual_comment = "see me"
+        book.db.commit()
+    return course
+
+
+@pytest.fixture
+def marked(early, tmp_path, monkeypatch):
+    """A copy of that course, and a function that adds the question or takes it away."""
+    course = Course(shutil.copytree(early.root, tmp_path / "course"))
+    problems = Course.problems
+
+    def become(complete):
+        monkeypatch.setattr(Course, "problems", problems)
+        becomes(course, monkeypatch, complete=complete)
+
+    return course, become
+
+
+def graded(course):
+    done = grade_class(course, NAME, ["ada", "bob"], How(jobs=2, limits=QUICK))
+    results = [one.result for one in done if isinstance(one, Graded)]
+    return sorted(results, key=lambda result: result.student)
+
+
+def marks(course):
+    with open_gradebook(course) as book:
+        return {
+            s.student.id: {g.name: g.score for n in s.notebooks for g in n.grades}
+            for s in book.assignment_submissions(NAME)
+        }
+
+
+def test_nbgrader_alone_refuses(marked):
+    """What is avoided here: nbgrader's own release stops, and says why."""
+    course, become = marked
+    become(True)
+    shutil.copy(
+        ROOT / "assignments" / NAME / f"{NAME}.ipynb", course.source / NAME / f"{NAME}.ipynb"
+    )
+    result = nbgrader_api(course).generate_assignment(NAME, force=True, create=True)
+    assert not result["success"]
+    assert "Cannot add or remove cells" in f"{result['log']}{result.get('error')}"
+
+
+def test_an_added_question_leaves_other_marks_alone(marked, capsys):
+    """The new question counts 0 for those who have handed in, in words; all else stays."""
+    course, become = marked
+    before = marks(course)
+    assert before["bob"]["circle-check"] == 1.5
+    assert f"{LATER}-check" not in before["ada"]
+    become(True)
+    made = release(course, NAME, SEED)
+    assert made.questions == 6
+    assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
+    assert main(["regrade", NAME, "--course", str(course.root)]) == 0
+    said = capsys.readouterr().out
+    assert "0 of 2 marks move" in said
+    assert "full marks were 16 and are 20 now" in said
+    assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
+    with open_gradebook(course) as book:
+        assert book.find_comment("circle", NAME, NAME, "bob").manual_comment == "see me"
+        assert book.find_submission(NAME, "ada").max_score == 20
+    for result in Results(course, NAME):
+        found = {q["name"]: q for q in result.questions}[LATER]
+        assert (found["outcome"], found["earned"]) == ("not attempted", 0.0)
+        assert "came after the notebook was handed in" in page(result)
+        assert not [q for q in result.questions if q["name"] != LATER and q["notes"]]
+
+
+def test_an_added_question_counts_once_it_is_handed_in(marked):
+    """In the new notebook old answers keep their points, and the new one earns its own."""
+    course, become = marked
+    become(True)
+    release(course, NAME, SEED)
+    path = course.release / NAME / f"{NAME}.ipynb"
+    new = json.loads(path.read_text())
+    mine = read_cells(course.submitted / "ada" / NAME / f"{NAME}.ipynb")
+    solved = read_cells(course.solution / NAME / f"{NAME}.ipynb")
+    answer = next(c for c in solved if c["metadata"].get("nbgrader", {}).get("grade_id") == LATER)
+    hand_in(course, NAME, "ada", new | {"cells": [*merge(mine, read_cells(path)), answer]})
+    ada, bob = graded(course)
+    assert (ada.score, bob.score) == (20.0, 0.0)
+
+
+def test_a_second_release_changes_nothing(marked):
+    """Releasing once more gives the same bundle; what was added is still known as added."""
+    course, become = marked
+    become(True)
+    release(course, NAME, SEED)
+    first = (course.bundle / f"{NAME}.json").read_text()
+    assert json.loads(first)["added"] == [LATER]
+    release(course, NAME, SEED)
+    assert (course.bundle / f"{NAME}.json").read_text() == first
+
+
+def test_a_question_goes_unless_somebody_marked_it(marked):
+    """What was given by hand is never lost: the release refuses before it touches anything."""
+    course, become = marked
+    become(True)
+    release(course, NAME, SEED)
+    become(False)
+    release(course, NAME, SEED)
+    assert f"{LATER}-check" not in marks(course)["ada"]
+    become(True)
+    release(course, NAME, SEED)
+    with open_gradebook(course) as book:
+        book.find_grade(f"{LATER}-check", NAME, NAME, "ada").manual_score = 2.0
+        book.db.commit()
+    whole = {p: p.read_bytes() for p in (course.root / "build").rglob("*") if p.is_file()}
+    become(False)
+    with pytest.raises(LabkitError, match="give it 0 points"):
+        release(course, NAME, SEED)
+    assert {p: p.read_bytes() for p in whole} == whole
+    assert marks(course)["ada"][f"{LATER}-check"] == 2.0
+
+
+def test_a_release_that_is_refused_leaves_the_gradebook_alone(marked, monkeypatch):
+    """Where an answer cannot be copied, no row is added and no automatic mark is taken away."""
+    course, become = marked
+    before = marks(course)
+
+    def refused(*args):
+        raise LabkitError("keep it whole")
+
+    become(True)
+    monkeypatch.setattr("labkit.course.release.solution_notebook", refused)
+    with pytest.raises(LabkitError, match="keep it whole"):
+        release(course, NAME, SEED)
+    assert marks(course) == before
+
+
+def test_a_question_without_points_is_reported_as_void(marked):
+    """A voided question is in the report, without a mean."""
+    course, _ = marked
+    (one, *_) = Results(course, NAME)
+    questions = tuple(dict(q, points=0.0, earned=0.0) for q in one.questions)
+    assert "| voided |" in report(NAME, [replace(one, questions=questions)], {}, str)

@@ -1,0 +1,59 @@
+"""Attacks: no undeserved point, no secret, no process left, no submission harmed by another."""
+
+from __future__ import annotations
+
+import copy
+import os
+from pathlib import Path
+
+import pytest
+from attacks import CLASSES
+from handmade import QUICK, raw
+
+from labkit.grader.grade import grade
+from labkit.grader.sandbox.limits import Limits
+
+FAST = Limits(cell=0.5, call=0.3, question=5.0, wall=30.0)
+
+
+def said(result):
+    """All that the student's code could make the result say."""
+    words = [t["says"] for q in result.questions for t in q["tests"]]
+    return "\n".join([*words, *(f"{c['error']} {c['output']}" for c in result.cells)])
+
+
+def processes_of(uid):
+    """Processes that belong to a user."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            if folder.stat().st_uid == uid:
+                found.append(folder.name)
+        except OSError:
+            continue
+    return found
+
+
+def test_enough():
+    """There are at least 12 classes and 100 attacks."""
+    assert len(CLASSES) >= 12
+    assert sum(map(len, CLASSES.values())) >= 100
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", CLASSES)
+def test_attacks_earn_nothing(kind, _blank, solved, released, bundle, sandbox):
+    """An attack earns 0 points, reads nothing, leaves nothing, and harms nobody after it."""
+    wrong = []
+    for name, attack in CLASSES[kind].items():
+        notebook = attack.planted(copy.deepcopy(_blank), root=released.root)
+        result = grade(raw(notebook), "mallory", bundle, sandbox, FAST)
+        text = said(result)
+        if result.score or result.rejected or "GOT" in text:
+            wrong.append((name, result.score, result.rejected, text[text.find("GOT") :][:90]))
+        if any(ord(c) < 32 for q in result.questions for t in q["tests"] for c in t["says"]):
+            wrong.append((name, "control characters"))
+        if os.geteuid() == 0 and processes_of(sandbox.uid):
+            wrong.append((name, "left processes"))
+    assert not wrong
+    assert grade(raw(solved), "honest", bundle, sandbox, QUICK).score == 20

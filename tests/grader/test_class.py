@@ -1,0 +1,323 @@
+"""A class: expected marks, the same however it is graded, and whatever is killed meanwhile."""
+
+from __future__ import annotations
+
+import copy
+import errno
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from handmade import QUICK, ROOT, add, hand_in
+from processes import below, child, wait_until_gone
+
+from labkit.cli import main
+from labkit.grader import gradebook
+from labkit.grader.batch import Graded, How, common_failures, grade_class, in_shard
+from labkit.grader.engines import grade_with_nbgrader, students
+from labkit.grader.export import rows
+from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.results import Results
+from labkit.grader.synthetic import differences, make_class
+
+pytestmark = pytest.mark.slow  # whole classes are graded
+
+NAME = "01_paths"
+PART = 8
+
+
+def grade_all(course, **how):
+    return [
+        one
+        for one in grade_class(course, NAME, students(course, NAME), How(limits=QUICK, **how))
+        if isinstance(one, Graded)
+    ]
+
+
+def verdicts(course):
+    return {result.student: result.verdict for result in Results(course, NAME)}
+
+
+@pytest.fixture
+def part(course):
+    """A course with the first few of the synthetic class, all of them harmless."""
+    make_class(course, NAME, seed=3, count=PART)
+    return course
+
+
+@pytest.mark.slow
+def test_synthetic_class_gets_what_it_deserves(course):
+    """Forty submissions of every kind earn, question by question, what they deserve."""
+    make_class(course, NAME, seed=1)
+    done = grade_all(course, jobs=2)
+    assert len(done) == 40
+    assert not list(differences(course, NAME))
+    record(course, NAME, [one.result for one in done])
+    with open_gradebook(course) as book:
+        scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
+    assert scores == {one.result.student: one.result.score for one in done}
+
+
+def test_class_is_drawn_from_its_seed(course):
+    """A seed gives the same class again, another one another order."""
+    first = make_class(course, NAME, seed=1, count=40)
+    assert first == make_class(course, NAME, seed=1, count=40)
+    other = make_class(course, NAME, seed=2, count=40)
+    assert {k: v["kind"] for k, v in first.items()} != {k: v["kind"] for k, v in other.items()}
+
+
+@pytest.mark.slow
+def test_serial_parallel_and_dask_agree(part):
+    """Verdicts and scores are equal with one worker, with two, in shards, and through Dask."""
+    from distributed import LocalCluster
+
+    grade_all(part)
+    serial = verdicts(part)
+    assert len(serial) == PART
+    grade_all(part, jobs=2, again=True)
+    assert verdicts(part) == serial
+    for result in Path(Results(part, NAME).folder).glob("*.json"):
+        result.unlink()
+    for k in (1, 2, 3):
+        grade_all(part, shard=(k, 3))
+    assert verdicts(part) == serial
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
+        grade_all(part, dask=cluster.scheduler_address, again=True)
+    assert verdicts(part) == serial
+
+
+def test_resume(part):
+    """What is graded and has not changed is not graded again; what has changed is."""
+    grade_all(part, jobs=2)
+    assert {one.says for one in grade_all(part)} == {"as before"}
+    who = students(part, NAME)[0]
+    path = part.submitted / who / NAME
+    next(path.iterdir()).write_bytes(b"{")
+    assert sum(one.says != "as before" for one in grade_all(part)) == 1
+
+
+def test_killed_worker(part):
+    """A worker that is killed loses nothing: its submission goes to the next one."""
+
+    def kill_one():
+        worker = child(os.getpid(), "labkit.grader.worker")
+        below(worker, at_least=4)
+        os.kill(worker, signal.SIGKILL)
+
+    thread = threading.Thread(target=kill_one)
+    thread.start()
+    done = grade_all(part)
+    thread.join()
+    assert len(done) == PART
+    assert not list(differences(part, NAME))
+
+
+STOPS = [
+    ("SIGTERM", 6),
+    ("SIGINT", 6),
+    ("SIGHUP", 6),
+    ("SIGKILL", 3),
+    pytest.param("SIGTERM", 2, marks=pytest.mark.soak),
+    pytest.param("SIGKILL", 6, marks=pytest.mark.soak),
+]
+"""Signals to the grader, and the number of its processes at the moment when they come."""
+
+
+@pytest.mark.parametrize(("name", "processes"), STOPS)
+def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
+    name, processes, course, solved
+):
+    """Whatever ends the grader ends all that it started; the next run keeps what is done."""
+    for student in ("ada", "bob", "eve"):
+        hand_in(course, NAME, student, solved)
+    words = [sys.executable, "-m", "labkit.cli", "grade", NAME, "--jobs", "1"]
+    environment = dict(os.environ, PYTHONPATH=str(ROOT))
+    with subprocess.Popen(
+        [*words, "--course", str(course.root)], env=environment, stdout=subprocess.PIPE, text=True
+    ) as run:
+        if processes == 6:  # it is at the second submission
+            hand_in(course, NAME, "bob", add(copy.deepcopy(solved), "while True: pass"))
+            assert "ada: 20 of 20" in run.stdout.readline()
+        everything = below(run.pid, at_least=processes)
+        run.send_signal(getattr(signal, name))
+        wait_until_gone(everything)
+    before = [result.student for result in Results(course, NAME)]
+    assert before == (["ada"] if processes == 6 else [])
+    hand_in(course, NAME, "bob", solved)
+    done = grade_all(course)
+    assert [one.says for one in sorted(done, key=lambda one: one.result.student)] == [
+        "as before" if student in before else "" for student in ("ada", "bob", "eve")
+    ]
+    record(course, NAME, [one.result for one in done])
+    with open_gradebook(course) as book:
+        assert {s.score for s in book.assignment_submissions(NAME)} == {20.0}
+
+
+def test_results_outlive_a_crash_while_writing(part):
+    """A half-written result is no result, and is made again; what could be read of it is kept."""
+    grade_all(part, jobs=2)
+    results = Results(part, NAME)
+    who = students(part, NAME)[0]
+    text = results.path(who).read_text()
+    results.path(who).write_text(text[: len(text) // 2])
+    assert results.get(who) is None
+    grade_all(part)
+    assert results.get(who) is not None
+    assert text[: len(text) // 2] in [x.read_text() for x in (results.folder / "old").iterdir()]
+
+
+@pytest.mark.slow
+def test_same_scores_as_nbgrader_on_honest_work(course):
+    """On honest submissions nbgrader's own engine comes to the same scores."""
+    make_class(course, NAME, seed=5, count=12)
+    kinds = json.loads((course.build.parent / "class" / f"{NAME}.json").read_text())
+    honest = ("perfect", "perfect, in other words", "mistakes, the first of each")
+    for student, about in kinds.items():
+        if about["kind"] in honest:
+            mark = grade_with_nbgrader(course, NAME, student)
+            assert mark.score == about["score"], about["kind"]
+
+
+def test_loud_when_many_fail(part):
+    """A test that more than 30 % fail is named."""
+    results = [one.result for one in grade_all(part, jobs=2)]
+    said = list(common_failures(results * 2))
+    assert said
+    assert all("fail the test" in sentence for sentence in said)
+    assert len(said) <= len({q["name"] for r in results for q in r.questions}), "one a question"
+    assert not list(common_failures([r for r in results if r.score == r.points] * 5))
+
+
+def test_shards_are_a_partition():
+    """Each student is in just one shard."""
+    for n in (1, 2, 7):
+        for k in range(50):
+            assert sum(in_shard(f"s{k}", (i, n)) for i in range(1, n + 1)) == 1
+
+
+def test_manual_grades_and_comments_survive(part):
+    """Grading again changes automatic scores only, and says where a hand was at work."""
+    done = [one.result for one in grade_all(part, jobs=2)]
+    record(part, NAME, done)
+    who = next(r for r in done if r.score == r.points)
+    with open_gradebook(part) as book:
+        grade = book.find_grade("circle-check", NAME, NAME, who.student)
+        grade.manual_score, grade.extra_credit = 1.5, 0.5
+        book.find_comment("circle", NAME, NAME, who.student).manual_comment = "see me"
+        book.db.commit()
+    record(part, NAME, done)
+    with open_gradebook(part) as book:
+        grade = book.find_grade("circle-check", NAME, NAME, who.student)
+        assert (grade.manual_score, grade.auto_score, grade.extra_credit) == (1.5, 4.0, 0.5)
+        assert book.find_comment("circle", NAME, NAME, who.student).manual_comment == "see me"
+        assert book.find_submission(NAME, who.student).score == 20 - 4 + 1.5 + 0.5
+
+
+def test_a_gradebook_that_is_new_is_told_what_was_released(part, capsys):
+    """Where gradebook.db was deleted, a sentence says how it learns of the assignment again."""
+    (part.root / "gradebook.db").unlink()
+    who = students(part, NAME)[0]
+    arguments = ["--student", who, "--course", str(part.root)]
+    assert main(["grade", NAME, *arguments]) == 2
+    assert f"labkit release {NAME} --seed 7" in capsys.readouterr().err
+    assert main(["release", NAME, "--seed", "7", *arguments[2:]]) == 0
+    assert main(["grade", NAME, *arguments]) == 0
+    assert "as before" in capsys.readouterr().out
+
+
+def test_an_interrupt_is_a_line(part, capsys, monkeypatch):
+    """Who stops the command reads that it stopped, and nothing of Python's."""
+
+    def stopped(*args, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("labkit.grader.batch.grade_class", stopped)
+    assert main(["grade", NAME, "--course", str(part.root)]) == 130
+    assert capsys.readouterr().err == "labkit grade: stopped\n"
+
+
+def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
+    """A disk that is full in the middle ends it; each score is the new one or that of before."""
+    done = [one.result for one in grade_all(part, jobs=2)]
+    record(part, NAME, [replace(result, questions=()) for result in done])
+    rooms = iter([True, True, False])
+
+    def write(*args):
+        if not next(rooms):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(gradebook, "write", write)
+    with pytest.raises(OSError, match="No space left"):
+        record(part, NAME, done)
+    with open_gradebook(part) as book:
+        scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
+    assert scores == {r.student: r.score if k < 2 else 0.0 for k, r in enumerate(done)}
+
+
+def test_the_gradebook_has_one_writer(part):
+    """Who grades another assignment in another terminal waits, and fails at nothing."""
+    second = threading.Thread(target=record, args=(part, NAME, []))
+    with open_gradebook(part):
+        second.start()
+        second.join(2.0)
+        assert second.is_alive()
+    second.join(20.0)
+    assert not second.is_alive()
+
+
+def test_late_rules_and_timestamps(part):
+    """Times come from the collector's file; an unreadable one is said, and costs nothing."""
+    done = sorted((one.result for one in grade_all(part, jobs=2)), key=lambda r: -r.score)
+    late, odd = done[0].student, done[1].student
+    (part.submitted / late / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
+    (part.submitted / odd / NAME / "timestamp.txt").write_text("yesterday or so")
+    with (part.root / "nbgrader_config.py").open("a") as file:
+        file.write('c.LateSubmissionPlugin.penalty_method = "zero"\n')
+    with open_gradebook(part) as book:
+        book.update_or_create_assignment(NAME, duedate="2029-01-01 10:00:00 UTC")
+    notes = record(part, NAME, done)
+    assert [note for note in notes if odd in note and "no time" in note]
+    with open_gradebook(part) as book:
+        assert book.find_submission(NAME, late).timestamp.year == 2030
+        assert book.find_submission(NAME, odd).timestamp is None
+    marks = {row.student: (row.raw, row.score) for row in rows(part, NAME)}
+    assert marks[late] == (20.0, 0.0)
+    assert all(raw == score for student, (raw, score) in marks.items() if student != late)
+
+
+def test_command(part, capsys):
+    """`labkit grade` prints a line each, JSON on request, and refuses without a sandbox."""
+    assert main(["grade", NAME, "--course", str(part.root)]) == 0
+    out = capsys.readouterr().out
+    assert out.count("\n[") >= PART - 1
+    assert "isolation: bubblewrap" in out
+    assert main(["grade", NAME, "--course", str(part.root), "--json"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert {json.loads(line)["student"] for line in lines} == set(students(part, NAME))
+    with pytest.raises(SystemExit, match="2"):
+        main(["grade", NAME, "--course", str(part.root), "--shard", "5/4"])
+    assert "5/4 is no part; write 1/4, 2/4, 3/4 or 4/4" in capsys.readouterr().err
+
+
+def test_refuses_without_bubblewrap(part, capsys, monkeypatch):
+    """No bubblewrap: nothing is graded, the line that mends it is said; unsafe must be typed."""
+    folder = Path(sys.executable).parent
+    monkeypatch.setenv("PATH", str(folder))
+    arguments = ["grade", NAME, "--course", str(part.root)]
+    for verb in ("grade", "regrade"):
+        assert main([verb, *arguments[1:]]) == 2
+        assert capsys.readouterr().err.count("apt-get install bubblewrap") == 1
+    assert not list(Results(part, NAME))
+    assert main([*arguments, "--unsafe-no-isolation"]) == 0
+    assert {r.isolation for r in Results(part, NAME)} == {
+        "none (asked for by --unsafe-no-isolation)"
+    }
+    monkeypatch.undo()
+    assert main(arguments) == 0
+    assert all(r.isolation.startswith("bubblewrap") for r in Results(part, NAME))

@@ -1,0 +1,42 @@
+"""Text that somebody else wrote can be stored and shown anywhere."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from labkit.grader.clean import clean_line, clean_text
+
+ANYTHING = st.text(alphabet=st.characters(exclude_categories=()))  # lone surrogates too
+
+
+@given(ANYTHING)
+def test_clean_text_can_be_written_as_utf8_and_moves_no_cursor(text):
+    """Every file and terminal takes it, and cleaning twice changes nothing more."""
+    clean = clean_text(text)
+    clean.encode("utf-8")
+    assert not set(clean) & {"\x1b", "\r", "\b", "\x00", "\u202e", "\x9b"}
+    assert clean_text(clean) == clean
+
+
+@given(ANYTHING)
+def test_a_clean_line_is_one_short_line(text):
+    """Nothing breaks it, and it is no longer than asked for."""
+    line = clean_line(text, 40)
+    assert len(line.splitlines()) <= 1 and len(line) <= 40
+    assert clean_line(line, 40) == line
+
+
+@pytest.mark.parametrize(
+    ("text", "clean"),
+    [
+        ("plain\n\ttext", "plain\n\ttext"),
+        ("\ud800", "\ufffd"),
+        ("a\r\nb", "a\nb"),
+        ("\x1b]0;owned\x07", "]0;owned"),
+        ("ada \u202egpj.exe", "ada gpj.exe"),
+        ("Zo\u00eb 🤖", "Zo\u00eb 🤖"),
+    ],
+)
+def test_what_people_write_stays(text, clean):
+    """Accents, emoji, tabs and lines stay; what commands a terminal goes."""
+    assert clean_text(text) == clean

@@ -1,0 +1,575 @@
+"""Collecting: whose work it is says the platform, and nobody's is lost for another's sake."""
+
+from __future__ import annotations
+
+import os
+import struct
+import tempfile
+import zipfile
+from pathlib import Path
+
+import pytest
+from downloaded import (
+    MOODLE,
+    NAME,
+    bare_course,
+    counting,
+    from_moodle,
+    handed_in,
+    kept,
+    moodle_writes,
+    zipped,
+)
+from handmade import ROOT
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from test_platforms import FILES, TEXTS
+
+from labkit.cli import main
+from labkit.errors import LabkitError
+from labkit.grader.collect import collect
+from labkit.grader.enrol import enrol, keep_numbers, settle
+from labkit.grader.handback import SECRET
+from labkit.grader.lms import FILE, Known, known, known_all_term
+from labkit.grader.roster import FILE as ROSTER
+from labkit.grader.roster import read_roster, save_roster
+from labkit.grader.sandbox.limits import Limits
+from labkit.grader.student_list import read_list
+
+NOBODY = 64990
+"""A user number that this machine does not know."""
+
+
+@pytest.fixture
+def bare(tmp_path):
+    return bare_course(tmp_path / "course")
+
+
+def take(course, source, **options):
+    return [str(one) for one in collect(course, NAME, source, **options)]
+
+
+def troubles(course, source, **options):
+    return [str(one) for one in collect(course, NAME, source, **options) if not one.fine]
+
+
+# Whose it is
+
+
+def test_no_name_of_a_file_replaces_anothers_work(bare, tmp_path):
+    """Eve calls her file as Moodle would call Ada's: it is Eve's, and Ada's stays."""
+    ada = ("Ada Lovelace", 42)
+    take(bare, from_moodle(tmp_path / "1.zip", [(ada, f"{NAME}.ipynb", "ada's")]))
+    file = "x_42_assignsubmission_file_01_paths(9).ipynb"
+    entry = moodle_writes("Eve Mallory", 77, file, in_folders=False)
+    take(bare, zipped(tmp_path / "2.zip", [(entry, "eve's")], (2026, 3, 9, 1, 1, 0)))
+    assert counting(bare) == {"Ada-Lovelace": "ada's", "Eve-Mallory": "eve's"}
+    assert known(bare, NAME)["Ada-Lovelace"] == Known("moodle", "42", "Ada Lovelace")
+    assert known(bare, NAME)["Eve-Mallory"] == Known("moodle", "77", "Eve Mallory")
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.dictionaries(st.integers(1, 99), st.tuples(TEXTS, FILES), min_size=1, max_size=5))
+def test_everybodys_work_is_under_their_own_number(people):
+    """Whatever a class and its files are called, each number has a folder with its own work."""
+    with tempfile.TemporaryDirectory() as folder:
+        course = bare_course(Path(folder, "course"))
+        entries = [
+            (moodle_writes(name, number, f"{number} {file}"), str(number))
+            for number, (name, file) in people.items()
+        ]
+        entries = [entry for entry in entries if not {"", ".", ".."} & set(entry[0].split("/"))]
+        found = list(collect(course, NAME, zipped(Path(folder, "1.zip"), entries)))
+        refused = sum(not one.fine for one in found)
+        folders = {who.number: folder for folder, who in known(course, NAME).items()}
+        assert {folders[n]: n for _, n in entries if n in folders} == counting(course)
+        assert len(counting(course)) == len(entries) - refused
+        assert len({folder.casefold() for folder in folders.values()}) == len(folders)
+
+
+def test_people_of_one_name_are_told_apart(bare, tmp_path):
+    """Moodle's number is in a folder's name only where it must be, and stays there."""
+    downloads = (
+        [(("Li Wei", 7), "n.ipynb", "7"), (("Bob", 8), "n.ipynb", "8")],
+        [(("Li Wei", 7), "n.ipynb", "7"), (("Li Wei", 9), "sub/n.ipynb", "9")],
+        [(("Kim", 1), "n.ipynb", "1"), (("Kim", 2), "n.ipynb", "2")],
+        [(("KIM", 3), "n.ipynb", "3"), (("Kim.", 4), "n.ipynb", "4")],
+    )
+    for number, files in enumerate(downloads):
+        said = take(bare, from_moodle(tmp_path / f"{number}.zip", files))
+        assert number != 2 or "Kim: 2 students are called so; told apart by their number" in said
+    assert counting(bare) == {
+        **{"Li-Wei": "7", "Bob": "8", "Li-Wei-9": "9", "Kim-1": "1", "Kim-2": "2"},
+        **{"KIM-3": "3", "Kim-4": "4"},
+    }
+    assert not known(bare, "02_model")
+
+
+def test_downloads_of_moodle_canvas_and_the_exchange(bare, tmp_path):
+    """Each layout ends in submitted/, and what is nobody's or no notebook is said."""
+    ada, bob = (MOODLE.format(*who) for who in (("Ada Lovelace", 101), ("Bob", 102)))
+    moodle = [(f"{ada}/notebook.ipynb", "1"), (f"{ada}/notebook(3).ipynb", "2")]
+    moodle += [(f"{bob}/readme.txt", "x"), ("../../evil.ipynb", "x"), ("essay.ipynb", "x")]
+    said = take(bare, zipped(tmp_path / "moodle.zip", moodle))
+    assert "Ada-Lovelace: notebook.ipynb: kept, but notebook(3).ipynb counts" in said
+    assert "Bob: readme.txt: not taken; it is not a notebook" in said
+    assert "essay.ipynb: not taken; its name does not say whose it is" in said
+    entry = "hoppergrace_LATE_7_99_01_paths-1.ipynb"
+    said = take(bare, zipped(tmp_path / "canvas.zip", [(entry, "3")]))
+    assert said == [f"hoppergrace-7: 01_paths-1.ipynb: taken, as {NAME}.ipynb, late"]
+    handed_in(tmp_path / "in", "root", "4")
+    assert take(bare, tmp_path / "in") == [f"root: {NAME}.ipynb: taken"]
+    assert counting(bare) == {"Ada-Lovelace": "2", "hoppergrace-7": "3", "root": "4"}
+    with pytest.raises(LabkitError, match="neither a folder nor a zip"):
+        take(bare, Path(__file__))
+    with pytest.raises(LabkitError, match="there is no"):
+        take(bare, tmp_path / "none.zip")
+
+
+def test_a_folder_that_somebody_made_by_hand_is_not_given_to_a_namesake(bare, tmp_path):
+    """Without a roster nobody knows whose it is; it stays as it is, and that is said."""
+    work = bare.submitted / "zoe" / NAME / f"{NAME}.ipynb"
+    work.parent.mkdir(parents=True)
+    work.write_text("zoe's")
+    source = from_moodle(tmp_path / "1.zip", [(("zoe", 9), "x.ipynb", "another's")])
+    (said,) = troubles(bare, source)
+    assert "zoe-9: participant 9 (zoe) has the name of a folder that somebody made by hand" in said
+    assert counting(bare) == {"zoe": "zoe's", "zoe-9": "another's"}
+
+
+# The roster
+
+
+def roster(course, *lines):
+    path = course.root / ROSTER
+    path.parent.mkdir(exist_ok=True)
+    head = "id,first_name,last_name,email,lms_user_id,login,id_number"
+    path.write_text("\n".join([head, *lines]) + "\n")
+
+
+def enrolled(course, path, assignment=None):
+    """What `labkit students import` does, but for the gradebook."""
+    done = enrol(read_roster(course), read_list(path), known_all_term(course))
+    save_roster(course, done.roster)
+    left = settle(course, done.roster)
+    return left + (keep_numbers(course, assignment, done.rows) if assignment else [])
+
+
+def test_the_same_person_has_one_folder_in_all_assignments(bare, tmp_path):
+    """By Moodle's name, Canvas's number, the exchange's login or address: the roster's folder."""
+    roster(bare, "ada,Ada,O'Lovelace,ada@uni.org,7,root,")
+    names = [NAME, "02_model", "03_velocity_control", "00_warmup"]
+    sources = [
+        from_moodle(tmp_path / "1.zip", [(("OLovelace Ada", 42), "x.ipynb", "1")]),
+        from_moodle(tmp_path / "2.zip", [(("Ada OLovelace", 99), "x.ipynb", "1")]),
+        zipped(tmp_path / "3.zip", [("lovelaceada_7_9_x.ipynb", "1")]),
+        handed_in(tmp_path / "in", "root", "1", name="00_warmup").parent,
+    ]
+    for name, source in zip(names, sources, strict=True):
+        assert all(one.fine for one in collect(bare, name, source))
+    assert [path.name for path in bare.submitted.iterdir()] == ["ada"]
+    assert {path.name for path in (bare.submitted / "ada").iterdir()} == set(names)
+
+
+def test_who_is_not_in_the_roster_is_merged_with_nobody(bare, tmp_path):
+    """They get a folder of their own, even if it would be called as somebody's, and are named."""
+    roster(bare, "Zoe-Park,Ada,Lovelace,,,,", "Kim,Kim,,,,,")
+    people = [("Zoe Park", 5), ("Kim", 6), ("Kim", 7), ("Ada Lovelace", 8)]
+    files = [(who, "x.ipynb", str(who[1])) for who in people]
+    said = troubles(bare, from_moodle(tmp_path / "1.zip", files))
+    assert counting(bare) == {"Zoe-Park-5": "5", "Kim-6": "6", "Kim-7": "7", "Zoe-Park": "8"}
+    assert len(said) == 3
+    assert said[0].startswith("Zoe-Park-5: participant 5 (Zoe Park) is not in the roster, so")
+    assert "participant 6 (Kim) has the name of a student, and so has somebody" in said[1]
+
+
+def test_a_name_that_the_roster_has_twice_is_not_guessed(bare, tmp_path):
+    """Both are kept apart until somebody says who is who; then their work goes to them."""
+    roster(bare, "li1,Li,Wei,li1@uni.org,,,", "li2,Wei,Li,li2@uni.org,,,")
+    source = from_moodle(tmp_path / "1.zip", [(("Li Wei", k), "x.ipynb", str(k)) for k in (5, 6)])
+    said = troubles(bare, source)
+    assert "Li-Wei-5: participant 5 (Li Wei) has the name of 2 students of the roster" in said[0]
+    worksheet = tmp_path / "worksheet.csv"
+    worksheet.write_text(
+        "Identifier,Full name,Email address\nParticipant 5,Li Wei,li2@uni.org\n"
+        "Participant 6,Wei Li,li1@uni.org\n"
+    )
+    enrolled(bare, worksheet, NAME)
+    assert counting(bare) == {"li2": "5", "li1": "6"}
+    assert kept(bare, "li2") == {"5"}
+    assert not troubles(bare, source)
+    assert counting(bare) == {"li2": "5", "li1": "6"}
+
+
+def test_a_second_participant_of_a_students_name_is_not_that_student(bare, tmp_path):
+    """Eve calls herself Ada Lovelace in Moodle: Ada's folder stays Ada's."""
+    roster(bare, "ada,Ada,Lovelace,,,,")
+    take(bare, from_moodle(tmp_path / "1.zip", [(("Ada Lovelace", 42), "x.ipynb", "ada's")]))
+    eve = from_moodle(tmp_path / "2.zip", [(("Ada Lovelace", 77), "x.ipynb", "eve's")])
+    assert "and so has somebody else who handed in" in troubles(bare, eve)[0]
+    assert counting(bare) == {"ada": "ada's", "Ada-Lovelace-77": "eve's"}
+
+
+def test_a_canvas_name_with_a_number_is_settled_by_the_roster(bare, tmp_path):
+    """eve_7 is user 8; without a roster nobody's work is guessed, with one it is Eve's."""
+    source = zipped(tmp_path / "1.zip", [("eve_7_8_100_x.ipynb", "eve's")])
+    (said,) = troubles(bare, source)
+    assert "Canvas's user 7 (eve) or Canvas's user 8 (eve_7)" in said
+    assert not counting(bare)
+    roster(bare, "grace,Grace,Hopper,,7,,", "eve,,eve_7,,8,,")
+    assert not troubles(bare, source)
+    assert counting(bare) == {"eve": "eve's"}
+
+
+def test_one_who_hands_in_before_they_are_in_the_roster_is_brought_there(bare, tmp_path):
+    """A late enrolment: the next list has them, and they keep the folder that they got."""
+    source = from_moodle(tmp_path / "1.zip", [(("Zoe Park", 5), "x.ipynb", "z")])
+    (tmp_path / "1.csv").write_text("name,login\nAda Lovelace,ada\n")
+    (tmp_path / "2.csv").write_text("name,login\nAda Lovelace,ada\nZoe Park,zpark\n")
+    enrolled(bare, tmp_path / "1.csv")
+    assert troubles(bare, source)
+    enrolled(bare, tmp_path / "2.csv")
+    assert not troubles(bare, source)
+    assert counting(bare) == {"Zoe-Park": "z"}
+
+
+def test_what_was_collected_before_it_was_known_whose_it_is_is_brought_to_them(bare, tmp_path):
+    """Canvas's number comes with a later list: all of the term's work moves to the folder."""
+    roster(bare, "grace,Grace,Hopper,g@uni.org,,,")
+    for name in (NAME, "02_model"):
+        entry = [("hoppergrace_7_99_x.ipynb", name)]
+        assert [
+            x for x in collect(bare, name, zipped(tmp_path / f"{name}.zip", entry)) if not x.fine
+        ]
+    assert counting(bare) == {"hoppergrace-7": NAME}
+    lst = tmp_path / "list.csv"
+    lst.write_text('Student,ID,SIS Login ID,Section\n"Hopper, Grace",7,ghopper,\n')
+    assert not enrolled(bare, lst)
+    assert counting(bare) == {"grace": NAME} and counting(bare, "02_model") == {"grace": "02_model"}
+    assert kept(bare, "grace") == {NAME}
+    assert list(known(bare, NAME)) == ["grace"]
+    assert not troubles(bare, tmp_path / f"{NAME}.zip")
+
+
+def test_what_cannot_be_moved_is_named(bare, tmp_path):
+    """A mark under the old name, or other work under the new one, wants a look."""
+    take(bare, zipped(tmp_path / "1.zip", [("hoppergrace_7_99_x.ipynb", "moodle's")]))
+    (bare.submitted / "grace" / NAME).mkdir(parents=True)
+    (bare.results / NAME).mkdir(parents=True)
+    (bare.results / NAME / "hoppergrace-7.json").write_text("{}")
+    roster(bare, "grace,Grace,Hopper,,7,,")
+    (said,) = troubles(bare, tmp_path / "1.zip")
+    assert f"submitted/hoppergrace-7/{NAME} and results/{NAME}/hoppergrace-7.json" in said
+    assert counting(bare)["hoppergrace-7"] == counting(bare)["grace"] == "moodle's"
+
+
+# The exchange
+
+
+def test_a_folder_in_the_exchange_must_belong_to_whom_it_names(bare, tmp_path):
+    """Who hands in under another's name replaces nothing, and is named; so with the secret."""
+    handed_in(tmp_path / "in", "root", "mine")
+    take(bare, tmp_path / "in")
+    handed_in(tmp_path / "in", "root", "forged", "2026-03-05 10:00:00 UTC", owner=NOBODY)
+    (said,) = troubles(bare, tmp_path / "in", unverified=True)
+    assert "it belongs to user number 64990 and not to root; possibly an attempt to cheat" in said
+    assert counting(bare) == {"root": "mine"}
+    assert (bare.submitted / "root" / NAME / SECRET).read_text() == "secret of mine"
+    assert kept(bare, "root") == {"mine"}
+
+
+def test_a_user_whom_the_machine_does_not_know_is_taken_only_if_asked(bare, tmp_path):
+    """The owner of such a folder says nothing; two owners under one name say that one lies."""
+    handed_in(tmp_path / "in", "grace", "1", owner=NOBODY)
+    (said,) = troubles(bare, tmp_path / "in")
+    assert said.startswith("grace: not taken; this machine has no such users")
+    assert "--unverified" in said
+    assert not counting(bare)
+    assert not troubles(bare, tmp_path / "in", unverified=True)
+    assert counting(bare) == {"grace": "1"}
+    handed_in(tmp_path / "in", "grace", "2", "2026-03-05 10:00:00 UTC", owner=NOBODY + 1)
+    both = troubles(bare, tmp_path / "in", unverified=True)
+    assert len(both) == 2
+    assert "user number 64990 and user number 64991 handed in as grace" in both[0]
+    assert counting(bare) == {"grace": "1"}
+
+
+@pytest.mark.parametrize("who", [" grace ", "grace\x1b", "grace\u202e", "Zoe\u0308", ""])
+def test_a_name_that_only_looks_like_anothers_is_nobodys(bare, tmp_path, who):
+    """Cleaned it would be another's: white space, what a terminal obeys, another composed form."""
+    looks_like = {"Zoe\u0308": "Zoë", "": "x"}.get(who, "grace")
+    handed_in(tmp_path / "in", looks_like, "right", owner=NOBODY)
+    handed_in(tmp_path / "in", who, "forged", "2026-03-05 10:00:00 UTC", owner=NOBODY + 1)
+    (said,) = troubles(bare, tmp_path / "in", unverified=True)
+    assert "nobody can have such a name" in said
+    assert counting(bare) == {looks_like: "right"}
+
+
+def test_names_of_the_exchange_are_names_of_folders(bare, tmp_path):
+    """An address stays as it is; no name leads out, hides, or is taken for an option."""
+    for who in ("ada.l@uni.org", "..", ".hidden", "-rf", "CON", "a" * 200, "RF"):
+        handed_in(tmp_path / "in", who, who)
+    take(bare, tmp_path / "in", unverified=True)
+    assert counting(bare) == {
+        **{"ada.l@uni.org": "ada.l@uni.org", "student": "..", "hidden": ".hidden", "rf-2": "-rf"},
+        "RF-3": "RF",
+        **{"student-CON": "CON", "a" * 80: "a" * 200},
+    }
+
+
+def test_what_is_not_a_hand_in_is_named(bare, tmp_path):
+    """A link, a file, a folder without time or notebook; others' work is taken all the same."""
+    inbound = handed_in(tmp_path / "in", "root", "1").parent
+    handed_in(inbound, "root", "2", when="soon")
+    (inbound / f"root+{NAME}+2026-03-02 10:00:00 UTC+a").mkdir()
+    (inbound / f"root+{NAME}+2026-03-02 10:00:00 UTC+b").symlink_to("/etc")
+    (inbound / f"root+{NAME}+2026-03-02 10:00:00 UTC+c").write_text("x")
+    (inbound / os.fsdecode(b"\xff+" + NAME.encode() + b"+2026-03-02 10:00:00 UTC+d")).mkdir()
+    said = " ".join(troubles(bare, inbound))
+    for words in ("it states no time", "it holds no notebook", "it is a link or a file"):
+        assert words in said
+    assert "\ufffd+01_paths+2026-03-02 10:00:00 UTC+d: not taken; nobody can have such a" in said
+    assert counting(bare) == {"root": "1"}
+
+
+def test_a_secret_that_is_a_link_is_not_followed(bare, tmp_path):
+    """A student cannot have another's file copied to where feedback is made."""
+    folder = handed_in(tmp_path / "in", "root", "1")
+    (folder / SECRET).unlink()
+    (folder / SECRET).symlink_to("/etc/passwd")
+    (said,) = troubles(bare, folder.parent)
+    assert f"not taken; {SECRET} is a link" in said
+    assert not counting(bare)
+
+
+def test_collect_waits_for_nothing_and_follows_nobody(bare, tmp_path, monkeypatch):
+    """A pipe, a link or a huge file costs its own student, in words."""
+    monkeypatch.setattr("labkit.grader.downloads.Limits", lambda: Limits(notebook=1))
+    folders = [handed_in(tmp_path / "in", who, "x") for who in ("ada", "bob", "carl")]
+    pipe, link, huge = (folder / f"{NAME}.ipynb" for folder in folders)
+    pipe.unlink()
+    os.mkfifo(pipe)
+    link.unlink()
+    link.symlink_to("/etc/passwd")
+    huge.write_bytes(b" " * 2**21)
+    said = troubles(bare, tmp_path / "in", unverified=True)
+    words = ("is not a file", "is a link or cannot be opened", "has 2 MB, the limit is 1 MB")
+    assert [word in x for word, x in zip(words, said, strict=True)] == [True] * 3
+    assert not counting(bare)
+
+
+# Zips
+
+BOB = (f"{MOODLE.format('Bob', 2)}/{NAME}.ipynb", "bob's")
+ADA = f"{MOODLE.format('Ada', 1)}/n.ipynb"
+
+
+def spoilt(path, change):
+    """A zip with Ada's entry, which somebody changed, and Bob's."""
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        info = zipfile.ZipInfo(ADA, (2026, 3, 1, 12, 0, 0))
+        change(info)
+        archive.writestr(info, b"ada's" * 1000)
+        archive.writestr(*BOB)
+    return path
+
+
+def linked(info):
+    info.external_attr = 0o120777 << 16
+
+
+def outside(info):
+    info.filename = f"{MOODLE.format('Ada', 1)}/../../evil.ipynb"
+
+
+def absolute(info):
+    info.filename = "/" + info.filename
+
+
+def backwards(info):
+    info.filename = info.filename.replace("/", "/..\\")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (linked, "it is a link"),
+        (outside, "it leads out of the download"),
+        (absolute, "it leads out of the download"),
+        (backwards, "it leads out of the download"),
+    ],
+)
+def test_an_entry_that_is_a_trap_is_named(bare, tmp_path, change, words):
+    """It is not taken, nothing is written outside, and the next student's work is taken."""
+    said = troubles(bare, spoilt(tmp_path / "1.zip", change))
+    assert len(said) == 1 and words in said[0] and "ipynb" in said[0]
+    assert counting(bare) == {"Bob": "bob's"}
+    assert not list(tmp_path.rglob("evil*"))
+
+
+def changed(path, *changes):
+    """A zip in which bytes were changed: (where, by what), from the first central entry on."""
+    data = bytearray(spoilt(path, lambda info: None).read_bytes())
+    central = data.index(b"PK\1\2")
+    for at, form, value in changes:
+        struct.pack_into(form, data, central + at if at >= 0 else -at, value)
+    path.write_bytes(data)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ([(8, "<H", 1)], "it is locked with a password"),
+        ([(24, "<L", 10)], "damaged: Bad CRC-32"),  # says it is smaller than it is
+        ([(24, "<L", 2**31)], "has 2048 MB, the limit is 200 MB"),
+        ([(16, "<L", 0)], "damaged: Bad CRC-32"),
+        ([(10, "<H", 99)], "damaged: "),  # an unknown way of packing
+        ([(-30, "<B", 90)], "damaged: File name in directory"),  # another name in its own header
+        ([(42, "<L", 10**6)], "damaged: "),  # lies elsewhere
+    ],
+)
+def test_an_entry_that_lies_is_named(bare, tmp_path, changes, words):
+    """Locked, of another size, another sum, another name, another place: the others are taken."""
+    said = troubles(bare, changed(tmp_path / "1.zip", *changes))
+    assert (len(said) == 1 and said[0].startswith("Ada: n.ipynb: not taken; ")) or "locked" in words
+    assert words in said[0]
+    assert counting(bare) == {"Bob": "bob's"}
+
+
+def test_a_bomb_is_not_unpacked(bare, tmp_path, monkeypatch):
+    """However small it says it is, and however small it is packed."""
+    monkeypatch.setattr("labkit.grader.downloads.Limits", lambda: Limits(notebook=1))
+    path = tmp_path / "1.zip"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr(ADA, b" " * 2**22)
+        archive.writestr(*BOB)
+    assert "has 4 MB, the limit is 1 MB" in troubles(bare, path)[0]
+    data = bytearray(path.read_bytes())
+    struct.pack_into("<L", data, data.index(b"PK\1\2") + 24, 2**19)
+    path.write_bytes(data)
+    assert "damaged" in troubles(bare, path)[0]
+    assert counting(bare) == {"Bob": "bob's"}
+
+
+@pytest.mark.filterwarnings("ignore:Duplicate name")
+def test_an_entry_that_is_there_twice_is_named_and_kept_twice(bare, tmp_path):
+    """Neither is lost, and somebody looks which one counts."""
+    said = troubles(bare, zipped(tmp_path / "1.zip", [(ADA, "1"), (ADA, "2"), BOB]))
+    assert len(said) == 1 and "it is in the zip twice" in said[0]
+    assert kept(bare, "Ada") == {"1", "2"}
+
+
+def test_names_in_any_encoding(bare, tmp_path):
+    """UTF-8 that is not announced is read; what is announced and is none costs nobody's work."""
+    name = f"{MOODLE.format('Zoë', 3)}/n.ipynb"
+    silent = zipped(tmp_path / "1.zip", [(name, "z"), BOB])
+    data = silent.read_bytes()
+    for at in (data.index(b"PK\3\4") + 7, data.index(b"PK\1\2") + 9):
+        assert data[at] == 8
+        data = data[:at] + b"\0" + data[at + 1 :]
+    silent.write_bytes(data)
+    assert not troubles(bare, silent)
+    assert counting(bare) == {"Zoë": "z", "Bob": "bob's"}
+    broken = zipped(tmp_path / "2.zip", [(name, "y"), BOB])
+    broken.write_bytes(broken.read_bytes().replace("ë".encode(), b"\xff\xfe"))
+    take(bare, broken)
+    assert counting(bare)["Bob"] == "bob's"
+
+
+def test_a_zip_in_a_zip_is_not_opened(bare, tmp_path):
+    """It is said that this student handed in a zip."""
+    inner = from_moodle(tmp_path / "inner.zip", [(("Eve", 9), "n.ipynb", "x")]).read_bytes()
+    source = zipped(tmp_path / "1.zip", [(f"{MOODLE.format('Ada', 1)}/work.zip", inner), BOB])
+    (said,) = troubles(bare, source)
+    assert said == "Ada: work.zip: not taken; it is a zip; ask for the notebook itself"
+    assert counting(bare) == {"Bob": "bob's"}
+
+
+def test_a_damaged_download_is_a_sentence(bare, tmp_path):
+    """Where the zip has no end, or nothing in it, nothing is taken."""
+    path = zipped(tmp_path / "1.zip", [BOB])
+    data = path.read_bytes()
+    path.write_bytes(data.replace(b"PK\1\2", b"PK\1\3"))
+    with pytest.raises(LabkitError, match=r"is damaged: .*; download it again"):
+        take(bare, path)
+    path.write_bytes(data[:-30])
+    with pytest.raises(LabkitError, match="neither a folder nor a zip"):
+        take(bare, path)
+    with pytest.raises(LabkitError, match=f"nothing in .* was handed in for {NAME}"):
+        take(bare, zipped(tmp_path / "2.zip", []))
+
+
+# Records
+
+
+def test_what_an_older_labkit_knew_is_read(bare, tmp_path):
+    """A term in progress goes on: numbers stay, and one that was read greedily is put right."""
+    import json
+
+    old = {
+        "Ada-Lovelace": {"system": "moodle", "number": "42", "name": "Ada Lovelace"},
+        "Eve": {
+            "system": "moodle",
+            "number": "42",
+            "name": "Eve Mallory_77_assignsubmission_file_x",
+        },
+    }
+    (bare.root / "course_private").mkdir()
+    (bare.root / FILE).write_text(json.dumps({NAME: old}))
+    assert known(bare, NAME)["Eve"] == Known("moodle", "77", "Eve Mallory")
+    people = [(("Ada Lovelace", 42), "x.ipynb", "a"), (("Eve Mallory", 77), "x.ipynb", "e")]
+    take(bare, from_moodle(tmp_path / "1.zip", people))
+    assert counting(bare) == {"Ada-Lovelace": "a", "Eve": "e"}
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [(FILE, text) for text in ("", "[]", '{"01_paths": 1}', '{"01_paths": {"ada": {"x": 1}}}')]
+    + [(FILE, '{"01_paths": {"ada": {"system": "moodle", "number": 1, "name": ""}}}')]
+    + [(ROSTER, text) for text in ("", "name\nada\n", "id\n../x\n", "id\nada\nADA\n", 'id\n"a\n')],
+)
+def test_a_damaged_record_is_a_sentence(bare, tmp_path, file, text, capsys):
+    """Nothing is collected on a record that cannot be read, and the sentence says what to do."""
+    (bare.root / "course_private").mkdir()
+    (bare.root / file).write_text(text)
+    source = zipped(tmp_path / "1.zip", [BOB])
+    assert main(["collect", NAME, str(source), "--course", str(bare.root)]) == 2
+    said = capsys.readouterr().err
+    assert "is damaged" in said and "Traceback" not in said and "move it away" in said
+    assert not counting(bare)
+
+
+def test_the_command_says_what_wants_a_look_at_the_end(bare, tmp_path, capsys):
+    """Exit 0 if nothing does, 1 if something does; no name speaks to the terminal."""
+    name = MOODLE.format("Mona\x1b[2J", 3) + "/\x1b]0;owned\x07.ipynb"
+    words = ["collect", NAME, "--course", str(bare.root)]
+    assert main([*words, str(zipped(tmp_path / "1.zip", [(name, "m")]))]) == 0
+    assert main([*words, str(zipped(tmp_path / "2.zip", [("\x1b[2J.ipynb", ""), BOB]))]) == 1
+    said = capsys.readouterr()
+    assert "\x1b" not in said.out + said.err and "\x07" not in said.out + said.err
+    assert "[2J.ipynb: not taken; its name does not say whose it is" in said.err
+    assert f"Bob: {NAME}.ipynb: taken" in said.out
+
+
+def test_two_do_not_collect_at_once(bare, tmp_path):
+    """Two assistants do not write into one another's records."""
+    source = zipped(tmp_path / "1.zip", [BOB])
+    one = collect(bare, NAME, source)
+    next(one)
+    with pytest.raises(LabkitError, match="somebody else is collecting"):
+        take(bare, source)
+    one.close()
+
+
+def test_names_and_work_go_with_the_term(bare, tmp_path):
+    """The roster, the numbers and the attempts are ignored by git, and archived."""
+    from labkit.grader.term import archive
+
+    roster(bare, "bob,Bob,,,,,")
+    take(bare, zipped(tmp_path / "1.zip", [BOB]))
+    ignored = (ROOT / ".gitignore").read_text().split()
+    assert {"/attempts/", "/course_private/", "/submitted/"} <= set(ignored)
+    folder = archive(bare)
+    assert {"attempts", "submitted", "roster.csv", "lms.json"} <= {x.name for x in folder.iterdir()}
+    assert not (bare.root / "attempts").exists() and not (bare.root / ROSTER).exists()

@@ -1,0 +1,226 @@
+"""Each student's steps are their own: what fails for one is named, and the others have theirs."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+
+import pytest
+from handmade import QUICK, add, hand_in
+from made import NAME, graded, handed_in, result_of
+
+from labkit.cli import main
+from labkit.errors import LabkitError
+from labkit.grader import batch, feedback, gradebook, results
+from labkit.grader.each import Failed, Failures, for_student
+from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.results import Results
+
+CLASS = ("ada", "bob", "carl")
+
+
+@pytest.fixture
+def marked(course):
+    """Three with full marks, recorded."""
+    graded(course, *(result_of(course, student) for student in CLASS))
+    return course
+
+
+def verb(course, capsys, *words):
+    code = main([words[0], NAME, "--course", str(course.root), *words[1:]])
+    return code, *capsys.readouterr()
+
+
+def scores(course):
+    with open_gradebook(course) as book:
+        return {s.student.id: s.score for s in book.assignment_submissions(NAME)}
+
+
+def spoil(monkeypatch, where, name, error, *, sign="bob"):
+    """Let a function fail where its first argument is of one student."""
+    function = getattr(where, name)
+
+    def spoiled(first, *rest):
+        if sign in str(first):
+            raise error
+        return function(first, *rest)
+
+    monkeypatch.setattr(where, name, spoiled)
+
+
+@pytest.mark.slow
+def test_a_lone_surrogate_costs_nobody_a_mark(course, solved, capsys, monkeypatch):
+    """In a comment, a cell of one's own or an output: all are graded, recorded, told, exported."""
+    monkeypatch.setattr(batch, "Limits", lambda: QUICK)
+    hand_in(course, NAME, "ada", json.dumps(solved).encode())
+    add(solved, "# \ud800\nprint('\\ud800')")
+    text = {"cell_type": "markdown", "id": "t", "metadata": {}, "source": "\udfff <script>"}
+    solved["cells"].append(text)
+    hand_in(course, NAME, "bob", json.dumps(solved).encode())
+    assert verb(course, capsys, "grade")[0] == 0
+    assert scores(course) == {"ada": 20.0, "bob": 20.0}
+    assert verb(course, capsys, "feedback")[0] == 0
+    assert verb(course, capsys, "class-report", "--names")[0] == 0
+    code, out, _ = verb(course, capsys, "export")
+    assert code == 0
+    assert [x.split(",")[-2] for x in out.splitlines()[2:]] == ["20.0", "20.0"]
+    written = course.root / "autograded" / "bob" / NAME / f"{NAME}.ipynb"
+    page = course.root / "feedback" / "bob" / NAME / f"{NAME}.html"
+    assert written.read_text("utf-8").count("\ufffd") == 2
+    assert page.read_text("utf-8")
+    assert "ufffd" in Results(course, NAME).path("bob").read_text("ascii")
+
+
+@pytest.mark.parametrize("part", [{"source": "x = 1 # \ud800"}, {"notes": ["\ud800"]}])
+def test_a_result_that_cannot_be_written_is_rolled_back_alone(course, part):
+    """Of a class of three, two are recorded and one is named; a rerun with a good one mends it."""
+    done = [result_of(course, student) for student in CLASS]
+    done[1].questions[0].update(part)
+    bad = graded(course, *done, recorded=False) or record(course, NAME, done)
+    if "source" in part:
+        (failed,) = bad
+        assert str(failed).startswith("bob: UnicodeEncodeError")
+        assert scores(course) == {"ada": 20.0, "carl": 20.0}
+    assert record(course, NAME, list(Results(course, NAME))) == []  # read from the disk: clean
+    assert scores(course) == dict.fromkeys(CLASS, 20.0)
+
+
+@pytest.mark.slow
+def test_a_row_that_fails_leaves_the_others_and_is_mended(marked, capsys, monkeypatch):
+    """`grade` names whom it could not record, exit 1; typed again, all are there."""
+    for student in CLASS:
+        with open_gradebook(marked) as book:
+            book.remove_submission(NAME, student)
+    with monkeypatch.context() as spoiled:
+        spoil(spoiled, gradebook, "write", PermissionError(errno.EACCES, "Permission denied"))
+        code, out, err = verb(marked, capsys, "grade")
+    assert code == 1
+    assert out.count("as before") == 3
+    assert err.splitlines()[-1] == "not in the gradebook: bob: Permission denied"
+    assert {s: x for s, x in scores(marked).items() if s != "bob"} == {"ada": 20.0, "carl": 20.0}
+    code, out, err = verb(marked, capsys, "export")
+    assert (code, err.count("no mark: bob")) == (1, 1)
+    assert "\nbob,,,,,,,,," in out
+    assert verb(marked, capsys, "grade")[0] == 0
+    assert scores(marked) == dict.fromkeys(CLASS, 20.0)
+
+
+def test_a_page_that_fails_is_named_and_the_others_are_written(marked, capsys, monkeypatch):
+    """Whoever comes later in the alphabet has a page all the same."""
+    spoil(monkeypatch, feedback, "page", OverflowError("cannot convert float \x1b infinity"))
+    code, _, err = verb(marked, capsys, "feedback")
+    assert (code, err) == (1, "no page: bob: OverflowError: cannot convert float infinity\n")
+    pages = (marked.root / "feedback").glob(f"*/{NAME}/{NAME}.html")
+    assert {x.parents[1].name for x in pages} == {"ada", "carl"}
+
+
+def test_numbers_of_any_size_have_a_page(marked, capsys):
+    """An answer whose numbers span all of floating point is drawn like any other."""
+    one = result_of(marked, "bob")
+    numbers = {"call": "f()", "expected": [0.0, 1.0, 5e-324], "given": [-1e308, 1e308, -1.7e308]}
+    one.questions[0]["numbers"] = numbers | {"of": 3}
+    graded(marked, one)
+    assert verb(marked, capsys, "feedback")[0] == 0
+    text = (marked.root / "feedback" / "bob" / NAME / f"{NAME}.html").read_text()
+    assert "1e+308" in text and "nan" not in text
+
+
+@pytest.mark.slow
+def test_regrade_keeps_the_others(marked, capsys, monkeypatch):
+    """A result that cannot be kept is named, exit 1; the others count."""
+    blank = (marked.release / NAME / f"{NAME}.ipynb").read_bytes()
+    for student in CLASS:
+        hand_in(marked, NAME, student, blank)
+    spoil(monkeypatch, results, "write", PermissionError(errno.EACCES, "Permission denied"))
+    code, out, err = verb(marked, capsys, "regrade", "--lower", "--jobs", "2")
+    assert (code, err) == (1, "not kept: bob: Permission denied\n")
+    assert "3 of 3 marks move" in out
+    assert scores(marked) == {"ada": 0.0, "bob": 20.0, "carl": 0.0}
+
+
+def test_what_concerns_everybody_is_raised():
+    """A full disk ends the verb at once, and one file that cannot be read does not."""
+
+    def fails(number):
+        def step():
+            raise OSError(number, "words", "file")
+
+        return step
+
+    with pytest.raises(OSError, match="words"):
+        for_student("ada", fails(errno.ENOSPC))
+    assert str(for_student("ada", fails(errno.EACCES))) == "ada: file: words"
+    assert for_student("ada", lambda: 3) == 3
+
+
+def test_failures_are_told_at_the_end(capsys):
+    """Sifting passes on what was done; the exit code and stderr have the rest, also on an error."""
+    with pytest.raises(LabkitError, match="later"), Failures() as failures:
+        assert list(failures.sift([1, Failed("ada", "why"), 2], "not done")) == [1, 2]
+        assert (failures.code, capsys.readouterr().err) == (1, "")
+        raise LabkitError("later")
+    assert capsys.readouterr().err == "not done: ada: why\n"
+
+
+@pytest.mark.parametrize("damage", [b"no database at all" * 90, None])
+def test_a_damaged_gradebook_is_a_sentence(marked, capsys, damage):
+    """Garbage or half a file: exit 2, what to do, results kept; restored, all is as it was."""
+    path = marked.root / "gradebook.db"
+    before = path.read_bytes()
+    path.write_bytes(before[: len(before) // 2] if damage is None else damage)
+    kept = {x: x.read_bytes() for x in Results(marked, NAME).folder.glob("*.json")}
+    for words in (["export"], ["feedback"], ["regrade"], ["grade"]):
+        code, _, err = verb(marked, capsys, *words)
+        assert (code, err.count("\n")) == (2, 1)
+        assert "gradebook.db is damaged: " in err and "restore a copy" in err
+    assert {x: x.read_bytes() for x in kept} == kept
+    path.write_bytes(before)
+    assert scores(marked) == dict.fromkeys(CLASS, 20.0)
+
+
+HOSTILE = (
+    b"\x1b]0;owned\x07\x1b[2J",
+    b"\xff\xfe",
+    "\u202egpj".encode(),
+    b"<script>alert(1)<",
+    b"\r",
+)
+
+
+def test_no_name_of_a_folder_reaches_a_terminal(marked, capsys, monkeypatch):
+    """Every verb names such a folder in plain letters, exit 1, and does the others."""
+    monkeypatch.setattr(batch, "grade_aside", lambda *args: iter(()))
+    for name in HOSTILE:
+        folder = os.path.join(os.fsencode(marked.submitted), name, NAME.encode())
+        os.makedirs(folder)
+        with open(os.path.join(folder, f"{NAME}.ipynb".encode()), "wb") as file:
+            file.write(b"{}")
+    with open_gradebook(marked) as book:  # nbgrader's autograde adds whom it then refuses
+        book.update_or_create_student(HOSTILE[0].decode())
+        book.update_or_create_submission(NAME, HOSTILE[0].decode())
+    for words in (["grade"], ["feedback"], ["export"], ["class-report", "--names"], ["regrade"]):
+        code, out, err = verb(marked, capsys, *words)
+        assert code == 1, words
+        assert err.count("rename the folder and grade again") == len(HOSTILE), words
+        assert not [x for x in out + err if not (x.isprintable() or x == "\n")], words
+
+
+def test_nobody_who_handed_in_is_passed_over(course, capsys):
+    """A folder that is a link, even one that leads nowhere, is a submission and is named."""
+    (course.submitted / "ada").mkdir(parents=True)
+    (course.submitted / "ada" / NAME).symlink_to("/nowhere")
+    code, out, err = verb(course, capsys, "export")
+    assert (code, err.count("no mark: ada: handed in and not graded")) == (1, 1)
+    assert "\nada," in out
+
+
+@pytest.mark.slow
+def test_nobody_who_cannot_be_graded_stops_a_class(course, capsys):
+    """A folder in the place of a result file makes room; the submission is graded."""
+    handed_in(course, "ada", "bob")
+    (Results(course, NAME).path("ada") / "sub").mkdir(parents=True)
+    assert verb(course, capsys, "export")[0] == 1
+    code, out, _ = verb(course, capsys, "grade")
+    assert code == 0, out
+    assert Results(course, NAME).get("ada") is not None

@@ -1,0 +1,348 @@
+"""The isolated engine: verdicts, limits, repairs, and that nothing depends on who else is there."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from handmade import QUICK, add, cell_of, put, raw
+
+from labkit.course import Call, Loop, question_data, read_question
+from labkit.course.judges import Close
+from labkit.course.marking import mark
+from labkit.course.question import Question, Test
+from labkit.course.source import look
+from labkit.grader.grade import grade
+from labkit.grader.plan import imports, plan
+from labkit.grader.results import Bundle, Result
+from labkit.grader.sandbox import parse as cells
+
+
+def earned(result):
+    return {q["name"]: q["earned"] for q in result.questions}
+
+
+@pytest.fixture
+def marks(bundle, sandbox):
+    """Grades a notebook."""
+    return lambda notebook: grade(raw(notebook), "ada", bundle, sandbox, QUICK)
+
+
+def test_full_marks_and_none(marks, solved, blank):
+    """The answers earn everything, the stubs nothing, and a stub is no error."""
+    assert marks(solved).score == 20
+    result = marks(blank)
+    assert result.score == 0
+    assert {q["outcome"] for q in result.questions} == {"not attempted"}
+
+
+def test_same_verdicts_as_in_the_notebook(marks, blank, released, bundle):
+    """Each known mistake is told by the same words here as by `mark` in one process."""
+    from labkit.course.inline import inline
+
+    problems = {p.name: p for p in released.problems("01_paths")}
+    questions = {q["name"]: read_question(q) for q in bundle.data["questions"]}
+    for k in range(3):
+        for name, problem in problems.items():
+            wrong = problem.wrong[k % len(problem.wrong)].function
+            put(blank, name, inline(wrong, name))
+        result = marks(blank)
+        for name, problem in problems.items():
+            here = mark(questions[name], problem.wrong[k % len(problem.wrong)].function)
+            there = next(q for q in result.questions if q["name"] == name)
+            assert there["earned"] == here.earned
+            assert there["outcome"] == here.outcome.value
+            assert (there["mistake"] or {}).get("name") == (here.mistake and here.mistake.name)
+            assert [t["outcome"] for t in there["tests"]] == [t.outcome.value for t in here.tests]
+
+
+def test_noise_costs_nothing(marks, solved):
+    """Prints, warnings and C streams in cells and functions leave full marks."""
+    noise = "import os, sys, warnings\nprint('x'); print('y', file=sys.stderr)\n"
+    noise += "warnings.warn('z'); os.write(2, b'w')"
+    cell = cell_of(solved, "circle")
+    add(solved, noise)
+    cell["source"] = f"{noise}\n{''.join(cell['source'])}"
+    assert marks(solved).score == 20
+
+
+def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
+    """Helpers in own cells, in walk-through cells and in later cells are there when needed."""
+    put(
+        solved,
+        "witness",
+        "def witness(theta, duration):\n    return half(duration) * unit(1.000001)",
+    )
+    add(solved, "def half(x):\n    return x / 2", at=2)
+    add(solved, "def unit(x):\n    return x", at=len(solved["cells"]))
+    assert marks(solved).score == 20
+    walk = next(c for c in solved["cells"] if "within_limits" in "".join(c["source"]))
+    assert walk["metadata"]["lab"] == "walk"
+    source = (
+        "def trapezoid(t, distance, v_max, a_max):\n    return within_limits(1.0).duration, 0, 0"
+    )
+    put(solved, "trapezoid", source)
+    says = next(q for q in marks(solved).questions if q["name"] == "trapezoid")["tests"][0]["says"]
+    assert "NameError" not in says
+
+
+YOURS = """
+def given_half(): raise AssertionError
+half = use("bang_bang", bang_bang, {given}, yours=lambda: bang_bang(1.0, 2.0)[0])
+"""
+
+
+@pytest.mark.parametrize(
+    ("answer", "given", "points"),
+    [
+        (None, "given_half", 2),  # one's own is right: it is used, as it was wrapped
+        ("def bang_bang(t, duration): return 0.0, 0.0, 0.0", "lambda: 0.5", 2),  # wrong: what is given
+        ("def bang_bang(t, duration): raise NotImplementedError", "lambda: 0.5", 2),
+        ("def bang_bang(t, duration): return 0.5, 0.0, 0.0", "lambda: 1.0", 0),
+    ],
+)  # fmt: skip
+def test_an_answer_leans_on_what_use_chose_in_the_notebook(marks, solved, answer, given, points):
+    """`use` means the same here: one's own function where that is right, else the one given."""
+    if answer:
+        put(solved, "bang_bang", answer)
+    at = solved["cells"].index(cell_of(solved, "bang_bang")) + 1
+    add(solved, YOURS.format(given=given), at)
+    put(solved, "witness", "def witness(theta, duration):\n    return half() * duration")
+    assert earned(marks(solved))["witness"] == points
+
+
+def test_state_survives_between_calls_but_not_between_questions(marks, solved):
+    """A function may remember; another question does not see it."""
+    put(solved, "witness", "seen = []\ndef witness(theta, duration):\n    seen.append(1)\n"
+        "    return duration / 2 * 1.000001 if len(seen) < 40 else 0.0")  # fmt: skip
+    assert earned(marks(solved))["witness"] == 2
+
+
+@pytest.mark.parametrize(
+    ("body", "says"),
+    [
+        ("import os; os._exit(1)", "SystemExit: it ended its own process"),
+        ("import ctypes; ctypes.string_at(0)", "SystemExit: it ended its own process"),
+        ("import sys; sys.exit()", "SystemExit"),
+        ("while True: pass", "TimeoutError: it did not come back within 1 s"),
+        ("return bytearray(10**10)", "MemoryError"),
+        ("return undefined", "NameError: name 'undefined' is not defined"),
+    ],
+)
+def test_one_question_lost(marks, solved, body, says):
+    """Whatever happens to one question, it says so, and the others keep their points."""
+    put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
+    result = marks(solved)
+    assert result.score == 16
+    circle = next(q for q in result.questions if q["name"] == "circle")
+    assert circle["outcome"] == "error"
+    assert says in circle["tests"][0]["says"]
+
+
+def test_a_deadly_cell_is_left_out(marks, solved):
+    """A cell that ends the process costs nothing else, and is named."""
+    result = marks(add(solved, "import os\nos._exit(1)"))
+    assert result.score == 20
+    assert [c["error"] for c in result.cells] == ["it ended the process"]
+
+
+def test_withheld_names_stop_working_for_one_question_only(marks, solved):
+    """A withheld name is not counted; where it is not withheld, or in inputs, it works."""
+    put(solved, "circle", "import labkit as lk\ndef circle(s, start, centre):\n"
+        "    return lk.Circle(start, centre)(s)")  # fmt: skip
+    result = marks(solved)
+    assert earned(result)["circle"] == 0
+    assert earned(result)["compose"] == 4  # is given circles
+    circle = next(q for q in result.questions if q["name"] == "circle")
+    assert circle["outcome"] == "not counted" and circle["withheld"] == ["labkit.Circle"]
+
+
+def test_hidden_cases_stay_hidden(marks, blank, bundle):
+    """What a result says of a hidden case is its class and a known kind of error, nothing more."""
+    put(blank, "bang_bang", "from labkit import errors\nasked = []\ndef bang_bang(t, duration):\n"
+        "    asked.append(t)\n    if len(asked) > 23: raise type('T' + str(t), (Exception,), {})\n"
+        "    x = min(max(t / duration, 0), 1)\n    ins = 0 <= t < duration\n"
+        "    y = 1 - x\n    a = 4 / duration**2\n"
+        "    if x < .5: return 2 * x * x, 4 * x / duration * ins, a * ins\n"
+        "    return 1 - 2 * y * y, 4 * y / duration * ins, -a * ins")  # fmt: skip
+    tests = next(q for q in marks(blank).questions if q["name"] == "bang_bang")["tests"]
+    hidden = [t for t in tests if t["hidden"]]
+    assert hidden
+    assert all(t["says"].endswith("raised Exception") for t in hidden)
+
+
+def test_big_pictures_are_welcome(bundle, sandbox, solved):
+    """Thirty megabytes of outputs are no reason to refuse."""
+    walk = next(c for c in solved["cells"] if c["cell_type"] == "code")
+    data = {"image/png": "A" * (30 * 2**20)}
+    walk["outputs"] = [{"output_type": "display_data", "metadata": {}, "data": data}]
+    assert grade(raw(solved), "ada", bundle, sandbox, QUICK).score == 20
+
+
+@pytest.mark.parametrize(
+    ("data", "says"),
+    [
+        (b"", "empty"),
+        (b"{", "broken"),
+        (b"[" * 100_000, "nested"),
+        (b"[]", "no cells"),
+        (b'{"cells": [], "nbformat": 3}', "format is 3"),
+        (b'{"cells": "x", "nbformat": 4}', "no cells"),
+        (json.dumps({"cells": [{}] * 1001, "nbformat": 4}).encode(), "too many"),
+        (json.dumps({"cells": [{"source": "x" * 2_100_000}], "nbformat": 4}).encode(), "over 2 MB"),
+    ],
+)
+def test_rejected_in_one_sentence(data, says, bundle, sandbox):
+    """A file that is no notebook ends in a result with one sentence."""
+    result = grade(data, "ada", bundle, sandbox, QUICK)
+    assert says in result.rejected
+    assert result.score == 0
+    assert "\n" not in result.rejected
+
+
+@pytest.mark.parametrize("cell", [None, 1, {"source": {}}, {"source": [1]}, {"cell_type": "code"},
+                                  {"cell_type": "code", "source": "\ud800"},
+                                  {"cell_type": "code", "source": "(" * 500},
+                                  {"cell_type": "code", "source": "x = '\0'"},
+                                  {"cell_type": "code", "source": "1", "metadata": [1], "id": 5}])  # fmt: skip
+def test_odd_cells_harm_nobody(cell, marks, solved):
+    """A cell of any form is passed over."""
+    solved["cells"].insert(1, cell)
+    assert marks(solved).score == 20
+
+
+MAGICS = ("%%time", "%%capture", "%%capture out --no-stderr", "%%prun -q", "\n%%time\n%%capture")
+
+
+@pytest.mark.parametrize("magic", MAGICS)
+def test_a_magic_that_runs_its_cell_costs_nothing(marks, solved, magic):
+    """An answer below %%time or its like is there in the notebook, and so it is here."""
+    for cell in solved["cells"]:
+        if cell["metadata"]["lab"] == "answer":
+            cell["source"] = f"{magic}\n{''.join(cell['source'])}"
+    assert marks(solved).score == 20
+
+
+@pytest.mark.parametrize("magic", ["%%timeit", "%%bash", "%%python", "%%writefile x.py"])
+def test_a_magic_that_keeps_names_to_itself_defines_nothing(marks, solved, magic):
+    """In a notebook there is no answer then; here neither, and the note says why."""
+    cell = cell_of(solved, "circle")
+    cell["source"] = f"{magic}\n{''.join(cell['source'])}"
+    circle = next(q for q in marks(solved).questions if q["name"] == "circle")
+    word = magic.split()[0]
+    assert circle["notes"] == [
+        f"circle: its cell begins with {word}, which keeps what it defines to itself"
+    ]
+    assert circle["earned"] == 0
+
+
+def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
+    """Surrogates, marks of direction, escapes and old line ends cost nothing and are not kept."""
+    for cell in solved["cells"]:
+        if cell["metadata"]["lab"] == "answer":
+            text = "".join(cell["source"]).replace("\n", "\r\n")
+            cell["source"] = f"# \ud800 \u202e \x1b[2J\r{text}\r\n\x0cx = '\\ud800'\r\n"
+            cell["metadata"]["nbgrader"]["solution"] = "\udfff"
+    add(solved, "\ud83d = 1\n# \u2066 \u2028")
+    result = marks(solved)
+    assert result.score == 20
+    sources = [q["source"] for q in result.questions] + [own["source"] for own in result.own]
+    assert all("x = '\\ud800'" in source for source in sources[:-1])
+    for text in sources:
+        text.encode("utf-8")
+        assert not set(text) & set("\r\x0c\x1b\u202e\u2066\u2028")
+
+
+def test_an_argument_that_is_changed_is_told(marks, solved):
+    """An answer that eats what it is given is wrong, with the same sentence as in the notebook."""
+    put(solved, "segment_at", "def segment_at(durations, t):\n    n = 0\n"
+        "    while len(durations) > 1 and t >= durations[0]:\n"
+        "        t -= durations.pop(0)\n        n += 1\n    return n, t")  # fmt: skip
+    asked = next(q for q in marks(solved).questions if q["name"] == "segment_at")
+    assert asked["outcome"] == "wrong"
+    assert any(
+        test["says"].endswith(
+            ": segment_at changes the list `durations` that it is given; "
+            "work on a copy, list(durations)"
+        )
+        for test in asked["tests"]
+    )
+
+
+def test_names_that_a_cell_needs():
+    """Needed are names from elsewhere: no parameters, no locals, nothing that the cell binds."""
+    found = look("k = 2\ndef f(a, b=c):\n    d = a + e\n    return [g for x in d] + k\n")
+    assert set(found["uses"]) == {"c", "e", "g"}
+    assert found["functions"] == ["f"]
+    assert look("def f(x):\n    'Says.'\n    raise NotImplementedError")["stubs"] == ["f"]
+    assert look("%matplotlib inline\n!ls\nx = 1")["binds"] == ["x"]
+    assert "SyntaxError" in look("def f(:")["broken"]
+
+
+def test_what_every_submission_imports_is_known(bundle):
+    """Modules that the release's setup cells import are known before any submission runs."""
+    assert imports(bundle.data["cells"]) == (
+        "labkit", "labkit.course", "matplotlib.pyplot", "numpy"
+    )  # fmt: skip
+
+
+def test_plan_prefers_what_is_written(bundle, blank, solved):
+    """Of several definitions the last one counts that is no empty stub, with a note."""
+    stub = cell_of(blank, "circle")
+    answer = cell_of(solved, "circle")
+    solved["cells"].insert(solved["cells"].index(answer) + 1, stub)
+    found = cells.read(raw(solved))["cells"]
+    todo = plan(found, bundle.data["cells"])
+    assert todo.source("circle") == "".join(answer["source"])
+    assert "passed over" in todo.notes["circle"][0]
+    again = dict(answer, source="def circle(s, start, centre):\n    return None")
+    solved["cells"].append(again)
+    todo = plan(cells.read(raw(solved))["cells"], bundle.data["cells"])
+    assert todo.source("circle") == again["source"]
+
+
+def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
+    """In a closed loop the sandbox maps observation to command, and gives the same measures as
+    a function in one process."""  # noqa: D205, D209
+    import labkit as lk
+
+    target = lk.Trajectory(lk.Line(np.zeros(7), 0.1 * np.ones(7)), lk.Quintic(0.5))
+    loop = Loop(target, kwargs={"gain": 2.0}, q0=np.zeros(7) + 0.01,
+                expected={"joint_rms_rad": 1.0}, hidden=True)  # fmt: skip
+    question = Question("follow", 4.0, "Follow.", Close(), (Test("it follows", (loop,)),))
+    source = ("import labkit as lk\ndef follow(state, target, gain):\n"
+              "    return lk.JointVelocity(target.velocity + gain * (target.position - state.q))")  # fmt: skip
+    names: dict[str, object] = {}
+    exec(source, names)
+    here = loop.measured(loop.ask(names["follow"]))
+    measure = next(iter(here))
+    limits = {measure: here[measure] * (1 + 1e-9)}
+    for share, points in ((1.0, 4.0), (0.999, 0.0)):
+        tight = Loop(**(vars(loop) | {"expected": {measure: limits[measure] * share}}))
+        asked = Question("follow", 4.0, "Follow.", Close(), (Test("it follows", (tight,)),))
+        data = bundle.data | {"questions": [question_data(asked)], "cells": [
+            {"id": "x", "type": "code", "kind": "answer", "grade_id": "follow", "source": ""}]}  # fmt: skip
+        notebook = {"nbformat": 4, "cells": [{"cell_type": "code", "id": "x", "source": source}]}
+        result = grade(raw(notebook), "ada", Bundle(data), sandbox, QUICK)
+        assert result.score == points, result.questions
+        assert result.questions[0]["runs"] == [], "a hidden run is not for his eyes"
+    tests = (Test("it follows", (replace(tight, hidden=False),)),)
+    shown = Bundle(data | {"questions": [question_data(replace(question, tests=tests))]})
+    seen = [grade(raw(notebook), "ada", shown, sandbox, QUICK) for _ in range(2)]
+    (run,) = seen[0].questions[0]["runs"]
+    assert run["measures"][measure] == pytest.approx(here[measure], rel=1e-5)
+    assert run["motion"]
+    assert seen[0].verdict == seen[1].verdict, "the same run again, to the last digit"
+    assert question.calls == ()
+    assert isinstance(Call((1,)), Call)
+
+
+def test_result_file_is_text(marks, solved):
+    """A result is JSON and comes back equal."""
+    result = marks(solved)
+    assert Result.read(result.text()) == Result.read(Result.read(result.text()).text())
+    assert Result.read(result.text()).verdict == json.loads(json.dumps(result.verdict)) | {
+        key: result.verdict[key] for key in ("questions", "notes", "cells", "own", "tricks")
+    }

@@ -1,0 +1,161 @@
+"""What a student wrote is shown on nbgrader's pages, and nothing in it runs there."""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+from pathlib import Path
+
+import nbformat
+import pytest
+from made import NAME, graded, result_of
+from nbconvert import HTMLExporter
+from nbgrader.server_extensions.formgrader.handlers import template_path
+from traitlets.config import Config
+from traitlets.config.loader import PyFileConfigLoader
+
+from labkit.cli import main
+from labkit.grader.markup import clean
+
+MARKDOWN = [
+    "<script>alert(1)</script>",
+    "x <img src=x onerror=alert(1)> y",
+    "<svg onload=alert(1)><a xlink:href='javascript:alert(1)'>x</a></svg>",
+    "[a](javascript:alert(1)) [b](JaVa&#115;cript:alert(1)) [c](vbscript:x)",
+    "[d](data:text/html,<script>alert(1)</script>) ![e](data:image/svg+xml;base64,PHN2Zz4=)",
+    "[f](page.html) <a href='&#1;javascript:alert(1)'>g</a>",
+    "<iframe srcdoc='<script>alert(1)</script>'></iframe><base href=//evil><form action=//evil>",
+    "<details open ontoggle=alert(1)>h</details> <p style='position:fixed' class='grade'>i</p>",
+    '```mermaid\nclick A href "javascript:alert(1)"\n```',
+    "```\n</pre><script>alert(1)</script>\n```",
+    "~~~~\n`````\n<script>alert(1)</script>",
+    "![j](attachment:none.png)",
+    "$a<script>alert(1)</script>$ \\begin{x}<script>alert(1)</script>\\end{x}",
+    "> " * 3000 + "k",
+    "<!-- --><!doctype x><style>*{display:none}</style><meta http-equiv=refresh content='0;//x'>",
+]
+OUTPUTS = [
+    {"text/html": MARKDOWN[0] + MARKDOWN[1]},
+    {"application/javascript": "alert(1)"},
+    {"image/svg+xml": "<svg onload=alert(1)><script>alert(1)</script></svg>"},
+    {"text/markdown": MARKDOWN[0] + MARKDOWN[3]},
+    {"text/latex": "<script>alert(1)</script>"},
+    {"application/vnd.jupyter.widget-view+json": {"model_id": "<script>"}, "text/plain": "x"},
+    {"image/png": '"><script>alert(1)</script>'},
+    {"text/plain": "\x1b[31m<script>alert(1)</script>"},
+]
+RUNS = {"iframe", "svg", "object", "embed", "form", "base", "style", "meta", "math", "img"}
+
+
+class Page(HTMLParser):
+    """Elements below the notebook, and the text there."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.found, self.words = [], []
+        self.feed(text.partition('id="notebook-container"')[2])
+
+    def handle_starttag(self, tag, attrs):
+        self.found.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    @property
+    def alive(self):
+        """What could run, load, cover or lead away."""
+        return [
+            (tag, attrs)
+            for tag, attrs in self.found
+            if (tag in RUNS and not attrs.get("src", "").startswith("data:image/"))
+            or tag == "script"
+            or any(name.startswith("on") for name in attrs)
+            or not attrs.get("href", "#").lower().startswith(("#", "http", "mailto:"))
+        ]
+
+
+@pytest.fixture(scope="module")
+def show(released):
+    """Show a notebook as formgrader does, or ``nbgrader generate_feedback``."""
+
+    def show(notebook, template, *, configured=True):
+        config = Config()
+        if configured:
+            loader = PyFileConfigLoader("nbgrader_config.py", path=str(released.root))
+            config = Config(loader.load_config())
+        config.HTMLExporter.template_name = template
+        config.HTMLExporter.extra_template_basedirs = [template_path]
+        styles = Path(template_path).parent / "static/node_modules/bootstrap/dist/css"
+        config.HTMLExporter.extra_template_paths = [str(styles)]
+        about = {"score": 1, "max_score": 1, "late_penalty": 0, "notebook": NAME}
+        resources = {"nbgrader": about, "base_url": "", "index": 0, "total": 1, "student": "ada"}
+        return Page(HTMLExporter(config=config).from_notebook_node(notebook, resources)[0])
+
+    return show
+
+
+@pytest.mark.parametrize("template", ["formgrade", "feedback"])
+@pytest.mark.parametrize("source", MARKDOWN, ids=range(len(MARKDOWN)))
+def test_markdown_of_a_student_does_not_run(show, template, source):
+    """A text cell as the student typed it, task or not: text, with no element that acts."""
+    cell = nbformat.v4.new_markdown_cell(source)
+    task = nbformat.v4.new_markdown_cell(source)
+    manual = {"grade": True, "solution": True, "grade_id": "essay", "points": 1, "score": 1}
+    task.metadata.nbgrader = manual
+    page = show(nbformat.v4.new_notebook(cells=[cell, task]), template)
+    assert page.alive == []
+
+
+@pytest.mark.parametrize("template", ["formgrade", "feedback"])
+def test_outputs_of_a_student_do_not_run(show, template):
+    """HTML, JavaScript, SVG, widgets and pictures that are none: shown as text, or left out."""
+    outputs = [nbformat.v4.new_output("display_data", data) for data in OUTPUTS]
+    outputs.append(nbformat.v4.new_output("stream", text="<script>alert(1)</script>"))
+    outputs.append(nbformat.v4.new_output("error", traceback=["<script>alert(1)</script>"]))
+    cell = nbformat.v4.new_code_cell("'<script>alert(1)</script>'", outputs=outputs)
+    cell.metadata.tags = ['"><script>alert(1)</script>']
+    assert show(nbformat.v4.new_notebook(cells=[cell]), template).alive == []
+
+
+@pytest.mark.parametrize("configured", [True, False])
+def test_what_grading_writes_down_does_not_run(course, show, configured):
+    """Own cells in autograded/ are blocks of text, even where formgrader has another config."""
+    cells = ("text", "code")
+    own = [{"after": "", "type": kind, "source": x} for x in MARKDOWN for kind in cells]
+    one = result_of(course, "ada", own=tuple(own), notes=(MARKDOWN[0],))
+    one.questions[0].update(source=MARKDOWN[0], notes=[MARKDOWN[1]], outcome="wrong")
+    one.questions[0]["tests"][0].update(says=MARKDOWN[6], outcome="wrong")
+    assert graded(course, one) == []
+    path = course.root / "autograded" / "ada" / NAME / f"{NAME}.ipynb"
+    page = show(nbformat.read(path, 4), "formgrade", configured=configured)
+    assert page.alive == []
+    assert "".join(page.words).count("alert(1)") >= 2 * len(MARKDOWN)
+
+
+def test_what_everybody_writes_is_shown(show):
+    """Headings, lists, tables, formulas, code and links are rendered as ever."""
+    source = (
+        "# T\n\n1. *a* **b** `c<d`\n\n| x | y |\n|---|---|\n| 1 | $a<b$ |\n\n[l](https://x.org)"
+    )
+    page = show(
+        nbformat.v4.new_notebook(cells=[nbformat.v4.new_markdown_cell(source)]), "formgrade"
+    )
+    tags = {tag for tag, _ in page.found}
+    assert {"h1", "ol", "li", "em", "strong", "code", "table", "td", "a"} <= tags
+    text = "".join(page.words)
+    assert "$a<b$" in text and "c<d" in text and "<p>" not in text
+    assert ("a", {"href": "https://x.org"}) in page.found
+
+
+def test_html_of_a_table_is_kept():
+    """Known elements stay and unknown ones are text; bytes are taken as well."""
+    shown = clean(b"<table><tr><td>1</td></tr></table><script>x</script>")
+    assert "<td>1</td>" in shown and shown.endswith("&lt;script&gt;x&lt;/script&gt;")
+
+
+def test_the_class_report_has_no_markup_of_students(course, capsys):
+    """Names of files and reasons of a rejection are text in Markdown, too."""
+    why = "which notebook counts? there is <script>a</script>.ipynb, [b](javascript:c).ipynb"
+    graded(course, result_of(course, "ada"), result_of(course, "bob", rejected=why))
+    assert main(["class-report", NAME, "--names", "--course", str(course.root)]) == 0
+    said = capsys.readouterr().out
+    assert r"\<script\>" in said and r"\[b\](javascript" in said

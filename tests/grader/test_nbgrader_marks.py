@@ -1,0 +1,55 @@
+"""nbgrader's own tools on these notebooks: autograde and validate."""
+
+import shutil
+from pathlib import Path
+
+import nbformat
+import pytest
+from courses import copied
+from handmade import nbgrader
+
+from labkit.course.layout import Course
+from labkit.course.release import release
+from labkit.course.solved import inlined
+from labkit.grader.engines import grade_with_nbgrader
+
+COURSE = Course.here(Path(__file__))
+NAME = "00_warmup"
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    """The course elsewhere, with three submissions: solved, untouched, and half of it."""
+    course = copied(tmp_path_factory.mktemp("course"))
+    release(course, NAME, 3)
+    problems = {problem.name: problem for problem in course.problems(NAME)}
+    for student, known in (
+        ("ada", set(problems)),
+        ("ben", set()),
+        ("cleo", {"joint_error", "orientation_error"}),
+    ):
+        folder = course.submitted / student / NAME
+        shutil.copytree(course.release / NAME, folder)
+        notebook = nbformat.read(folder / f"{NAME}.ipynb", as_version=4)
+        for cell in notebook.cells:
+            name = cell.metadata.get("nbgrader", {}).get("grade_id")
+            if cell.metadata["lab"] == "answer" and name in known:
+                cell.source = inlined(problems[name])
+        nbformat.write(notebook, folder / f"{NAME}.ipynb")
+    return course
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("student", "score"), [("ada", 10.0), ("ben", 0.0), ("cleo", 6.0)])
+def test_autograde(course, student, score):
+    """Full marks for the answers, none for the release, and each question for itself."""
+    mark = grade_with_nbgrader(course, NAME, student)
+    assert (mark.score, mark.points, mark.says) == (score, 10.0, "")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("student", "word"), [("ada", "Success"), ("cleo", "Partial credit")])
+def test_validate(course, student, word):
+    """Validate tells only whether all is well; the reasons are in the notebook itself."""
+    _, said = nbgrader(course.submitted / student / NAME, "validate", f"{NAME}.ipynb")
+    assert word in said

@@ -1,0 +1,100 @@
+"""A term is played through: from Moodle's download to marks in its worksheet, and it goes on."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import pytest
+from courses import copied
+from handmade import ROOT
+
+from labkit.cli import main
+from labkit.course.layout import Course
+from labkit.errors import LabkitError
+from labkit.grader.batch import How
+from labkit.grader.rehearsal import rehearse
+from labkit.grader.results import Results
+from labkit.grader.synthetic import expected_file
+
+pytestmark = pytest.mark.slow  # whole classes are graded
+
+NAME, COUNT = "00_warmup", 6
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory):
+    """A folder in which the first three steps are done, and then, anew, all of them."""
+    to = tmp_path_factory.mktemp("rehearsal") / "term"
+    steps = rehearse(Course(ROOT), NAME, to, COUNT, How(jobs=2))
+    first = [next(steps) for _ in range(3)]
+    steps.close()
+    return Course(to), first, list(rehearse(Course(ROOT), NAME, to, COUNT, How(jobs=2)))
+
+
+def test_a_term_is_played_through(played):
+    """Each step says what it did; every mark is what was deserved."""
+    course, first, then = played
+    assert [s.split(":")[0] for s in first[2:] + then[1:-1]] == [
+        "collected", "graded", "in the gradebook", "feedback", "class report", "exported",
+    ]  # fmt: skip
+    assert then[-1].startswith("every mark is what was deserved")
+    assert len(list(course.root.glob(f"feedback/*/{NAME}/{NAME}.html"))) == COUNT
+    assert "# 00_warmup: what the class understood" in (course.root / "report.md").read_text()
+
+
+def test_it_goes_on_where_it_was_stopped(played):
+    """Nothing is released, handed in or collected twice, and nobody graded twice."""
+    course, first, then = played
+    assert f"{COUNT} of {COUNT} are new" in first[2]
+    assert f"0 of {COUNT} are new" in then[0]
+    assert f"{COUNT} of {COUNT} anew" in then[1]
+    again = list(rehearse(Course(ROOT), NAME, course.root, COUNT, How(jobs=2)))
+    assert f"0 of {COUNT} anew" in again[1]
+
+
+def test_marks_come_back_under_moodles_own_numbers(played):
+    """The worksheet has each participant's number from the download, and his mark."""
+    course, _, _ = played
+    deserved = json.loads(expected_file(course, NAME).read_text())
+    with (course.root / "marks-moodle-worksheet.csv").open() as file:
+        marks = {r["Identifier"]: (r["Full name"], float(r["Grade"])) for r in csv.DictReader(file)}
+    assert set(marks) == {f"Participant {1001 + k}" for k in range(COUNT)}
+    assert {name: mark for name, mark in marks.values()} == {
+        student: about["score"] for student, about in deserved.items()
+    }
+
+
+def test_a_mark_that_nobody_deserved_is_said(played):
+    """A rehearsal that ends with another mark than was deserved has failed."""
+    course, _, _ = played
+    path = expected_file(course, NAME)
+    text = path.read_text()
+    data = json.loads(text)
+    who = next(s for s, about in data.items() if not about["rejected"])
+    data[who]["questions"] = dict.fromkeys(data[who]["questions"], 99.0)
+    path.write_text(json.dumps(data))
+    with pytest.raises(LabkitError, match="not what was deserved"):
+        list(rehearse(Course(ROOT), NAME, course.root, COUNT, How(jobs=2)))
+    path.write_text(text)
+
+
+def test_a_true_course_is_no_stage(tmp_path):
+    """Where a course lies, nothing is handed in and nobody's submissions go."""
+    course = copied(tmp_path)
+    notebook = course.submitted / "ada" / "01_paths" / "01_paths.ipynb"
+    notebook.parent.mkdir(parents=True)
+    notebook.write_text("work of a week")
+    with pytest.raises(LabkitError, match="new or empty"):
+        next(rehearse(course, NAME, course.root, COUNT, How()))
+    assert notebook.exists() and not course.release.exists()
+
+
+def test_command(played, capsys):
+    """`labkit rehearse` does it from the command line, and writes nothing into the course."""
+    course, _, _ = played
+    before = sorted(Results(Course(ROOT), NAME).folder.glob("*"))
+    words = ["rehearse", NAME, "--count", str(COUNT), "--to", str(course.root)]
+    assert main([*words, "--course", str(ROOT)]) == 0
+    assert "every mark is what was deserved" in capsys.readouterr().out
+    assert sorted(Results(Course(ROOT), NAME).folder.glob("*")) == before

@@ -1,0 +1,250 @@
+"""Making notebooks from sources: what is fed in, what comes out, what is refused."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import nbformat
+import pytest
+from courses import copied
+
+from labkit.cli import main
+from labkit.course import read_question
+from labkit.course.layout import Course
+from labkit.course.notebook import brief, source_notebook
+from labkit.course.problem import _none
+from labkit.course.release import FORBIDDEN, release
+from labkit.course.solved import inlined, solution_notebook
+from labkit.course.stand_in import stand_ins
+from labkit.course.unearned import refusals
+from labkit.errors import LabkitError
+
+COURSE = Course.here(Path(__file__))
+NAME = "00_warmup"
+PROBLEMS = {problem.name: problem for problem in COURSE.problems(NAME)}
+QUESTIONS = {name: problem.question(1) for name, problem in PROBLEMS.items()}
+
+
+def source():
+    return source_notebook(COURSE.notebook_source(NAME), QUESTIONS)
+
+
+def cells(notebook, kind):
+    return [cell for cell in notebook.cells if cell.metadata["lab"] == kind]
+
+
+def test_each_question_gets_brief_stub_and_check():
+    """Three cells for each question, in order; the check is locked and carries the points."""
+    notebook = source()
+    assert not nbformat.validate(notebook)
+    kinds = [cell.metadata["lab"] for cell in notebook.cells]
+    assert kinds.count("brief") == kinds.count("answer") == kinds.count("check") == len(QUESTIONS)
+    for stub, test in zip(cells(notebook, "answer"), cells(notebook, "check"), strict=True):
+        name = stub.metadata["nbgrader"]["grade_id"]
+        assert test.metadata["nbgrader"]["grade_id"] == f"{name}-check"
+        assert test.metadata["nbgrader"]["points"] == QUESTIONS[name].points
+        assert test.metadata["nbgrader"]["locked"] and not stub.metadata["nbgrader"]["locked"]
+        assert test.source.endswith(f'check("{name}", {name})')
+
+
+def test_the_brief_says_what_is_hidden_and_withheld():
+    """Points, gate, classes of hidden case, withheld names and the hint stand above each stub."""
+    words = brief(QUESTIONS["orientation_error"])
+    assert "4 points" in words and "rolls at other yaws" in words
+    assert "`lk.se3.orientation_error`" in words and "hint(" in words
+
+
+def test_stubs_and_questions_must_match(tmp_path):
+    """A stub without a question, and a question without a stub, are refused by name."""
+    text = tmp_path / "x.py"
+    text.write_text('# %% question="double"\ndef double(x):\n    pass\n')
+    with pytest.raises(LabkitError, match="'double', which has no Problem"):
+        source_notebook(text, {})
+    one = QUESTIONS["joint_error"]
+    region = "    ### BEGIN SOLUTION\n    return 1\n    ### END SOLUTION\n\n"
+    stub = f'# %% question="joint_error"\ndef joint_error(x):\n{region}'
+    for source, sentence in (
+        ("# %%\nx = 1\n", "has 0 stubs of joint_error"),
+        (stub + stub, "has 2 stubs of joint_error"),
+        (stub.replace("def joint_error", "def error"), "defines no joint_error"),
+        (stub.replace("    ### END SOLUTION\n", ""), "needs one region"),
+    ):
+        text.write_text(source)
+        with pytest.raises(LabkitError, match=sentence):
+            source_notebook(text, {"joint_error": one})
+
+
+@pytest.mark.parametrize("name", COURSE.names())
+def test_solutions_are_whole(name):
+    """The solved notebook holds the answers' source, runs on its own, and no hidden cases."""
+    problems = {p.name: p for p in COURSE.problems(name)}
+    questions = {key: p.question(1) for key, p in problems.items()}
+    solved = solution_notebook(source_notebook(COURSE.notebook_source(name), questions), problems)
+    text = "\n".join(cell.source for cell in solved.cells)
+    assert not [word for word in FORBIDDEN if word in text]
+    for problem in problems.values():
+        names: dict[str, object] = {}
+        exec(inlined(problem), names)
+        assert callable(names[problem.name])
+
+
+@pytest.mark.slow
+def test_an_answer_that_leaks_stops_the_release(tmp_path):
+    """If an answer stands outside its solution region, nothing is released."""
+    course = copied(tmp_path)
+    path = tmp_path / "solutions" / "notebooks" / f"{NAME}.py"
+    path.write_text(path.read_text() + "\n# %%\nfrom solutions.warmup import joint_error\n")
+    with pytest.raises(LabkitError, match="nothing released"):
+        release(course, NAME, 1)
+    assert not (course.release / NAME).exists()
+
+
+def test_a_notebook_without_problems_is_a_sentence(tmp_path):
+    """A source that somebody has begun says which file is still to be written."""
+    course = copied(tmp_path)
+    (tmp_path / "solutions/notebooks/08_dance.py").write_text("# %%\n")
+    with pytest.raises(LabkitError, match=r"write solutions/problems/dance\.py with PROBLEMS"):
+        course.problems("08_dance")
+
+
+def test_a_withheld_name_must_exist(tmp_path, monkeypatch):
+    """A name that is misspelt would withhold nothing; so nothing is released."""
+    course = copied(tmp_path)
+    (first, *others) = PROBLEMS.values()
+    problems = (replace(first, withheld=("labkit.Circel",)), *others)
+    monkeypatch.setattr(Course, "problems", lambda self, name: problems)
+    with pytest.raises(LabkitError, match=r"withholds labkit\.Circel, which does not exist"):
+        release(course, NAME, 1)
+    assert not course.build.exists()
+
+
+def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, capsys):
+    """Where a package of the instructor's is missing, the line that brings it is said."""
+
+    def missing(*args):
+        raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
+
+    monkeypatch.setattr("labkit.course.release.release", missing)
+    assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
+    said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
+    assert capsys.readouterr().err == said
+
+
+def test_mistakes_of_the_caller_are_one_sentence(capsys):
+    """An unknown assignment, a folder without a course: exit code 2 and a way out."""
+    assert main(["release", "09_nothing", "--course", str(COURSE.root)]) == 2
+    assert "'00_warmup'" in capsys.readouterr().err
+    assert main(["release", "--course", "/"]) == 2
+    assert "nbgrader_config.py" in capsys.readouterr().err
+
+
+def test_the_public_file_is_small_and_valid():
+    """What lies beside the notebook is one line of JSON without a hidden case."""
+    for name in COURSE.names():
+        path = COURSE.release / name / "checks.json"
+        assert path.stat().st_size < 300_000
+        data = json.loads(path.read_text(encoding="utf-8"))
+        assert data["assignment"] == name
+        questions = map(read_question, data["questions"])
+        cases = [case for question in questions for test in question.tests for case in test.cases]
+        assert cases and not any(case.hidden for case in cases)
+
+
+def refused(problems, text=None):
+    """Why the warm-up with these problems, and with this notebook text, should not be released."""
+    questions = {name: problem.question(1) for name, problem in problems.items()}
+    return refusals(
+        source_notebook(text or COURSE.notebook_source(NAME), questions), problems, questions
+    )
+
+
+def with_trials(name, change):
+    """The warm-up's problems, one of them with changed trials."""
+    problem = PROBLEMS[name]
+    trials = tuple(change(k, trial) for k, trial in enumerate(problem.trials))
+    return PROBLEMS | {name: replace(problem, trials=trials)}
+
+
+@pytest.mark.parametrize("name", COURSE.names())
+@pytest.mark.parametrize("seed", [2019, 41])
+def test_the_course_itself_is_refused_nothing(name, seed):
+    """No question pays without work or takes one mistake for another, whatever its hidden cases."""
+    problems = {p.name: p for p in COURSE.problems(name)}
+    questions = {key: p.question(seed) for key, p in problems.items()}
+    source = source_notebook(COURSE.notebook_source(name), questions)
+    assert refusals(source, problems, questions) == []
+
+
+def test_a_weighted_test_needs_a_hidden_case():
+    """Without one the public file has its points; the sentence says which test, and how many."""
+    bare = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k == 1 else t)
+    (sentence,) = refused(bare)
+    assert sentence == (
+        "transform_point: the test 'a frame shifted and turned by 90 degrees of yaw' carries 1 of "
+        "2 points and has no hidden case; give its Trial a maker of them"
+    )
+    gate = with_trials("transform_point", lambda k, t: replace(t, hidden=_none) if k == 0 else t)
+    assert refused(gate) == [], "a gate carries no points"
+
+
+def test_public_cases_by_heart_pay_only_what_is_stated():
+    """A table of the public calls with their answers earns what no hidden case takes away."""
+    bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
+    by_test, by_heart = refused(bare)
+    assert "learns its public cases by heart earns 1 of 2 points, and 0 are stated" in by_heart
+    stated = {"inverse_transform": replace(bare["inverse_transform"], free_share=0.5)}
+    assert refused(bare | stated) == [by_test]
+
+
+def test_a_stand_in_pays_only_what_is_stated(tmp_path):
+    """A notebook that falls back to the answer gives it away, unless the question withholds it."""
+    text = tmp_path / f"{NAME}.py"
+    source = COURSE.notebook_source(NAME).read_text()
+    answer = "return T_ab[:3, :3] @ p_b + T_ab[:3, 3]"
+    text.write_text(source.replace("return np.full(3, np.nan)", answer))
+    (sentence,) = refused(PROBLEMS, text)
+    assert "transform_point: its notebook's stand-in earns 2 of 2 points, and 0 are st" in sentence
+    stated = {"transform_point": replace(PROBLEMS["transform_point"], free_share=1.0)}
+    assert refused(PROBLEMS | stated, text) == []
+    open_door = {"inverse_transform": replace(PROBLEMS["inverse_transform"], withheld=())}
+    (sentence,) = refused(PROBLEMS | open_door)
+    assert "inverse_transform: its notebook's stand-in earns 2 of 2" in sentence
+
+
+def test_a_stand_in_is_run_alone():
+    """Of the notebook only what the stand-in needs is run: no arm, no figure, no other check."""
+    name = "03_velocity_control"
+    questions = {p.name: p.question(1) for p in COURSE.problems(name)}
+    text = stand_ins(source_notebook(COURSE.notebook_source(name), questions))
+    assert set(text) == set(questions)
+    whole = text["workspace_velocity_pd"]
+    for part in ("def tip_feedforward", "my_damped_inverse = use(", "import labkit as lk"):
+        assert part in whole
+    for part in ("lk.run(", "plt", "check("):
+        assert part not in whole
+
+
+def test_known_mistakes_must_be_told_apart():
+    """Two with the same answers, or one with the right ones, would accuse the innocent."""
+    problem = PROBLEMS["joint_error"]
+    first = problem.wrong[0]
+    twin = replace(first, name="its twin")
+    right = replace(first, name="nothing wrong", function=problem.answer)
+    (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(first, twin))})
+    assert "'actual minus target' and 'its twin' give the same answers on all" in sentence
+    (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(right,))})
+    assert "'nothing wrong' gives the right answers on all public calls" in sentence
+
+
+@pytest.mark.slow
+def test_a_release_with_a_reason_against_it_writes_nothing(tmp_path, monkeypatch):
+    """All reasons are said at once, and what was released before stays."""
+    course = copied(tmp_path)
+    release(course, NAME, 1)
+    before = {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
+    bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none))
+    monkeypatch.setattr(Course, "problems", lambda self, name: tuple(bare.values()))
+    with pytest.raises(LabkitError, match=rf"^{NAME} is not released:") as caught:
+        release(course, NAME, 1)
+    assert str(caught.value).count("inverse_transform: ") == 3
+    assert before == {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}

@@ -1,0 +1,99 @@
+"""The report card: it counts what the checks do, and tells on them."""
+
+from pathlib import Path
+
+import pytest
+
+from labkit.course import Outcome
+from labkit.course.layout import Course
+from labkit.course.marking import mark
+from labkit.course.report_card import functions_from, make, markdown, write
+from labkit.errors import LabkitError, UnknownName
+
+COURSE = Course.here(Path(__file__))
+FILE = """
+MISTAKES = {"joint_error": [lambda target, state: 0.5 * (target.position - state.q)]}
+VARIANTS = {"00_warmup/joint_error": [lambda target, state: -(state.q - target.position),
+                            lambda target, state: state.q]}
+"""
+
+
+@pytest.fixture(scope="module")
+def card(tmp_path_factory):
+    """The card of the warm-up, with answers from outside."""
+    file = tmp_path_factory.mktemp("outside") / "answers.py"
+    file.write_text(FILE)
+    given = [functions_from(file, table) for table in ("MISTAKES", "VARIANTS")]
+    return make(COURSE, ["00_warmup"], 5, *given)
+
+
+def test_it_counts(card):
+    """Every mistake is rejected and named, every right answer accepted, draws agree."""
+    rows = {row.question: row for row in card.rows}
+    for name, row in rows.items():
+        assert row.rejected == row.mistakes and row.seeds_agree == card.seeds
+        if name != "joint_error":
+            assert row.named == row.mistakes and row.accepted == row.variants
+            assert not row.failures
+            assert row.margin_sigma is None or row.margin_sigma > 3.0
+
+
+def test_answers_from_outside_count(card):
+    """A foreign mistake is rejected, a foreign answer accepted, a wrong one told."""
+    row = next(row for row in card.rows if row.question == "joint_error")
+    problem = next(p for p in COURSE.problems("00_warmup") if p.name == "joint_error")
+    assert row.mistakes == len(problem.wrong) + 1 and row.named == len(problem.wrong)
+    assert row.variants == 1 + len(problem.variants) + 2, "though both are called <lambda>"
+    assert row.accepted == row.variants - 1
+    assert any("a right answer earned only 0" in words for words in row.failures)
+    assert row.margin_sigma < 0.0, "what claims to be right lies beyond the tolerance"
+
+
+def test_an_answer_from_outside_spoils_nothing_for_the_others():
+    """One that changes what it is given is rejected; every other answer has its input whole."""
+
+    def eats(durations, t):
+        k = 0
+        while len(durations) > 1 and t >= durations[0]:
+            t -= durations.pop(0)
+            k += 1
+        return k, t
+
+    def writes(s, start, centre):
+        start[:] = 0.0
+        return None
+
+    problems = {p.name: p for p in COURSE.problems("01_paths")}
+    for name, function in (("segment_at", eats), ("circle", writes)):
+        questions = problems[name].question(1), problems[name].question(2)
+        assert all(mark(question, function).earned == 0 for question in questions)
+        for answer in (problems[name].answer, *problems[name].variants):
+            assert all(mark(q, answer).outcome is Outcome.RIGHT for q in questions)
+
+
+def test_written(card, tmp_path):
+    """Totals are numbers, never infinities, and the page holds a line for each question."""
+    table, page = write(card, tmp_path)
+    data = card.data()
+    assert "Infinity" not in table.read_text() and "NaN" not in table.read_text()
+    assert data["mistakes"] == data["rejected"] and data["seeds_agree"] == 20
+    assert data["min_margin_sigma"] == min(row.margin_sigma for row in card.rows)
+    assert page.read_text() == markdown(card)
+    assert all(f"| {row.question} |" in page.read_text() for row in card.rows)
+
+
+def test_what_cannot_be_read_is_a_sentence(tmp_path):
+    """A missing file, a file without the dicts, a question that nobody asks."""
+    with pytest.raises(LabkitError, match="no Python file"):
+        functions_from(tmp_path / "none.py", "MISTAKES")
+    (tmp_path / "empty.py").write_text("x = 1\n")
+    with pytest.raises(LabkitError, match="no dict VARIANTS"):
+        functions_from(tmp_path / "empty.py", "VARIANTS")
+    (tmp_path / "cut.py").write_text("MISTAKES = {")
+    with pytest.raises(LabkitError, match="does not run: SyntaxError"):
+        functions_from(tmp_path / "cut.py", "MISTAKES")
+    (tmp_path / "number.py").write_text("MISTAKES = {'joint_error': [1]}")
+    with pytest.raises(LabkitError, match="is no list of functions"):
+        functions_from(tmp_path / "number.py", "MISTAKES")
+    with pytest.raises(UnknownName):
+        make(COURSE, ["00_warmup"], 5, {"treble": [abs]})

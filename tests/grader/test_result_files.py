@@ -1,0 +1,152 @@
+"""A result file is whole or it is none: read strictly, written at once, cleaned where it enters."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from handmade import QUICK, raw
+from hypothesis import given
+from hypothesis import strategies as st
+from made import NAME, graded, result_of
+
+from labkit.cli import main
+from labkit.errors import LabkitError
+from labkit.grader import results as module
+from labkit.grader.clean import clean_data
+from labkit.grader.grade import grade
+from labkit.grader.results import Result, Results, write
+
+WRONG = {
+    "hashes {}": {"hashes": {}},
+    "hashes []": {"hashes": []},
+    "a score of text": {"score": "20"},
+    "a score of nan": {"score": float("nan")},
+    "a score beyond all": {"score": 1e300},
+    "another score": {"score": 19.0},
+    "no questions": {"questions": []},
+    "questions null": {"questions": None},
+    "questions of numbers": {"questions": [1]},
+    "rejected and marked": {"rejected": "the file is empty"},
+    "somebody else's": {"student": "bob"},
+    "another assignment's": {"assignment": "02_model"},
+    "a field that nobody knows": {"unknown": 1},
+    "seconds of text": {"seconds": {"all": "1"}},
+}
+TEXTS = ["", "{", "[]", "null", '"x"', "{}", "[" * 100_000, "\x00", '{"score": 1e999}']
+
+
+@pytest.fixture
+def marked(course):
+    graded(course, result_of(course, "ada"), result_of(course, "carl"))
+    return course
+
+
+def changed(question):
+    def change(data):
+        data["questions"][0].update(question)
+
+    return change
+
+
+@pytest.mark.parametrize(
+    "change",
+    [*(lambda data, more=more: data.update(more) for more in WRONG.values())]
+    + [changed(x) for x in ({"earned": -1}, {"earned": 99}, {"name": "../up"}, {"tests": {}},
+                            {"outcome": "perfect"}, {"name": "circle"}, {"numbers": [1]})],
+    ids=[*WRONG, "below 0", "above full", "a path", "tests", "outcome", "twice", "numbers"],
+)  # fmt: skip
+def test_what_is_not_a_whole_result_is_none(marked, capsys, change):
+    """It is read as no result, and every table, page and report names whose it is, exit 1."""
+    results = Results(marked, NAME)
+    data = json.loads(results.path("ada").read_text())
+    change(data)
+    results.path("ada").write_text(json.dumps(data))
+    assert results.get("ada") is None
+    assert [r.student for r in results] == ["carl"]
+    for words in (["export"], ["feedback"], ["class-report"]):
+        assert main([*words, NAME, "--course", str(marked.root)]) == 1
+        (line,) = [x for x in capsys.readouterr().err.splitlines() if ": ada: " in x]
+        assert "ada.json is damaged; it is " in line
+        assert line.endswith(f"type: labkit grade {NAME} --student ada")
+
+
+@pytest.mark.parametrize("text", [*TEXTS, b"\xff\xfe"])
+def test_what_is_no_json_of_a_result_is_none(marked, text):
+    """Half a file, an empty one, a list, other encodings, nesting without end."""
+    path = Results(marked, NAME).path("ada")
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    assert Results(marked, NAME).get("ada") is None
+    with pytest.raises(LabkitError, match=r"ada\.json is"):
+        Results(marked, NAME).read("ada")
+
+
+def test_what_is_no_file_is_none(marked):
+    """A folder with the name of a result makes room for one, and is kept in old/."""
+    results = Results(marked, NAME)
+    one = results.get("ada")
+    results.path("ada").unlink()
+    (results.path("ada") / "x").mkdir(parents=True)
+    assert results.get("ada") is None
+    results.keep(one)
+    assert results.get("ada") == one
+    assert [x for x in (results.folder / "old").iterdir() if x.is_dir()]
+
+
+ANY = st.text(alphabet=st.characters(exclude_categories=()), max_size=20)  # lone surrogates too
+
+
+@given(st.recursive(ANY | st.none() | st.floats(), lambda x: st.lists(x) | st.dictionaries(ANY, x)))
+def test_clean_data_can_be_written(data):
+    """Whatever text stands in it, as key or value, can be written and moves no cursor."""
+    text = json.dumps(clean_data(data), ensure_ascii=False)
+    text.encode()
+    assert json.dumps(clean_data(clean_data(data)), ensure_ascii=False) == text
+    assert "\\u001b" not in text
+
+
+def test_texts_are_safe_once_they_are_read(course):
+    """Surrogates, a terminal's commands and turned writing are gone from every field."""
+    bad = "a\ud800\x1b[2J\u202eb"
+    one = result_of(course, "ada", notes=(bad,), own=({"after": bad, "type": bad, "source": bad},))
+    one.questions[0].update(source=bad, notes=[bad])
+    one.questions[0]["tests"][0]["says"] = bad
+    text = Result.read(one.text()).text()
+    assert not [x for x in ("ud800", "u001b", "u202e") if x in text]
+    assert text.count(r"a\ufffd[2Jb") == 7
+
+
+@pytest.mark.slow
+def test_the_reader_keeps_all_that_the_checker_writes(solved, bundle, sandbox):
+    """A field that is written and that the schema does not know would be lost here."""
+    one = grade(raw(solved), "ada", bundle, sandbox, QUICK)
+    assert json.loads(Result.read(one.text()).text()) == json.loads(one.text())
+
+
+def test_a_full_disk_leaves_nothing_behind(tmp_path, monkeypatch):
+    """The old text stays, whole, and no unfinished file lies beside it."""
+    path = tmp_path / "a.json"
+    write(path, "old")
+
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    with monkeypatch.context() as patched, pytest.raises(OSError, match="No space"):
+        patched.setattr(module.os, "fsync", full)
+        write(path, "new")
+    assert path.read_text() == "old"
+    assert os.listdir(tmp_path) == ["a.json"]
+
+
+def test_what_a_killed_run_left_goes_with_the_next(tmp_path):
+    """An unfinished file of a process that is no more is removed; one of a live process stays."""
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    live = tmp_path / f".a.json.{os.getppid()}.new"
+    for path in (tmp_path / f".a.json.{dead.pid}.new", live):
+        path.write_text("half")
+    write(tmp_path / "a.json", "whole")
+    assert sorted(os.listdir(tmp_path)) == sorted(["a.json", live.name])

@@ -1,0 +1,68 @@
+"""What a sandbox takes from the machine, and what doctor and the containers say of it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+from handmade import ROOT
+
+from labkit.grader.doctor import DOCKER, elsewhere, examine
+from labkit.grader.sandbox.launch import FIRST_UID, Sandbox
+
+DOCKERS_OWN = (
+    "chown dac_override fowner fsetid kill setgid setuid setpcap net_bind_service net_raw "
+    "sys_chroot mknod audit_write setfcap"
+)
+"""Rights that Docker leaves to root in a container."""
+
+
+def rights(options):
+    """Those that options of Docker add."""
+    return [x.removeprefix("--cap-add=").lower() for x in options if x.startswith("--cap-add")]
+
+
+def test_doctor_finds_a_working_sandbox():
+    """On a machine that grades, nothing that is needed is missing."""
+    found = list(examine())
+    assert not [str(x) for x in found if x.needed and not x.fine]
+    assert [x for x in found if x.what == "sandbox"]
+
+
+def test_no_two_sandboxes_share_a_user():
+    """Two graders on one machine have two users, as the kernel counts processes by user."""
+    with Sandbox() as one, Sandbox() as other:
+        if os.geteuid() == 0:
+            assert one.uid != other.uid
+            assert min(one.uid, other.uid) >= FIRST_UID
+        else:
+            assert one.uid == other.uid == 0
+
+
+def test_containers_state_the_same_options():
+    """Dockerfile, dev container and doctor agree on what a container that grades is given."""
+    text = " ".join((ROOT / "Dockerfile").read_text().replace("\n#", " ").split())
+    assert " ".join(DOCKER) in text
+    given = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())["runArgs"]
+    assert tuple(given) == DOCKER
+    assert all(option in elsewhere() for option in DOCKER)
+
+
+@pytest.mark.parametrize("added", [DOCKER, DOCKER[:-1], ()], ids=["all", "one less", "none"])
+def test_dockers_rights_suffice(added):
+    """With the rights that a container is given there is a sandbox; with one less, a way out."""
+    if os.geteuid():  # only root has rights to lose; others sandbox without any
+        return
+    left = ",".join(f"+{name}" for name in (*DOCKERS_OWN.split(), *rights(added)))
+    run = subprocess.run(
+        ["setpriv", f"--bounding-set=-all,{left}", sys.executable, "-m", "labkit.cli", "doctor"],
+        env=dict(os.environ, PYTHONPATH=str(ROOT)),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == (0 if added == DOCKER else 1), run.stdout + run.stderr
+    assert (elsewhere() in run.stdout) == (added != DOCKER)

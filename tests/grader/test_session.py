@@ -1,0 +1,285 @@
+"""A session: what it may cost, what it may say, and until when."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import time
+
+import pytest
+from handmade import QUICK, ROOT, add, cell_of, put, raw
+
+from labkit.course.judges import MOST_COEFFICIENTS, Ratio
+from labkit.course.layout import Course
+from labkit.course.release import release
+from labkit.errors import OutOfRange
+from labkit.grader import grade as checker
+from labkit.grader.grade import grade
+from labkit.grader.plan import imports
+from labkit.grader.results import Bundle
+from labkit.grader.sandbox.launch import Sandbox
+from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
+from labkit.grader.sandbox.remote import MOST_LOST
+from labkit.grader.sandbox.session import Session
+
+LARGEST = 2_000_000  # bytes of a result
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """The questions of all calls that are put."""
+    names = []
+    ask = Session.ask
+
+    def noted(self, *args):
+        names.append(self._asked)
+        return ask(self, *args)
+
+    monkeypatch.setattr(Session, "ask", noted)
+    return names
+
+
+def about(result, name):
+    return next(q for q in result.questions if q["name"] == name)
+
+
+def says(result, name):
+    return " ".join(test["says"] for test in about(result, name)["tests"])
+
+
+def on_hidden_cases(solved, bundle, name, does):
+    """Make a right answer do something on hidden cases, in the process that answers."""
+    asked = next(q for q in bundle.questions if q.name == name).calls
+    public = {tuple(map(float, call.args)) for call in asked}
+    right = "".join(cell_of(solved, name)["source"])
+    put(
+        solved,
+        name,
+        f"{right}\nright_{name}, public = {name}, {public!r}\n"
+        f"def {name}(*args):\n"
+        f"    if args not in public and __import__('os').getpid() != 1:\n        {does}\n"
+        f"    return right_{name}(*args)",
+    )
+
+
+def test_what_cells_say_is_older_than_any_hidden_case(monkeypatch, solved, bundle, sandbox):
+    """A process that ends itself on a hidden case runs its cells again, and nobody is told."""
+    began, starts = [], []
+    guarded, run_cells = checker._guarded, Session._run_cells
+    note = lambda times, call: lambda *args: times.append(time.time_ns()) or call(*args)  # noqa: E731
+    monkeypatch.setattr(checker, "_guarded", note(began, guarded))
+    monkeypatch.setattr(Session, "_run_cells", note(starts, run_cells))
+    spy = (
+        "import os, threading, time\nleak = os.pipe()\n"
+        "wait = lambda: os.read(leak[0], 1) and os._exit(1)\n"
+        "threading.Thread(target=wait, daemon=True).start()\n"
+        "print(time.time_ns())\nraise ValueError(time.time_ns())"
+    )
+    on_hidden_cases(solved, bundle, "bang_bang", "os.write(leak[1], b'x') and time.sleep(60)")
+    result = grade(raw(add(solved, spy)), "mallory", bundle, sandbox, QUICK)
+    (cell,) = result.cells
+    assert len(starts) > 1, "its cells did run again"
+    assert int(cell["error"].split(",")[0]) < began[0] < starts[-1]
+    assert int(cell["output"]) < began[0]
+
+
+@pytest.mark.parametrize(
+    ("body", "words"),
+    [
+        ("return [[]] * 100_000", "256 kB came back"),
+        ("return [0.5] * 90_000", "256 kB came back"),
+        ("return 'x' * 300_000", "256 kB came back"),
+        ("return [[]] * 15_000", "10,000 values came back"),
+        ("return {'a': [1] * 12_000}", "10,000 values came back"),
+    ],
+)
+def test_an_answer_that_is_too_large_costs_its_question_only(body, words, solved, bundle, sandbox):
+    """Long replies and replies of many values are refused before they are read."""
+    put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
+    result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
+    assert result.score == 16
+    assert words in says(result, "circle")
+
+
+def test_the_limits_of_a_reply_have_a_margin():
+    """The largest honest answer, of 1,600 bytes and 80 values, is far below the limits."""
+    assert REPLY > 100 * 1_600
+    assert VALUES > 100 * 80
+
+
+def test_a_polynomial_has_few_coefficients():
+    """What is evaluated is short; a longer one is refused with the limit."""
+    Ratio((1.0,) * MOST_COEFFICIENTS, (1.0,))
+    for num, den in (((1.0,) * 51, (1.0,)), ((1.0,), (1.0,) * 2_000_000)):
+        with pytest.raises(OutOfRange, match="the limit is 50"):
+            Ratio(num, den)
+
+
+DEAF = "import signal as s\n    for k in (14, 24, 27): s.signal(k, s.SIG_IGN)\n    while True: pass"
+
+
+@pytest.mark.parametrize(
+    "body", ["while True: pass", "import time; time.sleep(1000)", "sum(range(10**12))", DEAF]
+)
+def test_an_endless_question_is_asked_no_more(body, solved, bundle, sandbox, asked):
+    """Whether it computes or waits, after a few lost calls no other one is put, and it is said."""
+    put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
+    result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
+    assert result.score == 16
+    assert asked.count("circle") <= MOST_LOST
+    assert "TimeoutError" in says(result, "circle")
+
+
+def test_calls_that_are_lost_on_hidden_cases_count_too(solved, bundle, sandbox, asked):
+    """An answer that is right on public cases and hangs on hidden ones is not asked for ever."""
+    grade(raw(solved), "ada", bundle, sandbox, QUICK)
+    before = asked.count("trapezoid")
+    asked.clear()
+    on_hidden_cases(solved, bundle, "trapezoid", "__import__('time').sleep(1000)")
+    limits = Limits(call=0.2, question=2.0)
+    result = grade(raw(solved), "mallory", bundle, sandbox, limits)
+    public = len(next(q for q in bundle.questions if q.name == "trapezoid").calls)
+    assert public < asked.count("trapezoid") <= public + MOST_LOST < before
+    assert result.score < 20
+
+
+def test_the_limits_add_up():
+    """An endless question costs a worker 15 s of a free machine, a submission a minute."""
+    limits = Limits()
+    assert limits.question + 2 * limits.grace <= 15.0
+    assert limits.parse + limits.wall <= 60.0
+    assert limits.call * limits.patience + limits.grace < limits.question
+    assert limits.cell + limits.question < limits.wall
+    twice = limits.scaled(2.0)
+    assert (twice.question, twice.wall, twice.grace, twice.patience) == (
+        2 * limits.question,
+        2 * limits.wall,
+        2 * limits.grace,
+        limits.patience,
+    )
+    assert twice.memory == limits.memory
+
+
+def test_time_counts_for_a_question_whichever_call_it_is_spent_on(solved, bundle, sandbox, asked):
+    """Calls that each come back in time, but take long together, are cut off too."""
+    put(solved, "circle", "def circle(s, start, centre):\n    __import__('time').sleep(0.3)\n"
+        "    return [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]")  # fmt: skip
+    result = grade(raw(solved), "ada", bundle, sandbox, Limits(call=1.0, question=0.8))
+    assert result.score == 16
+    assert asked.count("circle") <= 3
+
+
+def test_slow_cells_leave_time_for_the_answers(solved, bundle, sandbox):
+    """Once the time of all cells is spent, each that is left has a little, and answers count."""
+    for _ in range(12):
+        add(solved, "while True: pass")
+    limits = Limits(cell=1.0, cells=1.5, wall=8.0)
+    result = grade(raw(solved), "ada", bundle, sandbox, limits)
+    assert result.score == 20
+    assert [cell["kind"] for cell in result.cells] == ["TimeUp"] * 12
+
+
+@pytest.fixture(scope="module")
+def torque(tmp_path_factory):
+    """A course with the notebook whose answers are asked most often."""
+    root = tmp_path_factory.mktemp("torque")
+    (root / "solutions").symlink_to(ROOT / "solutions")
+    shutil.copy(ROOT / "nbgrader_config.py", root)
+    release(Course(root), "04_torque_control", 7)
+    return Course(root)
+
+
+SLOWER = """
+def _slower(function):
+    import time
+    def slower(*args, **kwargs):
+        began = time.perf_counter()
+        answer = function(*args, **kwargs)
+        until = began + 5.0 * (time.perf_counter() - began)
+        while time.perf_counter() < until:
+            pass
+        return answer
+    return slower
+"""
+
+
+@pytest.mark.slow
+def test_an_honest_answer_five_times_slower_than_ours_is_marked(torque):
+    """Where every function takes five times its time, in 1,300 calls of a run, marks are full."""
+    name = "04_torque_control"
+    bundle = Bundle.of(torque, name)
+    notebook = json.loads((torque.solution / name / f"{name}.ipynb").read_text())
+    for one in bundle.questions:
+        source = "".join(cell_of(notebook, one.name)["source"])
+        put(notebook, one.name, f"{source}\n{SLOWER}\n{one.name} = _slower({one.name})")
+    with Sandbox(imports(bundle.data["cells"])) as sandbox:
+        result = grade(raw(notebook), "ada", bundle, sandbox, Limits().scaled(slowness()))
+    assert result.score == 20, [(q["name"], q["tests"]) for q in result.questions]
+
+
+EMOJI = "\U0001f600"
+
+
+@pytest.mark.parametrize("what", ["outputs", "own cells", "sources", "sentences", "tricks"])
+def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
+    """However much is printed, raised or written, a result stays small, says so, and counts."""
+    if what == "outputs":  # the runner's own limit is lifted, in the student's own process
+        add(
+            solved,
+            "import labkit.grader.sandbox.runner as i\ni._Capped.write = i.io.StringIO.write",
+        )
+        much = f"print({EMOJI!r} * 20_000)\nraise ValueError({EMOJI!r} * 500)"
+        for _ in range(900):
+            add(solved, much, at=3)
+    elif what == "own cells":
+        for _ in range(9):
+            add(solved, f"# {EMOJI * 200_000}")
+    elif what == "tricks":
+        add(solved, "\n".join(f"lk.name_{k} = 1" for k in range(2_000)))
+    elif what == "sources":
+        put(
+            solved,
+            "circle",
+            "".join(cell_of(solved, "circle")["source"]) + f"\n# {EMOJI * 900_000}",
+        )
+    else:
+        for one in bundle.questions:
+            put(
+                solved,
+                one.name,
+                f"def {one.name}(*args):\n    raise ValueError({EMOJI!r} * 100_000)",
+            )
+    result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
+    assert len(result.text().encode()) <= LARGEST
+    assert not result.rejected
+    assert result.score == (0 if what == "sentences" else 20)
+    cut = any("more text than is kept" in note for note in result.notes)
+    assert cut == (what in {"outputs", "own cells", "sources"})
+    assert len(result.tricks) == 101 or what != "tricks"
+
+
+def test_five_megabytes_of_cells_are_refused(solved, bundle, sandbox):
+    """Sources beyond the limit are not read; the sentence names the limit."""
+    for _ in range(5):
+        add(solved, f"# {'x' * 1_000_000}")
+    result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
+    assert "over 2 MB" in result.rejected
+    assert len(result.text()) < 10_000
+
+
+def test_a_text_budget_is_never_exceeded():
+    """Texts are kept whole while there is room, then in part, then not at all."""
+    budget = TextBudget(100)
+    kept = [budget.take(text) for text in ("whole", EMOJI * 50, "y" * 50, "z")]
+    assert kept[0] == "whole"
+    assert EMOJI in kept[1] and len(kept[1]) < 50
+    assert sum(len(json.dumps(text)) for text in kept) <= 100 + 2 * len(kept)
+    assert budget.cut >= 1
+
+
+def test_what_cells_print_is_cleaned(solved, bundle, sandbox):
+    """Escape sequences and lone surrogates of outputs and errors reach no file and no terminal."""
+    add(solved, "print('a\\x1b[2Jb\\ud800c')\nraise ValueError('d\\x1b]0;owned\\x07e\\ud800f')")
+    (cell,) = grade(raw(solved), "ada", bundle, sandbox, QUICK).cells
+    assert "\x1b" not in cell["output"] + cell["error"]
+    (cell["output"] + cell["error"]).encode()

@@ -1,0 +1,197 @@
+"""No zero that nobody earned: a cell without a mark is empty, and somebody says why."""
+
+from __future__ import annotations
+
+import csv
+import io
+import shutil
+
+import pytest
+from made import NAME, graded, handed_in, notebook_of, result_of
+
+from labkit.cli import main
+from labkit.grader.export import LAYOUTS
+from labkit.grader.gradebook import open_gradebook
+from labkit.grader.results import Results
+
+GRADE = f"type: labkit grade {NAME} --student ada"
+
+
+@pytest.fixture
+def marked(course):
+    """Ada has full marks, Bob half of them, Carl's file is broken; all is in the gradebook."""
+    graded(
+        course,
+        result_of(course, "ada"),
+        result_of(course, "bob", share=0.5),
+        result_of(course, "carl", rejected="the file is empty"),
+    )
+    return course
+
+
+def verb(course, capsys, *words):
+    """Run a verb on the assignment: exit code, stdout, stderr."""
+    code = main([words[0], NAME, "--course", str(course.root), *words[1:]])
+    return code, *capsys.readouterr()
+
+
+def table(text):
+    return {row["student"]: row for row in csv.DictReader(io.StringIO(text))}
+
+
+def ungraded(course):
+    Results(course, NAME).path("ada").unlink()
+
+
+def unrecorded(course):
+    with open_gradebook(course) as book:
+        book.remove_submission(NAME, "ada")
+
+
+def half_recorded(course):
+    with open_gradebook(course) as book:  # as nbgrader leaves one who was created and not marked
+        for grade in book.find_submission_notebook(NAME, NAME, "ada").grades:
+            grade.auto_score = None
+        book.db.commit()
+
+
+def recorded_otherwise(course):
+    with open_gradebook(course) as book:
+        book.find_grade("circle-check", NAME, NAME, "ada").auto_score = 0.0
+        book.db.commit()
+
+
+def damaged(course):
+    path = Results(course, NAME).path("ada")
+    path.write_text(path.read_text()[:200])
+
+
+def handed_in_again(course):
+    path = course.submitted / "ada" / NAME / f"{NAME}.ipynb"
+    path.write_bytes(notebook_of("ada, later"))
+
+
+FAULTS = {
+    ungraded: "handed in and not graded",
+    unrecorded: "graded and not in the gradebook",
+    half_recorded: "the result gives 3 for bang_bang, the gradebook nothing",
+    recorded_otherwise: "the result gives 4 for circle, the gradebook 0",
+    damaged: "ada.json is damaged",
+    handed_in_again: "handed in again and not graded since",
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
+    """Where result and gradebook disagree, no layout says 0, and stderr says what to type."""
+    fault(marked)
+    for layout in LAYOUTS:
+        code, out, err = verb(marked, capsys, "export", "--layout", layout)
+        assert code == 1
+        (line,) = [x for x in err.splitlines() if x.startswith("no mark: ada: ")]
+        assert FAULTS[fault] in line
+        assert line.endswith(GRADE)
+        rows = [row for row in csv.reader(io.StringIO(out)) if "ada" in row]
+        assert len(rows) == (layout != "moodle-worksheet")  # nobody came from Moodle
+        assert not [row for row in rows if {"0", "0.0"} & set(row)]
+    code, out, _ = verb(marked, capsys, "export")
+    rows = table(out)
+    assert (rows["ada"]["score"], rows["ada"]["circle"]) == ("", "")
+    assert (rows["bob"]["score"], rows["carl"]["score"]) == ("10.0", "0.0")
+
+
+def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
+    """Exit 0 and no word on stderr, but for a file that was rejected: its 0 is explained."""
+    for layout in LAYOUTS:
+        code, _, err = verb(marked, capsys, "export", "--layout", layout)
+        assert code == 0
+        assert "carl: rejected: the file is empty" in err.splitlines()
+        assert not [x for x in err.splitlines() if x.startswith("no mark")]
+    rows = table(verb(marked, capsys, "export")[1])
+    assert rows["carl"]["score"] == "0.0"
+    assert rows["carl"]["remark"] == "rejected: the file is empty"
+    assert rows["ada"]["remark"] == ""
+
+
+def test_only_handed_in_is_no_mark(course, capsys):
+    """Before anything is graded every cell is empty and each student is named."""
+    handed_in(course, "ada", "bob")
+    code, out, err = verb(course, capsys, "export")
+    assert code == 1
+    assert {s: row["score"] for s, row in table(out).items() if s in {"ada", "bob"}} == {
+        "ada": "",
+        "bob": "",
+    }
+    assert err.count("handed in and not graded") == 2
+
+
+@pytest.mark.parametrize("fault", [ungraded, damaged, handed_in_again])
+def test_page_and_report_name_whom_they_leave_out(marked, capsys, fault):
+    """Feedback and class report do the others, name the one, and exit with 1."""
+    fault(marked)
+    code, out, err = verb(marked, capsys, "feedback")
+    assert (code, err.count("no page: ada: ")) == (1, 1)
+    assert FAULTS[fault] in err and err.strip().endswith(GRADE)
+    assert "pages in" in out and ": 2, " in out
+    assert not (marked.root / "feedback" / "ada").exists()
+    code, out, err = verb(marked, capsys, "class-report", "--names")
+    assert (code, err.count("left out: ada: ")) == (1, 1)
+    assert "3 handed in, 1 graded, 1 rejected, 1 left out" in out
+    assert "carl: the file is empty" in out
+
+
+def test_a_rejected_submission_is_the_same_everywhere(marked, capsys):
+    """Page, gradebook and table all say 0, and page and table say why."""
+    assert verb(marked, capsys, "feedback")[0] == 0
+    page = (marked.root / "feedback" / "carl" / NAME / f"{NAME}.html").read_text()
+    assert "0 of 20 points" in page and "the file is empty" in page
+    with open_gradebook(marked) as book:
+        grades = book.find_submission_notebook(NAME, NAME, "carl").grades
+        assert {g.auto_score for g in grades} == {0.0}
+        assert not any(g.needs_manual_grade for g in grades)
+    written = (marked.root / "autograded" / "carl" / NAME / f"{NAME}.ipynb").read_text()
+    assert "the file is empty" in written
+
+
+def test_a_submission_that_vanished_keeps_its_mark(marked, capsys):
+    """Page, report, gradebook and table have it still, and the table says that it vanished."""
+    shutil.rmtree(marked.submitted / "ada")
+    code, out, err = verb(marked, capsys, "export")
+    assert code == 0
+    assert table(out)["ada"]["score"] == "20.0"
+    assert "ada: nothing of theirs is in submitted/; the mark stays as it was" in err
+    assert verb(marked, capsys, "feedback")[0] == 0
+    assert (marked.root / "feedback" / "ada" / NAME / f"{NAME}.html").exists()
+    assert "3 handed in, 2 graded, 1 rejected." in verb(marked, capsys, "class-report")[1]
+    Results(marked, NAME).path("ada").write_text("{")
+    code, out, err = verb(marked, capsys, "export")
+    assert (code, table(out)["ada"]["score"]) == (1, "")
+    assert "nothing of theirs is in submitted/; restore" in err
+
+
+def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, capsys):
+    """A manual mark stands over the automatic one; a cell that nobody marked leaves no 0."""
+    from nbgrader.api import Grade, GradeCell
+
+    with open_gradebook(marked) as book:
+        book.find_grade("circle-check", NAME, NAME, "bob").manual_score = 4.0
+        book.db.commit()
+    code, out, _ = verb(marked, capsys, "export")
+    assert (code, table(out)["bob"]["score"]) == (0, "12.0")
+    with open_gradebook(marked) as book:
+        notebook = book.find_notebook(NAME, NAME)
+        book.db.add(
+            essay := GradeCell(name="essay", notebook=notebook, max_score=3, cell_type="markdown")
+        )
+        book.db.flush()
+        book.db.add_all([Grade(cell_id=essay.id, notebook=s) for s in notebook.submissions])
+        book.db.commit()
+    graded(marked, result_of(marked, "ada"), result_of(marked, "bob", share=0.5))
+    with open_gradebook(marked) as book:
+        grade = book.find_grade("essay", NAME, NAME, "ada")
+        assert (grade.auto_score, grade.needs_manual_grade) == (None, True)
+        book.find_grade("essay", NAME, NAME, "bob").manual_score = 2.0
+        book.db.commit()
+    code, out, err = verb(marked, capsys, "export")
+    assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "14.0")
+    assert "no mark: ada: no mark for essay; give it by hand, in formgrader" in err

@@ -1,0 +1,215 @@
+"""The roster: lists of every platform are read, nobody is taken for somebody else."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import pytest
+from downloaded import NAME, bare_course
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from labkit.cli import main
+from labkit.errors import LabkitError
+from labkit.grader.clean import LONGEST, safe_name
+from labkit.grader.enrol import enrol
+from labkit.grader.gradebook import open_gradebook
+from labkit.grader.lms import Known
+from labkit.grader.roster import FILE, Roster, Student, read_roster, same_name, save_roster
+from labkit.grader.student_list import Entry, read_list
+
+
+def listed(tmp_path, text, encoding="utf-8"):
+    path = tmp_path / "list.csv"
+    path.write_bytes(text.encode(encoding))
+    return read_list(path)
+
+
+def enrolled(entries, roster=None, collected=None):
+    return enrol(roster or Roster(), entries, collected or {}).roster
+
+
+MOODLE = """First name,Last name,ID number,Email address,Groups
+Ada,Lovelace,1001,ada@uni.org,A
+Zoë,O'Brien,,zoe@uni.org,"A, B"
+"""
+CANVAS = """Student,ID,SIS User ID,SIS Login ID,Section,Paths (4711)
+    Points Possible,,,,,20.00
+"Lovelace, Ada",7,1001,alovelace,S1,18
+"O'Brien, Zoë",8,,zobrien,S1 and S2,
+"""
+GERMAN = "Vorname;Nachname;E-Mail-Adresse\nAda;Lovelace;ada@uni.org\nZoë;O'Brien;zoe@uni.org\n"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+@pytest.mark.parametrize("text", [MOODLE, CANVAS, GERMAN, CANVAS.replace("\n", "\r\n")])
+def test_lists_as_platforms_export_them(tmp_path, text, encoding):
+    """Delimiter, encoding, byte order mark and order of the name are found out."""
+    ada, zoe = listed(tmp_path, text, encoding)
+    assert (ada.first_name, ada.last_name) == ("Ada", "Lovelace")
+    assert (zoe.first_name, zoe.last_name) == ("Zoë", "O'Brien")
+
+
+def test_what_columns_hold(tmp_path):
+    """Canvas's ID is its own number; a column "id" elsewhere is the login, or else a number."""
+    ada, _ = listed(tmp_path, CANVAS)
+    assert (ada.lms_user_id, ada.id_number, ada.login) == ("7", "1001", "alovelace")
+    ada, _ = listed(tmp_path, MOODLE)
+    assert (ada.lms_user_id, ada.id_number, ada.email) == ("", "1001", "ada@uni.org")
+    (one,) = listed(tmp_path, "id,first_name,last_name,email,lms_user_id\nada,A,L,a@x,7\n")
+    assert (one.login, one.lms_user_id) == ("ada", "7")  # nbgrader's own list
+    (one,) = listed(tmp_path, "ID\tLogin\tName\n1001\tada\tAda de la Cruz\n")
+    assert (one.id_number, one.login, one.name) == ("1001", "ada", "Ada de la Cruz")
+    (one,) = listed(tmp_path, "Identifier,Full name,Status\nParticipant 77,Ada,-\n")
+    assert (one.participant, one.first_name + one.last_name) == ("77", "Ada")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "does not say who its students are"),
+        ("Group,Mark\nA,1\n", "its columns are 'Group', 'Mark'; call one of them 'name'"),
+        ("a:b\nc:d:e,f\n", "its columns are 'a:b'"),
+        ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
+        ("PK\x03\x04", "is not a text; save the spreadsheet as CSV"),
+        ("name,login\nLovelace, Ada,ada\n", "line 2 has 3 cells and the first line has 2"),
+        ('name,login\n"Ada,ada\n', "unexpected end of data; mend the table"),
+        ("name,email\n,a@x\n", "line 2 has neither a name nor a login"),
+    ],
+)
+def test_a_list_that_cannot_be_read_is_a_sentence(tmp_path, text, words):
+    """What is missing is named, with the line or with the columns that are there."""
+    with pytest.raises(LabkitError) as error:
+        listed(tmp_path, text)
+    assert words in str(error.value)
+    with pytest.raises(LabkitError, match="there is no file"):
+        read_list(tmp_path / "none.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("name,login\nAda,x\nBob,x\n", "lines 2 and 3 contradict each other: x stands in both"),
+        ("name,login,email\nAda,a,x@u\nAda,b,X@u\n", "with a here and b there"),
+        ("name\nLi Wei\nWei Li\n", "are both Wei Li, and nothing tells them apart"),
+        ("name,login,email\nKim,a,\nKim,,x@u\n", "nothing tells them apart"),
+    ],
+)
+def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
+    """One address for two logins, or two of one name that nothing tells apart."""
+    with pytest.raises(LabkitError) as error:
+        enrolled(listed(tmp_path, text))
+    assert words in str(error.value)
+
+
+def test_a_row_that_is_there_twice_is_one_student(tmp_path):
+    """Two sections of Canvas's, for instance."""
+    text = "name,login,email\nAda,ada,\nAda,ada,a@x\n"
+    assert enrolled(listed(tmp_path, text)).students == (
+        Student("ada", "", "Ada", "a@x", login="ada"),
+    )
+
+
+def test_the_folder_is_the_login_or_else_the_name(tmp_path):
+    """No two have the same, also where a file system knows no capitals."""
+    text = "name,login,email\nAda Lovelace,ada,\nLi Wei,,li1@x\nLi Wei,,li2@x\nADA,,a@x\nO'Z,,\n"
+    roster = enrolled(listed(tmp_path, text))
+    assert [s.id for s in roster.students] == ["ada", "Li-Wei-li1", "Li-Wei-li2", "ADA-a", "OZ"]
+    (group,) = roster.namesakes()
+    assert [student.id for student in group] == ["Li-Wei-li1", "Li-Wei-li2"]
+
+
+def test_a_student_keeps_the_folder_of_earlier_work(tmp_path):
+    """What was collected before there was a roster is theirs, if nobody else has the name."""
+    entries = listed(
+        tmp_path, "Student,ID,SIS Login ID,Section\nHopper,7,gh,\nKim,8,k1,\nKim,9,k2,\n"
+    )
+    collected = {
+        "01_paths": {"hopper-7": Known("canvas", "7", "hopper"), "Kim": Known("moodle", "1", "Kim")}
+    }
+    roster = enrolled(entries, collected=collected)
+    assert [student.id for student in roster.students] == ["hopper-7", "k1", "k2"]
+
+
+def test_a_second_list_adds_and_changes_but_takes_nobody_away(tmp_path):
+    """By any key, or by a name that only one has; the folder stays."""
+    first = enrolled(listed(tmp_path, MOODLE + "Bob,,,bob@uni.org,\n"))
+    done = enrol(first, listed(tmp_path, CANVAS), {})
+    assert not done.new
+    ada, zoe, bob = done.roster.students
+    assert (ada.id, ada.lms_user_id, ada.login, ada.email) == (
+        "Ada-Lovelace", "7", "alovelace", "ada@uni.org",
+    )  # fmt: skip
+    assert zoe.lms_user_id == "8" and bob.email == "bob@uni.org"
+
+
+def test_a_row_between_two_students_is_refused():
+    """The login of one and the address of another."""
+    roster = Roster((Student("a", "A", email="a@x"), Student("b", "B", login="b")))
+    with pytest.raises(LabkitError, match=r"line 2 could be A \(a\) or B \(b\) of the roster"):
+        enrolled([Entry(2, "A", email="a@x", login="b")], roster)
+
+
+@settings(max_examples=50)
+@given(st.text(max_size=60))
+def test_names_of_folders_are_safe(name):
+    """Of any text: one level, not hidden, no option, short, the same when made again."""
+    folder = safe_name(name)
+    assert folder == safe_name(folder) and folder
+    assert not {"/", "\\", "\0", " ", "\n", "\x1b"} & set(folder)
+    assert folder[0] not in ".-" and ".." not in folder
+    assert len(folder.encode()) <= LONGEST
+    assert folder.casefold().partition(".")[0] not in {"con", "nul", "prn", "aux", "com1"}
+
+
+def test_spellings_of_a_name():
+    """Order, case, commas, and what a file's name must not hold make no difference."""
+    spellings = ("Ada O'Brien", "O'BRIEN, Ada", "OBrien Ada", "Ada_OBrien", "ada  o’brien")
+    assert len({same_name(name) for name in spellings}) == 1
+    assert same_name("Ada O'Brien") != same_name("Ada Brien")
+    assert same_name("Zoe\u0308") == same_name("Zoë")
+
+
+FIELDS = st.text(st.characters(exclude_categories=("Cs", "Cc")), max_size=8)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.tuples(FIELDS, FIELDS, FIELDS), max_size=4))
+def test_a_roster_is_read_as_it_was_written(rows):
+    """Whatever people are called, quotation marks and commas included."""
+    entries = [Entry(k, first, last, login=f"{k}{login}") for k, (first, last, login) in
+               enumerate(rows)]  # fmt: skip
+    with tempfile.TemporaryDirectory() as folder:
+        course = bare_course(Path(folder, "course"))
+        roster = enrolled(entries)
+        save_roster(course, roster)
+        again = read_roster(course)
+        assert [s.id for s in again.students] == [s.id for s in roster.students]
+        save_roster(course, again)
+        assert read_roster(course) == again
+
+
+@pytest.mark.slow
+def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys):
+    """New ones are counted, namesakes are named, and the gradebook has what the list says."""
+    course = bare_course(tmp_path / "course")
+    file = tmp_path / "list.csv"
+    where = ["--course", str(course.root)]
+    file.write_text(MOODLE + "Li,Wei,2,li@x,\nWei,Li,3,wei@x,\n")
+    assert main(["students", "import", str(file), *where]) == 0
+    said = capsys.readouterr()
+    assert f"{FILE}: 4 students, 4 of them new" in said.out
+    assert "called alike: Li Wei (Li-Wei-li), Wei Li (Wei-Li-wei)" in said.err
+    with open_gradebook(course) as book:
+        ada = book.find_student("Ada-Lovelace")
+        about = (ada.first_name, ada.last_name, ada.email, ada.lms_user_id)
+    assert about == ("Ada", "Lovelace", "ada@uni.org", "1001")
+    file.write_text("Identifier,Full name,Email address\nParticipant 7,Ada,ada@uni.org\n")
+    assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 0
+    said = capsys.readouterr().out
+    assert "0 of them new" in said and "participants of 01_paths: 1" in said
+    assert "not in this list, and still in the roster: Zoë O'Brien (Zoë-OBrien)" in said
+    file.write_text(CANVAS)
+    assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 2
+    assert "has no column 'Identifier'" in capsys.readouterr().err

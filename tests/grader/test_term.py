@@ -1,0 +1,221 @@
+"""The rest of the term: pages, tables, regrading, the class report, collecting."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+from handmade import QUICK
+
+from labkit.cli import main
+from labkit.course.serialize import encode
+from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.class_report import report
+from labkit.grader.engines import students
+from labkit.grader.export import LAYOUTS, Row, as_csv, left_out, rows
+from labkit.grader.feedback import page
+from labkit.grader.gradebook import record
+from labkit.grader.lms import Known
+from labkit.grader.pseudonyms import pseudonyms
+from labkit.grader.regrade import accept, moves
+from labkit.grader.results import Results
+from labkit.grader.synthetic import make_class
+from labkit.grader.term import archive
+
+pytestmark = pytest.mark.slow  # whole classes are graded
+
+NAME = "01_paths"
+
+
+@pytest.fixture(scope="module")
+def term(released, tmp_path_factory):
+    """A course with a small class, graded and recorded."""
+    import shutil
+
+    from labkit.course.layout import Course
+
+    root = tmp_path_factory.mktemp("term") / "course"
+    shutil.copytree(released.root, root, symlinks=True)
+    course = Course(root)
+    make_class(course, NAME, seed=4, count=9)
+    done = grade_class(course, NAME, students(course, NAME), How(jobs=2, limits=QUICK))
+    record(course, NAME, [one.result for one in done if isinstance(one, Graded)])
+    return course
+
+
+class Page(HTMLParser):
+    """The elements and texts of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.words = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+def test_feedback_page_shows_text_as_text(term):
+    """Whatever a student's code said, the page holds no element but its own, and a policy."""
+    result = max(Results(term, NAME), key=lambda r: len(r.cells) + sum(
+        q["outcome"] == "wrong" for q in r.questions))  # fmt: skip
+    evil = "<script>alert(1)</script><img src=x onerror=alert(1)>"
+    worst = replace(
+        result,
+        notes=(evil,),
+        cells=({"cell": 3, "kind": evil, "error": evil, "output": evil, "seconds": 0.0},),
+        questions=tuple(
+            dict(q, source=evil, notes=[evil], tests=[dict(t, says=evil) for t in q["tests"]])
+            for q in result.questions
+        ),
+    )
+    found = Page(page(worst, {"circle": evil}))
+    tags = {tag for tag, _ in found.tags}
+    assert not tags & {"script", "img", "iframe", "a", "object", "link"}
+    policy = [a for t, a in found.tags if t == "meta" and "http-equiv" in a]
+    assert "default-src 'none'" in policy[0]["content"]
+    assert any(evil in words for words in found.words)
+
+
+def numbers(data):
+    """All long numbers in encoded data, as they are printed."""
+    if isinstance(data, float):
+        return {repr(data)} if len(repr(data)) > 8 else set()
+    inner = data.values() if isinstance(data, dict) else data if isinstance(data, list) else ()
+    return {x for part in inner for x in numbers(part)}
+
+
+def test_feedback_has_no_hidden_case(term, bundle):
+    """No hidden input stands in any page, though every page says what class of case failed."""
+    cases = [case for q in bundle.questions for test in q.tests for case in test.cases]
+    hidden = {x for c in cases if c.hidden for x in numbers(encode(c.args))}
+    hidden -= {x for c in cases if not c.hidden for x in numbers(encode(c.args))}
+    assert len(hidden) > 50
+    text = "".join(page(r) for r in Results(term, NAME))
+    assert not [x for x in hidden if x in text]
+    assert "a hidden case (" in text or "failed" in text
+
+
+def test_feedback_lies_where_nbgrader_looks(term, capsys):
+    """One page for each student, as feedback/STUDENT/ASSIGNMENT/ASSIGNMENT.html."""
+    assert main(["feedback", NAME, "--course", str(term.root)]) == 0
+    made = list((term.root / "feedback").glob(f"*/{NAME}/{NAME}.html"))
+    assert len(made) == 9
+    assert "release_feedback" not in capsys.readouterr().out  # nothing came through the exchange
+
+
+def test_tables(term, capsys):
+    """Every layout has a row for each student and the gradebook's scores."""
+    marks = list(rows(term, NAME))
+    scores = {r.student: r.score for r in Results(term, NAME)}
+    assert {r.student: r.score for r in marks} == scores
+    for layout, extra in (("nbgrader", 1), ("questions", 2), ("canvas", 2), ("moodle", 1)):
+        table = list(csv.reader(io.StringIO(as_csv(LAYOUTS[layout](NAME, marks)))))
+        assert len(table) == len(marks) + extra
+        assert len({len(row) for row in table}) == 1
+    assert main(["export", NAME, "--course", str(term.root)]) == 0
+    head, full, *_ = capsys.readouterr().out.splitlines()
+    assert head.startswith("student,bang_bang,trapezoid")
+    assert full.endswith("20.0,")
+
+
+def test_nothing_becomes_a_formula():
+    """A name that a spreadsheet would run is written as text."""
+    row = Row("=1+1", "@a", "+b", "-c", "1", "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0)
+    for layout in LAYOUTS.values():
+        for cells in csv.reader(io.StringIO(as_csv(layout("x", [row])))):
+            assert not [c for c in cells if c[:1] in set("=+@")]
+
+
+def test_regrade_says_first_and_never_lowers_unasked(course, capsys):
+    """After a threshold moves, --diff names who moves; marks fall only with --lower."""
+    make_class(course, NAME, seed=4, count=5)
+    who = students(course, NAME)
+    how = How(jobs=2, limits=QUICK)
+    before = {one.result.student: one.result for one in grade_class(course, NAME, who, how)}
+    path = course.bundle / f"{NAME}.json"
+    data = json.loads(path.read_text())
+    data["hash"] = "0" * 64
+    for question in data["questions"]:
+        if question["name"] == "witness":
+            question["points"] = 1
+    path.write_text(json.dumps(data))
+    moved = list(moves(course, NAME, who, how))
+    assert {m.by for m in moved} == {-1.0, 0.0}
+    assert {r.student: r.score for r in Results(course, NAME)} == {
+        s: r.score for s, r in before.items()
+    }
+    accepted = {result.student for result in accept(course, NAME, moved, lower=False)}
+    left = [m for m in moved if m.after.student not in accepted]
+    assert {m.after.student for m in left} == {m.after.student for m in moved if m.by < 0}
+    kept = [one for one in grade_class(course, NAME, who, how) if one.says.startswith("kept")]
+    assert len(kept) == len(left)
+    assert len(accept(course, NAME, moved, lower=True)) == len(moved)
+    assert {r.score for r in Results(course, NAME)} == {m.after.score for m in moved}
+    assert list((Results(course, NAME).folder / "old").iterdir())
+
+
+def test_class_report(term):
+    """The report counts misconceptions by name, and names nobody unless asked."""
+    results = list(Results(term, NAME))
+    problems = {p.name: p for p in term.problems(NAME)}
+    text = report(NAME, results, problems, pseudonyms(term))
+    mistakes = [q["mistake"]["name"] for r in results for q in r.questions if q["mistake"]]
+    assert mistakes
+    assert all(name in text for name in mistakes)
+    assert not [r.student for r in results if r.student in text]
+    named = report(NAME, [replace(r, rejected="x") for r in results], problems, str)
+    assert all(r.student in named for r in results)
+
+
+def test_pseudonyms_last_a_term_and_are_nobody_elses(course):
+    """A student keeps a pseudonym until the term ends; another course cannot make it again."""
+    first = pseudonyms(course)("ada")
+    assert pseudonyms(course)("ada") == first != pseudonyms(course)("bob")
+    archive(course)
+    assert pseudonyms(course)("ada") != first
+
+
+def test_look_alikes(term):
+    """Two who handed in the same unusual work are listed together, with what to ask."""
+    results = list(Results(term, NAME))
+    one = next(r for r in results if sum(q["outcome"] == "wrong" for q in r.questions) > 2)
+    text = report(NAME, [*results, replace(one, student="zz")], {}, str)
+    assert "Look-alikes" in text
+    assert f"{one.student} and zz" in text
+
+
+def test_canvas_layout():
+    """Canvas' five columns in its order, full marks below, students by Canvas' own number."""
+    canvas = row("hoppergrace-7", known=Known("canvas", "7", "hoppergrace"))
+    table = LAYOUTS["canvas"]("Paths (4711)", [canvas, row("ada", lms="42", first="A", last="L")])
+    assert table[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Paths (4711)"]
+    assert "Points Possible" in table[1][0]
+    assert table[1][5] == 2.0
+    assert table[2] == ["hoppergrace-7", "7", "", "", "", 1.0]
+    assert table[3] == ["L, A", "42", "", "ada", "", 1.0]
+    assert not left_out("canvas", [canvas, row("ada")])
+
+
+def test_moodle_layouts():
+    """The gradebook knows users by address, the worksheet by the number of the download."""
+    moodle = row("Ada-Lovelace", known=Known("moodle", "101", "Ada Lovelace"))
+    table = LAYOUTS["moodle-worksheet"]("Paths", [moodle, row("carl")])
+    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(table[0])
+    assert table[1:] == [["Participant 101", "Ada Lovelace", 1.0, 2.0, ""]]
+    assert left_out("moodle-worksheet", [moodle, row("carl")]).startswith("1 of 2 cannot be told")
+    table = LAYOUTS["moodle"]("Paths", [row("carl", email="c@x.org", lms="9")])
+    assert table[0][2:] == ["ID number", "Username", "Email address", "Paths"]
+    assert table[1][2:] == ["9", "carl", "c@x.org", 1.0]
+    assert "Ada-Lovelace" in left_out("moodle", [moodle])
+
+
+def row(student, *, first="", last="", email="", lms="", known=None):
+    return Row(student, first, last, email, lms, "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0, known)

@@ -1,0 +1,77 @@
+"""Withheld tools: what uses one is not counted, and what may be a way around one is listed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from handmade import QUICK, add, put, raw
+from ways import WAYS, Way
+
+from labkit.grader.class_report import report
+from labkit.grader.feedback import page
+from labkit.grader.grade import grade
+from labkit.grader.results import Bundle
+
+pytestmark = pytest.mark.slow  # a sandbox for each way
+
+
+@pytest.fixture(scope="module")
+def one(bundle):
+    """A bundle with the first question alone."""
+    return Bundle(bundle.data | {"questions": bundle.data["questions"][:1]})
+
+
+@pytest.fixture
+def graded(one, sandbox, blank):
+    """Grades a notebook with one answer and a cell above it."""
+
+    def graded(answer, cell=""):
+        if cell:
+            add(blank, cell, at=4)
+        return grade(raw(put(blank, "bang_bang", answer)), "ada", one, sandbox, QUICK)
+
+    return graded
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_every_known_way_is_told(graded, name):
+    """Each earns nothing but for a few, and these are listed for the instructor."""
+    way = WAYS[name]
+    result = graded(way.answer, way.cell)
+    (question,) = result.questions
+    assert (question["earned"] > 0) == way.counted, question
+    assert question["withheld"] == ["labkit.BangBang"] or result.tricks
+    assert question["outcome"] == ("not counted" if question["withheld"] else question["outcome"])
+    assert bool(result.cells) == way.fails, result.cells
+
+
+def test_the_class_report_lists_both(graded):
+    """Who used a tool, and what in whose cells needs a look; of the honest it says nothing."""
+    results = [
+        replace(graded(way.answer, way.cell), student=name)
+        for name, way in [
+            ("ada", WAYS["by name"]),
+            ("cleo", Way("return t, 0, 0")),
+            ("bob", WAYS["loading under another name"]),
+        ]
+    ]
+    text = report("01_paths", results, {}, str.upper)
+    lines = text[text.index("## Withheld tools") :].splitlines()
+    assert lines[2:] == [
+        "- ADA, not counted: bang_bang uses lk.BangBang, which this question asks you to write",
+        "- BOB, worth a look: cell 5 imports importlib.util; cell 5 uses labkit.paths.__file__; "
+        "cell 5 uses sys.modules",
+        "",
+    ]
+    assert "| bang_bang | 1 | 1 | 0 | 1 | 0 |" in text
+
+
+def test_what_is_not_counted_says_why(graded):
+    """The result names the tool, and the page that is made of it says the sentence."""
+    result = graded(WAYS["by name"].answer)
+    (question,) = result.questions
+    sentence = "it uses lk.BangBang, which this question asks you to write"
+    assert question["notes"][0] == sentence
+    assert sentence in page(result)
+    assert {test["outcome"] for test in question["tests"]} == {"not counted"}
