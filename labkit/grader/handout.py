@@ -32,7 +32,7 @@ first time only, and opens Jupyter in your browser.</li>
 
 STUDENT_TOOLS = ("environment.yml", "find_python.sh", "need.sh")
 """What ``.ci/start.sh`` calls."""
-GRADER = "labkit/grade"
+GRADER = "labkit/grader"
 """What students' labkit comes without."""
 
 

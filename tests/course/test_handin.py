@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from labkit import LabkitError
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.handin import look, read_cells
 from labkit.course.marking import Outcome, Verdict
 from labkit.course.merging import merge

@@ -10,7 +10,7 @@ from dataclasses import replace
 import pytest
 from handmade import QUICK, ROOT, hand_in
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.handin import read_cells
 from labkit.course.layout import Course
 from labkit.course.merging import merge

@@ -17,7 +17,7 @@ import pytest
 from handmade import QUICK, ROOT, add, hand_in
 from processes import below, child, wait_until_gone
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.grader import gradebook
 from labkit.grader.batch import Graded, How, common_failures, grade_class, in_shard
 from labkit.grader.engines import grade_with_nbgrader, students
@@ -136,7 +136,7 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
     """Whatever ends the grader ends all that it started; the next run keeps what is done."""
     for student in ("ada", "bob", "eve"):
         hand_in(course, NAME, student, solved)
-    words = [sys.executable, "-m", "labkit.cli", "grade", NAME, "--jobs", "1"]
+    words = [sys.executable, "-m", "labkit", "grade", NAME, "--jobs", "1"]
     environment = dict(os.environ, PYTHONPATH=str(ROOT))
     with subprocess.Popen(
         [*words, "--course", str(course.root)], env=environment, stdout=subprocess.PIPE, text=True

@@ -25,7 +25,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_platforms import FILES, TEXTS
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.collect import collect
 from labkit.grader.enrol import enrol, keep_numbers, settle

@@ -10,7 +10,7 @@ import pytest
 from handmade import QUICK, add, hand_in
 from made import NAME, graded, handed_in, result_of
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import batch, feedback, gradebook, results
 from labkit.grader.each import Failed, Failures, for_student

@@ -7,7 +7,7 @@ import zipfile
 import pytest
 from handmade import hand_in, nbgrader, raw
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.grader.handback import SECRET
 
 NAME = "01_paths"

@@ -15,7 +15,7 @@ ALONE = """
 import sys
 sys.meta_path = [finder for finder in sys.meta_path if "Editable" not in str(finder)]
 import labkit as lk
-from labkit.cli import main
+from labkit.__main__ import main
 lk.ready()
 main(["--help"])
 """

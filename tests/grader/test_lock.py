@@ -7,7 +7,7 @@ import itertools
 import pytest
 from made import NAME, handed_in
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import lock
 from labkit.grader.batch import How, grade_class

@@ -13,7 +13,7 @@ from nbgrader.server_extensions.formgrader.handlers import template_path
 from traitlets.config import Config
 from traitlets.config.loader import PyFileConfigLoader
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.grader.markup import clean
 
 MARKDOWN = [

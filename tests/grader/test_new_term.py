@@ -7,7 +7,7 @@ import pytest
 from courses import copied
 
 from labkit import LabkitError
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.layout import PUBLIC_SEED, Course
 from labkit.course.release import FORBIDDEN
 from labkit.errors import UnknownName

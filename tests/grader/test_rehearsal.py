@@ -9,7 +9,7 @@ import pytest
 from courses import copied
 from handmade import ROOT
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.batch import How

@@ -8,7 +8,7 @@ import nbformat
 import pytest
 from courses import copied
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course import read_question
 from labkit.course.layout import Course
 from labkit.course.notebook import brief, source_notebook

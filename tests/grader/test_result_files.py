@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made import NAME, graded, result_of
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import results as module
 from labkit.grader.clean import clean_data

@@ -58,7 +58,7 @@ def test_dockers_rights_suffice(added):
         return
     left = ",".join(f"+{name}" for name in (*DOCKERS_OWN.split(), *rights(added)))
     run = subprocess.run(
-        ["setpriv", f"--bounding-set=-all,{left}", sys.executable, "-m", "labkit.cli", "doctor"],
+        ["setpriv", f"--bounding-set=-all,{left}", sys.executable, "-m", "labkit", "doctor"],
         env=dict(os.environ, PYTHONPATH=str(ROOT)),
         capture_output=True,
         text=True,

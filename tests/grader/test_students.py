@@ -10,7 +10,7 @@ from downloaded import NAME, bare_course
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.enrol import enrol

@@ -11,7 +11,7 @@ from html.parser import HTMLParser
 import pytest
 from handmade import QUICK
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.serialize import encode
 from labkit.grader.batch import Graded, How, grade_class
 from labkit.grader.class_report import report

@@ -17,7 +17,7 @@ from soak.attacks.place import NAME, place, released
 from soak.attacks.sets import ATTACKS
 from soak.attacks.undefended import COMMANDS
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.grader.synthetic import differences, make_class
 
 WORST = (

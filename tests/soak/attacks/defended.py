@@ -19,7 +19,7 @@ from soak.attacks.others import VICTIM
 from soak.attacks.place import NAME, Place
 from soak.attacks.undefended import COMMANDS, started
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.batch import How, grade_class
