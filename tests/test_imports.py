@@ -54,7 +54,7 @@ UPSTAIRS = {"course", "grader", "__main__"}
 SIMULATE = {"arm", "body", "motors", "world", "scene", "tags.camera", "tags.board",
             "tags.rendering", "tags.visuals"}  # fmt: skip
 MODEL = {"kinematics", "model"}
-DRAW = {"plotting", "replay"}
+DRAW = {"plotting", "replay", "grader.drawing"}
 SEE = {"tags.tag", "tags.detection", "tags.edges"}
 
 

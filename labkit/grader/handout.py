@@ -12,23 +12,7 @@ from pathlib import Path
 
 from ..course.layout import Course
 from ..errors import LabkitError
-
-START = """\
-<!doctype html><html lang="en"><meta charset="utf-8"><title>Start here</title>
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<style>body{{font:1.1rem/1.6 system-ui,sans-serif;max-width:40rem;margin:2rem auto;padding:0 1rem}}
-pre{{background:#f3f3f3;padding:1rem;overflow:auto}}</style>
-<main><h1>Trajectory tracking with Baxter</h1>
-<p>You need Linux on x86-64 (on Windows: WSL 2), Python 3.11, 2 GB of disk and 1 GB of memory. No
-graphics card.</p>
-<ol><li>Open a terminal in this folder.</li>
-<li>Type <pre>sh start.sh</pre> It makes a folder <code>.venv</code> with all that is needed, the
-first time only, and opens Jupyter in your browser.</li>
-<li>Open one of: {names}. Run the cells from the top: the second one says that the arm moved.</li>
-<li>Where a cell says <em>Your code goes here</em>, write; the check answers in words.</li></ol>
-<p>To hand in, give back the notebook file with its name as it is. Beside it lies
-<code>checks.json</code>, which the checks need: leave it there.</p></main></html>
-"""
+from .pages import render
 
 STUDENT_TOOLS = ("environment.yml", "find_python.sh", "need.sh")
 """What ``.ci/start.sh`` calls."""
@@ -65,7 +49,8 @@ def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
         for tool in STUDENT_TOOLS:
             shutil.copy(course.root / ".ci" / tool, top / ".ci")
         shutil.copy(course.root / ".ci" / "start.sh", top)
-        (top / "START.html").write_text(START.format(names=", ".join(names)), encoding="utf-8")
+        start = render("start.html.j2", names=names)
+        (top / "START.html").write_text(start, encoding="utf-8")
         to.parent.mkdir(parents=True, exist_ok=True)
         with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
             for path in sorted(top.rglob("*")):
