@@ -79,8 +79,7 @@ class Course:
 
     def names(self) -> tuple[str, ...]:
         """All assignments that have a source, in order."""
-        folder = self.root / "solutions" / "notebooks"
-        return tuple(sorted(path.stem for path in folder.glob("[0-9]*.py")))
+        return tuple(sorted(path.stem for path in self.root.glob("solutions/*/[0-9][0-9]_*.py")))
 
     def notebook_source(self, name: str) -> Path:
         """The text an assignment is made from.
@@ -90,7 +89,7 @@ class Course:
         """
         if name not in self.names():
             raise UnknownName("assignment", name, self.names())
-        return self.root / "solutions" / "notebooks" / f"{name}.py"
+        return self.root / "solutions" / name.partition("_")[2] / f"{name}.py"
 
     def problems(self, name: str) -> tuple[Problem, ...]:
         """The problems of an assignment, from the course's own ``solutions`` package.
@@ -102,11 +101,11 @@ class Course:
         self.notebook_source(name)
         if str(self.root) not in sys.path:
             sys.path.insert(0, str(self.root))
-        where = f"solutions.problems.{name.partition('_')[2]}"
+        where = f"solutions.{name.partition('_')[2]}.problems"
         try:
             module = importlib.import_module(where)
         except ModuleNotFoundError as error:
-            if error.name != where:
+            if error.name not in (where, where.removesuffix(".problems")):
                 raise
             path = where.replace(".", "/")
             raise LabkitError(f"{name} has no problems; write {path}.py with PROBLEMS") from None

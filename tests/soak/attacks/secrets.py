@@ -23,8 +23,8 @@ def reads(**paths: str) -> dict[str, Attack]:
 
 
 FILES = reads(
-    answers="{root}/solutions/paths.py",
-    answers_from_where_it_works="../../../solutions/paths.py",
+    answers="{root}/solutions/paths/answers.py",
+    answers_from_where_it_works="../../../solutions/paths/answers.py",
     the_bundle="{root}/build/course/bundle/01_paths.json",
     the_source_with_hidden_cases="{root}/build/course/source/01_paths/01_paths.ipynb",
     the_solved_notebook="{root}/build/course/solution/01_paths/01_paths.ipynb",
@@ -113,8 +113,8 @@ INSIDE = answers(
     "return 0, 0, 0",
     globals_of_main="import __main__\nfor name, x in vars(__main__).items():\n"
     f"    if {_WORD} in repr(x)[:2000]: raise Exception('GOT ' + name)\nreturn 0, 0, 0",
-    solutions="from solutions.paths import bang_bang\nraise Exception('GOT ' + str(bang_bang))",
-    problems="import solutions.problems.paths as p\nraise Exception('GOT ' + str(p))",
+    solutions="from solutions.paths.answers import bang_bang\nraise Exception('GOT ' + str(bang_bang))",
+    problems="import solutions.paths.problems as p\nraise Exception('GOT ' + str(p))",
 )  # fmt: skip
 
 _SYSCALLS = {
