@@ -59,7 +59,6 @@ FILES = reads(
     "        s = socket.socket(fileno=os.dup(f))\n        data = s.recv(10**6, socket.MSG_PEEK | socket.MSG_DONTWAIT)\n"
     f"        if {_WORD}.encode() in data: raise Exception('GOT ' + str(data[:80]))\n    except OSError: pass".replace("import socket", "import os, socket", 1),
     users="import pwd\nfound = [x.pw_name for x in pwd.getpwall()]\nif found: raise Exception('GOT ' + str(found))",
-    host="import socket\nfound = socket.gethostname()\nif found == '{host}': raise Exception('GOT ' + found)",
     homes="import os\nfound = [p for p in ('/home', '/root', '{root}/home') if os.path.isdir(p) and os.listdir(p)]\n"
     "found = [p for p in found if p != '/root' or '.ssh' in os.listdir(p) or '.bashrc' in os.listdir(p)]\n"
     "if found: raise Exception('GOT ' + str(found))",
@@ -109,7 +108,7 @@ INSIDE = answers(
     f"    if isinstance(x, (dict, list, tuple)) and len(x) < 50 and {_WORD} in repr(x)[:20000]: raise Exception('GOT')\nreturn 0, 0, 0",
     referrers_of_the_arguments="import gc\nfor x in gc.get_referrers(duration):\n"
     "    if isinstance(x, (list, tuple)) and len(x) > 2 and not isinstance(x[0], str): raise Exception('GOT ' + repr(x)[:80])\nreturn 0, 0, 0",
-    modules="import sys\nfor name in sys.modules:\n    if name.startswith('solutions') or name.endswith(('.checker', '.bundle', '.results')): raise Exception('GOT ' + name)\n"
+    modules="import sys\nfor name in sys.modules:\n    if name.startswith(('solutions', 'labkit.grader.', 'naive')) and not name.startswith(('labkit.grader.sandbox', 'labkit.grader.clean')): raise Exception('GOT ' + name)\n"
     "return 0, 0, 0",
     globals_of_main="import __main__\nfor name, x in vars(__main__).items():\n"
     f"    if {_WORD} in repr(x)[:2000]: raise Exception('GOT ' + name)\nreturn 0, 0, 0",
