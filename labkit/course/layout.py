@@ -29,18 +29,24 @@ class Course:
         """The course around a folder, the working directory by default.
 
         Raises:
-            LabkitError: There is none.
+            LabkitError: There is none; or nobody named it, and it lies inside another course, as
+                a submission does that brings a configuration of its own.
         """
-        start = (start or Path.cwd()).resolve()
-        if not start.exists():
-            raise LabkitError(f"there is no {start}; give the course's folder with --course")
-        for folder in (start, *start.parents):
-            if (folder / "nbgrader_config.py").exists():
-                return cls(folder)
-        raise LabkitError(
-            f"{start} is not inside a course: no nbgrader_config.py there or above; "
-            "change to the course's folder, or give it with --course"
-        )
+        place = (start or Path.cwd()).resolve()
+        if not place.exists():
+            raise LabkitError(f"there is no {place}; give the course's folder with --course")
+        around = [x for x in (place, *place.parents) if (x / "nbgrader_config.py").exists()]
+        if not around:
+            raise LabkitError(
+                f"{place} is not inside a course: no nbgrader_config.py there or above; "
+                "change to the course's folder, or give it with --course"
+            )
+        if start is None and len(around) > 1:
+            raise LabkitError(
+                f"{around[0]} has an nbgrader_config.py and lies inside the course {around[-1]}; "
+                "if you trust it, name the course that you mean with --course"
+            )
+        return cls(around[0])
 
     @property
     def build(self) -> Path:
