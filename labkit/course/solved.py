@@ -10,9 +10,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import LabkitError
-from .inline import names_defined
 from .notebook import Notebook, without_hidden
 from .problem import Problem
+from .source import names_defined
 
 
 def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator, Sequence
 from types import CodeType
 from typing import Any
 
-from .inline import names_defined
 from .notebook import Notebook
+from .source import names_defined
 
 USE = "def use(name, function, given, yours=None):\n    return yours or function\n"
 """Takes the place of the notebook's, since the other parts are right."""

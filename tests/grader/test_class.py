@@ -24,7 +24,7 @@ from labkit.grader.engines import grade_with_nbgrader, students
 from labkit.grader.export import rows
 from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.results import Results
-from labkit.grader.synthetic import differences, make_class
+from tests.synthetic import differences, make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 

@@ -40,7 +40,7 @@ def test_full_marks_and_none(marks, solved, blank):
 
 def test_same_verdicts_as_in_the_notebook(marks, blank, released, bundle):
     """Each known mistake is told by the same words here as by `mark` in one process."""
-    from labkit.course.inline import inline
+    from tests.synthetic.inline import inline
 
     problems = {p.name: p for p in released.problems("01_paths")}
     questions = {q["name"]: read_question(q) for q in bundle.data["questions"]}

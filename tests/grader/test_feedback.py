@@ -248,7 +248,9 @@ def test_figures_say_what_they_show():
         "none", "var(--text)", "var(--grid)", "var(--no)",
     }  # fmt: skip
     assert side_by_side([1.0, 2.0], [1.0, 2.0], "same").count("<use") >= 4
-    assert re.findall(r">([1-9])</text>", side_by_side([0.0] * 3, [0.0] * 3, "three")) == list("123")
+    assert re.findall(r">([1-9])</text>", side_by_side([0.0] * 3, [0.0] * 3, "three")) == list(
+        "123"
+    )
 
 
 @pytest.fixture

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labkit.course.inline import inline
 from labkit.course.layout import Course
 from labkit.course.solved import inlined
 from labkit.course.source import look
@@ -15,7 +14,8 @@ from labkit.grader import synthetic_kinds
 from labkit.grader.plan import plan
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.tricks import tricks
-from labkit.grader.synthetic import Draft
+from tests.synthetic import Draft
+from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
 

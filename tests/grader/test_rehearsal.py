@@ -9,13 +9,13 @@ import pytest
 from courses import copied
 from handmade import ROOT
 
-from labkit.__main__ import main
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.batch import How
-from labkit.grader.rehearsal import rehearse
 from labkit.grader.results import Results
-from labkit.grader.synthetic import expected_file
+from tests.synthetic import expected_file
+from tests.synthetic.__main__ import main
+from tests.synthetic.rehearsal import rehearse
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 
@@ -90,11 +90,12 @@ def test_a_true_course_is_no_stage(tmp_path):
     assert notebook.exists() and not course.release.exists()
 
 
-def test_command(played, capsys):
-    """`labkit rehearse` does it from the command line, and writes nothing into the course."""
+def test_command(played, monkeypatch, capsys):
+    """`python -m tests.synthetic --rehearse` does it, and writes nothing into the course."""
     course, _, _ = played
     before = sorted(Results(Course(ROOT), NAME).folder.glob("*"))
-    words = ["rehearse", NAME, "--count", str(COUNT), "--to", str(course.root)]
-    assert main([*words, "--course", str(ROOT)]) == 0
+    words = ["--count", str(COUNT), "--course", str(ROOT), "--rehearse", str(course.root)]
+    monkeypatch.setattr("sys.argv", ["synthetic", NAME, *words])
+    assert main() == 0
     assert "every mark is what was deserved" in capsys.readouterr().out
     assert sorted(Results(Course(ROOT), NAME).folder.glob("*")) == before

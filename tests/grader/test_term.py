@@ -23,8 +23,8 @@ from labkit.grader.lms import Known
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.regrade import accept, moves
 from labkit.grader.results import Results
-from labkit.grader.synthetic import make_class
 from labkit.grader.term import archive
+from tests.synthetic import make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 

@@ -18,7 +18,7 @@ from soak.attacks.sets import ATTACKS
 from soak.attacks.undefended import COMMANDS
 
 from labkit.__main__ import main
-from labkit.grader.synthetic import differences, make_class
+from tests.synthetic import differences, make_class
 
 WORST = (
     "others: half a character in a comment",

@@ -17,7 +17,7 @@ import pytest
 from soak.attacks.family import Family, descendants, parent
 from soak.attacks.place import NAME, ROOT, released
 
-from labkit.grader.synthetic import differences, make_class
+from tests.synthetic import differences, make_class
 
 STUDENTS = 8
 GUARD = 300.0

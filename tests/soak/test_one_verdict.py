@@ -14,7 +14,6 @@ from handmade import put, raw
 
 from labkit.course import question_data
 from labkit.course.handin import look
-from labkit.course.inline import inline
 from labkit.course.layout import Course
 from labkit.course.notebook import source_notebook
 from labkit.course.output import verdict_in
@@ -24,6 +23,7 @@ from labkit.grader.grade import grade
 from labkit.grader.results import Bundle
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
+from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
 IN_THE_GATE = ("00_warmup", "01_paths")

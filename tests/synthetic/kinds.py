@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .synthetic import Draft
+    from . import Draft
 
 Kind = Callable[[Any], None]
 

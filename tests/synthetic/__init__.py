@@ -1,4 +1,7 @@
-"""A class that never was: submissions of every kind that comes in, and the marks they deserve."""
+"""A synthetic class: submissions of every kind that comes in, and the marks that they deserve.
+
+`python -m tests.synthetic 01_paths --count 14` writes one into the course around you.
+"""
 
 from __future__ import annotations
 
@@ -12,14 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from ..course.inline import inline
-from ..course.layout import Course
-from ..course.marking import mark
-from ..course.problem import Problem
-from ..course.question import Question
-from ..errors import LabkitError
-from . import synthetic_kinds
-from .results import Bundle, write
+from labkit.course.layout import Course
+from labkit.course.marking import mark
+from labkit.course.problem import Problem
+from labkit.course.question import Question
+from labkit.errors import LabkitError
+from labkit.grader.results import Bundle, Results, write
+
+from . import kinds
+from .inline import inline
 
 Random = np.random.Generator
 
@@ -124,11 +128,11 @@ def make_class(course: Course, assignment: str, seed: int, count: int = 40) -> d
     questions = {question.name: question for question in bundle.questions}
     released = course.release / assignment / f"{assignment}.ipynb"
     blank = json.loads(released.read_text(encoding="utf-8"))["cells"]
-    kinds = [*synthetic_kinds.KINDS.items()][:count]
-    kinds += [(f"person {k}", Draft.anyhow) for k in range(count - len(kinds))]
+    chosen = [*kinds.KINDS.items()][:count]
+    chosen += [(f"person {k}", Draft.anyhow) for k in range(count - len(chosen))]
     order = random.permutation(count)
     expected: dict[str, Any] = {}
-    for number, (kind, make) in zip(order, kinds, strict=True):
+    for number, (kind, make) in zip(order, chosen, strict=True):
         student = f"student-{number + 1:03d}"
         draft = Draft(assignment, problems, questions, random, copy.deepcopy(blank))
         draft.expected = dict.fromkeys(problems, 0.0)
@@ -156,8 +160,6 @@ def expected_file(course: Course, assignment: str) -> Path:
 
 def differences(course: Course, assignment: str) -> Iterator[str]:
     """Where the results differ from what the class deserves; a sentence each."""
-    from .results import Results
-
     results = Results(course, assignment)
     for student, deserved in json.loads(expected_file(course, assignment).read_text()).items():
         result = results.get(student)

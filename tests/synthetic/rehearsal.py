@@ -8,20 +8,21 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..course.layout import PUBLIC_SEED, Course
-from ..course.release import release
-from ..errors import LabkitError
-from .batch import How, common_failures, grade_class
-from .class_report import report
-from .collect import collect
-from .each import Failed, Failures
-from .engines import students
-from .export import LAYOUTS, as_csv, rows
-from .feedback import write_feedback
-from .gradebook import comments, record
-from .results import write
-from .standing import standing
-from .synthetic import differences, make_class
+from labkit.course.layout import PUBLIC_SEED, Course
+from labkit.course.release import release
+from labkit.errors import LabkitError
+from labkit.grader.batch import How, common_failures, grade_class
+from labkit.grader.class_report import report
+from labkit.grader.collect import collect
+from labkit.grader.each import Failed, Failures
+from labkit.grader.engines import students
+from labkit.grader.export import LAYOUTS, as_csv, rows
+from labkit.grader.feedback import write_feedback
+from labkit.grader.gradebook import comments, record
+from labkit.grader.results import write
+from labkit.grader.standing import standing
+
+from . import differences, make_class
 
 LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 
