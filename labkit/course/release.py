@@ -17,7 +17,7 @@ from typing import Any
 import nbformat
 
 from ..errors import LabkitError
-from ..grader.migrate import make_room
+from ..grader.gradebook import migrate
 from . import Question, question_data
 from .layout import Course
 from .notebook import Notebook, source_notebook, without_hidden
@@ -83,7 +83,7 @@ def release(course: Course, name: str, seed: int) -> Released:
         raise LabkitError("\n".join([f"{name} is not released:", *reasons]))
     solved = solution_notebook(source, problems)
     public = _checks(name, [q.public() for q in questions.values()])
-    added = make_room(course, name, source)  # once nothing of the author's can be refused any more
+    added = migrate(course, name, source)  # once nothing of the author's can be refused any more
     _write(course.source / name, source, public)
     _write(course.solution / name, solved, public)
     _write_bundle(course, name, seed, source, questions, added)

@@ -29,14 +29,13 @@ from pathlib import Path
 from ..course.layout import Course
 from ..errors import LabkitError
 from .clean import safe_name
-from .handback import SECRET, read_secret
+from .exchange import SECRET, TIMESTAMP, read_secret, read_time
 from .results import digest, write
 from .sandbox.limits import Limits
 from .submission import read_file
 
 FOLDER = "attempts"
 BY_HAND = "by hand"
-TIMESTAMP = "timestamp.txt"
 _RECORD = "attempt.json"
 _REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
 
@@ -247,18 +246,6 @@ def move(course: Course, assignment: str, old: str, new: str) -> str:
 def called(file: str, assignment: str) -> bool:
     """Whether a file is called as the assignment, whatever number it has."""
     return _REPEATED.sub(".ipynb", file) == f"{assignment}.ipynb"
-
-
-def read_time(text: str) -> datetime | None:
-    """A time as nbgrader writes it, in UTC if it does not say; None if it is no time."""
-    from dateutil.parser import parse
-
-    try:
-        when: datetime = parse(text)
-        when = when.astimezone(UTC) if when.tzinfo else when.replace(tzinfo=UTC)
-    except (ValueError, OverflowError):
-        return None
-    return when if 2000 <= when.year < 2100 else None
 
 
 def _rank(seen: Seen, assignment: str) -> tuple[bool, int, str]:

@@ -17,6 +17,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .autograded_notebook import in_release_form, release_source, with_verdicts
 from .batch import job
 from .engines import is_name
 from .lock import alone
@@ -24,7 +25,6 @@ from .pool import Worker, result_of
 from .results import Bundle, Result, Results
 from .sandbox.limits import Limits
 from .submission import Submission
-from .written import in_release_form, release_source, with_verdicts
 
 
 class Isolated(NbGraderPreprocessor):  # type: ignore[misc]

@@ -235,9 +235,10 @@ def _said_of(moved: Sequence[Move]) -> Iterable[str]:
 )
 def feedback(course: Course, assignment: str, student: str | None, moodle: Path | None) -> int:
     """Write a page for each student."""
+    from .exchange import for_exchange
     from .feedback import write_feedback
     from .gradebook import comments
-    from .handback import for_exchange, moodle_zip
+    from .return_feedback import moodle_zip
     from .standing import standing
 
     with Failures() as failures:

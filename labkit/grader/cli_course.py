@@ -76,7 +76,7 @@ def student_bundle(course: Course, names: tuple[str, ...], to: Path | None) -> i
 
     Without a NAME it takes all assignments that are released.
     """
-    from .handout import student_bundle
+    from .student_bundle import student_bundle
 
     path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip")
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
@@ -107,9 +107,9 @@ def new_term(course: Course, names: tuple[str, ...], seed: int | None) -> int:
 @of_course
 def forget(course: Course) -> int:
     """Delete archived terms, and the names with them."""
-    from .term import forget
+    from .term import purge
 
-    gone = forget(course)
+    gone = purge(course)
     print("\n".join(f"deleted {folder.name}" for folder in gone) or "there is no archived term")
     return 0
 
@@ -119,7 +119,7 @@ def forget(course: Course) -> int:
 @of_course
 def export_course(course: Course, to: Path) -> int:
     """Write a repository for students, and a private one."""
-    from .repositories import export_course
+    from .student_bundle import export_course
 
     student, private = export_course(course, to)
     print(f"for students, without answers: {student}\nprivate, everything: {private}")

@@ -16,12 +16,11 @@ from pathlib import Path
 from ..course.layout import Course
 from ..errors import LabkitError
 from .attempts import Seen, adopt, attempts, counts, install, keep
-from .downloads import File, in_exchange, in_zip, open_zip
 from .each import Failed, for_student
 from .enrol import settle
-from .identity import places
-from .lms import Known, alone, known_all_term, remember
-from .platforms import Named
+from .exchange import in_exchange
+from .identity import all_lms_users, alone, places, remember
+from .platforms import File, LmsUser, Named, in_zip, open_zip
 from .results import digest
 from .roster import Roster, read_roster
 
@@ -96,7 +95,7 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
     roster = read_roster(course)
     for sentence in settle(course, roster):
         yield Taken("", "", sentence, fine=False)
-    known = known_all_term(course)
+    known = all_lms_users(course)
     handed_in: list[_HandedIn] = []
     for file in files:
         named = _whose(file, roster)
@@ -136,7 +135,7 @@ def _whose(file: File, roster: Roster) -> Named | str:
     return f"not taken; it is of {people}; the roster does not say which"
 
 
-def _is_called_so(who: Known, roster: Roster) -> bool:
+def _is_called_so(who: LmsUser, roster: Roster) -> bool:
     """Whether the roster has this user of Canvas, under this name."""
     names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
     return _letters(who.name) in map(_letters, names)
@@ -146,7 +145,7 @@ def _letters(name: str) -> str:
     return "".join(c for c in name.casefold() if c.isalnum())
 
 
-def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
+def _namesakes(people: Iterable[LmsUser]) -> Iterator[Taken]:
     called = Counter(one.name for one in people if one.system == "moodle")
     for name, count in called.items():
         if count > 1:
@@ -154,7 +153,7 @@ def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
 
 
 def _known_by_name(
-    assignment: str, people: Mapping[str, Known], known: Mapping[str, Mapping[str, Known]]
+    assignment: str, people: Mapping[str, LmsUser], known: Mapping[str, Mapping[str, LmsUser]]
 ) -> Iterator[Taken]:
     """Who is taken for somebody of an earlier assignment by name alone, which people can change.
 

@@ -16,9 +16,10 @@ from pathlib import Path
 from ..course.layout import Course
 from ..errors import LabkitError
 from .attempts import move
+from .class_list import Entry, read_list
 from .clean import safe_name
-from .identity import places
-from .lms import Known, alone, known, known_all_term, remember
+from .identity import all_lms_users, alone, lms_users, places, remember
+from .platforms import LmsUser
 from .roster import (
     FILE,
     Roster,
@@ -28,7 +29,6 @@ from .roster import (
     save_roster,
     tell_gradebook,
 )
-from .student_list import Entry, read_list
 
 _Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number")
@@ -51,7 +51,7 @@ class Enrolled:
 
 
 def enrol(
-    roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, Known]]
+    roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> Enrolled:
     """Take a list into the roster.
 
@@ -124,7 +124,7 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         )
     with alone(course):
         before = read_roster(course)
-        done = enrol(before, entries, known_all_term(course))
+        done = enrol(before, entries, all_lms_users(course))
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
         left = settle(course, done.roster)
@@ -155,7 +155,7 @@ def settle(course: Course, roster: Roster) -> list[str]:
         What a person should look at, a sentence each.
     """
     left: list[str] = []
-    collected = known_all_term(course)
+    collected = all_lms_users(course)
     for assignment, people in collected.items():
         found = places(people.values(), assignment, collected, roster, ())
         moved = {
@@ -174,8 +174,8 @@ def keep_numbers(
     Returns:
         What a person should look at, a sentence each.
     """
-    mine = {s.id: Known("moodle", e.participant, s.name) for e, s in rows if e.participant}
-    before = {one.key: folder for folder, one in known(course, assignment).items()}
+    mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
+    before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
     left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
     remember(course, assignment, mine)
     return [sentence for sentence in left if sentence]
@@ -243,7 +243,7 @@ def _find(
 
 
 def _folders(
-    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, Known]]
+    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> dict[str, str]:
     """A folder for each new student: the one of their earlier work, or a new one."""
     used: dict[str, Counter[str]] = {id: Counter() for id in new}

@@ -35,7 +35,8 @@ from .clean import clean_line
 from .each import Failed
 from .engines import is_name, plain_name, students
 from .gradebook import automatic, open_gradebook
-from .lms import Known, known
+from .identity import lms_users
+from .platforms import LmsUser
 from .results import Result
 from .roster import Student, read_roster
 from .standing import grade_again, standing
@@ -74,7 +75,7 @@ class Row:
     raw: float | None
     penalty: float
     points: float
-    known: Known | None = None
+    known: LmsUser | None = None
     missing: str = ""
     remark: str = ""
     person: Student | None = None
@@ -115,7 +116,7 @@ class Row:
 
 def rows(course: Course, assignment: str) -> Iterator[Row]:
     """Everybody who handed in, was graded or is in the gradebook, in order of name."""
-    by_platform, handed_in = known(course, assignment), set(students(course, assignment))
+    by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
     roster = read_roster(course)
     stand = {one.student: one for one in standing(course, assignment)}
     full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)

@@ -19,10 +19,10 @@ from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 from .each import Failed, for_student
 from .engines import nbgrader_api
 from .results import Bundle, Result, write
-from .written import as_text, in_release_form, release_source, with_verdicts
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
@@ -96,6 +96,89 @@ def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
             said = {c.name: c.manual_comment for n in submission.notebooks for c in n.comments}
             found[str(submission.student.id)] = {k: v for k, v in said.items() if v}
     return found
+
+
+def migrate(course: Course, assignment: str, source: Any) -> list[str]:
+    """Bring the gradebook's cells into line with a new release, where some have handed in.
+
+    nbgrader's ``SaveCells`` refuses such a release, "Cannot add or remove cells for notebook ...
+    because there are submissions associated with it", rather than lose marks.  Here the cells that
+    are new get their rows, empty ones in every submission, and those that are gone lose theirs; a
+    mark or a comment that somebody wrote by hand is never lost.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        source: The new release's notebook, with its metadata.
+
+    Returns:
+        The questions that are new to those who have handed in; none where nobody has.
+
+    Raises:
+        LabkitError: A question would go that somebody has marked or commented on by hand.
+    """
+    from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell
+
+    cells = {
+        about["grade_id"]: (cell, about)
+        for cell in source.cells
+        if (about := cell.metadata.get("nbgrader"))
+    }
+    graded = {name: pair for name, pair in cells.items() if pair[1]["grade"]}
+    solved = {name for name, pair in cells.items() if pair[1]["solution"]}
+    with open_gradebook(course) as book:
+        try:
+            notebook = book.find_notebook(assignment, assignment)
+        except MissingEntry:
+            return []
+        if not notebook.submissions:
+            return []
+        gone = [c for c in notebook.grade_cells if c.name not in graded]
+        gone += [c for c in notebook.solution_cells if c.name not in solved]
+        _keep_what_was_written(gone)
+        for cell in gone:
+            for row in [*cell.grades, *cell.comments]:
+                book.db.delete(row)
+            book.db.delete(cell)
+        for cell in notebook.source_cells:
+            if cell.name not in cells:
+                book.db.delete(cell)
+        new = sorted(set(graded) - {c.name for c in notebook.grade_cells})
+        for name in new:
+            cell, about = graded[name]
+            points = float(about["points"])
+            kind = cell.cell_type
+            add = GradeCell(name=name, notebook=notebook, max_score=points, cell_type=kind)
+            _add(book.db, add, notebook.submissions)
+        for name in solved - {c.name for c in notebook.solution_cells}:
+            _add(book.db, SolutionCell(name=name, notebook=notebook), notebook.submissions)
+        for name in set(cells) - {c.name for c in notebook.source_cells}:
+            kind = cells[name][0].cell_type
+            book.db.add(SourceCell(name=name, notebook=notebook, cell_type=kind))
+        book.db.commit()
+    return [name.removesuffix("-check") for name in new]
+
+
+def _add(db: Any, cell: Any, submissions: Iterable[Any]) -> None:
+    """A cell, with an empty row for it in every submission."""
+    from nbgrader.api import Comment, Grade, GradeCell
+
+    db.add(cell)
+    db.flush()
+    row = Grade if isinstance(cell, GradeCell) else Comment
+    db.add_all([row(cell_id=cell.id, notebook=submission) for submission in submissions])
+
+
+def _keep_what_was_written(gone: Iterable[Any]) -> None:
+    for cell in gone:
+        marked = [g for g in cell.grades if g.manual_score is not None or g.extra_credit]
+        said = [c for c in cell.comments if c.manual_comment]
+        if marked or said:
+            name = cell.name.removesuffix("-check")
+            raise LabkitError(
+                f"{name} would go, with {len(marked) + len(said)} marks or comments given by hand; "
+                "keep the question and give it 0 points"
+            )
 
 
 @contextmanager

@@ -147,7 +147,7 @@ def test_what_everybody_writes_is_shown(show):
 
 
 def test_html_of_a_table_is_kept():
-    """Known elements stay and unknown ones are text; bytes are taken as well."""
+    """LmsUser elements stay and unknown ones are text; bytes are taken as well."""
     shown = clean(b"<table><tr><td>1</td></tr></table><script>x</script>")
     assert "<td>1</td>" in shown and shown.endswith("&lt;script&gt;x&lt;/script&gt;")
 

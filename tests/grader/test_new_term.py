@@ -12,8 +12,8 @@ from labkit.course.layout import PUBLIC_SEED, Course
 from labkit.course.release import FORBIDDEN
 from labkit.errors import UnknownName
 from labkit.grader import term
-from labkit.grader.repositories import export_course
 from labkit.grader.results import Bundle
+from labkit.grader.student_bundle import export_course
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -59,7 +59,7 @@ def test_the_next_term_archives_the_names_and_forgets_them(course):
     folder = term.archive(course)
     assert not course.submitted.exists()
     assert (folder / "submitted" / "ada").is_dir()
-    assert term.forget(course) == [folder]
+    assert term.purge(course) == [folder]
     assert not folder.exists()
 
 

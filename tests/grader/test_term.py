@@ -19,7 +19,7 @@ from labkit.grader.engines import students
 from labkit.grader.export import LAYOUTS, Row, as_csv, left_out, rows
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
-from labkit.grader.lms import Known
+from labkit.grader.platforms import LmsUser
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.regrade import accept, moves
 from labkit.grader.results import Results
@@ -194,7 +194,7 @@ def test_look_alikes(term):
 
 def test_canvas_layout():
     """Canvas' five columns in its order, full marks below, students by Canvas' own number."""
-    canvas = row("hoppergrace-7", known=Known("canvas", "7", "hoppergrace"))
+    canvas = row("hoppergrace-7", known=LmsUser("canvas", "7", "hoppergrace"))
     table = LAYOUTS["canvas"]("Paths (4711)", [canvas, row("ada", lms="42", first="A", last="L")])
     assert table[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Paths (4711)"]
     assert "Points Possible" in table[1][0]
@@ -206,7 +206,7 @@ def test_canvas_layout():
 
 def test_moodle_layouts():
     """The gradebook knows users by address, the worksheet by the number of the download."""
-    moodle = row("Ada-Lovelace", known=Known("moodle", "101", "Ada Lovelace"))
+    moodle = row("Ada-Lovelace", known=LmsUser("moodle", "101", "Ada Lovelace"))
     table = LAYOUTS["moodle-worksheet"]("Paths", [moodle, row("carl")])
     assert {"Identifier", "Grade", "Last modified (grade)"} <= set(table[0])
     assert table[1:] == [["Participant 101", "Ada Lovelace", 1.0, 2.0, ""]]

@@ -9,7 +9,7 @@ import zipfile
 import pytest
 from handmade import ROOT
 
-from labkit.grader.handout import student_bundle
+from labkit.grader.student_bundle import student_bundle
 
 ALONE = """
 import sys
