@@ -1,7 +1,8 @@
-"""Commands on the course: release, hand out, begin and end a term, judge the checks."""
+"""Commands before grading: the machine, the term, what students get, who they are, what came in."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -167,4 +168,78 @@ def report_card(
     return int(any(row.failures for row in card.rows))
 
 
-COMMANDS = (release, student_bundle, new_term, forget, export_course, report_card)
+@verb("import participants.csv")
+@click.argument("action", type=click.Choice(["import"]), metavar="import")
+@click.argument("file", type=PATH, metavar="FILE.csv")
+@click.option(
+    "--assignment",
+    metavar="NAME",
+    help="The file is Moodle's grading worksheet of it, which says whose each number is.",
+)
+@of_course
+def students(course: Course, action: str, file: Path, assignment: str | None) -> int:
+    """Take a list of students into the roster.
+
+    The list is Moodle's, Canvas's or any table with a line for each student.
+
+    Exit code: 0 if the list was taken, 1 if work of somebody is in two folders (named at the end),
+    2 if the list was not taken.
+    """
+    from .enrol import import_list
+
+    taken = import_list(course, file, assignment)
+    print("\n".join(taken.told))
+    for sentence in (*taken.left, *taken.alike):
+        print(sentence, file=sys.stderr)
+    return 1 if taken.left else 0
+
+
+@verb("01_paths moodle.zip")
+@of_assignment
+@click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
+@click.option(
+    "--unverified",
+    is_flag=True,
+    help="From the exchange, also take what users handed in whom this machine does not know.",
+)
+def collect(course: Course, assignment: str, sources: tuple[Path, ...], unverified: bool) -> int:
+    """Take downloads from Moodle, Canvas or the exchange.
+
+    The exchange is nbgrader's; give its inbound folder. Nothing that was handed in is lost: all of
+    it is under attempts/.
+
+    Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
+    (named at the end), 2 if nothing could be done.
+    """
+    from .collect import collect
+
+    doubtful = []
+    try:
+        for source in sources:
+            for taken in collect(course, assignment, source, unverified=unverified):
+                if taken.fine:
+                    print(taken, flush=True)
+                else:
+                    doubtful.append(taken)
+    finally:
+        for taken in doubtful:
+            print(taken, file=sys.stderr)
+    return 1 if doubtful else 0
+
+
+@verb("")
+def doctor() -> int:
+    """Say what this machine lacks, and how to get it."""
+    from .doctor import examine
+
+    bad = False
+    for finding in examine():
+        print(finding, flush=True)
+        bad |= finding.needed and not finding.fine
+    return 1 if bad else 0
+
+
+COMMANDS = (
+    *(doctor, new_term, release, student_bundle, students, collect),
+    *(report_card, export_course, forget),
+)

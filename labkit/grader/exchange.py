@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import os
 import pwd
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
 from ..course.layout import Course
 from .clean import clean_line
+from .each import Failed, for_student
 from .platforms import File, LmsUser, Named, person
 from .sandbox.limits import Limits
 from .submission import read_file
@@ -122,25 +123,32 @@ def read_secret(folder: Path) -> bytes | None:
     return read_file(path, _LARGEST) if path.exists() or path.is_symlink() else None
 
 
-def for_exchange(course: Course, assignment: str, page: Path) -> bool:
-    """Lay beside a student's page what ``nbgrader release_feedback`` asks for.
+def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list[bool | Failed]:
+    """Lay beside students' pages what ``nbgrader release_feedback`` asks for.
 
     Args:
         course: The course.
         assignment: Which.
-        page: ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
+        pages: ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
 
     Returns:
-        Whether the submission came through the exchange.
+        For each, whether the submission came through the exchange; or what failed.
     """
-    folder = course.submitted / page.parents[1].name / assignment
-    secret = read_secret(folder)
-    if secret is not None:
-        (page.parent / SECRET).write_bytes(secret)
-        stamp = folder / TIMESTAMP
-        when = read_file(stamp, _LARGEST) if stamp.exists() else b""
-        (page.parent / TIMESTAMP).write_bytes(when)
-    return secret is not None
+
+    def lay(page: Path, submitted: Path) -> bool:
+        secret = read_secret(submitted)
+        if secret is not None:
+            (page.parent / SECRET).write_bytes(secret)
+            stamp = submitted / TIMESTAMP
+            when = read_file(stamp, _LARGEST) if stamp.exists() else b""
+            (page.parent / TIMESTAMP).write_bytes(when)
+        return secret is not None
+
+    of = {page: page.parents[1].name for page in pages}
+    return [
+        for_student(student, partial(lay, page, course.submitted / student / assignment))
+        for page, student in of.items()
+    ]
 
 
 def read_time(text: str) -> datetime | None:

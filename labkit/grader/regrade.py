@@ -82,3 +82,16 @@ def accept(
 
     accepted = [move.after for move in moved if lower or move.by >= 0]
     return [for_student(result.student, partial(keep, result)) for result in accepted]
+
+
+def summary(moved: Sequence[Move]) -> Iterator[str]:
+    """Whose mark moves and how many there are, a sentence each."""
+    for move in sorted(moved, key=lambda m: m.by):
+        if move.by or move.before is None:
+            yield str(move)
+    changed = sum(bool(m.by) for m in moved)
+    yield f"{changed} of {len(moved)} marks move, {sum(m.by < 0 for m in moved)} of them down"
+    before = {m.before.points for m in moved if m.before} - {m.after.points for m in moved}
+    if before:
+        full = ", ".join(f"{points:g}" for points in sorted(before))
+        yield f"full marks were {full} and are {moved[0].after.points:g} now"

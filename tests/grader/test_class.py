@@ -21,8 +21,8 @@ from labkit.__main__ import main
 from labkit.grader import gradebook
 from labkit.grader.batch import Graded, How, common_failures, grade_class, in_shard
 from labkit.grader.engines import grade_with_nbgrader, students
-from labkit.grader.export import rows
 from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.marks import marks_of
 from labkit.grader.results import Results
 from tests.synthetic import differences, make_class
 
@@ -286,7 +286,7 @@ def test_late_rules_and_timestamps(part):
     with open_gradebook(part) as book:
         assert book.find_submission(NAME, late).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
-    marks = {row.student: (row.raw, row.score) for row in rows(part, NAME)}
+    marks = {row.student: (row.raw, row.score) for row in marks_of(part, NAME)}
     assert marks[late] == (20.0, 0.0)
     assert all(raw == score for student, (raw, score) in marks.items() if student != late)
 

@@ -7,7 +7,8 @@ import io
 
 import pytest
 
-from labkit.grader.export import LAYOUTS, Row, as_csv, left_out
+from labkit.grader.export import LAYOUTS, as_csv, left_out
+from labkit.grader.marks import Mark
 from labkit.grader.platforms import LmsUser
 from labkit.grader.roster import Student
 
@@ -16,7 +17,7 @@ ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")
 
 def row(student="ada", known=None, person=None, email="", first="", last=""):
     who = (student, first, last, email, "", "", "")
-    return Row(*who, {}, 1.0, 0.0, 2.0, known=known, person=person)
+    return Mark(*who, {}, 1.0, 0.0, 2.0, user=known, person=person)
 
 
 def table(layout, *marks):

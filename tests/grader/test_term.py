@@ -16,9 +16,10 @@ from labkit.course.serialize import encode
 from labkit.grader.batch import Graded, How, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.engines import students
-from labkit.grader.export import LAYOUTS, Row, as_csv, left_out, rows
+from labkit.grader.export import LAYOUTS, as_csv, left_out
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
+from labkit.grader.marks import Mark, marks_of
 from labkit.grader.platforms import LmsUser
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.regrade import accept, moves
@@ -113,7 +114,7 @@ def test_feedback_lies_where_nbgrader_looks(term, capsys):
 
 def test_tables(term, capsys):
     """Every layout has a row for each student and the gradebook's scores."""
-    marks = list(rows(term, NAME))
+    marks = list(marks_of(term, NAME))
     scores = {r.student: r.score for r in Results(term, NAME)}
     assert {r.student: r.score for r in marks} == scores
     for layout, extra in (("nbgrader", 1), ("questions", 2), ("canvas", 2), ("moodle", 1)):
@@ -128,7 +129,7 @@ def test_tables(term, capsys):
 
 def test_nothing_becomes_a_formula():
     """A name that a spreadsheet would run is written as text."""
-    row = Row("=1+1", "@a", "+b", "-c", "1", "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0)
+    row = Mark("=1+1", "@a", "+b", "-c", "1", "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0)
     for layout in LAYOUTS.values():
         for cells in csv.reader(io.StringIO(as_csv(layout("x", [row])))):
             assert not [c for c in cells if c[:1] in set("=+@")]
@@ -218,4 +219,4 @@ def test_moodle_layouts():
 
 
 def row(student, *, first="", last="", email="", lms="", known=None):
-    return Row(student, first, last, email, lms, "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0, known)
+    return Mark(student, first, last, email, lms, "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0, known)

@@ -16,9 +16,10 @@ from labkit.grader.class_report import report
 from labkit.grader.collect import collect
 from labkit.grader.each import Failed, Failures
 from labkit.grader.engines import students
-from labkit.grader.export import LAYOUTS, as_csv, rows
+from labkit.grader.export import LAYOUTS, as_csv
 from labkit.grader.feedback import write_feedback
 from labkit.grader.gradebook import comments, record
+from labkit.grader.marks import marks_of
 from labkit.grader.results import write
 from labkit.grader.standing import standing
 
@@ -73,7 +74,7 @@ def rehearse(
     problems = {p.name: p for p in stage.problems(name)}
     write(stage.root / "report.md", report(name, results, problems, str))
     yield clock.says(f"class report: report.md, {len(list(common_failures(results)))} to doubt")
-    marks = list(rows(stage, name))
+    marks = list(marks_of(stage, name))
     failures.add("no mark", (Failed(row.student, row.missing) for row in marks if row.missing))
     for layout in LAYOUTS_TO_TRY:
         write(stage.root / f"marks-{layout}.csv", as_csv(LAYOUTS[layout](name, marks)))
