@@ -18,13 +18,15 @@ reads.
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Annotated
+
+import msgspec
 
 from ..course.layout import Course
 from ..errors import LabkitError
@@ -54,7 +56,7 @@ class Seen:
         collected: When it was taken, in ISO 8601.
     """
 
-    when: datetime
+    when: Annotated[datetime, msgspec.Meta(tz=True)]
     origin: str
     number: str
     file: str
@@ -74,6 +76,15 @@ class Attempt:
     """
 
     path: Path
+    sha256: str
+    seen: tuple[Seen, ...]
+
+
+@dataclass(frozen=True)
+class _Record:
+    """What ``attempt.json`` holds."""
+
+    file: str
     sha256: str
     seen: tuple[Seen, ...]
 
@@ -148,10 +159,9 @@ def keep(
     if secret is not None and seen.when >= newest:
         _put(before.path.parent / SECRET, secret)
     if all((x.when, x.origin, x.file) != (seen.when, seen.origin, seen.file) for x in before.seen):
-        about = [asdict(x) | {"when": str(x.when)} for x in (*before.seen, seen)]
-        record = {"file": before.path.name, "sha256": sha256, "seen": about}
-        text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
-        write(before.path.parent / _RECORD, text)
+        record = _Record(before.path.name, sha256, (*before.seen, seen))
+        text = msgspec.json.format(msgspec.json.encode(record), indent=1).decode()
+        write(before.path.parent / _RECORD, text + "\n")
     return sha256 not in there
 
 
@@ -256,14 +266,12 @@ def _rank(seen: Seen, assignment: str) -> tuple[bool, int, str]:
 
 def _read(path: Path) -> Attempt:
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-        seen = [x | {"when": datetime.fromisoformat(x["when"])} for x in record["seen"]]
-        file = path.with_name(record["file"])
-        return Attempt(file, record["sha256"], tuple(Seen(**x) for x in seen))
-    except (ValueError, TypeError, KeyError, AttributeError):
+        record = msgspec.json.decode(path.read_bytes(), type=_Record)
+    except msgspec.DecodeError:
         raise LabkitError(
             f"{path} is damaged; restore it, or move its folder out of {FOLDER}/ and collect again"
         ) from None
+    return Attempt(path.with_name(record.file), record.sha256, record.seen)
 
 
 def _text(path: Path) -> str:

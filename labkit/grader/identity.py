@@ -12,13 +12,14 @@ folder.  Git ignores the file, and it goes with the term.
 from __future__ import annotations
 
 import fcntl
-import json
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import chain, count
+
+import msgspec
 
 from ..course.layout import Course
 from ..errors import LabkitError
@@ -52,18 +53,15 @@ def all_lms_users(course: Course) -> dict[str, dict[str, LmsUser]]:
     """
     path = course.root / FILE
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        return {
-            assignment: {folder: _user(**about) for folder, about in people.items()}
-            for assignment, people in data.items()
-        }
+        data = msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, LmsUser]])
     except FileNotFoundError:
         return {}
-    except (ValueError, TypeError, AttributeError):
+    except msgspec.DecodeError:
         raise LabkitError(
             f"{path} is damaged; restore it from a backup, or move it away and collect the "
             "downloads again, which writes it anew"
         ) from None
+    return {x: {folder: _cleaned(one) for folder, one in y.items()} for x, y in data.items()}
 
 
 def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> None:
@@ -74,18 +72,16 @@ def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> N
     """
     if not found:
         return
-    data = all_lms_users(course)
-    mine = data.get(assignment, {})
+    known = all_lms_users(course)
+    mine = known.get(assignment, {})
     now = {one.key for one in found.values()}
     kept = {folder: one for folder, one in mine.items() if one.key not in now}
     for folder, one in found.items():
         if one.system != "exchange" or folder not in kept:  # a platform's number is needed later
             kept[folder] = one
     if kept != mine:
-        data[assignment] = kept
-        plain = {name: {k: asdict(v) for k, v in people.items()} for name, people in data.items()}
-        text = json.dumps(plain, indent=1, ensure_ascii=False, sort_keys=True)
-        write(course.root / FILE, text + "\n")
+        data = msgspec.json.encode(known | {assignment: kept}, order="sorted")
+        write(course.root / FILE, msgspec.json.format(data, indent=1).decode() + "\n")
 
 
 @contextmanager
@@ -105,13 +101,11 @@ def alone(course: Course) -> Iterator[None]:
         yield
 
 
-def _user(system: str, number: str, name: str) -> LmsUser:
+def _cleaned(user: LmsUser) -> LmsUser:
     """One entry; of those that an older labkit read greedily, the name is the first person's."""
-    if not all(isinstance(x, str) for x in (system, number, name)):
-        raise TypeError
-    greedy = _READ_GREEDILY.match(name) if system == "moodle" else None
-    name, number = (greedy[1], greedy[2]) if greedy else (name, number)
-    return LmsUser(clean_line(system), clean_line(number), clean_line(name))
+    greedy = _READ_GREEDILY.match(user.name) if user.system == "moodle" else None
+    number, name = (greedy[2], greedy[1]) if greedy else (user.number, user.name)
+    return LmsUser(*map(clean_line, (user.system, number, name)))
 
 
 @dataclass(frozen=True)
