@@ -31,7 +31,7 @@ import msgspec
 from ..course.layout import Course
 from ..errors import LabkitError
 from .clean import safe_name
-from .exchange import SECRET, TIMESTAMP, read_secret, read_time
+from .exchange import SECRET, TIMESTAMP, read_secret, read_stamp, read_time
 from .results import digest, write
 from .sandbox.limits import Limits
 from .submission import read_file
@@ -193,7 +193,7 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
             known = digest(data) in ours
         if not known:
             new = digest(data) not in ours
-            stated = read_time(_text(folder / TIMESTAMP)) if new else None
+            stated = read_time(read_stamp(folder)) if new else None
             when = stated or datetime.fromtimestamp(int(path.stat().st_mtime), UTC)
             seen = Seen(when, BY_HAND, "", path.name, exact=stated is not None, collected=now)
             keep(course, student, assignment, data, seen, read_secret(folder) if new else None)
@@ -272,10 +272,6 @@ def _read(path: Path) -> Attempt:
             f"{path} is damaged; restore it, or move its folder out of {FOLDER}/ and collect again"
         ) from None
     return Attempt(path.with_name(record.file), record.sha256, record.seen)
-
-
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8", errors="replace")[:200] if path.is_file() else ""
 
 
 def _put(path: Path, data: bytes) -> None:

@@ -151,6 +151,15 @@ def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list
     ]
 
 
+def read_stamp(folder: Path) -> str:
+    """What the file beside a submission says of its time; empty where there is none."""
+    path = folder / TIMESTAMP
+    if path.is_symlink() or not path.is_file():
+        return ""
+    with path.open(encoding="utf-8", errors="replace") as file:
+        return file.read(200).strip()
+
+
 def read_time(text: str) -> datetime | None:
     """A time as nbgrader writes it, in UTC if it does not say; None if it is no time."""
     from dateutil.parser import parse

@@ -22,6 +22,7 @@ from ..errors import LabkitError
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 from .each import Failed, for_student
 from .engines import nbgrader_api
+from .exchange import read_stamp, read_time
 from .results import Bundle, Result, write
 
 
@@ -231,16 +232,10 @@ def quiet_database() -> Iterator[None]:
 
 def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
     """When a submission came in, as whoever collected it says; and a note if that is unreadable."""
-    from dateutil.parser import parse
-
-    path = course.submitted / result.student / result.assignment / "timestamp.txt"
-    if path.is_symlink() or not path.is_file() or path.stat().st_size > 200:
-        return None, ""
-    text = path.read_text(encoding="utf-8", errors="replace").strip()
-    try:
-        return parse(text), ""
-    except (ValueError, OverflowError):
-        return None, f"timestamp.txt says {text[:40]!r}, which is no time; counted as in time"
+    text = read_stamp(course.submitted / result.student / result.assignment)
+    when = read_time(text)
+    bad = f"timestamp.txt says {text[:40]!r}, which is not a time; counted as in time"
+    return when, bad if text and when is None else ""
 
 
 def _write_scores(submission: Any, result: Result) -> Iterator[str]:
