@@ -14,11 +14,13 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib import rc_context
+from matplotlib import rc_context, rc_params_from_file
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
+
+from .pages import TEMPLATES
 
 SIZE = (6.4, 2.8)
 """Inches; the page scales it to its width."""
@@ -26,30 +28,10 @@ PLAIN = (1e-3, 1e6)
 """Numbers of this size are drawn as they are."""
 LEAST = 1e-300
 """What is smaller is drawn as 0."""
-COLOURS = {"text": "#000001", "grid": "#000002", "no": "#000003", "tip": "#000004"}
-"""Variables of ``feedback.css``, each by the colour that stands for it in Matplotlib."""
-_VARIABLES = {colour: f"var(--{name})" for name, colour in COLOURS.items()}
-_STYLE: Any = {
-    "svg.fonttype": "none",
-    "font.size": 11.0,
-    "axes.edgecolor": COLOURS["grid"],
-    "axes.labelcolor": COLOURS["text"],
-    "axes.titlecolor": COLOURS["text"],
-    "axes.titlesize": 11.0,
-    "axes.grid": True,
-    "axes.grid.axis": "y",
-    "axes.axisbelow": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.spines.left": False,
-    "grid.color": COLOURS["grid"],
-    "text.color": COLOURS["text"],
-    "xtick.color": COLOURS["grid"],
-    "ytick.color": COLOURS["grid"],
-    "xtick.labelcolor": COLOURS["text"],
-    "ytick.labelcolor": COLOURS["text"],
-    "ytick.major.size": 0.0,
-}
+TEXT, GRID, NO, TIP = "#000001", "#000002", "#000003", "#000004"
+"""Colours that stand for variables of ``feedback.css``."""
+_VARIABLES = {TEXT: "var(--text)", GRID: "var(--grid)", NO: "var(--no)", TIP: "var(--tip)"}
+_STYLE = rc_params_from_file(TEMPLATES / "figure.mplstyle", use_default_template=False)
 _SVG = "http://www.w3.org/2000/svg"
 _GROUP = f"{{{_SVG}}}g"
 _LEFT_OUT = {f"{{{_SVG}}}{name}" for name in ("metadata", "style", "clipPath")}
@@ -74,9 +56,9 @@ def curve(
     with rc_context(_STYLE):
         figure, axes = _axes()
         values, unit = _scaled(y, limit)
-        axes.plot(np.asarray(t, dtype=float), values[:-1], color=COLOURS["no"], linewidth=2.0)
+        axes.plot(np.asarray(t, dtype=float), values[:-1], color=NO, linewidth=2.0)
         if np.isfinite(values[-1]):
-            axes.axhline(values[-1], color=COLOURS["text"], linestyle=(0, (6, 4)), linewidth=1.2)
+            axes.axhline(values[-1], color=TEXT, linestyle=(0, (6, 4)), linewidth=1.2)
         axes.set_ylim(bottom=float(np.nanmin(values, initial=0.0)))
         axes.set_title(labels[1] + unit, loc="left")
         axes.set_xlabel(labels[0], loc="right")
@@ -90,10 +72,10 @@ def side_by_side(expected: ArrayLike, given: ArrayLike, alt: str) -> Markup:
         values, unit = _scaled(np.stack([np.asarray(expected), np.asarray(given)]), None)
         wanted, came = values[:-1].reshape(2, -1)
         number = np.arange(1, len(wanted) + 1)
-        axes.vlines(number, wanted, came, colors=COLOURS["grid"], linewidth=1.0)
-        ring: Any = {"markerfacecolor": "none", "markeredgecolor": COLOURS["tip"]}
+        axes.vlines(number, wanted, came, colors=GRID, linewidth=1.0)
+        ring: Any = {"markerfacecolor": "none", "markeredgecolor": TIP}
         axes.plot(number, wanted, "o", markersize=9.0, markeredgewidth=1.5, **ring)
-        axes.plot(number, came, "x", markersize=7.0, markeredgewidth=2.0, color=COLOURS["no"])
+        axes.plot(number, came, "x", markersize=7.0, markeredgewidth=2.0, color=NO)
         axes.xaxis.set_major_locator(MaxNLocator(6, integer=True, min_n_ticks=1))
         axes.set_xlim(0.5, max(len(number), 1) + 0.5)
         axes.set_title(unit.strip(), loc="left")

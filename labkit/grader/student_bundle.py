@@ -17,7 +17,7 @@ from pathlib import Path
 from ..course.layout import Course
 from ..course.release import FORBIDDEN
 from ..errors import LabkitError
-from .pages import render
+from .pages import TEMPLATES, render
 
 STUDENT_TOOLS = ("environment.yml", "find_python.sh", "need.sh")
 """What ``.ci/start.sh`` calls."""
@@ -32,13 +32,6 @@ FOR_STUDENTS = (
     "constraints.txt",
     "pyproject.toml",
 )
-
-README = """\
-# Trajectory tracking with Baxter: the notebooks
-
-On Linux (x86-64) with Python 3.11 type `sh start.sh`: it makes `.venv`, the first time only, and
-opens Jupyter on `assignments/`. Begin with the lowest number.
-"""
 
 
 def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
@@ -119,7 +112,7 @@ def export_course(course: Course, to: Path) -> tuple[Path, Path]:
         if name.startswith(FOR_STUDENTS) and not name.startswith(f"{GRADER}/"):
             _copy(course.root / name, student / name)
         _copy(course.root / name, private / name)
-    (student / "README.md").write_text(README, encoding="utf-8")
+    shutil.copy(TEMPLATES / "student_readme.md", student / "README.md")
     _copy(course.root / ".ci/start.sh", student / "start.sh")
     for path in student.rglob("*.ipynb"):
         text = path.read_text(encoding="utf-8")
