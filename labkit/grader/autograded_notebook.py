@@ -20,7 +20,7 @@ from .results import Result
 
 
 def in_release_form(source: Notebook, result: Result) -> Notebook:
-    """The release's cells with the student's answers in them, his own cells where they stood.
+    """The release's cells with the student's answers in them, and the student's own cells.
 
     Args:
         source: The release, from nbgrader's source folder.

@@ -106,7 +106,7 @@ def read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     try:
         rows = [(reader.line_num, [person(cell) for cell in row]) for row in reader]
     except csv.Error as error:
-        raise LabkitError(f"{path}, line {reader.line_num}: {error}; mend the table") from None
+        raise LabkitError(f"{path}, line {reader.line_num}: {error}; correct the table") from None
     (_, heads), *others = rows or [(0, [])]
     return heads, others
 

@@ -54,7 +54,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     Each NAME is an assignment such as 01_paths; without one, all are made.
     """
     from ..course.release import release
-    from .term import said_of, seed_for
+    from .term import public_warning, seed_for
 
     seeds = set()
     for name in names or course.names():
@@ -62,7 +62,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
         used = seed_for(course, name) if seed is None else seed
         print(release(course, name, used), flush=True)
         seeds.add(used)
-    for warning in filter(None, map(said_of, seeds)):
+    for warning in filter(None, map(public_warning, seeds)):
         print(warning)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
     return 0

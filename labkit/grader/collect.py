@@ -45,12 +45,8 @@ class Taken:
         return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
-@dataclass(frozen=True)
-class _HandedIn:
-    """A file with its one owner."""
-
-    file: File
-    named: Named
+_HandedIn = tuple[File, Named]
+"""A file, and the one reading of its name that is right."""
 
 
 def collect(
@@ -102,22 +98,21 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
         if isinstance(named, str):
             yield Taken("", file.label, named, fine=False)
         else:
-            handed_in.append(_HandedIn(file, named))
-    people = {one.named.who.key: one.named.who for one in handed_in}
+            handed_in.append((file, named))
+    people = {named.who.key: named.who for _, named in handed_in}
     there = [path.name for path in course.submitted.glob("*")]
     found = places(people.values(), assignment, known, roster, there)
+    by_folder = {place.folder: people[key] for key, place in found.items()}
     if not roster.students:
         yield from _namesakes(people.values())
-        yield from _known_by_name(
-            assignment, {place.folder: people[key] for key, place in found.items()}, known
-        )
+        yield from _known_by_name(assignment, by_folder, known)
     for place in found.values():
         if place.doubt:
             yield Taken(place.folder, "", place.doubt, fine=False)
-    remember(course, assignment, {place.folder: people[key] for key, place in found.items()})
+    remember(course, assignment, by_folder)
     by_student: dict[str, list[_HandedIn]] = {}
-    for one in handed_in:
-        by_student.setdefault(found[one.named.who.key].folder, []).append(one)
+    for file, named in handed_in:
+        by_student.setdefault(found[named.who.key].folder, []).append((file, named))
     for student, mine in sorted(by_student.items()):
         yield from _keep(course, assignment, student, mine)
 
@@ -180,11 +175,10 @@ def _keep(
     course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     """Keep one student's notebooks, and let the right one count."""
-    notebooks = [one for one in mine if not _no_notebook(one.named)]
-    for one in mine:
-        if one not in notebooks:
-            says = f"not taken; {_no_notebook(one.named)}"
-            yield Taken(student, one.named.file, says, fine=bool(notebooks))
+    notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
+    for _, named in mine:
+        if says := _no_notebook(named):
+            yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
     done = for_student(
         student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
     )
@@ -208,10 +202,9 @@ def _keep_notebooks(
     now = str(datetime.now(UTC))
     adopt(course, student, assignment, now)
     before = counts(attempts(course, student, assignment), assignment)
-    shown = max((one.file.when for one in notebooks), default=datetime.now(UTC))
+    shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
     kept: list[tuple[Seen, str, bool]] = []
-    for one in notebooks:
-        file, named = one.file, one.named
+    for file, named in notebooks:
         try:
             data, secret = file.read(), file.secret()
         except LabkitError as error:

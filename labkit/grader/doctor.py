@@ -42,7 +42,7 @@ class Finding:
     Attributes:
         what: It.
         fine: Whether it is as it should be.
-        says: What was found, or the line that mends it.
+        says: What was found, or the command that repairs it.
         needed: Whether grading refuses without it.
     """
 
@@ -62,8 +62,8 @@ def examine() -> Iterator[Finding]:
     says = platform.python_version() if fine else "PyBullet's newest wheels are for Python 3.11"
     yield Finding("Python", fine, says)
     missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
-    mend = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
-    yield Finding("instructor's packages", not missing, mend if missing else "there")
+    says = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
+    yield Finding("instructor's packages", not missing, says if missing else "installed")
     program = shutil.which("bwrap")
     yield Finding("bubblewrap", program is not None, program or f"missing; {_install()}")
     fine = seccomp.supported()

@@ -232,7 +232,7 @@ def _find(
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
         raise LabkitError(
-            f"line {entry.line} could be {people} of the roster; mend the list, or "
+            f"line {entry.line} could be {people} of the roster; correct the list, or "
             "course_private/roster.csv"
         )
     name = same_name(entry.name)

@@ -161,7 +161,7 @@ def read_stamp(folder: Path) -> str:
 
 
 def read_time(text: str) -> datetime | None:
-    """A time as nbgrader writes it, in UTC if it does not say; None if it is no time."""
+    """A time as nbgrader writes it, in UTC if it does not say; None if it is not a time."""
     from dateutil.parser import parse
 
     try:

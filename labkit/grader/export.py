@@ -103,7 +103,7 @@ def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
 
 
 def left_out(layout: str, marks: Sequence[Mark]) -> str:
-    """Whom a platform will not know by a table, in a sentence; empty if it knows all."""
+    """Whom a platform cannot match by a table, in a sentence; "" if it can match everybody."""
     once = _participants(marks)
     ways: dict[str, Callable[[Mark], str]] = {
         "canvas": lambda r: r.canvas or r.id_number or r.login,
@@ -115,7 +115,7 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
     way = ways[layout]
     lost = [r.student for r in marks if not way(r) or _cell(way(r), True) != way(r)]
     some = ", ".join(lost[:5]) + (", ..." if len(lost) > 5 else "")
-    return f"{len(lost)} of {len(marks)} cannot be told by this table: {some}" if lost else ""
+    return f"{len(lost)} of {len(marks)} cannot be matched by this table: {some}" if lost else ""
 
 
 LAYOUTS: dict[str, Callable[[str, Sequence[Mark]], list[list[Any]]]] = {

@@ -208,7 +208,7 @@ def open_gradebook(course: Course) -> Iterator[Any]:
                 raise
     except OperationalError as error:
         raise LabkitError(
-            f"gradebook.db: {error.orig}; mend that and type the same again"
+            f"gradebook.db: {error.orig}; correct that and type the same again"
         ) from None
     except DatabaseError as error:
         raise _damaged(error.orig) from None

@@ -1,7 +1,7 @@
 """The roster: who is in the class, and how platforms know them.
 
 It stands in ``course_private/roster.csv``, which git ignores, with the columns of nbgrader's own
-list of students and two more; a person can read and mend it.  It goes with the term.
+list of students and two more; a person can read and edit it.  It goes with the term.
 """
 
 from __future__ import annotations
@@ -161,6 +161,6 @@ def tell_gradebook(course: Course, roster: Roster) -> None:
 
 def _damaged(path: object, why: str) -> LabkitError:
     return LabkitError(
-        f"{path} is damaged: {why}; mend it, or move it away and type: "
+        f"{path} is damaged: {why}; correct it, or move it away and type: "
         "labkit students import FILE.csv"
     )

@@ -101,7 +101,7 @@ def export_course(course: Course, to: Path) -> tuple[Path, Path]:
         The students' folder and the private one.
 
     Raises:
-        LabkitError: The folder is there already, this is no git checkout, or an answer would have
+        LabkitError: The folder exists already, this is not a git checkout, or an answer would have
             leaked.
     """
     if to.exists():
@@ -126,7 +126,7 @@ def _tracked(root: Path) -> list[str]:
     command = ["git", "-C", str(root), "ls-files", "-z"]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode:
-        raise LabkitError(f"{root} is no git checkout: {done.stderr.strip()}")
+        raise LabkitError(f"{root} is not a git checkout: {done.stderr.strip()}")
     return [name for name in done.stdout.split("\0") if name and (root / name).is_file()]
 
 

@@ -57,8 +57,8 @@ def seed_for(course: Course, assignment: str) -> int:
     return seed
 
 
-def said_of(seed: int) -> str:
-    """What to say of cases that are made with a seed; nothing if it is no public one."""
+def public_warning(seed: int) -> str:
+    """What to say of cases that are made with a seed; "" if it is not the public one."""
     if seed != PUBLIC_SEED:
         return ""
     return (

@@ -74,7 +74,7 @@ def test_what_columns_hold(tmp_path):
         ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
         ("PK\x03\x04", "is not a text; save the spreadsheet as CSV"),
         ("name,login\nLovelace, Ada,ada\n", "line 2 has 3 cells and the first line has 2"),
-        ('name,login\n"Ada,ada\n', "unexpected end of data; mend the table"),
+        ('name,login\n"Ada,ada\n', "unexpected end of data; correct the table"),
         ("name,email\n,a@x\n", "line 2 has neither a name nor a login"),
     ],
 )
