@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
-from . import Outcome, margins
+from . import margins
 from .layout import Course
 from .marking import mark
 from .problem import Problem
-from .remembered import remembering
+from .verdict import Outcome
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question, its name, or "assignment/name" where two assignments ask it."""
@@ -139,7 +139,7 @@ def _row(
     mistakes: Sequence[Callable[..., Any]],
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
-    questions = remembering([problem.question(seed + k) for k in range(DRAWS)])
+    questions = margins.remembering([problem.question(seed + k) for k in range(DRAWS)])
     own = {w.name: w.function for w in problem.wrong}
     wrong = own | _labelled("from outside: ", mistakes)
     right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])

@@ -18,6 +18,7 @@ from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
 from ..course.layout import Course
+from ..course.notebook import is_check, question_of
 from ..errors import LabkitError
 from .each import Failed, for_student
 from .engines import nbgrader_api
@@ -82,10 +83,10 @@ def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -
 
 def automatic(result: Result, cell: str) -> float | None:
     """The automatic score of a cell of the gradebook; None for one that is marked by hand."""
-    if not cell.endswith("-check") and not result.rejected:
+    if not is_check(cell) and not result.rejected:
         return None
-    earned = {f"{q['name']}-check": q["earned"] for q in result.questions}
-    return float(earned.get(cell, 0.0))
+    earned = {q.verdict.name: q.verdict.earned for q in result.questions}
+    return float(earned.get(question_of(cell), 0.0))
 
 
 def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:

@@ -34,11 +34,11 @@ class Move:
     def __str__(self) -> str:
         if self.before is None:
             return f"{self.after.student}: new, {self.after.score:g} of {self.after.points:g}"
-        each = {q["name"]: q["earned"] for q in self.before.questions}
+        each = {q.verdict.name: q.verdict.earned for q in self.before.questions}
         parts = [
-            f"{q['name']} {each.get(q['name'], 0.0):g} -> {q['earned']:g}"
-            for q in self.after.questions
-            if q["earned"] != each.get(q["name"], 0.0)
+            f"{v.name} {each.get(v.name, 0.0):g} -> {v.earned:g}"
+            for v in (q.verdict for q in self.after.questions)
+            if v.earned != each.get(v.name, 0.0)
         ]
         says = f" ({'; '.join(parts)})" if parts else ""
         return (

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..course.layout import PUBLIC_SEED, Course
-from ..course.release import release
 from ..errors import LabkitError
 from .batch import How, common_failures, grade_class
 from .class_report import report
@@ -19,6 +18,7 @@ from .engines import students
 from .export import LAYOUTS, as_csv, rows
 from .feedback import write_feedback
 from .gradebook import comments, record
+from .release import release
 from .results import write
 from .standing import standing
 from .synthetic import differences, make_class

@@ -10,7 +10,7 @@ import pytest
 from handmade import ROOT
 
 from labkit.course.layout import Course
-from labkit.course.release import release
+from labkit.grader.release import release
 from labkit.grader.results import Bundle
 from labkit.grader.sandbox.launch import Sandbox
 

@@ -13,11 +13,10 @@ from labkit.course import read_question
 from labkit.course.layout import Course
 from labkit.course.notebook import brief, source_notebook
 from labkit.course.problem import _none
-from labkit.course.release import FORBIDDEN, release
+from labkit.course.refusals import refusals, stand_ins
 from labkit.course.solved import inlined, solution_notebook
-from labkit.course.stand_in import stand_ins
-from labkit.course.unearned import refusals
 from labkit.errors import LabkitError
+from labkit.grader.release import FORBIDDEN, release
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
