@@ -65,7 +65,7 @@ def test_stubs_and_questions_must_match(tmp_path):
     for source, sentence in (
         ("# %%\nx = 1\n", "has 0 stubs of joint_error"),
         (stub + stub, "has 2 stubs of joint_error"),
-        (stub.replace("def joint_error", "def error"), "defines no joint_error"),
+        (stub.replace("def joint_error", "def error"), "does not define joint_error"),
         (stub.replace("    ### END SOLUTION\n", ""), "needs one region"),
     ):
         text.write_text(source)
@@ -123,7 +123,7 @@ def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, cap
     def missing(*args):
         raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
 
-    monkeypatch.setattr("labkit.course.release.release", missing)
+    monkeypatch.setattr("labkit.grader.release.release", missing)
     assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
     said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
     assert capsys.readouterr().err == said
