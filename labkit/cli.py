@@ -25,7 +25,7 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    how well the checks tell right from wrong
 """
-FOR_INSTRUCTORS = ("nbgrader", "jupytext", "msgspec", "sqlalchemy")
+FOR_INSTRUCTORS = ("nbgrader", "jupytext", "sqlalchemy")
 """Packages that a student's environment does without."""
 
 

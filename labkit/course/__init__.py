@@ -5,7 +5,8 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
-from .judges import AtMost, AtTip, Close, Gains, Response, TipTorque, Within
+from .equivalence import AtTip, Response, TipTorque
+from .judges import AtMost, Close, Gains, Within
 from .marking import fingerprint, mark
 from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed

@@ -15,7 +15,8 @@ from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
 from .advice import told
-from .judges import AtMost, Judge, numbers
+from .equivalence import Judge
+from .judges import AtMost, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict

@@ -109,35 +109,6 @@ def _unseen(question: Question) -> Iterator[str]:
             yield f"  Not tried here, and points hang on it: {test.name}."
 
 
-def brief(question: Question) -> str:
-    """What stands above a stub: the task, the points, how it is tried, what is withheld."""
-    points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
-    lines = [f"**Your turn: `{question.name}`** · {points}", "", question.asks]
-    also = list(dict.fromkeys(test.also for test in question.tests if test.also))
-    gates = [test.name for test in question.tests if not test.weight]
-    lines += ["", f"- Needed before anything counts: {'; '.join(gates)}."] if gates else [""]
-    if also:
-        lines.append(f"- Also tried when it is marked: {'; '.join(also)}.")
-    if question.withheld:
-        names = ", ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
-        lines.append(f"- Write it yourself: {names} may not be used in the answer.")
-    if question.hints:
-        lines.append(f'- Stuck? `hint("{question.name}", 1)`: free, and nobody is told.')
-    return "\n".join(lines)
-
-
-def hint(question: Question, level: int) -> str:
-    """One hint, and how to get the next; or that there is none of that number."""
-    name, hints = question.name, question.hints
-    if not isinstance(level, int) or not 1 <= level <= len(hints):
-        return wrapped(
-            f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
-            "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
-        )
-    more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
-    return wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}") + more
-
-
 def wrapped(line: str) -> str:
     """A line folded where a notebook would otherwise break it within a word."""
     margin = " " * (len(line) - len(line.lstrip()))

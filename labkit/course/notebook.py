@@ -15,7 +15,6 @@ from typing import Any
 
 from ..errors import LabkitError
 from ..formats import stamp
-from .messages import brief
 from .question import Question
 from .serialize import read_record, record_data
 from .source import look
@@ -187,6 +186,23 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     return nbformat.from_dict(
         {"cells": cells, "metadata": meta, "nbformat": 4, "nbformat_minor": 5}
     )
+
+
+def brief(question: Question) -> str:
+    """What stands above a stub: the task, the points, how it is tried, what is withheld."""
+    points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
+    lines = [f"**Your turn: `{question.name}`** · {points}", "", question.asks]
+    also = list(dict.fromkeys(test.also for test in question.tests if test.also))
+    gates = [test.name for test in question.tests if not test.weight]
+    lines += ["", f"- Needed before anything counts: {'; '.join(gates)}."] if gates else [""]
+    if also:
+        lines.append(f"- Also tried when it is marked: {'; '.join(also)}.")
+    if question.withheld:
+        names = ", ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
+        lines.append(f"- Write it yourself: {names} may not be used in the answer.")
+    if question.hints:
+        lines.append(f'- Stuck? `hint("{question.name}", 1)`: free, and nobody is told.')
+    return "\n".join(lines)
 
 
 def _check_stub(path: Path, name: str, cell: Cell) -> None:

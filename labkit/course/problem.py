@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from .judges import Close, Judge
+from .equivalence import Judge
+from .judges import Close
 from .marking import fingerprint
 from .question import Call, Case, Mistake, Question, Test
 

@@ -24,7 +24,7 @@ from ..run import run
 from ..shapes import Array
 from ..world import Thing, World
 from .calling import call
-from .judges import Judge
+from .equivalence import Judge
 from .verdict import Misconception
 
 

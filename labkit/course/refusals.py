@@ -16,7 +16,8 @@ from types import CodeType
 from typing import Any
 
 from ..control import JointTorque
-from .judges import Judge, TipTorque, Within
+from .equivalence import Judge, TipTorque
+from .judges import Within
 from .marking import fingerprint, mark, recognise
 from .notebook import Notebook
 from .problem import Problem

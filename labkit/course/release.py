@@ -6,18 +6,17 @@ room for it in the gradebook.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shutil
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import nbformat
 
 from ..errors import LabkitError
 from ..formats import stamp
+from .bundle import write_bundle
 from .layout import Course
 from .notebook import Notebook, manifest, source_notebook
 from .question import Question
@@ -84,21 +83,8 @@ def write(made: Prepared, added: Iterable[str] = ()) -> None:
     public = _checks(made)
     _write(made.course.source / made.name, made.source, public)
     _write(made.course.solution / made.name, made.solved, public)
-    path = made.course.bundle / f"{made.name}.json"
-    before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
-    late = sorted({*before.get("added", ()), *added} & set(made.questions))
-    data: dict[str, Any] = {
-        **stamp(),
-        "assignment": made.name,
-        "seed": made.seed,
-        "cells": manifest(made.source),
-        "questions": [question_data(q) for q in made.questions.values()],
-        **({"added": late} if late else {}),
-    }
-    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), sort_keys=True)
-    data["hash"] = hashlib.sha256(text.encode()).hexdigest()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(data) + "\n", encoding="utf-8")
+    cells = manifest(made.source)
+    write_bundle(made.course, made.name, made.seed, cells, made.questions, added)
 
 
 def _checks(made: Prepared) -> str:

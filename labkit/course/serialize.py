@@ -22,7 +22,7 @@ from ..log import Log
 from ..model import Model
 from ..recordings import Runner, Trials
 from ..shapes import locked
-from .judges import Judge, Ratio, TipTorque
+from .equivalence import Judge, Ratio, TipTorque
 from .question import Case, Mistake, Question, Raised, Test
 
 DATA = (

@@ -177,7 +177,17 @@ def hint(name: str, level: int = 1) -> None:
     Raises:
         UnknownName: No such question.
     """
-    print(words.hint(desk().question(name), level))
+    hints = desk().question(name).hints
+    if not isinstance(level, int) or not 1 <= level <= len(hints):
+        text = (
+            f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
+            "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
+        )
+        print(words.wrapped(text))
+        return
+    print(words.wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
+    if level < len(hints):
+        print(f'(hint("{name}", {level + 1}) says more)')
 
 
 def use(

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.verdict import Outcome
 from ..errors import LabkitError
@@ -15,7 +16,7 @@ from .each import for_student
 from .grade import hashes
 from .lock import WHOLE, alone
 from .pool import Done, Job, locally, through_dask
-from .results import Bundle, Result, Results, digest
+from .results import Result, Results, digest
 from .sandbox.limits import Limits
 from .sandbox.mounts import NoIsolation
 from .submission import Submission

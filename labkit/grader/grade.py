@@ -11,6 +11,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import Any, cast
 
+from ..course.bundle import Bundle
 from ..course.marking import Tried, all_alike, mark, not_counted, try_public
 from ..course.messages import uses
 from ..course.question import Question
@@ -20,7 +21,7 @@ from ..course.withheld import withheld_tools
 from . import seen
 from .clean import clean_data, clean_line
 from .plan import Plan, plan
-from .results import Answer, Bundle, FailedCell, Hashes, OwnCell, Result, digest, engine, versions
+from .results import Answer, FailedCell, Hashes, OwnCell, Result, digest, engine, versions
 from .sandbox.launch import Sandbox
 from .sandbox.limits import TRICKS, Limits, TextBudget
 from .sandbox.protocol import Gone, TooLate, TooMuch

@@ -17,12 +17,13 @@ from typing import Any
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.notebook import is_check, question_of
 from ..errors import LabkitError
 from .each import Failed, for_student
 from .engines import nbgrader_api
-from .results import Bundle, Result, write
+from .results import Result, write
 from .written import as_text, in_release_form, release_source, with_verdicts
 
 

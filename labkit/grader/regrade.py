@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
 from .batch import How, grade_aside
 from .each import Failed, for_student
-from .results import Bundle, Result, Results
+from .results import Result, Results
 from .submission import Submission
 
 

@@ -10,16 +10,15 @@ import platform
 import shutil
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from functools import cache, cached_property
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, TypedDict
 
 import labkit
 
-from ..course.layout import PUBLIC_SEED, Course
-from ..course.question import Question
-from ..course.serialize import read_question, read_record, record_data
+from ..course.layout import Course
+from ..course.serialize import read_record, record_data
 from ..course.verdict import Points, Verdict
 from ..errors import LabkitError
 from ..formats import check_stamp, stamp
@@ -272,55 +271,6 @@ def _not_whole(why: str) -> LabkitError:
 
 def _refuse(constant: str) -> None:
     raise ValueError(f"{constant} is not a number of JSON")
-
-
-@dataclass(frozen=True)
-class Bundle:
-    """What a release leaves for graders.
-
-    Attributes:
-        data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
-            any, the questions ``added`` when some had handed in already.
-    """
-
-    data: Mapping[str, Any]
-
-    @classmethod
-    def of(cls, course: Course, assignment: str) -> Bundle:
-        """The bundle of an assignment.
-
-        Raises:
-            LabkitError: It was not released, or its file is damaged.
-        """
-        path = course.bundle / f"{assignment}.json"
-        if not path.exists():
-            raise LabkitError(
-                f"{assignment} was not released here; type: labkit release {assignment}"
-            )
-        try:
-            data = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise LabkitError(
-                f"{path} is damaged: {error}; restore it, or type: labkit release {assignment}"
-            ) from None
-        seed = data.get("seed", PUBLIC_SEED)
-        check_stamp(data, str(path), f"type: labkit release {assignment} --seed {seed}")
-        return cls(data)
-
-    @cached_property
-    def questions(self) -> tuple[Question, ...]:
-        """Its questions, hidden cases included; read once for all submissions."""
-        return tuple(map(read_question, self.data["questions"]))
-
-    @property
-    def added(self) -> frozenset[str]:
-        """Questions that came when some had handed in already."""
-        return frozenset(self.data.get("added", ()))
-
-    @property
-    def points(self) -> float:
-        """Full marks."""
-        return float(sum(q["points"] for q in self.data["questions"]))
 
 
 def digest(data: bytes) -> str:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.marking import mark
 from ..course.notebook import grade_id
@@ -20,7 +21,7 @@ from ..course.question import Question
 from ..errors import LabkitError
 from . import synthetic_kinds
 from .inline import inline
-from .results import Bundle, write
+from .results import write
 
 Random = np.random.Generator
 

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 from handmade import hand_in
 
+from labkit.course.bundle import Bundle
 from labkit.course.verdict import Difference, Kind, Outcome, TestResult, Verdict
 from labkit.grader.grade import hashes, rejection
 from labkit.grader.gradebook import record
-from labkit.grader.results import Answer, Bundle, Result, Results
+from labkit.grader.results import Answer, Result, Results
 
 NAME = "01_paths"
 NOTEBOOK = {"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}

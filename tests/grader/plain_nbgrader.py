@@ -11,12 +11,12 @@ import zlib
 
 import nbformat
 
+from labkit.course.bundle import Bundle
 from labkit.course.notebook import check_id, grade_id
 from labkit.course.serialize import question_data
 from labkit.grader.engines import nbgrader_api
 from labkit.grader.gradebook import quiet_database
 from labkit.grader.release import generate
-from labkit.grader.results import Bundle
 
 HIDDEN = """### BEGIN HIDDEN TESTS
 import base64, json, zlib

@@ -10,6 +10,7 @@ import pytest
 from handmade import QUICK, add, cell_of, put, raw
 
 from labkit.course import Call, Loop, question_data, read_question
+from labkit.course.bundle import Bundle
 from labkit.course.judges import Close
 from labkit.course.marking import mark
 from labkit.course.messages import why
@@ -18,7 +19,7 @@ from labkit.course.source import look
 from labkit.course.verdict import Outcome
 from labkit.grader.grade import grade
 from labkit.grader.plan import imports, plan
-from labkit.grader.results import Bundle, Result
+from labkit.grader.results import Result
 from labkit.grader.sandbox import parse as cells
 
 

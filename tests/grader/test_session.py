@@ -9,7 +9,8 @@ import time
 import pytest
 from handmade import QUICK, ROOT, add, cell_of, put, raw
 
-from labkit.course.judges import MOST_COEFFICIENTS, Ratio
+from labkit.course.bundle import Bundle
+from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
 from labkit.course.layout import Course
 from labkit.course.messages import why
 from labkit.errors import OutOfRange
@@ -17,7 +18,6 @@ from labkit.grader import grade as checker
 from labkit.grader.grade import grade
 from labkit.grader.plan import imports
 from labkit.grader.release import release
-from labkit.grader.results import Bundle
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
 from labkit.grader.sandbox.remote import MOST_LOST

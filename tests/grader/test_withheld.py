@@ -8,11 +8,11 @@ import pytest
 from handmade import QUICK, add, put, raw
 from ways import WAYS, Way
 
+from labkit.course.bundle import Bundle
 from labkit.course.verdict import Outcome
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
 from labkit.grader.grade import grade
-from labkit.grader.results import Bundle
 
 pytestmark = pytest.mark.slow  # a sandbox for each way
 

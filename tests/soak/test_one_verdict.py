@@ -13,6 +13,7 @@ import pytest
 from handmade import put, raw
 
 from labkit.course import question_data
+from labkit.course.bundle import Bundle
 from labkit.course.handin import look
 from labkit.course.layout import Course
 from labkit.course.notebook import source_notebook, verdict_in
@@ -20,7 +21,6 @@ from labkit.course.withheld import find
 from labkit.grader.grade import grade
 from labkit.grader.inline import inline
 from labkit.grader.release import manifest
-from labkit.grader.results import Bundle
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 
