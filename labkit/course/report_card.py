@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
-from . import margins
 from .layout import Course
+from .margins import least, remembering
 from .marking import mark
 from .problem import Problem
 from .verdict import Outcome
@@ -139,7 +139,7 @@ def _row(
     mistakes: Sequence[Callable[..., Any]],
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
-    questions = margins.remembering([problem.question(seed + k) for k in range(DRAWS)])
+    questions = remembering([problem.question(seed + k) for k in range(DRAWS)])
     own = {w.name: w.function for w in problem.wrong}
     wrong = own | _labelled("from outside: ", mistakes)
     right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])
@@ -166,7 +166,7 @@ def _row(
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(DRAWS))
-    margin, nearest = margins.least(questions, problem, right, wrong)
+    margin, nearest = least(questions, problem, right, wrong)
     return Row(
         name,
         problem.name,

@@ -16,10 +16,10 @@ from typing import Any
 
 from ..errors import LabkitError, UnknownName
 from ..formats import check_stamp
-from . import messages as words
 from .advice import line_of
 from .calling import heard
 from .marking import Evidence, mark, not_counted, try_public
+from .messages import tell, wrapped
 from .notebook import verdict_metadata
 from .question import Question
 from .reply import Here
@@ -163,7 +163,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
     """
     question = desk().question(name)
     verdict, printed, found = desk().verdict(name, function)
-    _say(words.tell(question, verdict, printed, desk().leaning(name, function)), verdict)
+    _say(tell(question, verdict, printed, desk().leaning(name, function)), verdict)
     if verdict.mistake is not None and found is not None:
         _show(found)
     return float(verdict.earned)
@@ -183,9 +183,9 @@ def hint(name: str, level: int = 1) -> None:
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
             "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
         )
-        print(words.wrapped(text))
+        print(wrapped(text))
         return
-    print(words.wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
+    print(wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
     if level < len(hints):
         print(f'(hint("{name}", {level + 1}) says more)')
 
