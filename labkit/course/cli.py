@@ -13,7 +13,7 @@ import click
 from ..errors import LabkitError
 
 PATH = click.Path(path_type=Path)
-FOR_INSTRUCTORS = ("nbgrader", "jupytext", "msgspec", "sqlalchemy")
+FOR_INSTRUCTORS = ("nbgrader", "jupytext", "sqlalchemy")
 """Packages that a student's environment does without."""
 
 
@@ -86,8 +86,8 @@ def merge(mine: Path, new: Path, to: Path) -> int:
 
     MINE is the notebook that you worked in, NEW is the corrected one.
     """
-    from .handin import read_cells
-    from .merging import merge
+    from .handin import merge
+    from .notebook import read_cells
 
     cells, released = read_cells(mine), read_cells(new)
     if to.exists():

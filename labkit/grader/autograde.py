@@ -15,6 +15,7 @@ from typing import Any
 
 from nbgrader.preprocessors import NbGraderPreprocessor
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
 from .autograded_notebook import in_release_form, release_source, with_verdicts
@@ -22,7 +23,7 @@ from .batch import job
 from .engines import is_name
 from .lock import alone
 from .pool import Worker, result_of
-from .results import Bundle, Result, Results
+from .results import Result, Results
 from .sandbox.limits import Limits
 from .submission import Submission
 

@@ -10,10 +10,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations, islice
 from pathlib import Path
 from statistics import mean, median
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..course.messages import uses
 from ..course.problem import Problem
+from ..course.verdict import Outcome, Verdict
 from .batch import common_failures
 from .clean import clean_line
 from .pages import render
@@ -22,7 +23,10 @@ from .results import Result
 ALIKE = 0.9
 """Answers that share this much of their structure are looked at together."""
 SLOW = 30.0
-COUNTED = ("right", "wrong", "error", "not counted", "not attempted")
+COUNTED = (
+    *(Outcome.RIGHT, Outcome.WRONG, Outcome.ERROR),
+    *(Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED),
+)
 """Outcomes that have a column."""
 
 
@@ -70,10 +74,10 @@ def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], s
     count = 0
     for result in results:
         for question in result.questions:
-            if question["source"] and question["outcome"] != "not attempted":
-                path = folder / called(result.student) / f"{question['name']}.py"
+            if question.source and question.verdict.outcome is not Outcome.NOT_ATTEMPTED:
+                path = folder / called(result.student) / f"{question.verdict.name}.py"
                 path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(question["source"], encoding="utf-8", errors="replace")
+                path.write_text(question.source, encoding="utf-8", errors="replace")
                 count += 1
     return count
 
@@ -93,24 +97,20 @@ class _MistakeRow(NamedTuple):
 
 
 def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
-    answers: dict[str, list[Mapping[str, Any]]] = defaultdict(list)
+    verdicts: dict[str, list[Verdict]] = defaultdict(list)
     for result in graded:
         for question in result.questions:
-            answers[question["name"]].append(question)
-    for name, mine in answers.items():
-        count = Counter(q["outcome"] for q in mine)
-        shares = [q["earned"] / q["points"] for q in mine if q["points"]]
+            verdicts[question.verdict.name].append(question.verdict)
+    for name, mine in verdicts.items():
+        count = Counter(verdict.outcome for verdict in mine)
+        shares = [verdict.earned / verdict.points for verdict in mine if verdict.points]
         yield _QuestionRow(name, [count[x] for x in COUNTED], mean(shares) if shares else None)
 
 
 def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_MistakeRow]:
-    made = (
-        (question["name"], question["mistake"]["name"])
-        for result in graded
-        for question in result.questions
-        if question["mistake"]
-    )
-    for (name, mistake), count in Counter(made).most_common():
+    verdicts = (question.verdict for result in graded for question in result.questions)
+    made = Counter((v.name, v.mistake.name) for v in verdicts if v.mistake)
+    for (name, mistake), count in made.most_common():
         known = problems[name].wrong if name in problems else ()
         say = next((w.lecture or w.says for w in known if w.name == mistake), "")
         yield _MistakeRow(count, name, mistake, say)
@@ -119,7 +119,8 @@ def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iter
 def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
     """What each student used that a question withholds, and what in a cell needs a look."""
     for result in graded:
-        used = [f"{q['name']} {uses(q['withheld'])}" for q in result.questions if q.get("withheld")]
+        verdicts = [question.verdict for question in result.questions]
+        used = [f"{v.name} {uses(v.withheld)}" for v in verdicts if v.withheld]
         if used:
             yield f"{who[result.student]}, not counted: {'; '.join(used)}"
         if result.tricks:
@@ -132,9 +133,9 @@ def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
     common: Counter[tuple[str, frozenset[str]]] = Counter()
     for result in graded:
         shapes[result.student] = {
-            q["name"]: _shape(q["source"])
+            q.verdict.name: _shape(q.source)
             for q in result.questions
-            if q["outcome"] != "not attempted"
+            if q.verdict.outcome is not Outcome.NOT_ATTEMPTED
         }
         common.update((name, shape) for name, shape in shapes[result.student].items() if shape)
     rare = max(2, len(graded) // 20)

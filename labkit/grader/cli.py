@@ -6,7 +6,6 @@ import json
 import os
 import sys
 from collections.abc import Iterable
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -14,6 +13,7 @@ import click
 
 from ..course.cli import PATH, verb
 from ..course.layout import Course
+from ..course.serialize import record_data
 from ..errors import LabkitError
 from .cli_course import of_assignment
 from .each import Failures
@@ -71,7 +71,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             graded.append(one.result)
             says = f" ({one.says})" if one.says else ""
             line = f"[{number}/{len(who)}] {one.result}{says}"
-            print(json.dumps(asdict(one.result)) if as_json else line, flush=True)
+            print(json.dumps(record_data(one.result)) if as_json else line, flush=True)
         said = sys.stderr if as_json else sys.stdout
         if how["shard"] == WHOLE:
             recorded = record(course, assignment, graded)

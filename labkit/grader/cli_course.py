@@ -53,7 +53,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
 
     Each NAME is an assignment such as 01_paths; without one, all are made.
     """
-    from ..course.release import release
+    from .release import release
     from .term import public_warning, seed_for
 
     seeds = set()

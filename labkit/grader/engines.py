@@ -1,4 +1,4 @@
-"""Engines: ways to grade a submission.  Here nbgrader's own, in one process with the tests."""
+"""nbgrader's interface to a course, and who handed in."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import logging
 import os
 import re
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,32 +14,8 @@ from .clean import clean_line
 from .each import Failed
 
 
-@dataclass(frozen=True)
-class Mark:
-    """What a student got for an assignment.
-
-    Attributes:
-        student: Whose.
-        assignment: Which.
-        score: Points, or None where grading failed.
-        points: What full marks would be.
-        says: Why it failed, if it did.
-    """
-
-    student: str
-    assignment: str
-    score: float | None
-    points: float
-    says: str = ""
-
-
-def nbgrader_api(course: Course, *, own_engine: bool = False) -> Any:
-    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says.
-
-    Args:
-        course: The course.
-        own_engine: Whether its autograde runs students' code itself, as it does unasked.
-    """
+def nbgrader_api(course: Course) -> Any:
+    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says."""
     from nbgrader.apps import NbGraderAPI
     from nbgrader.coursedir import CourseDirectory
     from traitlets.config import Config
@@ -53,9 +28,6 @@ def nbgrader_api(course: Course, *, own_engine: bool = False) -> Any:
     settings = Config(config)
     settings.CourseDirectory.root = str(course.root)
     settings.Application.log_level = logging.CRITICAL
-    if own_engine:
-        for steps in ("sanitize_preprocessors", "autograde_preprocessors"):
-            settings.Autograde.pop(steps, None)
     return NbGraderAPI(CourseDirectory(config=settings), config=settings)
 
 
@@ -89,30 +61,6 @@ def plain_name(student: str) -> str:
 
 def _folders(course: Course, name: str) -> list[str]:
     return sorted(p.name for p in course.submitted.glob("*") if os.path.lexists(p / name))
-
-
-def grade_with_nbgrader(course: Course, name: str, student: str) -> Mark:
-    """Grade one submission with nbgrader's own engine.
-
-    The student's code runs in one process with the hidden cases: it can read and change them.
-    """
-    from .gradebook import quiet_database
-
-    api = nbgrader_api(course, own_engine=True)
-    with quiet_database():
-        return _autograde(api, name, student)
-
-
-def _autograde(api: Any, name: str, student: str) -> Mark:
-    result = api.autograde(name, student, force=True, create=True)
-    with api.gradebook as book:
-        try:
-            submission = book.find_submission(name, student)
-        except Exception:
-            return Mark(student, name, None, 0.0, reason(result))
-        if not result["success"]:
-            return Mark(student, name, None, submission.max_score, reason(result))
-        return Mark(student, name, submission.score, submission.max_score)
 
 
 def reason(result: dict[str, Any]) -> str:

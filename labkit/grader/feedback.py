@@ -20,7 +20,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ..course.layout import Course
-from ..course.messages import HEADS
+from ..course.messages import GATE, HEADS, why
 from ..metrics import SETTLED
 from ..replay import recorded_html, viewer_scripts
 from ..replay.motion import unpack
@@ -69,13 +69,15 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
     Returns:
         HTML in one piece, readable without its scripts.
     """
-    replays = any(run["motion"] for q in result.questions for run in q.get("runs", ()))
+    replays = any(run["motion"] for q in result.questions for run in q.runs)
     style, scripts = _file("feedback.css"), _scripts() if replays else ()
     return render(
         "feedback.html.j2",
         result=result,
         comments=defaultdict(str, comments or {}),
-        heads={outcome.value: words for outcome, words in HEADS.items()},
+        heads=HEADS,
+        gate=GATE,
+        why=why,
         style=style,
         scripts=scripts,
         policy=_policy(style, scripts),

@@ -17,13 +17,15 @@ from typing import Any
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
+from ..course.notebook import about, grade_id, is_check, question_of
 from ..errors import LabkitError
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 from .each import Failed, for_student
 from .engines import nbgrader_api
 from .exchange import read_stamp, read_time
-from .results import Bundle, Result, write
+from .results import Result, write
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
@@ -83,10 +85,10 @@ def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -
 
 def automatic(result: Result, cell: str) -> float | None:
     """The automatic score of a cell of the gradebook; None for one that is marked by hand."""
-    if not cell.endswith("-check") and not result.rejected:
+    if not is_check(cell) and not result.rejected:
         return None
-    earned = {f"{q['name']}-check": q["earned"] for q in result.questions}
-    return float(earned.get(cell, 0.0))
+    earned = {q.verdict.name: q.verdict.earned for q in result.questions}
+    return float(earned.get(question_of(cell), 0.0))
 
 
 def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
@@ -120,11 +122,7 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
     """
     from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell
 
-    cells = {
-        about["grade_id"]: (cell, about)
-        for cell in source.cells
-        if (about := cell.metadata.get("nbgrader"))
-    }
+    cells = {grade_id(cell): (cell, about(cell)) for cell in source.cells if grade_id(cell)}
     graded = {name: pair for name, pair in cells.items() if pair[1]["grade"]}
     solved = {name for name, pair in cells.items() if pair[1]["solution"]}
     with open_gradebook(course) as book:
@@ -146,8 +144,8 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
                 book.db.delete(cell)
         new = sorted(set(graded) - {c.name for c in notebook.grade_cells})
         for name in new:
-            cell, about = graded[name]
-            points = float(about["points"])
+            cell, known = graded[name]
+            points = float(known["points"])
             kind = cell.cell_type
             add = GradeCell(name=name, notebook=notebook, max_score=points, cell_type=kind)
             _add(book.db, add, notebook.submissions)
@@ -157,7 +155,7 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
             kind = cells[name][0].cell_type
             book.db.add(SourceCell(name=name, notebook=notebook, cell_type=kind))
         book.db.commit()
-    return [name.removesuffix("-check") for name in new]
+    return [question_of(name) for name in new]
 
 
 def _add(db: Any, cell: Any, submissions: Iterable[Any]) -> None:
@@ -175,7 +173,7 @@ def _keep_what_was_written(gone: Iterable[Any]) -> None:
         marked = [g for g in cell.grades if g.manual_score is not None or g.extra_credit]
         said = [c for c in cell.comments if c.manual_comment]
         if marked or said:
-            name = cell.name.removesuffix("-check")
+            name = question_of(cell.name)
             raise LabkitError(
                 f"{name} would go, with {len(marked) + len(said)} marks or comments given by hand; "
                 "keep the question and give it 0 points"

@@ -15,9 +15,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..course.layout import Course
-from ..course.release import FORBIDDEN
 from ..errors import LabkitError
 from .pages import TEMPLATES, render
+from .release import FORBIDDEN
 
 STUDENT_TOOLS = ("environment.yml", "find_python.sh", "need.sh")
 """What ``.ci/start.sh`` calls."""

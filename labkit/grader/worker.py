@@ -17,10 +17,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from ..course.bundle import Bundle
 from ..errors import LabkitError
 from .grade import grade, rejection
 from .plan import imports
-from .results import Bundle, Result
+from .results import Result
 from .sandbox.cgroup import WORKER, Group
 from .sandbox.launch import Broken, Sandbox
 from .sandbox.limits import Limits, slowness

@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from labkit.course.layout import PUBLIC_SEED, Course
-from labkit.course.marking import Verdict, mark
+from labkit.course.marking import mark
 from labkit.course.problem import Problem
+from labkit.course.verdict import Verdict
 from labkit.recordings import DATA
 
 ROOT = Path(__file__).parents[2]
@@ -133,7 +134,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         before = recorded()
         for maker in MAKERS:
             subprocess.run([sys.executable, "-m", *maker], cwd=ROOT, check=True)
-        subprocess.run([sys.executable, "-m", "labkit.cli", "release"], cwd=ROOT, check=True)
+        subprocess.run([sys.executable, "-m", "labkit", "release"], cwd=ROOT, check=True)
         print("Recorded numbers, relative to the largest in their file:")
         print(*distances(before, recorded()), sep="\n")
     names = tuple(options.names) or course.names()

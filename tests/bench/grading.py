@@ -1,13 +1,18 @@
 """How quick grading is: its overhead per submission, and against nbgrader's own engine."""
 
 import shutil
+import sys
 import time
+from pathlib import Path
 
-from labkit.course.release import release
 from labkit.grader.batch import How, grade_class, workers
-from labkit.grader.engines import grade_with_nbgrader, students
+from labkit.grader.engines import students
+from labkit.grader.release import release
 
 from .courses import fresh_course
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "grader"))
+from plain_nbgrader import grade_with_nbgrader, pack_hidden
 
 ASSIGNMENT = "00_warmup"
 COUNT = 100
@@ -19,6 +24,7 @@ SERIAL = 10
 def submit_solved(course):
     """Hand in the solved notebook so many times."""
     release(course, ASSIGNMENT, seed=1)
+    pack_hidden(course, ASSIGNMENT)
     solved = course.solution / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
     for k in range(COUNT):
         place = course.submitted / f"s{k:03d}" / ASSIGNMENT
@@ -42,7 +48,7 @@ def measure():
         isolated = (time.perf_counter() - start) / COUNT
         scores = {getattr(getattr(one, "result", None), "score", None) for one in done}
         start = time.perf_counter()
-        theirs = {grade_with_nbgrader(course, ASSIGNMENT, s).score for s in who[:SERIAL]}
+        theirs = {grade_with_nbgrader(course, ASSIGNMENT, s) for s in who[:SERIAL]}
         serial = (time.perf_counter() - start) / SERIAL
     if scores != theirs or len(scores) != 1:
         raise RuntimeError(f"the engines disagree: {scores} and {theirs}")

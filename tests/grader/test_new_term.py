@@ -8,11 +8,11 @@ from courses import copied
 
 from labkit import LabkitError
 from labkit.__main__ import main
+from labkit.course.bundle import Bundle
 from labkit.course.layout import PUBLIC_SEED, Course
-from labkit.course.release import FORBIDDEN
 from labkit.errors import UnknownName
 from labkit.grader import term
-from labkit.grader.results import Bundle
+from labkit.grader.release import FORBIDDEN
 from labkit.grader.student_bundle import export_course
 
 ROOT = Path(__file__).resolve().parents[2]

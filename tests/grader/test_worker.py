@@ -16,9 +16,9 @@ import pytest
 from handmade import QUICK, ROOT, add, hand_in
 from processes import below, child, wait_until_gone
 
+from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError
 from labkit.grader.batch import job
-from labkit.grader.results import Bundle
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.submission import Submission, read_file
 from labkit.grader.worker import Desk, _answer

@@ -15,12 +15,14 @@ from typing import Any
 
 import numpy as np
 
+from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
 from labkit.course.marking import mark
+from labkit.course.notebook import grade_id
 from labkit.course.problem import Problem
 from labkit.course.question import Question
 from labkit.errors import LabkitError
-from labkit.grader.results import Bundle, Results, write
+from labkit.grader.results import Results, write
 
 from . import kinds
 from .inline import inline
@@ -57,7 +59,7 @@ class Draft:
     def place(self, question: str) -> int:
         """Where a question's answer stands."""
         for k, cell in enumerate(self.cells):
-            if cell["metadata"].get("nbgrader", {}).get("grade_id") == question:
+            if grade_id(cell) == question:
                 return k
         raise LabkitError(f"no cell for {question}")
 
@@ -166,7 +168,7 @@ def differences(course: Course, assignment: str) -> Iterator[str]:
         if result is None:
             yield f"{student} ({deserved['kind']}) has no result"
             continue
-        got = {q["name"]: q["earned"] for q in result.questions}
+        got = {q.verdict.name: q.verdict.earned for q in result.questions}
         if bool(result.rejected) != deserved["rejected"]:
             yield f"{student} ({deserved['kind']}): {result.rejected or 'not rejected'}"
         elif not deserved["rejected"]:

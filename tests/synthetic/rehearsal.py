@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from labkit.course.layout import PUBLIC_SEED, Course
-from labkit.course.release import release
 from labkit.errors import LabkitError
 from labkit.grader.batch import How, common_failures, grade_class
 from labkit.grader.class_report import report
@@ -20,6 +19,7 @@ from labkit.grader.export import LAYOUTS, as_csv
 from labkit.grader.feedback import write_feedback
 from labkit.grader.gradebook import comments, record
 from labkit.grader.marks import marks_of
+from labkit.grader.release import release
 from labkit.grader.results import write
 from labkit.grader.standing import standing
 
