@@ -19,14 +19,14 @@ from .sandbox.limits import Limits
 from .sandbox.mounts import NoIsolation
 from .submission import Submission
 
-LOUD = 0.3
+FAILURE_RATE_ALERT = 0.3
 """Above this share of a class that fails one test, the run says so; is the test to blame?"""
-FEW = 5
+MIN_ATTEMPTS = 5
 """Of fewer who tried nothing is concluded."""
 
 
 @dataclass(frozen=True)
-class How:
+class GradeOptions:
     """How to grade.
 
     Attributes:
@@ -47,7 +47,7 @@ class How:
 
 
 @dataclass(frozen=True)
-class Graded:
+class GradedSubmission:
     """One submission, graded.
 
     Attributes:
@@ -70,15 +70,15 @@ def in_shard(student: str, shard: tuple[int, int]) -> bool:
 
 
 def grade_class(
-    course: Course, assignment: str, students: Sequence[str], how: How
-) -> Iterator[Graded | LabkitError]:
+    course: Course, assignment: str, students: Sequence[str], options: GradeOptions
+) -> Iterator[GradedSubmission | LabkitError]:
     """Grade submissions, each into a result file of its own.
 
     Args:
         course: The course.
         assignment: Which.
         students: Whose.
-        how: In which way.
+        options: How to grade.
 
     Yields:
         Each result, or what failed.
@@ -89,17 +89,17 @@ def grade_class(
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
-    with alone(results.folder, how.shard):
+    with alone(results.folder, options.shard):
         for student in students:
-            if not in_shard(student, how.shard):
+            if not in_shard(student, options.shard):
                 continue
             submission = Submission.of(course, assignment, student)
-            before = None if how.again else _still_good(results, submission, bundle, how)
+            before = None if options.again else _still_good(results, submission, bundle, options)
             if before is not None:
-                yield Graded(before, "as before")
+                yield GradedSubmission(before, "as before")
                 continue
             todo.append(submission)
-        for result in grade_aside(course, bundle, todo, how):
+        for result in grade_aside(course, bundle, todo, options):
             yield (
                 result
                 if isinstance(result, LabkitError)
@@ -108,7 +108,7 @@ def grade_class(
 
 
 def grade_aside(
-    course: Course, bundle: Bundle, submissions: Iterable[Submission], how: How
+    course: Course, bundle: Bundle, submissions: Iterable[Submission], options: GradeOptions
 ) -> Iterator[Result | LabkitError]:
     """Grade submissions and keep nothing of it.
 
@@ -118,11 +118,11 @@ def grade_aside(
     Raises:
         NoIsolation: There is no sandbox to be had.
     """
-    jobs = [job(course, bundle, submission, how.limits) for submission in submissions]
+    jobs = [job(course, bundle, submission, options.limits) for submission in submissions]
     done: Iterator[Done] = (
-        through_dask(jobs, how.dask, isolated=how.isolated)
-        if how.dask
-        else locally(jobs, how.jobs, isolated=how.isolated)
+        through_dask(jobs, options.dask, isolated=options.isolated)
+        if options.dask
+        else locally(jobs, options.jobs, isolated=options.isolated)
     )
     for text in done:
         if isinstance(text, NoIsolation):
@@ -137,14 +137,16 @@ def _read(text: str) -> Result | LabkitError:
         return error
 
 
-def _keep(results: Results, result: Result) -> Graded:
+def _keep(results: Results, result: Result) -> GradedSubmission:
     """Let a result count, unless a mark would fall that nobody has earned worse."""
     before = results.get(result.student)
     same = before is not None and before.hashes["submission"] == result.hashes["submission"]
     if before is not None and same and result.score < before.score:
-        return Graded(before, f"kept; it would be {result.score:g} now, see `labkit regrade`")
+        return GradedSubmission(
+            before, f"kept; it would be {result.score:g} now, see `labkit regrade`"
+        )
     results.keep(result)
-    return Graded(result, "" if before is None else f"was {before.score:g}")
+    return GradedSubmission(result, "" if before is None else f"was {before.score:g}")
 
 
 def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) -> Job:
@@ -178,7 +180,7 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
                 failed[question["name"], one["name"]] += one["outcome"] != "right"
     loud: dict[str, list[tuple[int, str]]] = {}
     for (name, test), count in failed.most_common():
-        if count > LOUD * tried[name] and tried[name] >= FEW:
+        if count > FAILURE_RATE_ALERT * tried[name] and tried[name] >= MIN_ATTEMPTS:
             loud.setdefault(name, []).append((count, test))
     for name, ((count, test), *others) in loud.items():
         more = f"; so it is with {len(others)} more of its tests" if others else ""
@@ -189,11 +191,11 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
 
 
 def _still_good(
-    results: Results, submission: Submission, bundle: Bundle, how: How
+    results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
     """A result that came from these very contents."""
     before = results.get(submission.student)
-    if before is None or (how.isolated and before.isolation.startswith("none")):
+    if before is None or (options.isolated and before.isolation.startswith("none")):
         return None
-    data, _, _ = submission.read(how.limits.notebook)
+    data, _, _ = submission.read(options.limits.notebook)
     return before if before.hashes == hashes(data, bundle) else None

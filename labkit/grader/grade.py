@@ -21,7 +21,7 @@ from .plan import Plan, plan
 from .results import Bundle, Result, digest, engine, versions
 from .sandbox.launch import Sandbox
 from .sandbox.limits import TRICKS, Limits, TextBudget
-from .sandbox.protocol import Gone, TooLate, TooMuch
+from .sandbox.protocol import Disconnected, MessageTooLarge, Timeout
 from .sandbox.remote import RemoteFunction
 from .sandbox.session import Session
 
@@ -57,7 +57,7 @@ def grade(
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
     questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
     with Session(sandbox, todo, limits) as session:
-        with suppress(Gone):
+        with suppress(Disconnected):
             session.start()
         functions = [RemoteFunction(question, session) for question in questions]
         tried = [_public(function) for function in functions]
@@ -134,12 +134,12 @@ def hashes(data: bytes, bundle: Bundle) -> dict[str, str]:
 def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]] | str:
     """The cells of a notebook, read in a process of its own; or why there are none."""
     try:
-        with sandbox.enter("parse", limits, size=len(data)) as inside:
-            inside.line.end.settimeout(limits.parse)
+        with sandbox.spawn("parse", limits, size=len(data)) as inside:
+            inside.connection.socket.settimeout(limits.parse)
             with suppress(BrokenPipeError):  # an empty file is answered before it is sent
-                inside.line.end.sendall(data)
-            found = inside.line.read(limits.parse)
-    except (OSError, Gone, TooLate, TooMuch):
+                inside.connection.socket.sendall(data)
+            found = inside.connection.read(limits.parse)
+    except (OSError, Disconnected, Timeout, MessageTooLarge):
         return "the file cannot be read within the limits of time and memory"
     if "cells" not in found:
         return str(found.get("rejected", "the file cannot be read"))

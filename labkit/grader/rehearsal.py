@@ -11,7 +11,7 @@ from pathlib import Path
 from ..course.layout import PUBLIC_SEED, Course
 from ..course.release import release
 from ..errors import LabkitError
-from .batch import How, common_failures, grade_class
+from .batch import GradeOptions, common_failures, grade_class
 from .class_report import report
 from .collect import collect
 from .each import Failed, Failures
@@ -27,7 +27,7 @@ LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 
 
 def rehearse(
-    course: Course, name: str, to: Path, count: int, how: How
+    course: Course, name: str, to: Path, count: int, options: GradeOptions
 ) -> Iterator[str | LabkitError]:
     """Play a term through in a folder of its own; what is done already is not done again.
 
@@ -36,7 +36,7 @@ def rehearse(
         name: The assignment.
         to: The folder; a course is made in it.
         count: How many students.
-        how: How to grade.
+        options: GradeOptions to grade.
 
     Yields:
         What was done, a sentence each, with its time; and what failed for somebody.
@@ -59,7 +59,7 @@ def rehearse(
     )
     failures = Failures()
     who = students(stage, name)
-    graded = list(failures.sift(grade_class(stage, name, who, how), "not graded"))
+    graded = list(failures.sift(grade_class(stage, name, who, options), "not graded"))
     new = sum(one.says != "as before" for one in graded)
     yield clock.says(f"graded: {new} of {len(graded)} anew", each=new)
     results = list(failures.sift(standing(stage, name), "left out"))

@@ -108,7 +108,7 @@ def make_class(args: argparse.Namespace) -> int:
 
 def grade(args: argparse.Namespace) -> int:
     """Grade a class, and say what came of it."""
-    from .batch import How, common_failures, grade_class, workers
+    from .batch import GradeOptions, common_failures, grade_class, workers
     from .gradebook import record
     from .lock import WHOLE
     from .results import Result, Results
@@ -119,7 +119,7 @@ def grade(args: argparse.Namespace) -> int:
         if args.engine == "nbgrader":
             _with_nbgrader(here, args, who, failures)
             return failures.code
-        how = How(
+        options = GradeOptions(
             jobs=args.jobs or workers(),
             isolated=not args.unsafe_no_isolation,
             dask=args.dask,
@@ -127,7 +127,7 @@ def grade(args: argparse.Namespace) -> int:
             again=args.again,
         )
         graded: list[Result] = []
-        done = failures.sift(grade_class(here, args.name, who, how), "not graded")
+        done = failures.sift(grade_class(here, args.name, who, options), "not graded")
         for number, one in enumerate(done, start=1):
             graded.append(one.result)
             if args.json:
@@ -136,7 +136,7 @@ def grade(args: argparse.Namespace) -> int:
                 says = f" ({one.says})" if one.says else ""
                 print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)
         say = sys.stderr if args.json else sys.stdout
-        if how.shard == WHOLE:
+        if options.shard == WHOLE:
             recorded = record(here, args.name, graded)
             _tell(failures.sift(recorded, "not in the gradebook"), say)
             everybody = graded if args.student else list(Results(here, args.name))

@@ -119,7 +119,7 @@ def export(args: argparse.Namespace) -> int:
 
 def regrade(args: argparse.Namespace) -> int:
     """Say whose mark moves; without ``--diff``, let it."""
-    from .batch import How, workers
+    from .batch import GradeOptions, workers
     from .gradebook import record
     from .lock import alone
     from .regrade import accept, moves
@@ -128,7 +128,7 @@ def regrade(args: argparse.Namespace) -> int:
     here = course_with(args)
     with Failures() as failures, alone(Results(here, args.name).folder):
         who = in_part(here, args.name, args.student, failures)
-        found = moves(here, args.name, who, How(jobs=args.jobs or workers()))
+        found = moves(here, args.name, who, GradeOptions(jobs=args.jobs or workers()))
         moved = list(failures.sift(found, "not graded"))
         _tell_moves(moved)
         if not args.diff:
@@ -198,13 +198,15 @@ def collect(args: argparse.Namespace) -> int:
 
 def rehearse(args: argparse.Namespace) -> int:
     """Download, collect, grade, hand back, report, export; go on where it was stopped."""
-    from .batch import How, workers
+    from .batch import GradeOptions, workers
     from .rehearsal import rehearse as play
 
     here = course_with(args)
-    how = How(jobs=args.jobs or workers())
+    options = GradeOptions(jobs=args.jobs or workers())
     with Failures() as failures:
-        for sentence in failures.sift(play(here, args.name, args.to, args.count, how), "failed"):
+        for sentence in failures.sift(
+            play(here, args.name, args.to, args.count, options), "failed"
+        ):
             print(sentence, flush=True)
     return failures.code
 

@@ -22,7 +22,7 @@ from .grade import grade, rejection
 from .plan import imports
 from .results import Bundle, Result
 from .sandbox.cgroup import WORKER, Group
-from .sandbox.launch import Broken, Sandbox
+from .sandbox.launch import Sandbox, SandboxLost
 from .sandbox.limits import Limits, slowness
 from .sandbox.mounts import NoIsolation
 from .submission import Submission
@@ -57,7 +57,7 @@ class Desk:
                 if why:
                     return rejection(why, submission.student, bundle, sandbox.level)
                 return grade(data, submission.student, bundle, sandbox, limits, note)
-            except Broken as error:
+            except SandboxLost as error:
                 lost = str(error)
                 self.close()
         raise LabkitError(

@@ -4,7 +4,7 @@ import shutil
 import time
 
 from labkit.course.release import release
-from labkit.grader.batch import How, grade_class, workers
+from labkit.grader.batch import GradeOptions, grade_class, workers
 from labkit.grader.engines import grade_with_nbgrader, students
 
 from .courses import fresh_course
@@ -38,7 +38,7 @@ def measure():
         submit_solved(course)
         who = students(course, ASSIGNMENT)
         start = time.perf_counter()
-        done = list(grade_class(course, ASSIGNMENT, who, How(jobs=jobs)))
+        done = list(grade_class(course, ASSIGNMENT, who, GradeOptions(jobs=jobs)))
         isolated = (time.perf_counter() - start) / COUNT
         scores = {getattr(getattr(one, "result", None), "score", None) for one in done}
         start = time.perf_counter()

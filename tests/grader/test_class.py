@@ -19,7 +19,13 @@ from processes import below, child, wait_until_gone
 
 from labkit.cli import main
 from labkit.grader import gradebook
-from labkit.grader.batch import Graded, How, common_failures, grade_class, in_shard
+from labkit.grader.batch import (
+    GradedSubmission,
+    GradeOptions,
+    common_failures,
+    grade_class,
+    in_shard,
+)
 from labkit.grader.engines import grade_with_nbgrader, students
 from labkit.grader.export import rows
 from labkit.grader.gradebook import open_gradebook, record
@@ -35,8 +41,10 @@ PART = 8
 def grade_all(course, **how):
     return [
         one
-        for one in grade_class(course, NAME, students(course, NAME), How(limits=QUICK, **how))
-        if isinstance(one, Graded)
+        for one in grade_class(
+            course, NAME, students(course, NAME), GradeOptions(limits=QUICK, **how)
+        )
+        if isinstance(one, GradedSubmission)
     ]
 
 

@@ -17,14 +17,14 @@ from attacks import CLASSES
 from controls import CONTROLS, PLAIN, VICTIM, After
 from handmade import add, hand_in, nbgrader
 
-from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.engines import students
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.sandbox.limits import Limits
 
 NAME = "01_paths"
-FAST = How(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))
+FAST = GradeOptions(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))
 EVERYBODY = (*CONTROLS, VICTIM)
 
 
@@ -135,7 +135,7 @@ def grade_with_nbgrader(course):
 def grade_isolated(course):
     """Grade with the isolated engine, every student in one run."""
     done = list(grade_class(course, NAME, students(course, NAME), FAST))
-    assert all(isinstance(one, Graded) and not one.result.rejected for one in done), done
+    assert all(isinstance(one, GradedSubmission) and not one.result.rejected for one in done), done
     results = {one.result.student: one.result for one in done}
     of = {kind: results[student(kind)] for kind in EVERYBODY}
     return (

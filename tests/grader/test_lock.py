@@ -10,7 +10,7 @@ from made import NAME, handed_in
 from labkit.cli import main
 from labkit.errors import LabkitError
 from labkit.grader import lock
-from labkit.grader.batch import How, grade_class
+from labkit.grader.batch import GradeOptions, grade_class
 from labkit.grader.lock import WHOLE, alone
 
 SHARDS = [WHOLE, (1, 2), (2, 2), (1, 3)]
@@ -46,4 +46,4 @@ def test_verbs_that_grade_exclude_each_other(course, capsys, words):
         assert main([*words, NAME, "--course", str(course.root)]) == 2
         assert "another run is grading" in capsys.readouterr().err
     with alone(course.results / NAME, (2, 2)), pytest.raises(LabkitError, match="another run"):
-        next(grade_class(course, NAME, ["ada"], How()))
+        next(grade_class(course, NAME, ["ada"], GradeOptions()))

@@ -25,7 +25,7 @@ from typing import Any
 
 from . import confine, seccomp
 from . import parse as cells
-from .protocol import Gone, Line
+from .protocol import Connection, Disconnected
 
 MAGIC = "IPython.core.inputtransformer2"
 """What reads a notebook's own ``%`` and ``!`` lines."""
@@ -74,12 +74,12 @@ def main() -> None:
     _into_huge_pages()
     home = None if bare else os.open("/proc/self/ns/pid", os.O_RDONLY)
     shown = [] if bare else confine.shown_below()
-    line = Line(control)
+    line = Connection(control)
     line.send({"ready": True})
     while True:
         try:
             asked, ends = _read(control)
-        except Gone:
+        except Disconnected:
             return
         if "kill" in asked:
             _end(asked["kill"], whole=asked["whole"])
@@ -95,7 +95,7 @@ def main() -> None:
             line.send({"pid": child})
             continue
         os.dup2(nowhere, 2)
-        end = Line(socket.socket(fileno=ends[0]))
+        end = Connection(socket.socket(fileno=ends[0]))
         try:
             control.close()
             limits = asked["limits"] | {"address_space": space}
@@ -155,18 +155,18 @@ def _read(control: socket.socket) -> tuple[dict[str, Any], list[int]]:
     control.settimeout(None)
     data, ends, _, _ = socket.recv_fds(control, 65536, 1)
     if not data:
-        raise Gone("the worker is gone")
+        raise Disconnected("the worker is gone")
     message: dict[str, Any] = json.loads(data)
     return message, ends
 
 
-def _bytes(end: Line, size: int) -> bytes:
+def _bytes(end: Connection, size: int) -> bytes:
     data = bytearray()
-    end.end.settimeout(30.0)
+    end.socket.settimeout(30.0)
     while len(data) < size:
-        piece = end.end.recv(min(1 << 20, size - len(data)))
+        piece = end.socket.recv(min(1 << 20, size - len(data)))
         if not piece:
-            raise Gone("the file never came")
+            raise Disconnected("the file never came")
         data += piece
     return bytes(data)
 

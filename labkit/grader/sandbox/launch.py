@@ -20,7 +20,7 @@ from typing import Any
 from .cgroup import SANDBOX, Group
 from .limits import Limits
 from .mounts import INSTALL, NoIsolation, bare_command, bare_environment, command, environment
-from .protocol import Gone, Line, TooLate, TooMuch
+from .protocol import Connection, Disconnected, MessageTooLarge, Timeout
 
 FIRST_UID = 64000
 MOST_USERS = 1000
@@ -30,18 +30,18 @@ _ROLES = ("student", "parse")  # the ends of stdin and of stdout of the process 
 _numbers = itertools.count()
 
 
-class Broken(BaseException):
+class SandboxLost(BaseException):
     """A sandbox was lost, at its start or later; a fresh one may work.
 
     No `Exception`, so that marking never takes it for one of the student's.
     """
 
 
-class Inside:
+class SandboxProcess:
     """A process in the sandbox, the line to it, and the line to what forked it."""
 
-    def __init__(self, line: Line, parent: Line, pid: int) -> None:
-        self.line, self.parent, self.pid = line, parent, pid
+    def __init__(self, line: Connection, parent: Connection, pid: int) -> None:
+        self.connection, self.parent, self.pid = line, parent, pid
 
 
 class Sandbox:
@@ -54,7 +54,7 @@ class Sandbox:
 
     Raises:
         NoIsolation: It cannot be made here.
-        Broken: It was killed while it started.
+        SandboxLost: It was killed while it started.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class Sandbox:
         self.group = Group.make(f"{os.getpid()}-{next(_numbers)}", SANDBOX) if isolated else None
         self._log = os.memfd_create("labkit-sandbox-log")
         ends = [socket.socketpair() for _ in _ROLES]
-        self._lines = {role: Line(ours) for role, (ours, _) in zip(_ROLES, ends, strict=True)}
+        self._lines = {role: Connection(ours) for role, (ours, _) in zip(_ROLES, ends, strict=True)}
         stdin, stdout = (theirs for _, theirs in ends)
         try:
             self.process = subprocess.Popen(
@@ -98,11 +98,13 @@ class Sandbox:
         try:
             for line in self._lines.values():
                 line.read(START)
-        except (Gone, TooLate, TooMuch) as error:
+        except (Disconnected, Timeout, MessageTooLarge) as error:
             said = self._words() or str(error)
             self.close()
-            if isinstance(error, Gone) and self.process.returncode != 1:  # what failed says 1
-                raise Broken("it was killed while it started") from None
+            if (
+                isinstance(error, Disconnected) and self.process.returncode != 1
+            ):  # what failed says 1
+                raise SandboxLost("it was killed while it started") from None
             raise NoIsolation(
                 f"the sandbox did not start: {said}; `labkit doctor` says what is missing"
             ) from None
@@ -117,7 +119,7 @@ class Sandbox:
         return f"bubblewrap, {who}, no network, seccomp, limits, {group}"
 
     @contextmanager
-    def enter(self, role: str, limits: Limits, **more: Any) -> Iterator[Inside]:
+    def spawn(self, role: str, limits: Limits, **more: Any) -> Iterator[SandboxProcess]:
         """A fresh process inside, for as long as the block runs; nothing of it stays.
 
         Args:
@@ -130,12 +132,12 @@ class Sandbox:
         parent = self._lines[role]
         with theirs:
             pid = int(self._ask(parent, message, theirs)["pid"])
-        inside = Inside(Line(ours), parent, pid)
+        inside = SandboxProcess(Connection(ours), parent, pid)
         try:
             try:
-                said = inside.line.read(20.0)
-            except (Gone, TooLate, TooMuch) as error:
-                raise Broken(f"nothing could be started: {error}") from None
+                said = inside.connection.read(20.0)
+            except (Disconnected, Timeout, MessageTooLarge) as error:
+                raise SandboxLost(f"nothing could be started: {error}") from None
             if "confined" not in said:
                 raise NoIsolation(f"a sandboxed process could not be confined: {said}")
             yield inside
@@ -143,7 +145,7 @@ class Sandbox:
             ours.close()
             self.kill(inside, whole=True)
 
-    def kill(self, inside: Inside, *, whole: bool = False) -> None:
+    def kill(self, inside: SandboxProcess, *, whole: bool = False) -> None:
         """Kill a process inside and all that it started, or only what it started."""
         self._ask(inside.parent, {"kill": inside.pid, "whole": whole})
 
@@ -169,15 +171,15 @@ class Sandbox:
         self.close()
 
     def _ask(
-        self, line: Line, message: dict[str, Any], end: socket.socket | None = None
+        self, line: Connection, message: dict[str, Any], end: socket.socket | None = None
     ) -> dict[str, Any]:
         """Tell one of the first processes what to do, and take its word that it is done."""
         try:
             data = json.dumps(message).encode()
-            socket.send_fds(line.end, [data], [end.fileno()] if end else [])
+            socket.send_fds(line.socket, [data], [end.fileno()] if end else [])
             return line.read(20.0)
-        except (OSError, Gone, TooLate, TooMuch) as error:
-            raise Broken(f"{error}; it said: {self._words() or 'nothing'}") from None
+        except (OSError, Disconnected, Timeout, MessageTooLarge) as error:
+            raise SandboxLost(f"{error}; it said: {self._words() or 'nothing'}") from None
 
     def _words(self) -> str:
         """The last line that bubblewrap or the forkserver wrote, empty if there is none."""

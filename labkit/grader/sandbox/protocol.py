@@ -12,19 +12,19 @@ MOST = 2**25
 """The longest line, in bytes, where nobody asks for less."""
 
 
-class Gone(Exception):
+class Disconnected(Exception):
     """The other side closed its end."""
 
 
-class TooLate(Exception):
+class Timeout(Exception):
     """Nothing came in time."""
 
 
-class TooMuch(Exception):
+class MessageTooLarge(Exception):
     """The other side sent more than is allowed, or something that is not JSON."""
 
 
-class Line:
+class Connection:
     """One end of a conversation in lines of JSON.
 
     It trusts nothing that comes in: what is too long, too late, or not a JSON object ends in one of
@@ -32,20 +32,20 @@ class Line:
     """
 
     def __init__(self, end: socket.socket) -> None:
-        self.end = end
+        self.socket = end
         self._waiting = bytearray()
 
     def send(self, message: dict[str, Any], seconds: float = 30.0) -> None:
         """Write one message.
 
         Raises:
-            Gone: Nobody reads, or nobody has read for that long.
+            Disconnected: Nobody reads, or nobody has read for that long.
         """
-        self.end.settimeout(seconds)
+        self.socket.settimeout(seconds)
         try:
-            self.end.sendall(json.dumps(message, separators=(",", ":")).encode() + b"\n")
+            self.socket.sendall(json.dumps(message, separators=(",", ":")).encode() + b"\n")
         except OSError as error:
-            raise Gone(str(error)) from None
+            raise Disconnected(str(error)) from None
 
     def read(
         self, seconds: float | None = None, most: int = MOST, values: int = MOST
@@ -58,19 +58,19 @@ class Line:
             values: How many numbers, texts, lists and tables it may have in all.
 
         Raises:
-            Gone: There is no other side any more.
-            TooLate: It took longer than ``seconds``.
-            TooMuch: It is more than that, or not a JSON object.
+            Disconnected: There is no other side any more.
+            Timeout: It took longer than ``seconds``.
+            MessageTooLarge: It is more than that, or not a JSON object.
         """
         data = self._read_line(seconds, most)
         if data.count(b",") + data.count(b"[") + data.count(b"{") > values:
-            raise TooMuch(f"more than {values:,} values came back")
+            raise MessageTooLarge(f"more than {values:,} values came back")
         try:
             message = json.loads(data)
         except (ValueError, RecursionError):
-            raise TooMuch("what came back is not JSON") from None
+            raise MessageTooLarge("what came back is not JSON") from None
         if not isinstance(message, dict):
-            raise TooMuch("what came back is not a message")
+            raise MessageTooLarge("what came back is not a message")
         return message
 
     def _read_line(self, seconds: float | None, most: int) -> bytes:
@@ -82,22 +82,24 @@ class Line:
             if start > most:
                 break
             left = None if until is None else until - time.monotonic()
-            if left is not None and (left <= 0 or not select.select([self.end], [], [], left)[0]):
-                raise TooLate("nothing came in time")
-            self.end.settimeout(None)
+            if left is not None and (
+                left <= 0 or not select.select([self.socket], [], [], left)[0]
+            ):
+                raise Timeout("nothing came in time")
+            self.socket.settimeout(None)
             try:
-                piece = self.end.recv(65536)
+                piece = self.socket.recv(65536)
             except OSError as error:
-                raise Gone(str(error)) from None
+                raise Disconnected(str(error)) from None
             if not piece:
-                raise Gone("the other side is gone")
+                raise Disconnected("the other side is gone")
             self._waiting += piece
         if not 0 <= found <= most:
-            raise TooMuch(f"more than {most // 1000:,} kB came back")
+            raise MessageTooLarge(f"more than {most // 1000:,} kB came back")
         line = bytes(self._waiting[:found])
         del self._waiting[: found + 1]
         return line
 
     def close(self) -> None:
         """Close this end."""
-        self.end.close()
+        self.socket.close()

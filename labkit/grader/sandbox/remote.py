@@ -12,7 +12,7 @@ from ...course.question import Question
 from ...course.reply import Failed, answer
 from ...course.serialize import encode
 from ..clean import clean_line
-from .protocol import Gone, TooLate, TooMuch
+from .protocol import Disconnected, MessageTooLarge, Timeout
 from .session import Session
 
 _KNOWN = (
@@ -61,16 +61,16 @@ class RemoteFunction:
             }
             self._constant = dict(kwargs)
             return self._answer(message)
-        except TooLate:
+        except Timeout:
             self.lost += 1
             limit = self.session.limits.call
             raise Failed(
                 "TimeoutError", f"TimeoutError: it did not come back within {limit:g} s"
             ) from None
-        except TooMuch as much:
+        except MessageTooLarge as much:
             self.lost += 1
             raise Failed("TypeMismatch", str(much)) from None
-        except Gone:
+        except Disconnected:
             self.lost += 1
             raise Failed("SystemExit", "SystemExit: it ended its own process") from None
 

@@ -26,7 +26,7 @@ from labkit.course.reply import LONGEST, TimeUp, kind, reply, sentence
 from labkit.course.source import plain
 
 from . import stubs as standins
-from .protocol import Gone, Line
+from .protocol import Connection, Disconnected
 
 
 class Notebook:
@@ -70,7 +70,7 @@ class Notebook:
         if inspect.iscoroutine(found):
             asyncio.run(found)
 
-    def answer(self, line: Line, name: str) -> None:
+    def answer(self, line: Connection, name: str) -> None:
         """Answer one call after another, until told to stop."""
         kwargs: dict[str, Any] = {}
         decode = self.codec.decode
@@ -101,7 +101,7 @@ class Notebook:
 
 
 def serve(
-    line: Line,
+    line: Connection,
     codec: Any,
     withhold: Callable[..., AbstractContextManager[None]],
     limits: dict[str, Any],
@@ -114,7 +114,7 @@ def serve(
     while True:
         try:
             asked = line.read()
-        except Gone:
+        except Disconnected:
             return
         if "cell" in asked:
             result = notebook.run(

@@ -9,9 +9,9 @@ from typing import Any
 from ...course.question import Question
 from ..clean import clean_line, clean_text
 from ..plan import Plan, Step
-from .launch import Inside, Sandbox
+from .launch import Sandbox, SandboxProcess
 from .limits import REPLY, VALUES, Limits
-from .protocol import Gone, TooLate, TooMuch
+from .protocol import Disconnected, MessageTooLarge, Timeout
 
 MOST_STARTS = 6
 LEAST = 0.05
@@ -42,8 +42,8 @@ class Session:
         self.right: list[str] = []
         self._reports: dict[int, dict[str, Any]] = {}
         self._deadly: set[int] = set()
-        self._entered: AbstractContextManager[Inside] | None = None
-        self._inside: Inside | None = None
+        self._entered: AbstractContextManager[SandboxProcess] | None = None
+        self._inside: SandboxProcess | None = None
         self._asked = ""
         self._starts = 0
 
@@ -54,17 +54,17 @@ class Session:
             self._inside is None and self._starts >= MOST_STARTS
         )
 
-    def start(self) -> Inside:
+    def start(self) -> SandboxProcess:
         """Make a process in which all cells have run, unless there is one.
 
         Raises:
-            Gone: It died too often.
+            Disconnected: It died too often.
         """
         while self._inside is None:
             if self.over:
-                raise Gone("it died too often")
+                raise Disconnected("it died too often")
             self._starts += 1
-            self._entered = self.sandbox.enter("student", self.limits)
+            self._entered = self.sandbox.spawn("student", self.limits)
             self._inside = self._entered.__enter__()
             died = self._run_cells()
             if died is not None:
@@ -76,19 +76,19 @@ class Session:
         """Make a process ready to be asked; True if it is a new one.
 
         Raises:
-            Gone: It cannot be made.
+            Disconnected: It cannot be made.
         """
         if self._asked == question.name:
             return False
         inside = self.start()
         try:
             about = {"withheld": list(question.withheld), "right": self.right}
-            inside.line.send({"question": question.name, **about}, self.limits.grace)
-            if "ready" not in inside.line.read(2 * self.limits.grace, REPLY):
-                raise Gone("it did not get ready")
-        except (Gone, TooLate, TooMuch) as error:
+            inside.connection.send({"question": question.name, **about}, self.limits.grace)
+            if "ready" not in inside.connection.read(2 * self.limits.grace, REPLY):
+                raise Disconnected("it did not get ready")
+        except (Disconnected, Timeout, MessageTooLarge) as error:
             self._leave()
-            raise Gone(str(error)) from None
+            raise Disconnected(str(error)) from None
         self._asked = question.name
         return True
 
@@ -100,39 +100,39 @@ class Session:
             seconds: How long to wait at most.
 
         Raises:
-            TooLate: No answer in time; the process was killed.
-            TooMuch: What came back is no answer; likewise.
-            Gone: It died.
+            Timeout: No answer in time; the process was killed.
+            MessageTooLarge: What came back is no answer; likewise.
+            Disconnected: It died.
         """
         assert self._inside is not None
         began = time.monotonic()
         most = self.limits.call * self.limits.patience + self.limits.grace
         try:
             wait = max(0.0, min(seconds, most, self._until - began))
-            self._inside.line.send(message, wait)
-            reply = self._inside.line.read(wait, REPLY, VALUES)
-        except (TooLate, TooMuch):
+            self._inside.connection.send(message, wait)
+            reply = self._inside.connection.read(wait, REPLY, VALUES)
+        except (Timeout, MessageTooLarge):
             self._end_question()
             raise
-        except Gone:
+        except Disconnected:
             self._leave()
             raise
         finally:
             self.spent += time.monotonic() - began
         if "over" in reply:
             self._asked = ""
-            raise Gone("it died")
+            raise Disconnected("it died")
         return reply
 
     def close(self) -> None:
         """No more calls to this question."""
         if self._asked and self._inside is not None:
             try:
-                self._inside.line.send({"end": True}, self.limits.grace)
-                if "over" in self._inside.line.read(self.limits.grace, REPLY):
+                self._inside.connection.send({"end": True}, self.limits.grace)
+                if "over" in self._inside.connection.read(self.limits.grace, REPLY):
                     self._asked = ""
                     return
-            except (TooLate, TooMuch, Gone):
+            except (Timeout, MessageTooLarge, Disconnected):
                 pass
             self._end_question()
 
@@ -172,17 +172,17 @@ class Session:
         message = {"cell": step.number, "source": step.source, "answers": list(step.answers)}
         kind, error, output = "died", "", ""
         try:
-            self._inside.line.send({**message, "seconds": seconds}, wait)
-            said = self._inside.line.read(wait, REPLY)
+            self._inside.connection.send({**message, "seconds": seconds}, wait)
+            said = self._inside.connection.read(wait, REPLY)
             if said.get("ran") == step.number:
                 kind = clean_line(str(said.get("kind", "")), 60)
                 error = clean_line(str(said.get("error", "")), 400)
                 output = clean_text(str(said.get("output", ""))[: min(20_000, self._output)])
             else:
                 error = "it broke into the conversation with the grader"
-        except TooLate:
+        except Timeout:
             error = f"it was stopped after {seconds:g} s"
-        except (TooMuch, Gone):
+        except (MessageTooLarge, Disconnected):
             error = "it ended the process"
         spent = time.monotonic() - began
         self.spent += spent
@@ -198,10 +198,10 @@ class Session:
         if self._inside is None:
             return
         self.sandbox.kill(self._inside)
-        with suppress(TooLate, TooMuch, Gone):
+        with suppress(Timeout, MessageTooLarge, Disconnected):
             until = time.monotonic() + self.limits.grace
             while (left := until - time.monotonic()) > 0:
-                if "over" in self._inside.line.read(left, REPLY):
+                if "over" in self._inside.connection.read(left, REPLY):
                     return
         self._leave()
 
