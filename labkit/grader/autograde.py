@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +16,10 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 
 from ..course.layout import Course
 from ..errors import LabkitError
-from .batch import job
+from .batch import GradeOptions, grade_aside
 from .engines import is_name
 from .lock import alone
-from .pool import Worker, result_of
 from .results import Bundle, Result, Results
-from .sandbox.limits import Limits
 from .submission import Submission
 from .written import in_release_form, release_source, with_verdicts
 
@@ -92,10 +89,12 @@ def _grade(about: dict[str, Any]) -> Result:
     if result is None:
         bundle = Bundle.of(course, about["assignment"])
         submission = Submission.of(course, about["assignment"], about["student"])
-        todo = job(course, bundle, submission, Limits())
         results = Results(course, about["assignment"])
-        with alone(results.folder), closing(Worker()) as worker:
-            result = Result.read(result_of(todo, worker.ask(todo)))
-            results.keep(result)
+        with alone(results.folder):
+            (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
+            if isinstance(graded, LabkitError):
+                raise graded
+            results.keep(graded)
+        result = graded
         _known[key] = result
     return result

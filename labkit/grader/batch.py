@@ -10,13 +10,12 @@ from functools import partial
 
 from ..course.layout import Course
 from ..errors import LabkitError
-from .each import for_student
+from .each import Failed, for_student
+from .executor import Task, grade_all
 from .grade import hashes
 from .lock import WHOLE, alone
-from .pool import Done, Job, locally, through_dask
 from .results import Bundle, Result, Results, digest
 from .sandbox.limits import Limits
-from .sandbox.mounts import NoIsolation
 from .submission import Submission
 
 FAILURE_RATE_ALERT = 0.3
@@ -109,7 +108,7 @@ def grade_class(
 
 def grade_aside(
     course: Course, bundle: Bundle, submissions: Iterable[Submission], options: GradeOptions
-) -> Iterator[Result | LabkitError]:
+) -> Iterator[Result | Failed]:
     """Grade submissions and keep nothing of it.
 
     Yields:
@@ -118,23 +117,9 @@ def grade_aside(
     Raises:
         NoIsolation: There is no sandbox to be had.
     """
-    jobs = [job(course, bundle, submission, options.limits) for submission in submissions]
-    done: Iterator[Done] = (
-        through_dask(jobs, options.dask, isolated=options.isolated)
-        if options.dask
-        else locally(jobs, options.jobs, isolated=options.isolated)
-    )
-    for text in done:
-        if isinstance(text, NoIsolation):
-            raise text  # it would be so for all of them
-        yield text if isinstance(text, LabkitError) else _read(text)
-
-
-def _read(text: str) -> Result | LabkitError:
-    try:
-        return Result.read(text)
-    except LabkitError as error:
-        return error
+    key = bundle.data["hash"]
+    tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
+    return grade_all(tasks, options.jobs, options.dask)
 
 
 def _keep(results: Results, result: Result) -> GradedSubmission:
@@ -147,19 +132,6 @@ def _keep(results: Results, result: Result) -> GradedSubmission:
         )
     results.keep(result)
     return GradedSubmission(result, "" if before is None else f"was {before.score:g}")
-
-
-def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) -> Job:
-    """What a worker is told of a submission."""
-    return {
-        "student": submission.student,
-        "assignment": submission.assignment,
-        "folder": str(submission.folder),
-        "bundle": str(course.bundle / f"{submission.assignment}.json"),
-        "hash": bundle.data["hash"],
-        "hidden": [str(course.root)],
-        "limits": limits.data(),
-    }
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:
