@@ -145,7 +145,7 @@ def _write_bundle(
 
 
 def _generate(course: Course, name: str) -> None:
-    from ..grader.engines import nbgrader_api, reason
+    from ..grader.nbgrader_api import nbgrader_api, reason
 
     shutil.rmtree(course.release / name, ignore_errors=True)
     api = nbgrader_api(course)

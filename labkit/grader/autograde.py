@@ -17,10 +17,9 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from ..course.layout import Course
 from ..errors import LabkitError
 from .batch import GradeOptions, grade_aside
-from .engines import is_name
 from .lock import alone
 from .results import Bundle, Result, Results
-from .submission import Submission
+from .submission import Submission, is_name
 from .written import in_release_form, release_source, with_verdicts
 
 

@@ -33,12 +33,12 @@ from typing import Any
 from ..course.layout import Course
 from .clean import clean_line
 from .each import Failed
-from .engines import is_name, plain_name, students
 from .gradebook import automatic, open_gradebook
 from .lms import Known, known
 from .results import Result
 from .roster import Student, read_roster
 from .standing import grade_again, standing
+from .submission import is_name, plain_name, students
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 from ..course.layout import Course
 from ..errors import LabkitError
 from .each import Failed, for_student
-from .engines import nbgrader_api
+from .nbgrader_api import nbgrader_api
 from .results import Bundle, Result, write
 from .written import as_text, in_release_form, release_source, with_verdicts
 

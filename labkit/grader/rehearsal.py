@@ -15,12 +15,12 @@ from .batch import GradeOptions, common_failures, grade_class
 from .class_report import report
 from .collect import collect
 from .each import Failed, Failures
-from .engines import students
 from .export import LAYOUTS, as_csv, rows
 from .feedback import write_feedback
 from .gradebook import comments, record
 from .results import write
 from .standing import standing
+from .submission import students
 from .synthetic import differences, make_class
 
 LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")

@@ -9,10 +9,9 @@ from functools import partial
 from ..course.layout import Course
 from ..errors import LabkitError
 from .each import Failed, for_student
-from .engines import is_name, misnamed, plain_name, students
 from .results import Result, Results, digest
 from .sandbox.limits import Limits
-from .submission import Submission
+from .submission import Submission, is_name, misnamed, plain_name, students
 
 
 def standing(

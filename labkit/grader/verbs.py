@@ -7,14 +7,13 @@ import json
 import sys
 from collections.abc import Iterable
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ..course.layout import PUBLIC_SEED, Course
 from ..errors import LabkitError
 from ..verbs import Verbs, add_verb, whole
-from .each import Failed, Failures, for_student
+from .each import Failures
 from .verbs_course import assignment_verb, course_option, course_with
 
 
@@ -25,12 +24,6 @@ def add(verbs: Verbs) -> None:
     verb.add_argument("--student", metavar="S", help="only this one")
     verb.add_argument("--jobs", type=whole(1), metavar="N", help="workers (default: one per core)")
     verb.add_argument("--json", action="store_true", help="one JSON object per line, for programs")
-    verb.add_argument(
-        "--engine",
-        choices=("isolated", "nbgrader"),
-        default="isolated",
-        help="nbgrader's own runs students' code beside the hidden cases; for comparison only",
-    )
     verb.add_argument("--again", action="store_true", help="grade anew what is graded already")
     verb.add_argument(
         "--dask", metavar="ADDRESS", help="of a Dask scheduler that shares the folder"
@@ -116,9 +109,6 @@ def grade(args: argparse.Namespace) -> int:
     here = course_with(args)
     with Failures() as failures:
         who = in_part(here, args.name, args.student, failures)
-        if args.engine == "nbgrader":
-            _with_nbgrader(here, args, who, failures)
-            return failures.code
         options = GradeOptions(
             jobs=args.jobs or workers(),
             isolated=not args.unsafe_no_isolation,
@@ -148,7 +138,7 @@ def grade(args: argparse.Namespace) -> int:
 
 def in_part(here: Course, name: str, student: str | None, failures: Failures) -> list[str]:
     """Who handed in, or the one asked for; folders with a name that is not fit are failures."""
-    from .engines import misnamed, students
+    from .submission import misnamed, students
 
     found = students(here, name)
     who = [student] if student else found
@@ -173,23 +163,6 @@ def _shard(text: str) -> tuple[int, int]:
     if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
         raise argparse.ArgumentTypeError(f"{text} is no part; write 1/4, 2/4, 3/4 or 4/4")
     return int(first), int(last)
-
-
-def _with_nbgrader(
-    here: Course, args: argparse.Namespace, who: list[str], failures: Failures
-) -> None:
-    from .engines import grade_with_nbgrader
-
-    steps = ((student, partial(grade_with_nbgrader, here, args.name, student)) for student in who)
-    marks = failures.sift((for_student(*step) for step in steps), "not graded")
-    for number, mark in enumerate(marks, start=1):
-        if mark.score is None:
-            failures.add("not graded", [Failed(mark.student, mark.says)])
-        if args.json:
-            print(json.dumps(vars(mark)), flush=True)
-        elif mark.score is not None:
-            says = f"{mark.student}: {mark.score:g} of {mark.points:g}"
-            print(f"[{number}/{len(who)}] {says}", flush=True)
 
 
 def _tell(sentences: Iterable[str], where: Any) -> None:

@@ -5,8 +5,9 @@ import time
 
 from labkit.course.release import release
 from labkit.grader.batch import GradeOptions, grade_class, workers
-from labkit.grader.engines import grade_with_nbgrader, students
+from labkit.grader.submission import students
 
+from ..nbgrader_engine import grade_with_nbgrader
 from .courses import fresh_course
 
 ASSIGNMENT = "00_warmup"

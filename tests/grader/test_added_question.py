@@ -18,9 +18,9 @@ from labkit.course.release import release
 from labkit.errors import LabkitError
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
-from labkit.grader.engines import nbgrader_api
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.nbgrader_api import nbgrader_api
 from labkit.grader.results import Results
 
 pytestmark = pytest.mark.slow  # whole classes are graded

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 from handmade import QUICK, ROOT, add, hand_in
+from nbgrader_engine import grade_with_nbgrader
 from processes import below, child, wait_until_gone
 
 from labkit.cli import main
@@ -26,10 +27,10 @@ from labkit.grader.batch import (
     grade_class,
     in_shard,
 )
-from labkit.grader.engines import grade_with_nbgrader, students
 from labkit.grader.export import rows
 from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.results import Results
+from labkit.grader.submission import students
 from labkit.grader.synthetic import differences, make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded

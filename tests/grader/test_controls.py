@@ -18,10 +18,10 @@ from controls import CONTROLS, PLAIN, VICTIM, After
 from handmade import add, hand_in, nbgrader
 
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
-from labkit.grader.engines import students
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.sandbox.limits import Limits
+from labkit.grader.submission import students
 
 NAME = "01_paths"
 FAST = GradeOptions(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))

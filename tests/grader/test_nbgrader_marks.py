@@ -7,11 +7,11 @@ import nbformat
 import pytest
 from courses import copied
 from handmade import nbgrader
+from nbgrader_engine import grade_with_nbgrader
 
 from labkit.course.layout import Course
 from labkit.course.release import release
 from labkit.course.solved import inlined
-from labkit.grader.engines import grade_with_nbgrader
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"

@@ -15,7 +15,6 @@ from labkit.cli import main
 from labkit.course.serialize import encode
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
-from labkit.grader.engines import students
 from labkit.grader.export import LAYOUTS, Row, as_csv, left_out, rows
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
@@ -23,6 +22,7 @@ from labkit.grader.lms import Known
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.regrade import accept, moves
 from labkit.grader.results import Results
+from labkit.grader.submission import students
 from labkit.grader.synthetic import make_class
 from labkit.grader.term import archive
 
