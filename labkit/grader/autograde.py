@@ -17,7 +17,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from ..course.layout import Course
 from ..errors import LabkitError
 from .batch import GradeOptions, grade_aside
-from .lock import alone
+from .lock import exclusive_run
 from .results import Bundle, Result, Results
 from .submission import Submission, is_name
 from .written import in_release_form, release_source, with_verdicts
@@ -89,7 +89,7 @@ def _grade(about: dict[str, Any]) -> Result:
         bundle = Bundle.of(course, about["assignment"])
         submission = Submission.of(course, about["assignment"], about["student"])
         results = Results(course, about["assignment"])
-        with alone(results.folder):
+        with exclusive_run(results.folder):
             (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
             if isinstance(graded, LabkitError):
                 raise graded

@@ -11,12 +11,12 @@ from functools import partial
 from ..course.layout import Course
 from ..errors import LabkitError
 from .each import Failed, for_student
-from .executor import Task, grade_all
 from .grade import hashes
-from .lock import WHOLE, alone
+from .lock import WHOLE, exclusive_run
 from .results import Bundle, Result, Results, digest
 from .sandbox.limits import Limits
 from .submission import Submission
+from .worker import Task, grade_all
 
 FAILURE_RATE_ALERT = 0.3
 """Above this share of a class that fails one test, the run says so; is the test to blame?"""
@@ -88,7 +88,7 @@ def grade_class(
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
-    with alone(results.folder, options.shard):
+    with exclusive_run(results.folder, options.shard):
         for student in students:
             if not in_shard(student, options.shard):
                 continue

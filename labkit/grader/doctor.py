@@ -75,9 +75,9 @@ def examine() -> Iterator[Finding]:
 def sandbox() -> Iterator[Finding]:
     """Make a sandbox and try to get out of it."""
     try:
-        with Sandbox() as made, made.spawn("student", Limits()) as inside:
-            inside.connection.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
-            failed = str(inside.connection.read(30.0).get("error", "it did not answer"))
+        with Sandbox() as made, made.spawn("student", Limits()) as process:
+            process.connection.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
+            failed = str(process.connection.read(30.0).get("error", "it did not answer"))
             yield Finding("sandbox", not failed, failed or made.level)
             counted = made.group is not None
             says = made.group.says if made.group else (

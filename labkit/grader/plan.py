@@ -12,23 +12,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..course.source import look, plain
+from .sandbox.session import Step
 
 Cell = Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class Step:
-    """One cell to run.
-
-    Attributes:
-        number: Its place in the notebook, from 0; the release's setup cells have negative ones.
-        source: Its text.
-        answers: Questions whose function it defines.
-    """
-
-    number: int
-    source: str
-    answers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -62,8 +48,8 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     """Match the cells of a submission with those of the release.
 
     Args:
-        cells: As `inside.cells.read` gives them.
-        manifest: As `release.manifest` gives it.
+        cells: As `sandbox.parse.read` returns them.
+        manifest: As `release.manifest` returns it.
     """
     setup = [m["source"] for m in manifest if m["kind"] == "setup" and m["type"] == "code"]
     walk = {_same(m["source"]) for m in manifest if m["kind"] == "walk" and m["type"] == "code"}

@@ -121,12 +121,12 @@ def regrade(args: argparse.Namespace) -> int:
     """Say whose mark moves; without ``--diff``, let it."""
     from .batch import GradeOptions, workers
     from .gradebook import record
-    from .lock import alone
+    from .lock import exclusive_run
     from .regrade import accept, moves
     from .results import Results
 
     here = course_with(args)
-    with Failures() as failures, alone(Results(here, args.name).folder):
+    with Failures() as failures, exclusive_run(Results(here, args.name).folder):
         who = in_part(here, args.name, args.student, failures)
         found = moves(here, args.name, who, GradeOptions(jobs=args.jobs or workers()))
         moved = list(failures.sift(found, "not graded"))

@@ -16,13 +16,15 @@ from handmade import QUICK, add, hand_in
 from processes import below, child, wait_until_gone
 
 from labkit.errors import LabkitError
-from labkit.grader import executor as module
-from labkit.grader.executor import LocalExecutor, Task, close_sandbox, executor, grade_all
+from labkit.grader import executor as pools
+from labkit.grader import worker
+from labkit.grader.executor import LocalExecutor, executor
 from labkit.grader.results import Bundle
 from labkit.grader.sandbox import cgroup
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import NoIsolation
 from labkit.grader.submission import Submission
+from labkit.grader.worker import Task, close_sandbox, grade_all, grade_submission
 
 NAME = "01_paths"
 
@@ -125,7 +127,7 @@ def test_an_executor_that_was_shut_down_starts_no_process(monkeypatch):
     """Whatever a thread is doing when the run is stopped, it starts no process after that."""
     pool = LocalExecutor(1)
     pool.shutdown(wait=False)
-    monkeypatch.setattr(module, "ProcessPoolExecutor", pytest.fail)
+    monkeypatch.setattr(pools, "ProcessPoolExecutor", pytest.fail)
     with pytest.raises(LabkitError, match="died"):
         pool._call(os.getpid)
 
@@ -148,10 +150,10 @@ def test_a_busy_worker_ends_with_its_sandbox(course, solved):
     limits = Limits(cell=1000.0, cells=1000.0, wall=1000.0)
     with pytest.raises(KeyboardInterrupt), executor(1) as pool:
         endless = task_of(course, "eve", add(solved, "while True: pass"), limits)
-        worker = pool.submit(os.getpid).result(120.0)
-        pool.submit(module.grade_submission, endless)
-        everything = below(worker, at_least=5)
-        os.kill(worker, signal.SIGKILL)
+        pid = pool.submit(os.getpid).result(120.0)
+        pool.submit(grade_submission, endless)
+        everything = below(pid, at_least=5)
+        os.kill(pid, signal.SIGKILL)
         wait_until_gone(everything)
         raise KeyboardInterrupt
 
@@ -171,8 +173,8 @@ def test_a_folder_with_the_notebooks_name_has_a_result(course, task):
 @pytest.fixture
 def here(monkeypatch):
     """This process as a worker, without a limit on its memory."""
-    monkeypatch.setattr(module, "_limit_once", lambda: None)
-    yield module.grade_submission
+    monkeypatch.setattr(worker, "_limit_once", lambda: None)
+    yield grade_submission
     close_sandbox()
 
 
@@ -244,7 +246,7 @@ def test_whatever_keeps_a_result_from_being_made_is_said(monkeypatch, here, task
         def fail(*args, error=error):
             raise error
 
-        monkeypatch.setattr(module, "_grade", fail)
+        monkeypatch.setattr(worker, "_grade", fail)
         with pytest.raises(LabkitError, match=words):
             here(task)
 
@@ -260,9 +262,9 @@ def test_a_submission_that_is_to_be_isolated_is(monkeypatch, task):
         def close(self):
             made.append("closed")
 
-    monkeypatch.setattr(module, "Sandbox", Fake)
+    monkeypatch.setattr(worker, "Sandbox", Fake)
     for isolated in (False, True, True, False):
         one = Task(task.course, task.submission, task.bundle, isolated, QUICK)
-        module._sandbox(one, Bundle.of(task.course, NAME))
+        worker._sandbox(one, Bundle.of(task.course, NAME))
     close_sandbox()
     assert made == [False, "closed", True, "closed", False, "closed"]

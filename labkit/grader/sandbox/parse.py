@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from ...course.source import look
-from ..clean import clean_line, clean_text
+from .clean import clean_line, clean_text
 from .tricks import tricks
 
 MOST_CELLS = 1000

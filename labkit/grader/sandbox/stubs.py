@@ -52,7 +52,7 @@ def also(name: str, packed: str) -> None:
 
 
 right: set[str] = set()
-"""Questions whose public cases the student's functions passed, as the checker says."""
+"""Questions whose public cases the student's functions passed, as the grader says."""
 
 
 def use(
