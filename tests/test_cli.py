@@ -8,6 +8,7 @@ import pytest
 from courses import ROOT
 
 from labkit import cli
+from labkit.course.layout import Course
 
 VERBS = cli.parser()._subparsers._group_actions[0].choices
 WARMUP = ROOT / "assignments/00_warmup/00_warmup.ipynb"
@@ -78,6 +79,18 @@ def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeyp
     err = capsys.readouterr().err
     assert err.startswith(f"labkit {words[0]}: ") and sentence in err and err.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_a_submission_that_calls_itself_a_course_is_none(tmp_path, monkeypatch, capsys):
+    """Whoever stands in it runs none of its code; the one who names it with --course means it."""
+    inside = tmp_path / "submitted" / "mallory"
+    inside.mkdir(parents=True)
+    for folder in (tmp_path, inside):
+        (folder / "nbgrader_config.py").write_text("raise SystemExit('executed')\n")
+    monkeypatch.chdir(inside)
+    assert cli.main(["export", "01_paths"]) == 2
+    assert f"lies inside the course {tmp_path}" in capsys.readouterr().err
+    assert Course.here(inside).root == inside
 
 
 def test_an_unknown_assignment_is_a_sentence(capsys):

@@ -37,8 +37,8 @@ class Repair(NbGraderPreprocessor):  # type: ignore[misc]
     def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         """The release's cells with the student's answers."""
         about = resources["nbgrader"]
-        _check(Course.here(), about["assignment"], about["student"])
-        source = release_source(Course.here(), about["assignment"])
+        _check(Course.here(Path.cwd()), about["assignment"], about["student"])
+        source = release_source(Course.here(Path.cwd()), about["assignment"])
         return in_release_form(source, _grade(about)), resources
 
 
@@ -82,7 +82,7 @@ _known: dict[tuple[str, str], Result] = {}
 
 def _grade(about: dict[str, Any]) -> Result:
     """The result of the submission that nbgrader is at, graded once for both steps, and kept."""
-    course = Course.here()
+    course = Course.here(Path.cwd())
     key = (about["assignment"], about["student"])
     result = _known.pop(key, None)
     if result is None:

@@ -167,7 +167,7 @@ def _wrong_and(source: str) -> Kind:
 _READ = """
 import glob, os
 found = ''
-for path in ['../../../solutions/paths.py', '/work', '/root', '/home', 'gradebook.db',
+for path in ['../../../solutions/paths/answers.py', '/work', '/root', '/home', 'gradebook.db',
              '/proc/1/environ', '/etc/passwd', '../../../build/course/bundle']:
     for name in [path, *glob.glob(path + '/**', recursive=True)][:200]:
         try:

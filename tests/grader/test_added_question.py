@@ -31,7 +31,7 @@ SEED = 7
 
 def becomes(course, monkeypatch, *, complete):
     """The course's sources with the later question, or without it."""
-    whole = (ROOT / "solutions/notebooks" / f"{NAME}.py").read_text()
+    whole = Course(ROOT).notebook_source(NAME).read_text()
     cell = re.search(rf'^# %% question="{LATER}"\n.*?(?=^# %%)', whole, re.MULTILINE | re.DOTALL)
     text = whole if complete else whole.replace(cell.group(), "")
     course.notebook_source(NAME).write_text(text)
@@ -44,8 +44,7 @@ def becomes(course, monkeypatch, *, complete):
 def early(tmp_path_factory):
     """A question less at first; two hand in, are graded, and one gets a mark by hand."""
     root = tmp_path_factory.mktemp("early") / "course"
-    (root / "solutions").mkdir(parents=True)
-    shutil.copytree(ROOT / "solutions/notebooks", root / "solutions/notebooks")
+    shutil.copytree(ROOT / "solutions/paths", root / "solutions/paths")
     shutil.copy(ROOT / "nbgrader_config.py", root)
     course = Course(root)
     with pytest.MonkeyPatch.context() as monkeypatch:

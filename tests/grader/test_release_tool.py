@@ -92,7 +92,7 @@ def test_solutions_are_whole(name):
 def test_an_answer_that_leaks_stops_the_release(tmp_path):
     """If an answer stands outside its solution region, nothing is released."""
     course = copied(tmp_path)
-    path = tmp_path / "solutions" / "notebooks" / f"{NAME}.py"
+    path = course.notebook_source(NAME)
     path.write_text(path.read_text() + "\n# %%\nfrom solutions.warmup import joint_error\n")
     with pytest.raises(LabkitError, match="nothing released"):
         release(course, NAME, 1)
@@ -102,8 +102,9 @@ def test_an_answer_that_leaks_stops_the_release(tmp_path):
 def test_a_notebook_without_problems_is_a_sentence(tmp_path):
     """A source that somebody has begun says which file is still to be written."""
     course = copied(tmp_path)
-    (tmp_path / "solutions/notebooks/08_dance.py").write_text("# %%\n")
-    with pytest.raises(LabkitError, match=r"write solutions/problems/dance\.py with PROBLEMS"):
+    (tmp_path / "solutions/dance").mkdir()
+    (tmp_path / "solutions/dance/08_dance.py").write_text("# %%\n")
+    with pytest.raises(LabkitError, match=r"write solutions/dance/problems\.py with PROBLEMS"):
         course.problems("08_dance")
 
 

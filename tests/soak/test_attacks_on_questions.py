@@ -13,7 +13,7 @@ from labkit.course.layout import Course
 from labkit.course.release import release
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 
-NAMES = sorted(p.stem for p in (ROOT / "solutions" / "notebooks").glob("[0-9]*.py"))
+NAMES = Course(ROOT).names()
 CASES = [pytest.param(n, marks=() if n == "01_paths" else pytest.mark.soak) for n in NAMES]
 
 BY_HEART = """

@@ -156,11 +156,17 @@ def said(data: Any) -> Iterator[str]:
             yield from said(inner)
 
 
-def told(made: Class, student: str, tool: str) -> bool:
-    """Whether result and class report say that a withheld tool was used."""
-    name = tool.rpartition(".")[2]
-    in_result = any(name in text for text in said(made.results[student]))
-    return in_result and any(student in line and name in line for line in made.report.splitlines())
+def suspected(report: str) -> list[str]:
+    """The lines of a class report on withheld tools, and on ways around them."""
+    _, _, after = report.partition("## Withheld tools")
+    return after.partition("\n## ")[0].splitlines()
+
+
+def told(made: Class, student: str) -> bool:
+    """Whether result and class report say that a withheld tool, or a way around it, was used."""
+    result = made.results[student]
+    in_result = result["tricks"] or any(q["withheld"] for q in result["questions"])
+    return bool(in_result) and any(student in line for line in suspected(made.report))
 
 
 def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
@@ -173,7 +179,7 @@ def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
         deserved = attack.earns if who == student else 0.0
         score = made.results[who]["score"]
         if attack.wins == "answers":
-            if not told(made, who, "BangBang"):
+            if not told(made, who):
                 yield f"{score:g} points, and nobody was told"
         elif score > deserved:
             yield f"{score:g} points, deserved {deserved:g}"

@@ -89,7 +89,7 @@ def place(root: Path, of: Course) -> Iterator[Place]:
         with suppress(BlockingIOError):  # another test of these holds it: as good
             flock(marker, LOCK_EX | LOCK_NB)
         words = {"root": root, "loot": loot, "port": port, "exchange": exchange}
-        yield Place(course, loot, words | {"marker": MARKER, "host": socket.gethostname()})
+        yield Place(course, loot, words | {"marker": MARKER})
 
 
 def copied(here: Place, root: Path) -> Place:
