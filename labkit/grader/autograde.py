@@ -2,7 +2,7 @@
 
 `unlink_foreign` comes before nbgrader copies what lies beside a notebook; `Repair` is the first of
 ``Autograde.sanitize_preprocessors`` and brings a submission into the release's form; `Isolated`
-takes the place of nbgrader's ``Execute`` and runs nothing here.
+replaces nbgrader's ``Execute`` and runs nothing here.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Repair(NbGraderPreprocessor):  # type: ignore[misc]
 
 
 def unlink_foreign(notebooks: Iterable[str], **_: str) -> None:
-    """Put a note in the place of each link and special file beside notebooks that are graded next.
+    """Replace each link and special file beside the notebooks to be graded by a note.
 
     nbgrader copies what it finds there into ``autograded/`` and from there into ``feedback/``: what
     a link leads to would come to the student, and a device would fill the disk.
@@ -59,7 +59,7 @@ def unlink_foreign(notebooks: Iterable[str], **_: str) -> None:
 
 
 def _foreign(folder: Path) -> list[Path]:
-    """Links and special files in a folder, which is none itself."""
+    """Links and special files in a folder that is not a link itself."""
     if folder.is_symlink() or folder.parent.is_symlink():
         return []
     found = (Path(top, name) for top, *names in os.walk(folder) for part in names for name in part)
@@ -70,11 +70,11 @@ def _check(course: Course, assignment: str, student: str) -> None:
     """Refuse a submission of which nbgrader must not copy anything."""
     folder = Submission.of(course, assignment, student).folder
     if not is_name(student):
-        raise LabkitError(f"{student!a} is not fit for a name; rename the folder in submitted/")
+        raise LabkitError(f"{student!a} is not allowed as a name; rename the folder in submitted/")
     if folder.is_symlink() or folder.parent.is_symlink():
         raise LabkitError(f"{folder} is a link; put the student's own files there")
     if _foreign(folder):
-        raise LabkitError(f"{_foreign(folder)[0]} is a link or no file; take it away")
+        raise LabkitError(f"{_foreign(folder)[0]} is a link or a special file; remove it")
 
 
 _known: dict[tuple[str, str], Result] = {}

@@ -1,27 +1,30 @@
-"""A batch: grade a class, resume where it stopped, say what the class has in common."""
+"""A batch: grade a class, resume where the last run stopped, say what the class has in common."""
 
 from __future__ import annotations
 
 import os
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 from functools import partial
 
 from ..course.layout import Course
 from ..errors import LabkitError
 from .each import Failed, for_student
+from .executor import executor
 from .grade import hashes
 from .lock import WHOLE, exclusive_run
 from .results import Bundle, Result, Results, digest
 from .sandbox.limits import Limits
+from .sandbox.mounts import NoIsolation
 from .submission import Submission
-from .worker import Task, grade_all
+from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3
-"""Above this share of a class that fails one test, the run says so; is the test to blame?"""
+"""If more than this share of a class fails one test, the run says so: is the test to blame?"""
 MIN_ATTEMPTS = 5
-"""Of fewer who tried nothing is concluded."""
+"""Nothing is concluded from fewer than these."""
 
 
 @dataclass(frozen=True)
@@ -30,10 +33,10 @@ class GradeOptions:
 
     Attributes:
         jobs: Workers at once.
-        isolated: False only where somebody asked for it in so many words.
+        isolated: False only if somebody typed ``--unsafe-no-isolation``.
         dask: Address of a scheduler, or None for this machine.
         shard: (i, n): the i-th of n parts of the class, from 1.
-        again: Whether results that are there already are made anew.
+        again: Whether to grade again what has a result that is up to date.
         limits: What a submission may use, on a quick machine.
     """
 
@@ -75,8 +78,8 @@ def grade_class(
 
     Args:
         course: The course.
-        assignment: Which.
-        students: Whose.
+        assignment: Its name.
+        students: Whose submissions.
         options: How to grade.
 
     Yields:
@@ -84,20 +87,18 @@ def grade_class(
 
     Raises:
         LabkitError: The assignment was not released, or another run is under way.
-        NoIsolation: There is no sandbox to be had.
+        NoIsolation: No sandbox can be made here.
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
     with exclusive_run(results.folder, options.shard):
-        for student in students:
-            if not in_shard(student, options.shard):
-                continue
+        for student in (x for x in students if in_shard(x, options.shard)):
             submission = Submission.of(course, assignment, student)
             before = None if options.again else _still_good(results, submission, bundle, options)
-            if before is not None:
+            if before is None:
+                todo.append(submission)
+            else:
                 yield GradedSubmission(before, "as before")
-                continue
-            todo.append(submission)
         for result in grade_aside(course, bundle, todo, options):
             yield (
                 result
@@ -112,18 +113,22 @@ def grade_aside(
     """Grade submissions and keep nothing of it.
 
     Yields:
-        Each result, or what failed.
+        Each result as it is finished, or what failed.
 
     Raises:
-        NoIsolation: There is no sandbox to be had.
+        NoIsolation: No sandbox can be made here.
+        LabkitError: There is no such Dask scheduler.
     """
     key = bundle.data["hash"]
     tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
-    return grade_all(tasks, options.jobs, options.dask)
+    with executor(options.jobs, options.dask) as pool:
+        students = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
+        for future in as_completed(students):
+            yield for_student(students[future], future.result, of_all=(NoIsolation,))
 
 
 def _keep(results: Results, result: Result) -> GradedSubmission:
-    """Let a result count, unless a mark would fall that nobody has earned worse."""
+    """Store a result, unless it would lower the mark of an unchanged submission."""
     before = results.get(result.student)
     same = before is not None and before.hashes["submission"] == result.hashes["submission"]
     if before is not None and same and result.score < before.score:
@@ -135,10 +140,10 @@ def _keep(results: Results, result: Result) -> GradedSubmission:
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:
-    """Questions with a test that so many fail that it, or the lecture, may be to blame.
+    """Name the questions with a test that many students fail: is the test to blame?
 
     Yields:
-        One sentence for each question, the test that most fail in it.
+        One sentence for each such question, on the test that most students fail.
     """
     graded = [r for r in results if not r.rejected]
     failed: Counter[tuple[str, str]] = Counter()
@@ -165,7 +170,7 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
 def _still_good(
     results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
-    """A result that came from these very contents."""
+    """The result before, if it came from these very contents."""
     before = results.get(submission.student)
     if before is None or (options.isolated and before.isolation.startswith("none")):
         return None

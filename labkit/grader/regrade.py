@@ -1,4 +1,4 @@
-"""Regrade: whose mark moves after a test has changed, said before anything is written."""
+"""Regrade: whose mark changes after a test has changed, known before anything is written."""
 
 from __future__ import annotations
 

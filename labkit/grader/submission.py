@@ -56,12 +56,12 @@ class Submission:
 
 
 def students(course: Course, name: str) -> list[str]:
-    """Who handed in an assignment, in order; of folders with a name that is fit."""
+    """Who handed in an assignment, in order; only folders whose name is allowed."""
     return [student for student in _folders(course, name) if is_name(student)]
 
 
 def misnamed(course: Course, name: str) -> list[Failed]:
-    """Folders with a name that no database, page or terminal should be given, in plain letters."""
+    """Folders whose name no database, page or terminal should be given; named in plain letters."""
     return [
         Failed(
             plain_name(student),
@@ -74,12 +74,12 @@ def misnamed(course: Course, name: str) -> list[Failed]:
 
 
 def is_name(student: str) -> bool:
-    """Whether a student may be called so: one clean line, which is not markup."""
+    """Whether a student may have this name: one clean line, which is not markup."""
     return clean_line(student) == student and not set(student) & set('<>"\\')
 
 
 def plain_name(student: str) -> str:
-    """A name as it may be shown: one that is not fit, in plain letters."""
+    """A name as it may be shown: in plain letters if it is not allowed."""
     return student if is_name(student) else ascii(student)
 
 

@@ -1,4 +1,4 @@
-"""A worker: grades one submission after another in a sandbox that it keeps."""
+"""A worker process: grades one submission after another in a sandbox that it keeps."""
 
 from __future__ import annotations
 
@@ -6,15 +6,11 @@ import atexit
 import signal
 import threading
 import warnings
-from collections.abc import Iterator, Sequence
-from concurrent.futures import as_completed
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
 from ..course.layout import Course
 from ..errors import LabkitError
-from .each import Failed, for_student
-from .executor import TRIES, executor
 from .grade import grade, rejection
 from .plan import imports
 from .results import Bundle, Result
@@ -23,6 +19,9 @@ from .sandbox.launch import Sandbox, SandboxLost
 from .sandbox.limits import Limits, slowness
 from .sandbox.mounts import NoIsolation
 from .submission import Submission
+
+TRIES = 2
+"""How often a submission is tried whose sandbox is lost."""
 
 
 @dataclass(frozen=True)
@@ -42,26 +41,6 @@ class Task:
     bundle: str
     isolated: bool
     limits: Limits
-
-
-def grade_all(
-    tasks: Sequence[Task], workers: int, dask: str | None = None
-) -> Iterator[Result | Failed]:
-    """Grade submissions, and yield each result, or why there is none, as it is finished.
-
-    Args:
-        tasks: What to grade.
-        workers: How many processes of this machine; a cluster uses all of its own.
-        dask: Address of a Dask scheduler whose workers see the course's folder, or None.
-
-    Raises:
-        NoIsolation: There is no sandbox to be had.
-        LabkitError: There is no such scheduler.
-    """
-    with executor(workers, dask) as pool:
-        students = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-        for future in as_completed(students):
-            yield for_student(students[future], future.result, of_all=(NoIsolation,))
 
 
 _busy = threading.Lock()

@@ -24,7 +24,7 @@ from labkit.grader.sandbox import cgroup
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import NoIsolation
 from labkit.grader.submission import Submission
-from labkit.grader.worker import Task, close_sandbox, grade_all, grade_submission
+from labkit.grader.worker import Task, close_sandbox, grade_submission
 
 NAME = "01_paths"
 
@@ -100,14 +100,13 @@ def test_a_task_that_kills_its_workers_takes_two_of_them(pool, tmp_path):
 
 def test_a_submission_that_takes_too_long_is_named(course, solved):
     """The kernel ends a worker at its deadline; the submission has no result, the others theirs."""
-    tasks = [
-        task_of(course, "eve", solved, Limits(parse=0.01, wall=0.01)),
-        task_of(course, "ada", solved),
-    ]
-    done = {str(getattr(x, "student", x)): x for x in grade_all(tasks, 2)}
-    assert done["ada"].score == 20
-    assert "took too long; look at the submission" in str(done["eve"])
-    assert str(done["eve"]).startswith("eve: ")
+    hurried = Limits(parse=0.01, wall=0.01)
+    with executor(2) as pool:
+        late = pool.submit(grade_submission, task_of(course, "eve", solved, hurried))
+        honest = pool.submit(grade_submission, task_of(course, "ada", solved))
+        assert honest.result(300.0).score == 20
+        with pytest.raises(LabkitError, match="took too long; look at the submission"):
+            late.result(300.0)
 
 
 def test_nothing_is_graded_for_nobody(tmp_path):
@@ -141,7 +140,9 @@ def test_the_process_that_judges_has_a_limit_of_memory():
 def test_the_sandbox_does_not_inherit_the_workers_limit(course, solved):
     """A student's process has the memory that its own limits say."""
     source = "import resource\nraise ValueError(resource.getrlimit(resource.RLIMIT_DATA))"
-    (result,) = grade_all([task_of(course, "ada", add(solved, source))], 1)
+    with executor(1) as pool:
+        task = task_of(course, "ada", add(solved, source))
+        result = pool.submit(grade_submission, task).result(300.0)
     assert result.cells[0]["error"].startswith("(-1, -1)")
 
 
@@ -158,13 +159,12 @@ def test_a_busy_worker_ends_with_its_sandbox(course, solved):
         raise KeyboardInterrupt
 
 
-def test_a_folder_with_the_notebooks_name_has_a_result(course, task):
+def test_a_folder_with_the_notebooks_name_has_a_result(course, here, task):
     """What cannot be read is rejected in a result, so that it is not tried for ever."""
     folder = Submission.of(course, NAME, "eve").folder
     (folder / f"{NAME}.ipynb").mkdir(parents=True)
     eve = Task(course, Submission.of(course, NAME, "eve"), task.bundle, True, QUICK)
-    (result,) = grade_all([eve], 1)
-    assert "is not a file" in result.rejected
+    assert "is not a file" in here(eve).rejected
 
 
 # In this very process
@@ -231,8 +231,8 @@ def test_a_machine_without_rights_is_not_mistaken_for_one_without_memory(
     )
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{tmp_path}:{os.environ['PATH']}")
-    with pytest.raises(NoIsolation, match="Permission denied"):
-        list(grade_all([task], 1))
+    with executor(1) as pool, pytest.raises(NoIsolation, match="Permission denied"):
+        pool.submit(grade_submission, task).result(300.0)
 
 
 def test_whatever_keeps_a_result_from_being_made_is_said(monkeypatch, here, task):

@@ -13,12 +13,14 @@ import resource
 import socket
 import subprocess
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from . import mounts
 from .cgroup import SANDBOX, Group
 from .limits import Limits
-from .mounts import INSTALL, NoIsolation, bare_command, bare_environment, command, environment
+from .mounts import INSTALL, NoIsolation
 from .protocol import Connection, Disconnected, ProtocolError
 
 FIRST_UID = 64000
@@ -79,9 +81,7 @@ class Sandbox:
     def __init__(
         self, loads: Sequence[str] = (), hidden: Iterable[Path] = (), *, isolated: bool = True
     ) -> None:
-        words, variables = (
-            (command(hidden), environment()) if isolated else (bare_command(), bare_environment())
-        )
+        command, variables = mounts.isolated(hidden) if isolated else mounts.bare()
         self.isolated = isolated
         self.uid, self._claim = _user()
         self.group = Group.make(f"{os.getpid()}-{next(_numbers)}", SANDBOX) if isolated else None
@@ -90,7 +90,7 @@ class Sandbox:
         self._forkservers = dict(zip(_ROLES, map(Connection, ours), strict=True))
         try:
             self.process = subprocess.Popen(
-                [*words, *loads],
+                [*command, *loads],
                 stdin=theirs[0].fileno(),
                 stdout=theirs[1].fileno(),
                 stderr=self._log,
@@ -148,7 +148,7 @@ class Sandbox:
         """
         forkserver = self._forkservers[role]
         ours, theirs = socket.socketpair()
-        message = {"limits": limits.data(), "uid": self.uid, **more}
+        message = {"limits": asdict(limits), "uid": self.uid, **more}
         with theirs:
             pid = self._request(forkserver, message, theirs)["pid"]
 

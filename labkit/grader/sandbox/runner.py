@@ -110,7 +110,7 @@ class Notebook:
         os._exit(0)
 
     def _answer(self, connection: Connection, name: str) -> None:
-        """Answer one call after another, until there is none."""
+        """Answer one call after another, until none follows."""
         kwargs: dict[str, Any] = {}
         connection.send({"ready": name})
         while "args" in (asked := connection.read()):
