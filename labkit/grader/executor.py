@@ -7,6 +7,7 @@ another worker, and no other call notices.  Arguments and results are pickled: t
 from __future__ import annotations
 
 import os
+import signal
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
@@ -54,7 +55,7 @@ class LocalExecutor(Executor):
     """
 
     def __init__(self, workers: int) -> None:
-        self._threads = ThreadPoolExecutor(workers)
+        self._threads = ThreadPoolExecutor(workers, initializer=_block_interrupts)
         self._idle: SimpleQueue[ProcessPoolExecutor | None] = SimpleQueue()
         for _ in range(workers):
             self._idle.put(None)
@@ -95,9 +96,13 @@ class LocalExecutor(Executor):
         sweep()
 
 
+def _block_interrupts() -> None:
+    """Keep Ctrl-C from this thread and the processes that it starts; the main thread ends them."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+
+
 def _begin_worker(end: Connection) -> None:
     """Runs first in a process of a `LocalExecutor`."""
-    os.setsid()  # Ctrl-C is for the grader, which ends its workers
     os.dup2(2, 1)  # the grader's output has its own format
     threading.Thread(target=_end_with_executor, args=(end,), daemon=True).start()
 

@@ -132,16 +132,18 @@ def _answer(
         if place not in at_home:
             notes.append(f"{name} was found by its name, outside its own cell")
         return place, lonely
-    broken = [own[k]["broken"] for k in sorted(at_home) if own[k]["broken"]]
-    magic = [own[k]["magic"] for k in sorted(at_home) if own[k]["magic"]]
     if stubs:
         return max(stubs), set()
-    why = "no cell defines it"
-    if broken:
-        why = f"its cell cannot be read by Python: {broken[0]}"
-    elif magic:
-        why = f"its cell begins with %%{magic[0]}, which keeps what it defines to itself"
-    notes.append(f"{name}: {why}")
+    home = [own[k] for k in sorted(at_home)]
+    why = [
+        f"its cell cannot be read by Python: {cell['broken']}" for cell in home if cell["broken"]
+    ]
+    why += [
+        f"its cell begins with %%{cell['magic']}, which keeps what it defines to itself"
+        for cell in home
+        if cell["magic"]
+    ]
+    notes.append(f"{name}: {why[0] if why else 'no cell defines it'}")
     return None, set()
 
 

@@ -131,6 +131,14 @@ def test_an_executor_that_was_shut_down_starts_no_process(monkeypatch):
         pool._call(os.getpid)
 
 
+def test_an_interrupt_at_the_terminal_is_for_the_grader_alone():
+    """Ctrl-C reaches every process of the terminal's group; a worker goes on until it is ended."""
+    with executor(1) as pool:
+        pid = pool.submit(os.getpid).result(120.0)
+        os.kill(pid, signal.SIGINT)
+        assert pool.submit(os.getpid).result(120.0) == pid
+
+
 def test_the_process_that_judges_has_a_limit_of_memory():
     """Memory that it takes for one submission ends in an error of its own, not of the machine."""
     with executor(1) as pool:
