@@ -25,7 +25,7 @@ EXAMPLES_FOR_INSTRUCTORS = """\
   labkit grade 01_paths                 grade everything under submitted/
   labkit report-card                    how well the checks tell right from wrong
 """
-FOR_INSTRUCTORS = ("nbgrader", "jupytext", "msgspec", "sqlalchemy")
+FOR_INSTRUCTORS = ("nbgrader", "jupytext", "sqlalchemy")
 """Packages that a student's environment does without."""
 
 
@@ -108,8 +108,8 @@ def _submit_check(args: argparse.Namespace) -> int:
 
 
 def _merge(args: argparse.Namespace) -> int:
-    from .course.handin import read_cells
-    from .course.merging import merge
+    from .course.handin import merge
+    from .course.notebook import read_cells
 
     mine, new = read_cells(args.mine), read_cells(args.new)
     if args.to.exists():

@@ -6,9 +6,12 @@ import importlib
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import LabkitError, UnknownName
-from .problem import Problem
+
+if TYPE_CHECKING:
+    from .problem import Problem
 
 PUBLIC_SEED = 2019
 """The seed of the demonstration; it is no secret, so hidden cases made with it are none."""

@@ -14,11 +14,12 @@ from typing import Any
 
 from nbgrader.preprocessors import NbGraderPreprocessor
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
 from .batch import GradeOptions, grade_aside
 from .lock import exclusive_run
-from .results import Bundle, Result, Results
+from .results import Result, Results
 from .submission import Submission, is_name
 from .written import in_release_form, release_source, with_verdicts
 

@@ -9,13 +9,15 @@ from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 from functools import partial
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
+from ..course.verdict import Outcome
 from ..errors import LabkitError
 from .each import Failed, for_student
 from .executor import executor
 from .grade import hashes
 from .lock import WHOLE, exclusive_run
-from .results import Bundle, Result, Results, digest
+from .results import Result, Results, digest
 from .sandbox.limits import Limits
 from .sandbox.mounts import NoIsolation
 from .submission import Submission
@@ -150,11 +152,11 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
     tried: Counter[str] = Counter()
     for result in graded:
         for question in result.questions:
-            if question["outcome"] in ("not attempted", "not counted"):
+            if question.verdict.outcome in (Outcome.NOT_ATTEMPTED, Outcome.NOT_COUNTED):
                 continue
-            tried[question["name"]] += 1
-            for one in question["tests"]:
-                failed[question["name"], one["name"]] += one["outcome"] != "right"
+            tried[question.verdict.name] += 1
+            for one in question.verdict.tests:
+                failed[question.verdict.name, one.name] += one.outcome is not Outcome.RIGHT
     loud: dict[str, list[tuple[int, str]]] = {}
     for (name, test), count in failed.most_common():
         if count > FAILURE_RATE_ALERT * tried[name] and tried[name] >= MIN_ATTEMPTS:

@@ -13,6 +13,7 @@ from statistics import mean, median
 
 from ..course.messages import uses
 from ..course.problem import Problem
+from ..course.verdict import Outcome
 from .batch import common_failures
 from .clean import clean_line
 from .results import Result
@@ -60,10 +61,10 @@ def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], s
     count = 0
     for result in results:
         for question in result.questions:
-            if question["source"] and question["outcome"] != "not attempted":
-                path = folder / called(result.student) / f"{question['name']}.py"
+            if question.source and question.verdict.outcome is not Outcome.NOT_ATTEMPTED:
+                path = folder / called(result.student) / f"{question.verdict.name}.py"
                 path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(question["source"], encoding="utf-8", errors="replace")
+                path.write_text(question.source, encoding="utf-8", errors="replace")
                 count += 1
     return count
 
@@ -87,9 +88,10 @@ def _questions(graded: Sequence[Result]) -> Iterator[str]:
     shares: dict[str, list[float]] = defaultdict(list)
     for result in graded:
         for question in result.questions:
-            outcomes[question["name"]][question["outcome"]] += 1
-            if question["points"]:
-                shares[question["name"]].append(question["earned"] / question["points"])
+            verdict = question.verdict
+            outcomes[verdict.name][verdict.outcome] += 1
+            if verdict.points:
+                shares[verdict.name].append(verdict.earned / verdict.points)
     yield from ("## Questions", "")
     yield "| question | right | wrong | error | not counted | not tried | mean |"
     yield "|---|---:|---:|---:|---:|---:|---:|"
@@ -104,8 +106,8 @@ def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iter
     count: Counter[tuple[str, str]] = Counter()
     for result in graded:
         for question in result.questions:
-            if question["mistake"]:
-                count[question["name"], question["mistake"]["name"]] += 1
+            if question.verdict.mistake:
+                count[question.verdict.name, question.verdict.mistake.name] += 1
     if not count:
         return
     yield from ("## Misconceptions, and what to say in the next lecture", "")
@@ -119,7 +121,8 @@ def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iter
 def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
     """What each student used that a question withholds, and what in a cell needs a look."""
     for result in graded:
-        used = [f"{q['name']} {uses(q['withheld'])}" for q in result.questions if q.get("withheld")]
+        verdicts = [question.verdict for question in result.questions]
+        used = [f"{v.name} {uses(v.withheld)}" for v in verdicts if v.withheld]
         if used:
             yield f"{who[result.student]}, not counted: {'; '.join(used)}"
         if result.tricks:
@@ -132,9 +135,9 @@ def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
     common: Counter[tuple[str, frozenset[str]]] = Counter()
     for result in graded:
         shapes[result.student] = {
-            q["name"]: _shape(q["source"])
+            q.verdict.name: _shape(q.source)
             for q in result.questions
-            if q["outcome"] != "not attempted"
+            if q.verdict.outcome is not Outcome.NOT_ATTEMPTED
         }
         common.update((name, shape) for name, shape in shapes[result.student].items() if shape)
     rare = max(2, len(graded) // 20)

@@ -31,6 +31,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..course.layout import Course
+from ..course.notebook import question_of
 from .clean import clean_line
 from .each import Failed
 from .gradebook import automatic, open_gradebook
@@ -160,7 +161,7 @@ def _marked(row: Row, submission: Any) -> Row:
         when=str(submission.timestamp or ""),
         due=str(submission.assignment.duedate or ""),
         questions={
-            grade.name.removesuffix("-check"): (float(grade.score), float(grade.max_score))
+            question_of(grade.name): (float(grade.score), float(grade.max_score))
             for grade in grades
         },
         raw=float(submission.score),
@@ -180,7 +181,7 @@ def _missing(assignment: str, student: str, submission: Any, one: Result | Faile
         score = grade.auto_score if one is None else automatic(one, grade.name)
         if grade.auto_score != score:
             return (
-                f"the result gives {_said(score)} for {grade.name.removesuffix('-check')}, the "
+                f"the result gives {_said(score)} for {question_of(grade.name)}, the "
                 f"gradebook {_said(grade.auto_score)}; {grade_again(assignment, student)}"
             )
     none = [g.name for g in grades if g.auto_score is None and g.manual_score is None]

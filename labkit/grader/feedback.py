@@ -17,11 +17,11 @@ from typing import Any
 
 from ..course import Outcome
 from ..course.layout import Course
-from ..course.messages import HEADS
+from ..course.messages import GATE, HEADS, why
 from ..replay import viewer_scripts
 from .each import Failed, for_student
 from .own_work import has_replay, own_work
-from .results import Result, write
+from .results import Answer, Result, write
 
 PAGE = Path(__file__).parents[1] / "data" / "feedback"
 _HEAD = """<!doctype html>
@@ -61,14 +61,14 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
             "<p>Mend this and hand it in again, or talk to your teacher.</p>"
         )
     else:
-        right = sum(q["outcome"] == "right" for q in result.questions)
+        right = sum(question.verdict.right for question in result.questions)
         lines.append(
             f'<p class="total"><strong>{result.score:g} of {result.points:g} points.</strong> '
             f"{right} of {len(result.questions)} questions are right.</p>"
         )
     lines += [f"<p>Note: {escape(note)}.</p>" for note in result.notes]
     for question in result.questions:
-        lines += _question(question, (comments or {}).get(question["name"], ""))
+        lines += _question(question, (comments or {}).get(question.verdict.name, ""))
     if result.cells:
         lines.append("<h2>Cells that did not run</h2><ul>")
         for cell in result.cells:
@@ -124,33 +124,32 @@ def _hash(text: str) -> str:
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
 
 
-def _question(question: Mapping[str, Any], comment: str) -> Iterable[str]:
-    outcome, name = question["outcome"], escape(question["name"])
-    mark = "yes" if outcome == "right" else "no"
+def _question(answer: Answer, comment: str) -> Iterable[str]:
+    verdict = answer.verdict
+    name, mark = escape(verdict.name), "yes" if verdict.right else "no"
     yield f'<section aria-labelledby="{name}"><h2 id="{name}"><code>{name}</code></h2>'
     yield (
-        f'<p><strong class="{mark}">{HEADS[Outcome(outcome)].capitalize()}.</strong> '
-        f"{question['earned']:g} of {question['points']:g} points.</p>"
+        f'<p><strong class="{mark}">{HEADS[verdict.outcome].capitalize()}.</strong> '
+        f"{verdict.earned:g} of {verdict.points:g} points.</p>"
     )
-    if outcome in {"wrong", "error"}:
+    if verdict.outcome in {Outcome.WRONG, Outcome.ERROR}:
         yield "<ul>"
-        for test in question["tests"]:
-            right = test["outcome"] == "right"
-            gate = "" if test["weight"] else " (needed before anything counts)"
-            says = "" if right else f": {escape(test['says'])}"
+        for test in verdict.tests:
+            right = test.outcome is Outcome.RIGHT
+            gate, says = "" if test.weight else GATE, escape(why(test))
             word = '<span class="yes">passed</span>' if right else '<span class="no">failed</span>'
-            yield f"<li>{word}: {escape(test['name'])}{gate}{says}</li>"
+            yield f"<li>{word}: {escape(test.name)}{gate}{says and f': {says}'}</li>"
         yield "</ul>"
-    yield from own_work(question)
-    if question["mistake"]:
+    yield from own_work(answer)
+    if verdict.mistake:
         yield (
-            f'<p class="tip"><strong>A well-known one: {escape(question["mistake"]["name"])}.'
-            f"</strong> {escape(question['mistake']['says'])}</p>"
+            f'<p class="tip"><strong>A well-known one: {escape(verdict.mistake.name)}.'
+            f"</strong> {escape(verdict.mistake.says)}</p>"
         )
-    yield from (f"<p>Note: {escape(note)}.</p>" for note in question["notes"])
+    yield from (f"<p>Note: {escape(note)}.</p>" for note in answer.notes)
     if comment:
         yield f'<p class="tip"><strong>Your teacher:</strong> {escape(comment)}</p>'
-    if question["source"] and outcome != "not attempted":
-        source = escape(question["source"])
+    if answer.source and verdict.outcome is not Outcome.NOT_ATTEMPTED:
+        source = escape(answer.source)
         yield f'<details><summary>Your answer</summary><pre tabindex="0">{source}</pre></details>'
     yield "</section>"

@@ -17,11 +17,13 @@ from typing import Any
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
+from ..course.notebook import is_check, question_of
 from ..errors import LabkitError
 from .each import Failed, for_student
 from .nbgrader_api import nbgrader_api
-from .results import Bundle, Result, write
+from .results import Result, write
 from .written import as_text, in_release_form, release_source, with_verdicts
 
 
@@ -82,10 +84,10 @@ def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -
 
 def automatic(result: Result, cell: str) -> float | None:
     """The automatic score of a cell of the gradebook; None for one that is marked by hand."""
-    if not cell.endswith("-check") and not result.rejected:
+    if not is_check(cell) and not result.rejected:
         return None
-    earned = {f"{q['name']}-check": q["earned"] for q in result.questions}
-    return float(earned.get(cell, 0.0))
+    earned = {q.verdict.name: q.verdict.earned for q in result.questions}
+    return float(earned.get(question_of(cell), 0.0))
 
 
 def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ..course.layout import Course
+from ..course.notebook import about, grade_id, question_of
 from ..errors import LabkitError
 from .gradebook import open_gradebook
 
@@ -32,11 +33,7 @@ def make_room(course: Course, assignment: str, source: Any) -> list[str]:
     """
     from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell
 
-    cells = {
-        about["grade_id"]: (cell, about)
-        for cell in source.cells
-        if (about := cell.metadata.get("nbgrader"))
-    }
+    cells = {grade_id(cell): (cell, about(cell)) for cell in source.cells if grade_id(cell)}
     graded = {name: pair for name, pair in cells.items() if pair[1]["grade"]}
     solved = {name for name, pair in cells.items() if pair[1]["solution"]}
     with open_gradebook(course) as book:
@@ -58,8 +55,8 @@ def make_room(course: Course, assignment: str, source: Any) -> list[str]:
                 book.db.delete(cell)
         new = sorted(set(graded) - {c.name for c in notebook.grade_cells})
         for name in new:
-            cell, about = graded[name]
-            points = float(about["points"])
+            cell, known = graded[name]
+            points = float(known["points"])
             kind = cell.cell_type
             add = GradeCell(name=name, notebook=notebook, max_score=points, cell_type=kind)
             _add(book.db, add, notebook.submissions)
@@ -69,7 +66,7 @@ def make_room(course: Course, assignment: str, source: Any) -> list[str]:
             kind = cells[name][0].cell_type
             book.db.add(SourceCell(name=name, notebook=notebook, cell_type=kind))
         book.db.commit()
-    return [name.removesuffix("-check") for name in new]
+    return [question_of(name) for name in new]
 
 
 def _add(db: Any, cell: Any, submissions: Iterable[Any]) -> None:
@@ -87,7 +84,7 @@ def _keep_what_was_written(gone: Iterable[Any]) -> None:
         marked = [g for g in cell.grades if g.manual_score is not None or g.extra_credit]
         said = [c for c in cell.comments if c.manual_comment]
         if marked or said:
-            name = cell.name.removesuffix("-check")
+            name = question_of(cell.name)
             raise LabkitError(
                 f"{name} would go, with {len(marked) + len(said)} marks or comments given by hand; "
                 "keep the question and give it 0 points"

@@ -17,13 +17,6 @@ def nbgrader_api(course: Course) -> Any:
     """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says."""
     from nbgrader.apps import NbGraderAPI
     from nbgrader.coursedir import CourseDirectory
-
-    config = settings(course)
-    return NbGraderAPI(CourseDirectory(config=config), config=config)
-
-
-def settings(course: Course) -> Any:
-    """The course's settings of nbgrader; its programs are made to be found."""
     from traitlets.config import Config
     from traitlets.config.loader import PyFileConfigLoader
 
@@ -31,10 +24,10 @@ def settings(course: Course) -> Any:
     if here not in os.environ["PATH"].split(os.pathsep):
         os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
     config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
-    config = Config(config)
-    config.CourseDirectory.root = str(course.root)
-    config.Application.log_level = logging.CRITICAL
-    return config
+    settings = Config(config)
+    settings.CourseDirectory.root = str(course.root)
+    settings.Application.log_level = logging.CRITICAL
+    return NbGraderAPI(CourseDirectory(config=settings), config=settings)
 
 
 def reason(result: dict[str, Any]) -> str:

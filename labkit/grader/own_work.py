@@ -16,7 +16,7 @@ from ..metrics import SETTLED
 from ..replay import recorded_html
 from ..replay.motion import unpack
 from .drawing import curve, side_by_side
-from .results import Result
+from .results import Answer, Result
 
 MEASURES = {
     "rms_mm": ("position error of the tip, RMS", "mm", 1.0),
@@ -34,15 +34,15 @@ MEASURES = {
 
 def has_replay(result: Result) -> bool:
     """Whether a page of this result needs the viewer."""
-    return any(run["motion"] for question in result.questions for run in question.get("runs", ()))
+    return any(run["motion"] for question in result.questions for run in question.runs)
 
 
-def own_work(question: Mapping[str, Any]) -> Iterator[str]:
+def own_work(question: Answer) -> Iterator[str]:
     """What there is to be seen of a question, as HTML."""
-    for run in question.get("runs", ()):
+    for run in question.runs:
         yield from _run(run)
-    if question.get("numbers") and question["numbers"]["of"] > 1:  # one stands in the reason
-        yield from _numbers(question["numbers"])
+    if question.numbers and question.numbers["of"] > 1:  # one stands in the reason
+        yield from _numbers(question.numbers)
 
 
 def _run(run: Mapping[str, Any]) -> Iterator[str]:

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
 from .batch import GradeOptions, grade_aside
 from .each import Failed, for_student
-from .results import Bundle, Result, Results
+from .results import Result, Results
 from .submission import Submission
 
 
@@ -34,11 +35,11 @@ class Move:
     def __str__(self) -> str:
         if self.before is None:
             return f"{self.after.student}: new, {self.after.score:g} of {self.after.points:g}"
-        each = {q["name"]: q["earned"] for q in self.before.questions}
+        each = {q.verdict.name: q.verdict.earned for q in self.before.questions}
         parts = [
-            f"{q['name']} {each.get(q['name'], 0.0):g} -> {q['earned']:g}"
-            for q in self.after.questions
-            if q["earned"] != each.get(q["name"], 0.0)
+            f"{v.name} {each.get(v.name, 0.0):g} -> {v.earned:g}"
+            for v in (q.verdict for q in self.after.questions)
+            if v.earned != each.get(v.name, 0.0)
         ]
         says = f" ({'; '.join(parts)})" if parts else ""
         return (

@@ -9,7 +9,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..course.layout import PUBLIC_SEED, Course
-from ..course.release import release
 from ..errors import LabkitError
 from .batch import GradeOptions, common_failures, grade_class
 from .class_report import report
@@ -18,6 +17,7 @@ from .each import Failed, Failures
 from .export import LAYOUTS, as_csv, rows
 from .feedback import write_feedback
 from .gradebook import comments, record
+from .release import release
 from .results import write
 from .standing import standing
 from .submission import students

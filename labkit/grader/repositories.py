@@ -11,9 +11,9 @@ import subprocess
 from pathlib import Path
 
 from ..course.layout import Course
-from ..course.release import FORBIDDEN
 from ..errors import LabkitError
 from .handout import GRADER, STUDENT_TOOLS
+from .release import FORBIDDEN
 
 FOR_STUDENTS = (
     "labkit/",

@@ -12,14 +12,16 @@ from typing import Any
 
 import numpy as np
 
-from ..course.inline import inline
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.marking import mark
+from ..course.notebook import grade_id
 from ..course.problem import Problem
 from ..course.question import Question
 from ..errors import LabkitError
 from . import synthetic_kinds
-from .results import Bundle, write
+from .inline import inline
+from .results import write
 
 Random = np.random.Generator
 
@@ -53,7 +55,7 @@ class Draft:
     def place(self, question: str) -> int:
         """Where a question's answer stands."""
         for k, cell in enumerate(self.cells):
-            if cell["metadata"].get("nbgrader", {}).get("grade_id") == question:
+            if grade_id(cell) == question:
                 return k
         raise LabkitError(f"no cell for {question}")
 
@@ -164,7 +166,7 @@ def differences(course: Course, assignment: str) -> Iterator[str]:
         if result is None:
             yield f"{student} ({deserved['kind']}) has no result"
             continue
-        got = {q["name"]: q["earned"] for q in result.questions}
+        got = {q.verdict.name: q.verdict.earned for q in result.questions}
         if bool(result.rejected) != deserved["rejected"]:
             yield f"{student} ({deserved['kind']}): {result.rejected or 'not rejected'}"
         elif not deserved["rejected"]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from ..course.notebook import kind
+
 if TYPE_CHECKING:
     from .synthetic import Draft
 
@@ -28,7 +30,7 @@ def _pictures(draft: Draft) -> None:
     """Right, with 12 MB of pictures in it."""
     draft.solve()
     for cell in draft.cells:
-        if cell["cell_type"] == "code" and cell["metadata"].get("lab") == "walk":
+        if cell["cell_type"] == "code" and kind(cell) == "walk":
             cell["outputs"] = [
                 {
                     "output_type": "display_data",
@@ -98,7 +100,7 @@ def _deleted(draft: Draft) -> None:
     name = next(iter(draft.problems))
     del draft.cells[draft.place(name)]
     draft.expected[name] = 0.0
-    draft.cells = [cell for cell in draft.cells if cell["metadata"].get("lab") != "check"]
+    draft.cells = [cell for cell in draft.cells if kind(cell) != "check"]
 
 
 def _renamed(draft: Draft) -> None:

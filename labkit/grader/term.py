@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from ..course.layout import PUBLIC_SEED, Course
-from ..course.release import release
 from ..errors import LabkitError
 from . import attempts, lms, pseudonyms, roster
+from .release import release
 from .results import write
 
 NAMED = (

@@ -6,11 +6,11 @@ import argparse
 import json
 import sys
 from collections.abc import Iterable
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from ..course.layout import PUBLIC_SEED, Course
+from ..course.serialize import record_data
 from ..errors import LabkitError
 from ..verbs import Verbs, add_verb, whole
 from .each import Failures
@@ -121,7 +121,7 @@ def grade(args: argparse.Namespace) -> int:
         for number, one in enumerate(done, start=1):
             graded.append(one.result)
             if args.json:
-                print(json.dumps(asdict(one.result)), flush=True)
+                print(json.dumps(record_data(one.result)), flush=True)
             else:
                 says = f" ({one.says})" if one.says else ""
                 print(f"[{number}/{len(who)}] {one.result}{says}", flush=True)

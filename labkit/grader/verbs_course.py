@@ -68,7 +68,7 @@ def add(verbs: Verbs) -> None:
 
 def release(args: argparse.Namespace) -> int:
     """Make assignments."""
-    from ..course.release import release
+    from .release import release
     from .term import said_of, seed_for
 
     course = Course.here(args.course)

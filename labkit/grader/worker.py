@@ -9,11 +9,12 @@ import warnings
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
 from .grade import grade, rejection
 from .plan import imports
-from .results import Bundle, Result
+from .results import Result
 from .sandbox.cgroup import MEMORY, limit_memory
 from .sandbox.launch import Sandbox, SandboxLost
 from .sandbox.limits import Limits, slowness

@@ -7,16 +7,14 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Mapping
 from typing import Any
 
 import nbformat
 
-from ..course import Outcome
 from ..course.layout import Course
-from ..course.messages import HEADS
-from ..course.notebook import Notebook, without_hidden
-from .results import Result
+from ..course.messages import summary
+from ..course.notebook import Notebook, about, grade_id, kind, question_of
+from .results import Answer, Result
 
 
 def in_release_form(source: Notebook, result: Result) -> Notebook:
@@ -27,7 +25,7 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
         result: Of the submission.
     """
     notebook = copy.deepcopy(source)
-    answers = {question["name"]: question["source"] for question in result.questions}
+    answers = {q.verdict.name: q.source for q in result.questions}
     extra: dict[str, list[Any]] = {}
     for number, own in enumerate(result.own):
         code = own["type"] == "code"
@@ -35,8 +33,8 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
         text = own["source"] if code else _as_typed(own["source"])
         extra.setdefault(own["after"], []).append(make(text, id=f"own-{number:04d}"))
     for cell in notebook.cells:
-        if cell.metadata.get("lab") == "answer":
-            cell.source = answers.get(cell.metadata["nbgrader"]["grade_id"], "")
+        if kind(cell) == "answer":
+            cell.source = answers.get(grade_id(cell), "")
     notebook.cells = extra.get("", []) + [
         one for cell in notebook.cells for one in (cell, *extra.get(cell["id"], []))
     ]
@@ -45,18 +43,15 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
 
 def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
     """The verdicts as the outputs of the checks, in the form that nbgrader reads marks from."""
-    verdicts = {question["name"]: question for question in result.questions}
+    answers = {question.verdict.name: question for question in result.questions}
     for cell in notebook.cells:
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
-        grade_id = cell.metadata.get("nbgrader", {}).get("grade_id", "")
-        if not cell.metadata.get("nbgrader", {}).get("grade"):
+        if not about(cell).get("grade"):
             continue
-        name = grade_id.removesuffix("-check")
-        cell.source = without_hidden(cell.source)
-        question = verdicts.get(name)
-        text = "\n".join(_told(question)) if question else result.rejected
-        earned = question["earned"] if question else 0.0
+        answer = answers.get(question_of(grade_id(cell)))
+        text = "\n".join(_told(answer)) if answer else result.rejected
+        earned = answer.verdict.earned if answer else 0.0
         cell.execution_count = 1
         cell.outputs = [
             nbformat.v4.new_output("stream", name="stdout", text=text + "\n"),
@@ -73,21 +68,9 @@ def _as_typed(source: str) -> str:
     return f"{fence}markdown\n{source}\n{fence}"
 
 
-def _told(question: Mapping[str, Any]) -> list[str]:
+def _told(answer: Answer) -> list[str]:
     """A question's verdict, the verdict first, then why."""
-    outcome = Outcome(question["outcome"])
-    points = f"{question['earned']:g} of {question['points']:g} points"
-    lines = [f"{question['name']}: {HEADS[outcome]}. {points}."]
-    if outcome in {Outcome.WRONG, Outcome.ERROR}:
-        for test in question["tests"]:
-            gate = "" if test["weight"] else " (needed before anything counts)"
-            right = test["outcome"] == "right"
-            says = "" if right else f": {test['says']}"
-            lines.append(f"  [{'passed' if right else 'failed'}] {test['name']}{gate}{says}")
-        if question["mistake"]:
-            lines.append(f"  This is a well-known one: {question['mistake']['name']}.")
-            lines.append(f"  {question['mistake']['says']}")
-    return [*lines, *(f"  Note: {note}." for note in question["notes"])]
+    return [*summary(answer.verdict), *(f"  Note: {note}." for note in answer.notes)]
 
 
 def release_source(course: Course, assignment: str) -> Notebook:

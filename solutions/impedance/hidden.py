@@ -9,8 +9,8 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call, Loop
-from labkit.course.cases import Case
 from labkit.course.problem import call
+from labkit.course.question import Case
 
 Random = np.random.Generator
 

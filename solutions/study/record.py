@@ -18,8 +18,9 @@ from typing import Any
 import numpy as np
 
 from labkit.course.layout import PUBLIC_SEED, Course
-from labkit.course.marking import Verdict, mark
+from labkit.course.marking import mark
 from labkit.course.problem import Problem
+from labkit.course.verdict import Verdict
 from labkit.recordings import DATA
 
 ROOT = Path(__file__).parents[2]

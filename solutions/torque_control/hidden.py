@@ -10,8 +10,8 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call, Loop, Tuned
-from labkit.course.cases import Case
 from labkit.course.problem import call
+from labkit.course.question import Case
 
 from .answers import choose_gains
 

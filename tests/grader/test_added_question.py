@@ -11,16 +11,16 @@ import pytest
 from handmade import QUICK, ROOT, hand_in
 
 from labkit.cli import main
-from labkit.course.handin import read_cells
+from labkit.course.handin import merge
 from labkit.course.layout import Course
-from labkit.course.merging import merge
-from labkit.course.release import release
+from labkit.course.notebook import read_cells
 from labkit.errors import LabkitError
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.nbgrader_api import nbgrader_api
+from labkit.grader.release import release
 from labkit.grader.results import Results
 
 pytestmark = pytest.mark.slow  # whole classes are graded
@@ -118,10 +118,10 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
         assert book.find_comment("circle", NAME, NAME, "bob").manual_comment == "see me"
         assert book.find_submission(NAME, "ada").max_score == 20
     for result in Results(course, NAME):
-        found = {q["name"]: q for q in result.questions}[LATER]
-        assert (found["outcome"], found["earned"]) == ("not attempted", 0.0)
+        found = {q.verdict.name: q.verdict for q in result.questions}[LATER]
+        assert (found.outcome, found.earned) == ("not attempted", 0.0)
         assert "came after the notebook was handed in" in page(result)
-        assert not [q for q in result.questions if q["name"] != LATER and q["notes"]]
+        assert not [q for q in result.questions if q.verdict.name != LATER and q.notes]
 
 
 def test_an_added_question_counts_once_it_is_handed_in(marked):
@@ -190,5 +190,7 @@ def test_a_question_without_points_is_reported_as_void(marked):
     """A voided question is in the report, without a mean."""
     course, _ = marked
     (one, *_) = Results(course, NAME)
-    questions = tuple(dict(q, points=0.0, earned=0.0) for q in one.questions)
+    questions = tuple(
+        replace(q, verdict=replace(q.verdict, points=0.0, earned=0.0)) for q in one.questions
+    )
     assert "| voided |" in report(NAME, [replace(one, questions=questions)], {}, str)

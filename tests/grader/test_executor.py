@@ -15,11 +15,11 @@ import pytest
 from handmade import QUICK, add, hand_in
 from processes import below, child, wait_until_gone
 
+from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError
 from labkit.grader import executor as pools
 from labkit.grader import worker
 from labkit.grader.executor import LocalExecutor, executor
-from labkit.grader.results import Bundle
 from labkit.grader.sandbox import cgroup
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import NoIsolation

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labkit.course.inline import inline
 from labkit.course.layout import Course
 from labkit.course.solved import inlined
 from labkit.course.source import look
-from labkit.course.withheld_names import withheld_tools
+from labkit.course.withheld import withheld_tools
 from labkit.grader import synthetic_kinds
+from labkit.grader.inline import inline
 from labkit.grader.plan import plan
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.tricks import tricks

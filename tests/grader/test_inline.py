@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.course.inline import inline
 from labkit.course.layout import Course
+from labkit.grader.inline import inline
 
 COURSE = Course.here(Path(__file__))
 

@@ -8,12 +8,12 @@ from courses import copied
 
 from labkit import LabkitError
 from labkit.cli import main
+from labkit.course.bundle import Bundle
 from labkit.course.layout import PUBLIC_SEED, Course
-from labkit.course.release import FORBIDDEN
 from labkit.errors import UnknownName
 from labkit.grader import term
+from labkit.grader.release import FORBIDDEN
 from labkit.grader.repositories import export_course
-from labkit.grader.results import Bundle
 
 ROOT = Path(__file__).resolve().parents[2]
 

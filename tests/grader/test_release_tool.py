@@ -13,11 +13,10 @@ from labkit.course import read_question
 from labkit.course.layout import Course
 from labkit.course.notebook import brief, source_notebook
 from labkit.course.problem import _none
-from labkit.course.release import FORBIDDEN, release
+from labkit.course.refusals import refusals, stand_ins
 from labkit.course.solved import inlined, solution_notebook
-from labkit.course.stand_in import stand_ins
-from labkit.course.unearned import refusals
 from labkit.errors import LabkitError
+from labkit.grader.release import FORBIDDEN, release
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
@@ -66,7 +65,7 @@ def test_stubs_and_questions_must_match(tmp_path):
     for source, sentence in (
         ("# %%\nx = 1\n", "has 0 stubs of joint_error"),
         (stub + stub, "has 2 stubs of joint_error"),
-        (stub.replace("def joint_error", "def error"), "defines no joint_error"),
+        (stub.replace("def joint_error", "def error"), "does not define joint_error"),
         (stub.replace("    ### END SOLUTION\n", ""), "needs one region"),
     ):
         text.write_text(source)
@@ -125,7 +124,7 @@ def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, cap
     def missing(*args):
         raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
 
-    monkeypatch.setattr("labkit.course.release.release", missing)
+    monkeypatch.setattr("labkit.grader.release.release", missing)
     assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
     said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
     assert capsys.readouterr().err == said

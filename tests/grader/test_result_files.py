@@ -11,7 +11,8 @@ import pytest
 from handmade import QUICK, raw
 from hypothesis import given
 from hypothesis import strategies as st
-from made import NAME, graded, result_of
+from made import NAME, graded, result_of, saying
+from made import changed as changed_in
 
 from labkit.cli import main
 from labkit.errors import LabkitError
@@ -47,7 +48,8 @@ def marked(course):
 
 def changed(question):
     def change(data):
-        data["questions"][0].update(question)
+        place = data["questions"][0]
+        (place if "numbers" in question else place["verdict"]).update(question)
 
     return change
 
@@ -112,8 +114,8 @@ def test_texts_are_safe_once_they_are_read(course):
     """Surrogates, a terminal's commands and turned writing are gone from every field."""
     bad = "a\ud800\x1b[2J\u202eb"
     one = result_of(course, "ada", notes=(bad,), own=({"after": bad, "type": bad, "source": bad},))
-    one.questions[0].update(source=bad, notes=[bad])
-    one.questions[0]["tests"][0]["says"] = bad
+    (test, *_) = saying(one.questions[0].verdict, bad).tests
+    one = changed_in(one, verdict={"tests": (test,)}, source=bad, notes=(bad,))
     text = Result.read(one.text()).text()
     assert not [x for x in ("ud800", "u001b", "u202e") if x in text]
     assert text.count(r"a\ufffd[2Jb") == 7

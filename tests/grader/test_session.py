@@ -9,14 +9,15 @@ import time
 import pytest
 from handmade import QUICK, ROOT, add, cell_of, put, raw
 
-from labkit.course.judges import MOST_COEFFICIENTS, Ratio
+from labkit.course.bundle import Bundle
+from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
 from labkit.course.layout import Course
-from labkit.course.release import release
+from labkit.course.messages import why
 from labkit.errors import OutOfRange
 from labkit.grader import grade as checker
 from labkit.grader.grade import grade
 from labkit.grader.plan import imports
-from labkit.grader.results import Bundle
+from labkit.grader.release import release
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
 from labkit.grader.sandbox.session import MAX_LOST, Session
@@ -39,11 +40,11 @@ def asked(monkeypatch):
 
 
 def about(result, name):
-    return next(q for q in result.questions if q["name"] == name)
+    return next(q.verdict for q in result.questions if q.verdict.name == name)
 
 
 def says(result, name):
-    return " ".join(test["says"] for test in about(result, name)["tests"])
+    return " ".join(why(test) for test in about(result, name).tests)
 
 
 def on_hidden_cases(solved, bundle, name, does):
@@ -213,7 +214,7 @@ def test_an_honest_answer_five_times_slower_than_ours_is_marked(torque):
         put(notebook, one.name, f"{source}\n{SLOWER}\n{one.name} = _slower({one.name})")
     with Sandbox(imports(bundle.data["cells"])) as sandbox:
         result = grade(raw(notebook), "ada", bundle, sandbox, Limits().scaled(slowness()))
-    assert result.score == 20, [(q["name"], q["tests"]) for q in result.questions]
+    assert result.score == 20, [q.verdict for q in result.questions]
 
 
 EMOJI = "\U0001f600"

@@ -10,9 +10,11 @@ from html.parser import HTMLParser
 
 import pytest
 from handmade import QUICK
+from made import saying
 
 from labkit.cli import main
 from labkit.course.serialize import encode
+from labkit.course.verdict import Outcome
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.export import LAYOUTS, Row, as_csv, left_out, rows
@@ -65,14 +67,14 @@ class Page(HTMLParser):
 def test_feedback_page_shows_text_as_text(term):
     """Whatever a student's code said, the page holds no element but its own, and a policy."""
     result = max(Results(term, NAME), key=lambda r: len(r.cells) + sum(
-        q["outcome"] == "wrong" for q in r.questions))  # fmt: skip
+        q.verdict.outcome is Outcome.WRONG for q in r.questions))  # fmt: skip
     evil = "<script>alert(1)</script><img src=x onerror=alert(1)>"
     worst = replace(
         result,
         notes=(evil,),
         cells=({"cell": 3, "kind": evil, "error": evil, "output": evil, "seconds": 0.0},),
         questions=tuple(
-            dict(q, source=evil, notes=[evil], tests=[dict(t, says=evil) for t in q["tests"]])
+            replace(q, source=evil, notes=(evil,), verdict=saying(q.verdict, evil))
             for q in result.questions
         ),
     )
@@ -167,7 +169,7 @@ def test_class_report(term):
     results = list(Results(term, NAME))
     problems = {p.name: p for p in term.problems(NAME)}
     text = report(NAME, results, problems, pseudonyms(term))
-    mistakes = [q["mistake"]["name"] for r in results for q in r.questions if q["mistake"]]
+    mistakes = [q.verdict.mistake.name for r in results for q in r.questions if q.verdict.mistake]
     assert mistakes
     assert all(name in text for name in mistakes)
     assert not [r.student for r in results if r.student in text]
@@ -186,7 +188,9 @@ def test_pseudonyms_last_a_term_and_are_nobody_elses(course):
 def test_look_alikes(term):
     """Two who handed in the same unusual work are listed together, with what to ask."""
     results = list(Results(term, NAME))
-    one = next(r for r in results if sum(q["outcome"] == "wrong" for q in r.questions) > 2)
+    one = next(
+        r for r in results if sum(q.verdict.outcome is Outcome.WRONG for q in r.questions) > 2
+    )
     text = report(NAME, [*results, replace(one, student="zz")], {}, str)
     assert "Look-alikes" in text
     assert f"{one.student} and zz" in text

@@ -15,9 +15,8 @@ from courses import copied
 from labkit.course import question_data
 from labkit.course.layout import Course
 from labkit.course.notebook import source_notebook
-from labkit.course.question_codec import KINDS
-from labkit.course.release import FORBIDDEN, release
-from labkit.course.serialize import encode
+from labkit.course.serialize import KINDS, encode
+from labkit.grader.release import FORBIDDEN, release
 
 COURSE = Course.here(Path(__file__))
 NAMES = COURSE.names()

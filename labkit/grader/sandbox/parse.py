@@ -10,6 +10,7 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from ...course.notebook import grade_id
 from ...course.source import look
 from .clean import clean_line, clean_text
 from .tricks import tricks
@@ -74,16 +75,11 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
         kind = "code" if cell.get("cell_type") == "code" else "text"
         yield {
             "id": _text(cell.get("id")),
-            "grade_id": _text(_within(_within(cell, "metadata"), "nbgrader").get("grade_id")),
+            "grade_id": clean_line(grade_id(cell), 100),
             "type": kind,
             "source": source,
             **({**look(source), "tricks": tricks(source)} if kind == "code" else {}),
         }
-
-
-def _within(cell: Any, key: str) -> dict[str, Any]:
-    inner = cell.get(key)
-    return inner if isinstance(inner, dict) else {}
 
 
 def _text(x: Any) -> str:

@@ -18,7 +18,7 @@ def install() -> None:
     import labkit
 
     checks = ModuleType("labkit.course")
-    for function in (check, hint, use, also):
+    for function in (check, hint, use):
         setattr(checks, function.__name__, function)
     for name in ("course", "check"):  # notebooks of version 0.1 say labkit.check
         sys.modules[f"labkit.{name}"] = checks
@@ -45,10 +45,6 @@ def check(name: str, function: Callable[..., Any] | None = None) -> float:
 
 def hint(name: str, level: int = 1) -> None:
     """No hint."""
-
-
-def also(name: str, packed: str) -> None:
-    """Nothing more."""
 
 
 right: set[str] = set()

@@ -19,7 +19,7 @@ from soak.attacks.attack import CANARY, Attack, Notebook
 from soak.attacks.others import VICTIM
 
 from labkit.course.layout import Course
-from labkit.course.release import release
+from labkit.grader.release import release
 
 NAME = "01_paths"
 ROOT = Path(__file__).parents[3]

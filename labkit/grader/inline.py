@@ -12,6 +12,8 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
+from ..course.source import names_defined
+
 Key = tuple[str, str]
 """A definition, its module and its name there."""
 
@@ -189,20 +191,6 @@ def _home(node: ast.stmt, module: ModuleType) -> ModuleType | None:
     if full.partition(".")[0] != module.__name__.partition(".")[0]:
         return None
     return importlib.import_module(full)
-
-
-def names_defined(node: ast.stmt) -> list[str]:
-    """The names that a statement of a module gives a meaning to."""
-    if isinstance(node, ast.FunctionDef | ast.ClassDef):
-        return [node.name]
-    if isinstance(node, ast.ImportFrom) and node.module == "__future__":
-        return []
-    if isinstance(node, ast.Import | ast.ImportFrom):
-        return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
-    targets = node.targets if isinstance(node, ast.Assign) else []
-    targets = [node.target] if isinstance(node, ast.AnnAssign) else targets
-    parts = [x for target in targets for x in ast.walk(target) if isinstance(x, ast.Name)]
-    return [x.id for x in parts if isinstance(x.ctx, ast.Store)]
 
 
 class _Renamed(ast.NodeTransformer):

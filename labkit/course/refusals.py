@@ -1,23 +1,35 @@
-"""What a release refuses: points that nobody works for, and mistakes that cannot be told apart."""
+"""What a release refuses: points that nobody works for, and mistakes that cannot be told apart.
+
+A notebook says `use(question, answer, stand_in)`, and a stand-in must earn nothing.  Of all that
+stands before it in the notebook only what the stand-in needs is run, so no arm moves and no figure
+is drawn; the other answers are right there.
+"""
 
 from __future__ import annotations
 
+import ast
+import dis
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from types import CodeType
 from typing import Any
 
 from ..control import JointTorque
-from . import Call, Outcome, Question, TipTorque, Within, fingerprint, stand_in
-from .judges import Judge
-from .marking import mark, recognise
+from .equivalence import Judge, TipTorque
+from .judges import Within
+from .marking import fingerprint, mark, recognise
 from .notebook import Notebook
 from .problem import Problem
+from .question import Call, Question
 from .reply import Here
 from .serialize import encode
-from .source import look
-from .withheld import withhold
-from .withheld_names import withheld_tools
+from .source import look, names_defined
+from .verdict import Outcome
+from .withheld import withheld_tools, withhold
+
+USE = "def use(name, function, given, yours=None):\n    return yours or function\n"
+"""Takes the place of the notebook's, since the other parts are right."""
 
 
 def refusals(
@@ -30,7 +42,7 @@ def refusals(
         problems: By name.
         questions: The same as questions, hidden cases included.
     """
-    texts = stand_in.stand_ins(source)
+    texts = stand_ins(source)
     return [
         f"{name}: {reason}"
         for name, problem in problems.items()
@@ -110,7 +122,7 @@ def _stand_in_earns(question: Question, text: str) -> float:
     """What the stand-in is worth as an answer; withheld tools count nothing."""
     if withheld_tools([look(text)], question.name, question.withheld):
         return 0.0
-    function = stand_in.run(question.name, text)
+    function = _run(question.name, text)
     with withhold(question.withheld, function.__globals__):
         return _earned(question, Here(function, question.withheld))
 
@@ -121,3 +133,51 @@ def _earned(question: Question, function: Callable[..., Any]) -> float:
     if gates and mark(replace(question, tests=gates), function).outcome is not Outcome.RIGHT:
         return 0.0
     return mark(question, function).earned
+
+
+def stand_ins(source: Notebook) -> dict[str, str]:
+    """The stand-in of each question that has one, as Python text that defines it by that name.
+
+    Args:
+        source: The notebook with its solution regions.
+    """
+    cells = (ast.parse(cell.source).body for cell in source.cells if cell.cell_type == "code")
+    statements = [statement for body in cells for statement in body]
+    found = {}
+    for k, statement in enumerate(statements):
+        for node in ast.walk(statement):
+            match node:
+                case ast.Call(ast.Name("use"), [ast.Constant(str() as name), _, given, *_]):
+                    found[name] = _text(name, given, statements[:k])
+    return found
+
+
+def _run(name: str, text: str) -> Callable[..., Any]:
+    """The function of that name which a text defines."""
+    names: dict[str, Any] = {"__name__": f"the stand-in of {name}"}
+    exec(text, names)
+    function: Callable[..., Any] = names[name]
+    return function
+
+
+def _text(name: str, given: ast.expr, before: Sequence[ast.stmt]) -> str:
+    """The stand-in as a function of its own, after all that it needs from what stands before."""
+    call = f"return ({ast.unparse(given)})(*args, **kwargs)"
+    parts = [f"def {name}(*args, **kwargs):\n    {call}\n"]
+    wanted = set(_needs(parts[0]))
+    for statement in reversed(before):
+        if not wanted.isdisjoint({*names_defined(statement)} - {"use"}):
+            parts.append(ast.unparse(statement))
+            wanted.update(_needs(parts[-1]))
+    return "\n\n".join([USE, *reversed(parts)])
+
+
+def _needs(text: str) -> Iterator[str]:
+    """The names that a statement takes from outside, its functions' bodies included."""
+    waiting = [compile(text, "", "exec")]
+    while waiting:
+        code = waiting.pop()
+        waiting += [x for x in code.co_consts if isinstance(x, CodeType)]
+        yield from (
+            x.argval for x in dis.get_instructions(code) if x.opname in ("LOAD_GLOBAL", "LOAD_NAME")
+        )
