@@ -58,7 +58,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
 
     Each submission is graded in a sandbox of its own.
     """
-    from .batch import How, common_failures, grade_class
+    from .batch import GradeOptions, common_failures, grade_class
     from .gradebook import record
     from .lock import WHOLE
     from .results import Result, Results
@@ -66,7 +66,9 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     with Failures() as failures:
         who = _handed_in(course, assignment, student, failures)
         graded: list[Result] = []
-        done = failures.sift(grade_class(course, assignment, who, How(**how)), "not graded")
+        done = failures.sift(
+            grade_class(course, assignment, who, GradeOptions(**how)), "not graded"
+        )
         for number, one in enumerate(done, start=1):
             graded.append(one.result)
             says = f" ({one.says})" if one.says else ""
@@ -93,15 +95,15 @@ def regrade(
     course: Course, assignment: str, student: str | None, diff: bool, lower: bool, jobs: int
 ) -> int:
     """Grade again after a test or its points have changed."""
-    from .batch import How
+    from .batch import GradeOptions
     from .gradebook import record
-    from .lock import alone
+    from .lock import exclusive_run
     from .regrade import accept, moves, summary
     from .results import Results
 
-    with Failures() as failures, alone(Results(course, assignment).folder):
+    with Failures() as failures, exclusive_run(Results(course, assignment).folder):
         who = _handed_in(course, assignment, student, failures)
-        found = moves(course, assignment, who, How(jobs=jobs))
+        found = moves(course, assignment, who, GradeOptions(jobs=jobs))
         moved = list(failures.sift(found, "not graded"))
         _tell(summary(moved), sys.stdout)
         if not diff:
@@ -205,10 +207,9 @@ def _handed_in(
     course: Course, assignment: str, student: str | None, failures: Failures
 ) -> list[str]:
     """Who handed in, or the one asked for; folders with a name that is not fit are failures."""
-    from .engines import misnamed
-    from .engines import students as found_in
+    from .submission import misnamed, students
 
-    found = found_in(course, assignment)
+    found = students(course, assignment)
     who = [student] if student else found
     if student is None:
         failures.add("not graded", misnamed(course, assignment))

@@ -14,7 +14,7 @@ from textwrap import wrap
 
 from .pages import render
 from .sandbox import seccomp
-from .sandbox.launch import Broken, Sandbox
+from .sandbox.launch import Sandbox, SandboxLost
 from .sandbox.limits import Limits, slowness
 from .sandbox.mounts import NoIsolation
 
@@ -78,9 +78,9 @@ def examine() -> Iterator[Finding]:
 def sandbox() -> Iterator[Finding]:
     """Make a sandbox and try to get out of it."""
     try:
-        with Sandbox() as made, made.enter("student", Limits()) as inside:
-            inside.line.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
-            failed = str(inside.line.read(30.0).get("error", "it did not answer"))
+        with Sandbox() as made, made.spawn("student", Limits()) as process:
+            process.connection.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
+            failed = str(process.connection.read(30.0).get("error", "it did not answer"))
             yield Finding("sandbox", not failed, failed or made.level)
             counted = made.group is not None
             says = made.group.says if made.group else (
@@ -92,7 +92,7 @@ def sandbox() -> Iterator[Finding]:
             away = os.geteuid() == 0
             says = f"user {made.uid}" if away else "yours, without any rights, in a user namespace"
             yield Finding("a user of its own", away, says, needed=False)
-    except (NoIsolation, Broken) as error:
+    except (NoIsolation, SandboxLost) as error:
         yield Finding("sandbox", False, f"{error}\n\n{elsewhere()}")
 
 

@@ -1,13 +1,14 @@
-"""The checker: owns what is expected, asks a sandboxed student for answers, reaches the verdicts.
+"""Grade one notebook: read it, plan what runs, ask its functions, reach the verdicts.
 
-It shares no process with the student's code; what comes back is plain data, read with limits.
+This side owns what is expected and shares no process with the student's code; what comes back is
+plain data, read with limits.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
 
@@ -24,9 +25,8 @@ from .plan import Plan, plan
 from .results import Answer, FailedCell, Hashes, OwnCell, Result, digest, engine, versions
 from .sandbox.launch import Sandbox
 from .sandbox.limits import TRICKS, Limits, TextBudget
-from .sandbox.protocol import Gone, TooLate, TooMuch
-from .sandbox.remote import RemoteFunction
-from .sandbox.session import Session
+from .sandbox.protocol import Disconnected, ProtocolError
+from .sandbox.session import RemoteFunction, Session
 
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "
@@ -59,8 +59,8 @@ def grade(
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
     questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
-    with Session(sandbox, todo, limits) as session:
-        with suppress(Gone):
+    with closing(Session(sandbox, todo.steps, limits)) as session:
+        with suppress(Disconnected):
             session.start()
         functions = [RemoteFunction(question, session) for question in questions]
         tried = {function.question.name: _public(function) for function in functions}
@@ -155,12 +155,12 @@ def hashes(data: bytes, bundle: Bundle) -> Hashes:
 def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]] | str:
     """The cells of a notebook, read in a process of its own; or why there are none."""
     try:
-        with sandbox.enter("parse", limits, size=len(data)) as inside:
-            inside.line.end.settimeout(limits.parse)
+        with sandbox.spawn("parse", limits, size=len(data)) as process:
+            process.connection.socket.settimeout(limits.parse)
             with suppress(BrokenPipeError):  # an empty file is answered before it is sent
-                inside.line.end.sendall(data)
-            found = inside.line.read(limits.parse)
-    except (OSError, Gone, TooLate, TooMuch):
+                process.connection.socket.sendall(data)
+            found = process.connection.read(limits.parse)
+    except (OSError, ProtocolError):
         return "the file cannot be read within the limits of time and memory"
     if "cells" not in found:
         return str(found.get("rejected", "the file cannot be read"))
@@ -177,7 +177,7 @@ def _public(function: RemoteFunction) -> Tried:
     except Exception:
         return Tried(_lost(function.question).tests, {})
     finally:
-        function.session.close()
+        function.session.close_question()
 
 
 def _guarded(function: RemoteFunction, tried: Tried) -> Verdict:
@@ -188,7 +188,7 @@ def _guarded(function: RemoteFunction, tried: Tried) -> Verdict:
     except Exception:
         return _lost(question)
     finally:
-        function.session.close()
+        function.session.close_question()
 
 
 def _untried(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:

@@ -23,8 +23,8 @@ from ..course.notebook import about, grade_id, is_check, question_of
 from ..errors import LabkitError
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 from .each import Failed, for_student
-from .engines import nbgrader_api
 from .exchange import read_stamp, read_time
+from .nbgrader_api import nbgrader_api
 from .results import Result, write
 
 

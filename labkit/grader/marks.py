@@ -15,13 +15,13 @@ from ..course.layout import Course
 from ..course.notebook import question_of
 from .clean import clean_line
 from .each import Failed
-from .engines import is_name, plain_name, students
 from .gradebook import automatic, open_gradebook
 from .identity import lms_users
 from .platforms import LmsUser
 from .results import Result
 from .roster import Student, read_roster
 from .standing import grade_again, standing
+from .submission import is_name, plain_name, students
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Regrade: whose mark moves after a test has changed, said before anything is written."""
+"""Regrade: whose mark changes after a test has changed, known before anything is written."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from functools import partial
 from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
-from .batch import How, grade_aside
+from .batch import GradeOptions, grade_aside
 from .each import Failed, for_student
 from .results import Result, Results
 from .submission import Submission
@@ -49,12 +49,12 @@ class Move:
 
 
 def moves(
-    course: Course, assignment: str, students: Sequence[str], how: How
+    course: Course, assignment: str, students: Sequence[str], options: GradeOptions
 ) -> Iterator[Move | LabkitError]:
     """Grade aside, and compare with the results that count; nothing of the course is changed."""
     bundle, now = Bundle.of(course, assignment), Results(course, assignment)
     submissions = [Submission.of(course, assignment, student) for student in students]
-    for result in grade_aside(course, bundle, submissions, how):
+    for result in grade_aside(course, bundle, submissions, options):
         if isinstance(result, LabkitError):
             yield result
         else:

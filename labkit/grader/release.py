@@ -15,8 +15,8 @@ import nbformat
 from ..course.layout import Course
 from ..course.release import prepare, write
 from ..errors import LabkitError
-from .engines import nbgrader_api, reason
 from .gradebook import migrate
+from .nbgrader_api import nbgrader_api, reason
 
 FORBIDDEN = (
     "BEGIN SOLUTION",

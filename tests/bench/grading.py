@@ -1,18 +1,14 @@
 """How quick grading is: its overhead per submission, and against nbgrader's own engine."""
 
 import shutil
-import sys
 import time
-from pathlib import Path
 
-from labkit.grader.batch import How, grade_class, workers
-from labkit.grader.engines import students
+from labkit.grader.batch import GradeOptions, grade_class, workers
 from labkit.grader.release import release
+from labkit.grader.submission import students
 
+from ..plain_nbgrader import grade_with_nbgrader, pack_hidden
 from .courses import fresh_course
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "grader"))
-from plain_nbgrader import grade_with_nbgrader, pack_hidden
 
 ASSIGNMENT = "00_warmup"
 COUNT = 100
@@ -44,7 +40,7 @@ def measure():
         submit_solved(course)
         who = students(course, ASSIGNMENT)
         start = time.perf_counter()
-        done = list(grade_class(course, ASSIGNMENT, who, How(jobs=jobs)))
+        done = list(grade_class(course, ASSIGNMENT, who, GradeOptions(jobs=jobs)))
         isolated = (time.perf_counter() - start) / COUNT
         scores = {getattr(getattr(one, "result", None), "score", None) for one in done}
         start = time.perf_counter()

@@ -15,11 +15,11 @@ from labkit.course.handin import merge
 from labkit.course.layout import Course
 from labkit.course.notebook import read_cells
 from labkit.errors import LabkitError
-from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
-from labkit.grader.engines import nbgrader_api
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.nbgrader_api import nbgrader_api
 from labkit.grader.release import release
 from labkit.grader.results import Results
 
@@ -74,8 +74,8 @@ def marked(early, tmp_path, monkeypatch):
 
 
 def graded(course):
-    done = grade_class(course, NAME, ["ada", "bob"], How(jobs=2, limits=QUICK))
-    results = [one.result for one in done if isinstance(one, Graded)]
+    done = grade_class(course, NAME, ["ada", "bob"], GradeOptions(jobs=2, limits=QUICK))
+    results = [one.result for one in done if isinstance(one, GradedSubmission)]
     return sorted(results, key=lambda result: result.student)
 
 

@@ -20,11 +20,17 @@ from processes import below, child, wait_until_gone
 
 from labkit.__main__ import main
 from labkit.grader import gradebook
-from labkit.grader.batch import Graded, How, common_failures, grade_class, in_shard
-from labkit.grader.engines import students
+from labkit.grader.batch import (
+    GradedSubmission,
+    GradeOptions,
+    common_failures,
+    grade_class,
+    in_shard,
+)
 from labkit.grader.gradebook import open_gradebook, record
 from labkit.grader.marks import marks_of
 from labkit.grader.results import Results
+from labkit.grader.submission import students
 from tests.synthetic import differences, make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded
@@ -36,8 +42,10 @@ PART = 8
 def grade_all(course, **how):
     return [
         one
-        for one in grade_class(course, NAME, students(course, NAME), How(limits=QUICK, **how))
-        if isinstance(one, Graded)
+        for one in grade_class(
+            course, NAME, students(course, NAME), GradeOptions(limits=QUICK, **how)
+        )
+        if isinstance(one, GradedSubmission)
     ]
 
 
@@ -107,7 +115,7 @@ def test_killed_worker(part):
     """A worker that is killed loses nothing: its submission goes to the next one."""
 
     def kill_one():
-        worker = child(os.getpid(), "labkit.grader.worker")
+        worker = child(os.getpid(), "spawn_main")
         below(worker, at_least=4)
         os.kill(worker, signal.SIGKILL)
 
@@ -120,12 +128,12 @@ def test_killed_worker(part):
 
 
 STOPS = [
-    ("SIGTERM", 6),
-    ("SIGINT", 6),
-    ("SIGHUP", 6),
-    ("SIGKILL", 3),
-    pytest.param("SIGTERM", 2, marks=pytest.mark.soak),
-    pytest.param("SIGKILL", 6, marks=pytest.mark.soak),
+    ("SIGTERM", 7),
+    ("SIGINT", 7),
+    ("SIGHUP", 7),
+    ("SIGKILL", 4),
+    pytest.param("SIGTERM", 3, marks=pytest.mark.soak),
+    pytest.param("SIGKILL", 7, marks=pytest.mark.soak),
 ]
 """Signals to the grader, and the number of its processes at the moment when they come."""
 
@@ -142,14 +150,14 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
     with subprocess.Popen(
         [*words, "--course", str(course.root)], env=environment, stdout=subprocess.PIPE, text=True
     ) as run:
-        if processes == 6:  # it is at the second submission
+        if processes == 7:  # it is at the second submission
             hand_in(course, NAME, "bob", add(copy.deepcopy(solved), "while True: pass"))
             assert "ada: 20 of 20" in run.stdout.readline()
         everything = below(run.pid, at_least=processes)
         run.send_signal(getattr(signal, name))
         wait_until_gone(everything)
     before = [result.student for result in Results(course, NAME)]
-    assert before == (["ada"] if processes == 6 else [])
+    assert before == (["ada"] if processes == 7 else [])
     hand_in(course, NAME, "bob", solved)
     done = grade_all(course)
     assert [one.says for one in sorted(done, key=lambda one: one.result.student)] == [

@@ -19,14 +19,14 @@ from handmade import add, hand_in, nbgrader
 from plain_nbgrader import pack_hidden
 
 from labkit.course.notebook import kind
-from labkit.grader.batch import Graded, How, grade_class
-from labkit.grader.engines import students
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.sandbox.limits import Limits
+from labkit.grader.submission import students
 
 NAME = "01_paths"
-FAST = How(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))
+FAST = GradeOptions(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))
 EVERYBODY = (*CONTROLS, VICTIM)
 
 
@@ -138,7 +138,7 @@ def grade_with_nbgrader(course):
 def grade_isolated(course):
     """Grade with the isolated engine, every student in one run."""
     done = list(grade_class(course, NAME, students(course, NAME), FAST))
-    assert all(isinstance(one, Graded) and not one.result.rejected for one in done), done
+    assert all(isinstance(one, GradedSubmission) and not one.result.rejected for one in done), done
     results = {one.result.student: one.result for one in done}
     of = {kind: results[student(kind)] for kind in EVERYBODY}
     return (

@@ -20,8 +20,7 @@ from labkit.grader.plan import imports
 from labkit.grader.release import release
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
-from labkit.grader.sandbox.remote import MOST_LOST
-from labkit.grader.sandbox.session import Session
+from labkit.grader.sandbox.session import MAX_LOST, Session
 
 LARGEST = 2_000_000  # bytes of a result
 
@@ -127,7 +126,7 @@ def test_an_endless_question_is_asked_no_more(body, solved, bundle, sandbox, ask
     put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
     assert result.score == 16
-    assert asked.count("circle") <= MOST_LOST
+    assert asked.count("circle") <= MAX_LOST
     assert "TimeoutError" in says(result, "circle")
 
 
@@ -140,7 +139,7 @@ def test_calls_that_are_lost_on_hidden_cases_count_too(solved, bundle, sandbox, 
     limits = Limits(call=0.2, question=2.0)
     result = grade(raw(solved), "mallory", bundle, sandbox, limits)
     public = len(next(q for q in bundle.questions if q.name == "trapezoid").calls)
-    assert public < asked.count("trapezoid") <= public + MOST_LOST < before
+    assert public < asked.count("trapezoid") <= public + MAX_LOST < before
     assert result.score < 20
 
 

@@ -15,9 +15,8 @@ from made import saying
 from labkit.__main__ import main
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
-from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
-from labkit.grader.engines import students
 from labkit.grader.export import LAYOUTS, as_csv, left_out
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
@@ -26,6 +25,7 @@ from labkit.grader.platforms import LmsUser
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.regrade import accept, moves
 from labkit.grader.results import Results
+from labkit.grader.submission import students
 from labkit.grader.term import archive
 from tests.synthetic import make_class
 
@@ -45,8 +45,8 @@ def term(released, tmp_path_factory):
     shutil.copytree(released.root, root, symlinks=True)
     course = Course(root)
     make_class(course, NAME, seed=4, count=9)
-    done = grade_class(course, NAME, students(course, NAME), How(jobs=2, limits=QUICK))
-    record(course, NAME, [one.result for one in done if isinstance(one, Graded)])
+    done = grade_class(course, NAME, students(course, NAME), GradeOptions(jobs=2, limits=QUICK))
+    record(course, NAME, [one.result for one in done if isinstance(one, GradedSubmission)])
     return course
 
 
@@ -141,7 +141,7 @@ def test_regrade_says_first_and_never_lowers_unasked(course, capsys):
     """After a threshold moves, --diff names who moves; marks fall only with --lower."""
     make_class(course, NAME, seed=4, count=5)
     who = students(course, NAME)
-    how = How(jobs=2, limits=QUICK)
+    how = GradeOptions(jobs=2, limits=QUICK)
     before = {one.result.student: one.result for one in grade_class(course, NAME, who, how)}
     path = course.bundle / f"{NAME}.json"
     data = json.loads(path.read_text())

@@ -10,7 +10,7 @@ from soak.attacks.attack import code_cell
 from soak.attacks.place import ROOT
 
 from labkit.course.layout import Course
-from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.release import release
 
 NAMES = Course(ROOT).names()
@@ -64,8 +64,8 @@ def graded(request, root):
     for who, data in made.items():
         (course.submitted / who / name).mkdir(parents=True, exist_ok=True)
         (course.submitted / who / name / f"{name}.ipynb").write_text(json.dumps(data))
-    done = list(grade_class(course, name, sorted(made), How(jobs=2)))
-    assert all(isinstance(one, Graded) for one in done), done
+    done = list(grade_class(course, name, sorted(made), GradeOptions(jobs=2)))
+    assert all(isinstance(one, GradedSubmission) for one in done), done
     return {one.result.student: one.result for one in done}
 
 

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from labkit.course.layout import PUBLIC_SEED, Course
-from labkit.grader.batch import How, workers
+from labkit.grader.batch import GradeOptions, workers
 from labkit.grader.each import Failures
 
 from . import expected_file, make_class
@@ -29,7 +29,7 @@ def main() -> int:
         print(f"what they deserve: {expected_file(course, args.assignment)}")
         return 0
     with Failures() as failures:
-        how = How(jobs=workers())
+        how = GradeOptions(jobs=workers())
         steps = rehearse(course, args.assignment, args.rehearse, args.count, how)
         for sentence in failures.sift(steps, "failed"):
             print(sentence, flush=True)

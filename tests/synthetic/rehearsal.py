@@ -10,11 +10,10 @@ from pathlib import Path
 
 from labkit.course.layout import PUBLIC_SEED, Course
 from labkit.errors import LabkitError
-from labkit.grader.batch import How, common_failures, grade_class
+from labkit.grader.batch import GradeOptions, common_failures, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.collect import collect
 from labkit.grader.each import Failed, Failures
-from labkit.grader.engines import students
 from labkit.grader.export import LAYOUTS, as_csv
 from labkit.grader.feedback import write_feedback
 from labkit.grader.gradebook import comments, record
@@ -22,6 +21,7 @@ from labkit.grader.marks import marks_of
 from labkit.grader.release import release
 from labkit.grader.results import write
 from labkit.grader.standing import standing
+from labkit.grader.submission import students
 
 from . import differences, make_class
 
@@ -29,7 +29,7 @@ LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 
 
 def rehearse(
-    course: Course, name: str, to: Path, count: int, how: How
+    course: Course, name: str, to: Path, count: int, options: GradeOptions
 ) -> Iterator[str | LabkitError]:
     """Play a term through in a folder of its own; what is done already is not done again.
 
@@ -37,8 +37,8 @@ def rehearse(
         course: Where the sources are; nothing is written there.
         name: The assignment.
         to: The folder; a course is made in it.
-        count: How many students.
-        how: How to grade.
+        count: GradeOptions many students.
+        options: GradeOptions to grade.
 
     Yields:
         What was done, a sentence each, with its time; and what failed for somebody.
@@ -61,7 +61,7 @@ def rehearse(
     )
     failures = Failures()
     who = students(stage, name)
-    graded = list(failures.sift(grade_class(stage, name, who, how), "not graded"))
+    graded = list(failures.sift(grade_class(stage, name, who, options), "not graded"))
     new = sum(one.says != "as before" for one in graded)
     yield clock.says(f"graded: {new} of {len(graded)} anew", each=new)
     results = list(failures.sift(standing(stage, name), "left out"))
@@ -102,7 +102,7 @@ def _set_up(stage: Course, course: Course) -> None:
 
 
 class _Clock:
-    """How long each step took."""
+    """GradeOptions long each step took."""
 
     def __init__(self) -> None:
         self.last = time.perf_counter()

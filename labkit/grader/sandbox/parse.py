@@ -1,4 +1,4 @@
-"""Read a notebook that somebody else wrote: its sources, and what each cell defines and uses.
+"""Read a stranger's notebook: its sources, and what each cell defines and uses.
 
 Outputs are dropped unread, so a notebook full of pictures is as welcome as any.  Text is cleaned
 here, where it enters: what runs is what an instructor reads.
@@ -12,7 +12,7 @@ from typing import Any
 
 from ...course.notebook import grade_id
 from ...course.source import look
-from ..clean import clean_line, clean_text
+from .clean import clean_line, clean_text
 from .tricks import tricks
 
 MOST_CELLS = 1000
@@ -20,7 +20,7 @@ MOST_SOURCE = 2_000_000  # characters, in all cells together
 
 
 class Rejected(Exception):
-    """The file is no notebook that can be graded; the message says why, in one sentence."""
+    """The file is not a notebook that can be graded; the message says why, in one sentence."""
 
 
 def read(data: bytes) -> dict[str, Any]:

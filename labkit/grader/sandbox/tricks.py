@@ -1,4 +1,4 @@
-"""What in a cell may be a way around a withheld tool; for the instructor to look at.
+"""Tricks: what in a cell may go around a withheld tool, for the instructor to look at.
 
 Nothing here changes a mark.  It names what no answer to the course's questions needs: labkit's
 insides, text that is run as code, modules loaded by hand.

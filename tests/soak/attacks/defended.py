@@ -22,7 +22,7 @@ from soak.attacks.undefended import COMMANDS, started
 from labkit.__main__ import main
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.batch import How, grade_class
+from labkit.grader.batch import GradeOptions, grade_class
 from labkit.grader.sandbox.limits import Limits
 
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)
@@ -108,7 +108,7 @@ def _hand_in_solved(here: Place, who: str) -> bytes:
 
 
 def _grade(here: Place, students: list[str], jobs: int, made: Class) -> None:
-    how = How(jobs=jobs, limits=LIMITS)
+    how = GradeOptions(jobs=jobs, limits=LIMITS)
     done = grade_class(here.course, NAME, students, how) if students else ()
     made.failed += [str(one) for one in done if isinstance(one, LabkitError)]
 
