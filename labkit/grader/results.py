@@ -136,8 +136,12 @@ class Result:
         return json.dumps(data, ensure_ascii=True, indent=1, allow_nan=False) + "\n"
 
     @classmethod
-    def read(cls, text: str) -> Result:
+    def read(cls, text: str, name: str = "the result") -> Result:
         """What `text` wrote, with every text in it made safe to store and to show.
+
+        Args:
+            text: JSON.
+            name: What to call it where it is refused.
 
         Raises:
             LabkitError: It is not a whole result, or one of another version; the sentence says so.
@@ -145,30 +149,29 @@ class Result:
         try:
             data = clean_data(json.loads(text, parse_constant=_refuse))
         except (ValueError, RecursionError) as error:
-            raise _not_whole(str(error)) from None
+            raise _damaged(name, str(error)) from None
         if not isinstance(data, dict):
-            raise _not_whole("it is not a table")
-        check_stamp(data, "it", "grade it again")
+            raise _damaged(name, "it is not a table")
+        check_stamp(data, name, "grade it again")
         known = {x.name for x in fields(cls)} | stamp().keys()
         if unknown := data.keys() - known:
-            raise _not_whole(f"nobody knows the field {min(unknown)!r}")
+            raise _damaged(name, f"nobody knows the field {min(unknown)!r}")
         try:
             result = read_record(cls, data)
         except LabkitError as error:
-            raise _not_whole(str(error)) from None
-        result._check_sums()
+            raise _damaged(name, str(error)) from None
+        result._check_sums(name)
         return result
 
-    def _check_sums(self) -> None:
+    def _check_sums(self, name: str) -> None:
         """Raise a LabkitError unless the score is what the questions earned."""
         verdicts = [question.verdict for question in self.questions]
         earned = [v.earned for v in verdicts if v.earned <= v.points]
         names = {v.name for v in verdicts}
         whole = len(names) == len(verdicts) == len(earned)
         if not whole or bool(self.rejected) == bool(names) or abs(sum(earned) - self.score) > 0.01:
-            raise _not_whole(
-                f"the score is {self.score:g}, and {len(verdicts)} questions earned {sum(earned):g}"
-            )
+            whole_sum = f"{len(verdicts)} questions earned {sum(earned):g}"
+            raise _damaged(name, f"the score is {self.score:g}, and {whole_sum}")
 
     def __str__(self) -> str:
         came = f"{self.score:g} of {self.points:g}"
@@ -206,15 +209,13 @@ class Results:
         """
         path = self.path(student)
         try:
-            result = Result.read(path.read_text(encoding="utf-8"))
+            result = Result.read(path.read_text(encoding="utf-8"), path.name)
         except FileNotFoundError:
             return None
         except OSError as error:
             raise LabkitError(f"{path.name} cannot be read: {error.strerror}") from None
         except ValueError:
             raise LabkitError(f"{path.name} is not text") from None
-        except LabkitError as error:
-            raise LabkitError(f"{path.name} is damaged; {error}") from None
         if (result.student, result.assignment) != (student, self.folder.name):
             whose = f"{result.student}'s {result.assignment}"
             raise LabkitError(f"{path.name} is damaged; it is the result of {whose}")
@@ -265,8 +266,9 @@ def write(path: Path, text: str) -> None:
         new.unlink(missing_ok=True)
 
 
-def _not_whole(why: str) -> LabkitError:
-    return LabkitError(f"it is not a whole result: {clean_line(why, 120)}")
+def _damaged(name: str, why: str) -> LabkitError:
+    why = clean_line(why, 120)
+    return LabkitError(f"{name} is damaged; it is not a whole result: {why}")
 
 
 def _refuse(constant: str) -> None:
