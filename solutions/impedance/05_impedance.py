@@ -23,7 +23,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import also, check, hint, use
+from labkit.course import check, hint, use
 
 lk.ready()
 

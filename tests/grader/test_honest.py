@@ -74,7 +74,7 @@ def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blan
         "if __name__ == '__main__': print(f.__name__, lk.__version__, lk.Circle.__doc__)",
         "lk.plotting.show('x'); plt.rcParams['figure.dpi'] = 90; np.random.seed(1)",
         "fields = {name: getattr(log, name) for name in ('q', 'dq')}; vars(args)",
-        "from labkit.course import check, hint, use, also\nimport labkit.tags.tag",
+        "from labkit.course import check, hint, use\nimport labkit.tags.tag",
         "x = lk.Circle(a, b)(0.3)\nring = lk.BangBang(2.0)\nhelp(lk); dir(lk)",
         "import pinocchio as pin\npin.rnea(model, data, q, dq, ddq)",
         "np.testing.assert_allclose(a, b)\nwith open('notes.txt') as file: text = file.read()",
