@@ -13,7 +13,6 @@ import click
 
 from ..course.cli import PATH, verb
 from ..course.layout import Course
-from ..course.serialize import record_data
 from ..errors import LabkitError
 from .cli_course import of_assignment
 from .each import Failures
@@ -58,6 +57,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
 
     Each submission is graded in a sandbox of its own.
     """
+    from ..course.serialize import record_data
     from .batch import GradeOptions, common_failures, grade_class
     from .gradebook import record
     from .lock import WHOLE
