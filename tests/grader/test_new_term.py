@@ -106,7 +106,7 @@ def test_the_students_repository_holds_no_answer(tmp_path):
     assert (student / "assignments/01_paths/01_paths.ipynb").exists()
     assert (student / "labkit/run.py").exists()
     assert not (student / "solutions").exists()
-    assert not (student / "labkit/grade").exists()
+    assert not (student / "labkit/grader").exists()
     assert (private / "solutions/paths/answers.py").exists()
     for path in student.rglob("*.ipynb"):
         assert not any(word in path.read_text() for word in FORBIDDEN)
