@@ -1,4 +1,4 @@
-"""The arm: the plant in PyBullet.  Read its state, give it a command."""
+"""The arm: the plant in a physics engine.  Read its state, give it a command."""
 
 from __future__ import annotations
 
@@ -8,22 +8,15 @@ from typing import Any
 import numpy as np
 
 from .baxter import robot
-from .body import load
 from .control import COMMANDS, NOTHING, Command, JointPosition, State, still
 from .errors import Closed, ControllerError, LabkitError, TypeMismatch
 from .model import Model
-from .motors import JOINTS, Motors
+from .motors import Motors
 from .plant import IDEAL, Plant
-from .quiet import quiet
-from .robot import DOF, Robot, Side
-from .sensors import Reports, TorqueSensors, angles
+from .robot import Robot, Side
+from .sensors import Joints, Reports, TorqueSensors
 from .shapes import Array, as_array, locked, shown
 from .world import World
-
-with quiet():
-    import pybullet as bullet
-
-_HAND = DOF - 1  # PyBullet's number of the last link
 
 
 class Arm:
@@ -72,14 +65,12 @@ class Arm:
             raise TypeMismatch(
                 f"seed is {shown(seed)}, expected a whole number from 0 up"
             ) from None
-        self._client, dt = self.world.client, self.world.dt
-        self._body = load(self._client, side, plant)
-        hand = self.robot.T_hand_tip
-        com = bullet.getDynamicsInfo(self._body, _HAND, self._client)[3]
-        self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
+        assert self.world.engine is not None  # it is open
+        self._engine, dt = self.world.engine, self.world.dt
+        self._number = self._engine.add_arm(self.robot, plant)
         own = Model(side, replace(plant, payload=0.0))  # the arm does not know what it carries
         self._patience = round(plant.command_timeout / dt)  # in physics steps
-        self._motors = Motors(self.world, self._body, plant, own)
+        self._motors = Motors(self._engine, self._number, dt, plant, own)
         self._reports = Reports(plant, dt, self._random)
         self._sensors = TorqueSensors(own, plant, dt)
         self.reset(q0)
@@ -141,8 +132,7 @@ class Arm:
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
         self.check_open()
-        for i in JOINTS:
-            bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
+        self._engine.place(self._number, q)
         self._sensors.reset()
         self._reports.reset(State(self.world.t, locked(np.array(q)), NOTHING))
         self._motors.kind = type(None)
@@ -167,7 +157,7 @@ class Arm:
         Returns:
             Shape (7,) in [N m].
         """
-        return self._motors.torque(self._read())
+        return self._motors.torque(self._read()[2])
 
     def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
         """Push the tip during the next physics step; world axes, at the tip's origin.
@@ -178,18 +168,13 @@ class Arm:
             force: Shape (3,) in [N].
             moment: Shape (3,) in [N m].
         """
-        f, m = as_array(force, (3,), "force").tolist(), as_array(moment, (3,), "moment").tolist()
-        R_wt = self.model.pose(angles(self._read()))[:3, :3]
-        # PyBullet's idea of where the link is lags a step behind: count the lever from there.
-        centre = bullet.getLinkState(self._body, _HAND, physicsClientId=self._client)[0]
-        at, frame = (R_wt @ self._lever + centre).tolist(), bullet.WORLD_FRAME
-        bullet.applyExternalForce(self._body, _HAND, f, at, frame, physicsClientId=self._client)
-        if any(m):
-            bullet.applyExternalTorque(self._body, _HAND, m, frame, physicsClientId=self._client)
+        force, moment = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
+        R_wt = self.model.pose(self._read()[0])[:3, :3]
+        self._engine.push(self._number, R_wt, force, moment)
 
     def check_open(self) -> None:
         """Raise `Closed` if the world it stands in was closed."""
-        if self.world.client < 0:
+        if self.world.closed:
             raise Closed("this arm's world was closed; make a new Arm")
 
     def lost_ticks(self, ticks: int) -> list[bool]:
@@ -201,10 +186,10 @@ class Arm:
 
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
-        rows = self._read()
-        truth = self._exact(rows)
-        seen = self._reported(rows) if self._reports.every else truth
-        return truth, seen, self._motors.torque(rows)
+        joints = self._read()
+        truth = self._exact(joints)
+        seen = self._reported(joints) if self._reports.every else truth
+        return truth, seen, self._motors.torque(joints[2])
 
     # The machinery, once per physics step
 
@@ -213,28 +198,28 @@ class Arm:
         if self.world.steps > self._deadline:
             self._hold()
         touchable = self.world.things or self.plant.payload  # else no torque comes from outside
-        rows = self._read() if touchable or self._motors.needs_rows else None
+        asked = touchable or self._motors.needs_angles
+        joints = self._read() if asked else (NOTHING, NOTHING, NOTHING)
         if self._reports.every and self._reports.due(self.world.steps):
-            self._report(rows or self._read())
-        self._motors.drive(rows)
+            self._report(joints if asked else self._read())
+        self._motors.drive(joints[0])
         if touchable:
-            self._sensors.begin(rows, self._motors.driven, self.world.steps)
+            self._sensors.begin(joints, self._motors.driven, self.world.steps)
 
-    def _exact(self, rows: Any) -> State:
-        steps = self.world.steps
-        columns = zip(*rows)  # noqa: B905  # angles, speeds, reactions, torques
-        both = locked(np.array(next(columns) + next(columns)))  # quicker than two arrays
-        return State(steps * self.world.dt, both[:DOF], both[DOF:], self._sensors.felt(rows, steps))
+    def _exact(self, joints: Joints) -> State:
+        (q, dq, _), steps = joints, self.world.steps
+        felt = self._sensors.felt(joints, steps)
+        return State(steps * self.world.dt, locked(q), locked(dq), felt)
 
-    def _reported(self, rows: Any) -> State:
+    def _reported(self, joints: Joints) -> State:
         if not self._reports.every:
-            return self._exact(rows)
+            return self._exact(joints)
         if self._reports.due(self.world.steps):
-            self._report(rows)
+            self._report(joints)
         return self._reports.newest(self.world.t)
 
-    def _report(self, rows: Any) -> None:
-        self._reports.send(self._exact(rows), self.world.steps)
+    def _report(self, joints: Joints) -> None:
+        self._reports.send(self._exact(joints), self.world.steps)
 
     def _hold(self) -> None:
         """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
@@ -244,9 +229,9 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _read(self) -> Any:
+    def _read(self) -> Joints:
         self.check_open()
-        return bullet.getJointStates(self._body, JOINTS, self._client)
+        return self._engine.state(self._number)
 
     def close(self) -> None:
         """Close the world it stands in."""

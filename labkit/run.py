@@ -104,7 +104,7 @@ def run(
             f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest)}"
         ) from error
     finally:
-        if world.client >= 0:
+        if not world.closed:
             arm.stop()
     log = recorder.log(kind or type(None), who, arm.plant, arm.robot.side)
     samples.check_all(log.target, period)

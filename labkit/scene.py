@@ -16,24 +16,12 @@ import numpy as np
 
 from . import se3
 from .errors import OutOfRange, UnknownName
-from .quiet import quiet
 from .robot import Side
 from .shapes import Array, as_number, lock_vectors, locked
+from .sim.engine import FACE as FACE
+from .sim.engine import TIP_RADIUS as TIP_RADIUS
+from .sim.engine import TIP_STIFFNESS as TIP_STIFFNESS
 from .world import Actor, Pushable, World
-
-with quiet():
-    import pybullet as bullet
-
-TIP_RADIUS = 0.01
-"""Radius of the ball about the tip's origin, in [m]; contact begins this far from it."""
-
-TIP_STIFFNESS = 10_000.0
-"""Of the finger's rubber pad, in [N/m]."""
-
-TIP_DAMPING = 20.0
-"""Of the finger's rubber pad, in [N s/m]."""
-
-FACE = 0.02  # thickness of a wall or a table top, in [m]
 
 
 def contact_stiffness(thing: Wall | Table) -> float:
@@ -81,7 +69,7 @@ class Wall:
 
     def put_into(self, world: World) -> None:
         """Build it."""
-        _build_box(world, self)
+        _build(world, self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +107,7 @@ class Table:
 
     def put_into(self, world: World) -> None:
         """Build it."""
-        _build_box(world, self)
+        _build(world, self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,23 +204,7 @@ def _check_slab(thing: Any) -> None:
     as_number(thing.friction, "friction", least=0.0)
 
 
-def _build_box(world: World, thing: Wall | Table) -> None:
-    """A fixed box whose upper face is the thing's."""
-    client, T_wf = world.client, thing.T_wf
-    half = [*(0.5 * thing.size).tolist(), 0.5 * FACE]
-    box: dict[str, Any] = {"halfExtents": half, "physicsClientId": client}
-    colour = thing.colour.tolist()
-    body = bullet.createMultiBody(
-        0.0,
-        bullet.createCollisionShape(bullet.GEOM_BOX, **box),
-        bullet.createVisualShape(bullet.GEOM_BOX, rgbaColor=colour, **box),
-        (T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
-        se3.quaternion(T_wf[:3, :3]).tolist(),
-        physicsClientId=client,
-    )
-    material: dict[str, Any] = {
-        "contactStiffness": thing.stiffness,
-        "contactDamping": thing.damping,
-        "lateralFriction": thing.friction,
-    }
-    bullet.changeDynamics(body, -1, restitution=0.0, physicsClientId=client, **material)
+def _build(world: World, thing: Wall | Table) -> None:
+    assert world.engine is not None
+    material = thing.stiffness, thing.damping, thing.friction
+    world.engine.add_box(thing.T_wf, thing.size, *material)

@@ -1,12 +1,8 @@
-"""What an arm can know of itself: its joints as they are published, and torque from outside.
-
-`rows` are PyBullet's joint states: angle, speed, reaction and motor torque of each joint.
-"""
+"""What an arm can know of itself: its joints as they are published, and torque from outside."""
 
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
 
 import numpy as np
 
@@ -17,20 +13,8 @@ from .robot import DOF
 from .shapes import Array, locked
 from .world import whole_steps
 
-
-def angles(rows: Any) -> Array:
-    """The joint angles, shape (7,) in [rad]."""
-    return np.array([joint[0] for joint in rows])
-
-
-def speeds(rows: Any) -> Array:
-    """The joint speeds, shape (7,) in [rad/s]."""
-    return np.array([joint[1] for joint in rows])
-
-
-def motor_torques(rows: Any) -> Array:
-    """What the motors gave in the last step, in torque mode the dry friction, (7,) in [N m]."""
-    return np.array([joint[3] for joint in rows])
+Joints = tuple[Array, Array, Array]
+"""Angles, speeds and motor torques of the joints, as `Engine.state` returns them."""
 
 
 class Reports:
@@ -96,27 +80,27 @@ class TorqueSensors:
     def reset(self) -> None:
         """Forget what was felt."""
         self._felt, self._at = NOTHING, -1
-        self._begun: tuple[Any, Array] | None = None
+        self._begun: tuple[Joints, Array] | None = None
 
-    def begin(self, rows: Any, driven: Array, steps: int) -> None:
+    def begin(self, joints: Joints, driven: Array, steps: int) -> None:
         """Take note of how a physics step begins.
 
         Args:
-            rows: The joints' states now.
+            joints: Their states now.
             driven: Torque that drives the joints beside their motors, shape (7,) in [N m].
             steps: Which step.
         """
         if self._lag:  # it averages over all steps, not only over those that someone asks about
-            self.felt(rows, steps)
-        self._begun = rows, driven
+            self.felt(joints, steps)
+        self._begun = joints, driven
 
-    def felt(self, rows: Any, steps: int) -> Array:
+    def felt(self, joints: Joints, steps: int) -> Array:
         """The external torque, shape (7,) in [N m], before physics step ``steps``."""
         if self._begun is not None and self._at != steps:
-            then, driven = self._begun
-            q, dq, dt = angles(then), speeds(then), self._dt
-            joint = driven + motor_torques(rows) - self._viscous * dq
-            felt = self._own.inverse_dynamics(q, dq, (speeds(rows) - dq) / dt) - joint
+            (q, dq, _), driven = self._begun
+            (_, now, motors), dt = joints, self._dt
+            joint = driven + motors - self._viscous * dq
+            felt = self._own.inverse_dynamics(q, dq, (now - dq) / dt) - joint
             if self._lag > dt:
                 felt = self._felt + dt / self._lag * (felt - self._felt)
             self._felt, self._at = locked(felt), steps

@@ -5,14 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, Self
 
-from . import se3
 from .errors import Closed, OutOfRange, TypeMismatch
-from .quiet import quiet
 from .shapes import Array, as_number, shown
-
-with quiet():
-    import pybullet as bullet
-
+from .sim.engine import Engine
+from .sim.pybullet import Pictures, PyBullet
 
 Actor = Callable[[], None]
 """Applies forces and motor targets for the next physics step."""
@@ -48,7 +44,7 @@ class Shown(Protocol):
 
     @property
     def bodies(self) -> Iterable[int]:
-        """PyBullet's numbers of what is seen."""
+        """The numbers that it goes by in `World.pictures`."""
 
     def update(self) -> None:
         """Put its looks where they belong now."""
@@ -60,13 +56,14 @@ class World:
     Attributes:
         dt: The physics step, in [s].
         steps: How many physics steps were taken.
-        client: PyBullet's number of this world, -1 once it is closed.
+        engine: What integrates the motion.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
         shown: What only cameras see.
     """
 
-    client: int = -1
+    engine: Engine | None = None
+    _pictures: Pictures | None = None
 
     def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
         """Open a world with gravity.
@@ -76,18 +73,19 @@ class World:
             things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.client = bullet.connect(bullet.DIRECT)
+        self.engine = PyBullet(self.dt)
         self.steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
         self.arms: list[Pushable] = []
         self.shown: list[Shown] = []
-        bullet.setTimeStep(self.dt, physicsClientId=self.client)
-        bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
-        bullet.setPhysicsEngineParameter(solverResidualThreshold=0.0, physicsClientId=self.client)
         for thing in things:
             self.put(thing)
+
+    @property
+    def closed(self) -> bool:
+        """Whether it was closed."""
+        return self.engine is None
 
     @property
     def t(self) -> float:
@@ -101,7 +99,7 @@ class World:
             Closed: The world is closed.
             TypeMismatch: It cannot be put into a world.
         """
-        if self.client < 0:
+        if self.closed:
             raise Closed("this world was closed; make a new World")
         if isinstance(thing, type) or not hasattr(thing, "put_into"):
             raise TypeMismatch(
@@ -121,21 +119,12 @@ class World:
         """Let ``thing`` be brought up to date before each picture from now on."""
         self.shown.append(thing)
 
-    def add_visual(self, kind: int, **shape: Any) -> int:
-        """Put something to be seen into the world, which nothing touches; PyBullet's number."""
-        seen = bullet.createVisualShape(kind, physicsClientId=self.client, **shape)
-        return int(bullet.createMultiBody(0, -1, seen, physicsClientId=self.client))
-
-    def move_visual(self, body: int, T: Array) -> None:
-        """Put a body that is only seen to a pose, shape (4, 4)."""
-        turn = se3.quaternion(T[:3, :3]).tolist()
-        bullet.resetBasePositionAndOrientation(
-            body, T[:3, 3].tolist(), turn, physicsClientId=self.client
-        )
-
-    def paint(self, body: int, colour: Iterable[float]) -> None:
-        """Show a body in a colour: red, green, blue and opacity, from 0 to 1."""
-        bullet.changeVisualShape(body, -1, rgbaColor=list(colour), physicsClientId=self.client)
+    @property
+    def pictures(self) -> Pictures:
+        """What cameras see of this world, made when it is first asked for."""
+        if self._pictures is None:
+            self._pictures = Pictures()
+        return self._pictures
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
@@ -143,20 +132,21 @@ class World:
         Raises:
             Closed: The world is closed.
         """
-        client = self.client
-        if client < 0:
+        engine = self.engine
+        if engine is None:
             raise Closed("this world was closed; make a new World, or a new Arm")
         for _ in range(count):
             for act in self._actors:
                 act()
-            bullet.stepSimulation(client)
+            engine.step()
             self.steps += 1
 
     def close(self) -> None:
         """Free the world; closing twice is harmless."""
-        if self.client >= 0:
-            bullet.disconnect(physicsClientId=self.client)
-            self.client = -1
+        for part in (self.engine, self._pictures):
+            if part is not None:
+                part.close()
+        self.engine = self._pictures = None
 
     def __enter__(self) -> Self:
         return self

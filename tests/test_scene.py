@@ -79,7 +79,7 @@ def press(thing, depth=0.03, K=300.0):
             return lk.JointTorque(tau)
 
         log = lk.run(arm, lk.Hold(READY, 4.0), pull, rate=1000)
-        touching = pybullet.getContactPoints(physicsClientId=arm.world.client)
+        touching = pybullet.getContactPoints(physicsClientId=arm.world.engine._client)
         seen = sum(point[9] for point in touching)
     wrench = MODEL.tip_wrench(log.q[-1], log.measured.tau_ext[-1])
     return wrench, MODEL.pose(log.q[-1])[:3, 3], seen
@@ -102,7 +102,7 @@ def test_contact_dampings_add_up():
     """A ball pressed slowly into a face sinks with the time constant (d1 + d2) / k."""
     face = lk.Wall((0, 0, 0), (0, 0, 1), stiffness=2000.0, damping=1000.0)
     with lk.World(things=[face]) as world:
-        c = world.client
+        c = world.engine._client
         ball = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=0.05, physicsClientId=c)
         body = pybullet.createMultiBody(1.0, ball, -1, [0, 0, 0.05], physicsClientId=c)
         pybullet.changeDynamics(
