@@ -8,14 +8,16 @@ from typing import Any
 import numpy as np
 
 from .baxter import robot
-from .control import COMMANDS, NOTHING, Command, JointPosition, State, still
+from .control import COMMANDS, NOTHING, Command, JointPosition, JointTorque, State, still
 from .errors import Closed, ControllerError, LabkitError, TypeMismatch
+from .joints import Joints, Touch
 from .model import Model
 from .motors import Motors
 from .plant import IDEAL, Plant
 from .robot import Robot, Side
-from .sensors import Joints, Reports, TorqueSensors
+from .sensors import Reports, TorqueSensors
 from .shapes import Array, as_array, locked, shown
+from .sim import new_arm
 from .world import World
 
 
@@ -65,16 +67,17 @@ class Arm:
             raise TypeMismatch(
                 f"seed is {shown(seed)}, expected a whole number from 0 up"
             ) from None
-        assert self.world.engine is not None  # it is open
-        self._engine, dt = self.world.engine, self.world.dt
-        self._number = self._engine.add_arm(self.robot, plant)
+        if q0 is not None:
+            self.model.within_limits(q0, "q")
+        dt = self.world.dt
+        self._engine = new_arm(self.world.engine, self.robot, plant, dt)
         own = Model(side, replace(plant, payload=0.0))  # the arm does not know what it carries
+        self._viscous = np.array(plant.viscous)
         self._patience = round(plant.command_timeout / dt)  # in physics steps
-        self._motors = Motors(self._engine, self._number, dt, plant, own)
+        self._motors, self._joints = Motors(dt, plant, own), Joints(self.model, dt)
         self._reports = Reports(plant, dt, self._random)
         self._sensors = TorqueSensors(own, plant, dt)
         self.reset(q0)
-        self.world.add(self._act)
         self.world.arms.append(self)
 
     def _check_place(self) -> None:
@@ -92,7 +95,11 @@ class Arm:
 
     def state(self) -> State:
         """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
-        return self._reported(self._read())
+        if not self._reports.every:
+            return self.truth()
+        if self._reports.due(self.world.steps):
+            self._report()
+        return self._reports.newest(self.world.t)
 
     def apply(self, command: Command) -> None:
         """Follow ``command`` until the next one, or until the plant's command timeout.
@@ -132,7 +139,11 @@ class Arm:
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
         self.check_open()
-        self._engine.place(self._number, q)
+        self._engine.place(q)
+        self._joints.reset()
+        self._known: tuple[Array, Array] | None = None
+        self._torque: Array = NOTHING
+        self._touches: list[Touch] = []
         self._sensors.reset()
         self._reports.reset(State(self.world.t, locked(np.array(q)), NOTHING))
         self._motors.kind = type(None)
@@ -148,7 +159,9 @@ class Arm:
 
     def truth(self) -> State:
         """The joints as they really are."""
-        return self._exact(self._read())
+        q, dq = self._read()
+        steps = self.world.steps
+        return State(steps * self.world.dt, q, dq, self._sensors.felt(dq, steps))
 
     @property
     def torque(self) -> Array:
@@ -157,7 +170,8 @@ class Arm:
         Returns:
             Shape (7,) in [N m].
         """
-        return self._motors.torque(self._read()[2])
+        self.check_open()
+        return self._torque
 
     def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
         """Push the tip during the next physics step; world axes, at the tip's origin.
@@ -169,8 +183,16 @@ class Arm:
             moment: Shape (3,) in [N m].
         """
         force, moment = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
-        R_wt = self.model.pose(self._read()[0])[:3, :3]
-        self._engine.push(self._number, R_wt, force, moment)
+        self._touches.append(Touch(np.concatenate([force, moment]), np.zeros((3, 3))))
+
+    def touch(self, touch: Touch) -> None:
+        """Let something act on the tip during the next physics step."""
+        self._touches.append(touch)
+
+    def tip(self) -> tuple[Array, Array]:
+        """Place [m] and velocity [m/s] of the tip as they really are, each of shape (3,)."""
+        q, dq = self._read()
+        return self.model.pose(q)[:3, 3], self.model.tip_jacobian(q)[:3] @ dq
 
     def check_open(self) -> None:
         """Raise `Closed` if the world it stands in was closed."""
@@ -186,40 +208,34 @@ class Arm:
 
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
-        joints = self._read()
-        truth = self._exact(joints)
-        seen = self._reported(joints) if self._reports.every else truth
-        return truth, seen, self._motors.torque(joints[2])
+        truth = self.truth()
+        seen = self.state() if self._reports.every else truth
+        return truth, seen, self._torque
 
     # The machinery, once per physics step
 
-    def _act(self) -> None:
-        """Set motors and torques for the next physics step; the world calls it."""
+    def step(self) -> None:
+        """Take a physics step; the world calls it."""
         if self.world.steps > self._deadline:
             self._hold()
-        touchable = self.world.things or self.plant.payload  # else no torque comes from outside
-        asked = touchable or self._motors.needs_angles
-        joints = self._read() if asked else (NOTHING, NOTHING, NOTHING)
         if self._reports.every and self._reports.due(self.world.steps):
-            self._report(joints if asked else self._read())
-        self._motors.drive(joints[0])
-        if touchable:
-            self._sensors.begin(joints, self._motors.driven, self.world.steps)
+            self._report()
+        q, dq = self._read()
+        drive = self._motors.drive(q, dq)
+        given, tau = self._joints.solve(q, dq, drive, self._touches)
+        if self.world.things or self.plant.payload:  # else no torque comes from outside
+            joint = drive.tau + given - self._viscous * dq
+            self._sensors.begin(q, dq, joint, self.world.steps)
+        self._torque = drive.tau if self._motors.kind is JointTorque else given
+        self._engine.step(tau)
+        self._known, self._touches = None, []
 
-    def _exact(self, joints: Joints) -> State:
-        (q, dq, _), steps = joints, self.world.steps
-        felt = self._sensors.felt(joints, steps)
-        return State(steps * self.world.dt, locked(q), locked(dq), felt)
+    def release(self) -> None:
+        """Free what it holds; the world calls it."""
+        self._engine.close()
 
-    def _reported(self, joints: Joints) -> State:
-        if not self._reports.every:
-            return self._exact(joints)
-        if self._reports.due(self.world.steps):
-            self._report(joints)
-        return self._reports.newest(self.world.t)
-
-    def _report(self, joints: Joints) -> None:
-        self._reports.send(self._exact(joints), self.world.steps)
+    def _report(self) -> None:
+        self._reports.send(self.truth(), self.world.steps)
 
     def _hold(self) -> None:
         """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
@@ -229,9 +245,13 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _read(self) -> Joints:
+    def _read(self) -> tuple[Array, Array]:
+        """Angles and speeds as they really are, read-only."""
         self.check_open()
-        return self._engine.state(self._number)
+        if self._known is None:
+            q, dq = self._engine.state()
+            self._known = locked(q), locked(dq)
+        return self._known
 
     def close(self) -> None:
         """Close the world it stands in."""

@@ -7,10 +7,10 @@ from operator import le
 import numpy as np
 
 from .control import NOTHING, Command, JointPosition, JointTorque, JointVelocity
+from .joints import Drive
 from .model import Model
 from .plant import Plant
 from .shapes import Array
-from .sim import Engine
 
 BRAKING = 0.5
 """Share of the torque left by gravity that the position mode plans to brake with."""
@@ -22,26 +22,22 @@ class Motors:
     Attributes:
         kind: Type of the command that they follow: their mode.
         saturated: Whether a limit cut the command, at any time since it came.
-        needs_angles: Whether `drive` must know the joints' angles in this mode.
     """
 
     kind: type = type(None)
     saturated = False
-    needs_angles = False
 
-    def __init__(self, engine: Engine, arm: int, dt: float, plant: Plant, own: Model) -> None:
-        """Take over the motors of an arm.
+    def __init__(self, dt: float, plant: Plant, own: Model) -> None:
+        """Motors of an arm.
 
         Args:
-            engine: What moves it.
-            arm: Its number there.
             dt: The physics step, in [s].
             plant: Lag, dry friction and gravity compensation.
             own: What the arm knows of itself: its own weight, not what it carries.
         """
-        self._engine, self._arm, self._dt, self._plant, self._own = engine, arm, dt, plant, own
+        self._dt, self._plant, self._own = dt, plant, own
         self._effort, self._speed = own.robot.effort.tolist(), own.robot.speed.tolist()
-        self._total = NOTHING
+        self._stiction = np.array(plant.stiction) if any(plant.stiction) else NOTHING
 
     def follow(self, command: Command) -> None:
         """Follow a command from the next physics step on, cut to the limits."""
@@ -52,51 +48,32 @@ class Motors:
             self._wanted, self.saturated = _cut(command.value, self._speed)
         if type(command) is not self.kind:
             self.kind = type(command)
-            self._total = NOTHING
-            compensated = self.kind is JointTorque and self._plant.gravity_compensation
-            self.needs_angles = compensated or self.kind is JointPosition
-            if self.kind is JointTorque:  # the engine's motors have one duty left: dry friction
-                self._engine.spin(self._arm, NOTHING, list(self._plant.stiction))
-            else:
-                self._lagged = self._engine.state(self._arm)[1]
+            self._lagged: Array | None = None
         self._fresh = True
 
-    def drive(self, q: Array) -> None:
-        """Set speeds or torques for the next physics step.
+    def drive(self, q: Array, dq: Array) -> Drive:
+        """What they do in the next physics step.
 
         Args:
-            q: The joints' angles, if they are needed, shape (7,) in [rad].
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
         """
         if self.kind is JointTorque:
+            total = self._wanted
             if self._plant.gravity_compensation:  # it carries its own weight
-                wanted = self._wanted + self._own.gravity(q)
-                self._total, cut = _cut(wanted, self._effort)
+                total, cut = _cut(total + self._own.gravity(q), self._effort)
                 self.saturated |= cut
-            elif self._fresh:
-                self._total = self._wanted
-            self._engine.drive(self._arm, self._total)
-        elif self.kind is JointPosition:
-            self._spin(self._approach(q))
+            return Drive(total, NOTHING, self._stiction)
+        if self.kind is JointPosition:
+            speed = self._approach(q)
         elif self._plant.velocity_lag:
             share = min(1.0, self._dt / self._plant.velocity_lag)
-            self._lagged += (self._wanted - self._lagged) * share
-            self._spin(self._lagged)
-        elif self._fresh:  # the engine's motors keep their target
-            self._spin(self._wanted)
+            before = dq if self._lagged is None else self._lagged
+            self._lagged = speed = before + (self._wanted - before) * share
+        else:
+            speed = self._wanted
         self._fresh = False
-
-    def torque(self, given: Array) -> Array:
-        """What the motors gave in the last physics step, shape (7,) in [N m].
-
-        Args:
-            given: What the engine's motors gave, which in torque mode are dry friction.
-        """
-        return self._total if self.kind is JointTorque else given
-
-    @property
-    def driven(self) -> Array:
-        """Torque that drives the joints beside the engine's motors, shape (7,) in [N m]."""
-        return self._total if self.kind is JointTorque else NOTHING
+        return Drive(NOTHING, speed, self._own.robot.effort)
 
     def _approach(self, q: Array) -> Array:
         """Speeds towards the wanted angles, from which the motors can still brake before them.
@@ -112,10 +89,6 @@ class Motors:
         allowed, cut = _cut(np.clip(gain * gap, -stops, stops), self._speed)
         self.saturated |= cut
         return allowed
-
-    def _spin(self, speeds: Array) -> None:
-        """Hold these speeds with whatever torque it takes, up to the limits."""
-        self._engine.spin(self._arm, speeds, self._effort)
 
 
 def _cut(x: Array, limit: list[float]) -> tuple[Array, bool]:

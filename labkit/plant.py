@@ -21,7 +21,8 @@ class Plant:
         name: What figures and tables call it.
         gravity_compensation: The arm itself adds the torque that holds it against gravity, in every
             mode, as Baxter does; a torque controller then adds none.
-        armature: Rotor inertia about each joint's axis, shape (7,) in [kg m^2].
+        armature: Inertia of each motor's rotor as its joint feels it, which is that of the rotor
+            times the gear ratio squared, shape (7,) in [kg m^2]; it adds to the diagonal of M.
         viscous: Viscous friction, shape (7,) in [N m s/rad].
         stiction: Dry friction that a joint must overcome, shape (7,) in [N m].
         payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].
@@ -66,6 +67,9 @@ class Plant:
         if self.lost_ticks > 1.0:
             raise OutOfRange(f"lost_ticks is {self.lost_ticks:g}; it is a share, at most 1")
 
+
+PHYSICS = 2
+"""Of the simulated arm: it goes up whenever the same commands would lead to other motions."""
 
 _PER_JOINT = ("armature", "viscous", "stiction", "velocity_noise", "torque_noise")
 

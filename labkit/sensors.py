@@ -13,9 +13,6 @@ from .robot import DOF
 from .shapes import Array, locked
 from .world import whole_steps
 
-Joints = tuple[Array, Array, Array]
-"""Angles, speeds and motor torques of the joints, as `Engine.state` returns them."""
-
 
 class Reports:
     """States on their way from the joints to whoever asks: seldom, late and noisy.
@@ -74,32 +71,35 @@ class TorqueSensors:
     def __init__(self, own: Model, plant: Plant, dt: float) -> None:
         """Sense with the model ``own``, in a world of steps of ``dt`` [s]."""
         self._own, self._dt, self._lag = own, dt, plant.torque_lag
-        self._viscous = np.array(plant.viscous)
         self.reset()
 
     def reset(self) -> None:
         """Forget what was felt."""
         self._felt, self._at = NOTHING, -1
-        self._begun: tuple[Joints, Array] | None = None
+        self._begun: tuple[Array, Array, Array] | None = None
 
-    def begin(self, joints: Joints, driven: Array, steps: int) -> None:
+    def begin(self, q: Array, dq: Array, joint: Array, steps: int) -> None:
         """Take note of how a physics step begins.
 
         Args:
-            joints: Their states now.
-            driven: Torque that drives the joints beside their motors, shape (7,) in [N m].
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
+            joint: What motors and friction give in it, shape (7,) in [N m].
             steps: Which step.
         """
         if self._lag:  # it averages over all steps, not only over those that someone asks about
-            self.felt(joints, steps)
-        self._begun = joints, driven
+            self.felt(dq, steps)
+        self._begun = q, dq, joint
 
-    def felt(self, joints: Joints, steps: int) -> Array:
-        """The external torque, shape (7,) in [N m], before physics step ``steps``."""
+    def felt(self, now: Array, steps: int) -> Array:
+        """The external torque, shape (7,) in [N m], before physics step ``steps``.
+
+        Args:
+            now: Joint speeds, shape (7,) in [rad/s].
+            steps: Which step.
+        """
         if self._begun is not None and self._at != steps:
-            (q, dq, _), driven = self._begun
-            (_, now, motors), dt = joints, self._dt
-            joint = driven + motors - self._viscous * dq
+            (q, dq, joint), dt = self._begun, self._dt
             felt = self._own.inverse_dynamics(q, dq, (now - dq) / dt) - joint
             if self._lag > dt:
                 felt = self._felt + dt / self._lag * (felt - self._felt)

@@ -1,17 +1,20 @@
-"""The world: a physics engine with a clock of its own, and what stands in it."""
+"""The world: a clock, and what stands in it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from .errors import Closed, OutOfRange, TypeMismatch
+from .joints import Touch
 from .shapes import Array, as_number, shown
-from .sim.engine import Engine
-from .sim.pybullet import Pictures, PyBullet
+from .sim import chosen
+
+if TYPE_CHECKING:
+    from .sim.pybullet import Pictures
 
 Actor = Callable[[], None]
-"""Applies forces and motor targets for the next physics step."""
+"""Applies forces for the next physics step."""
 
 
 class Thing(Protocol):
@@ -21,22 +24,30 @@ class Thing(Protocol):
         """Build it; what it returns, if anything, acts before each physics step from now on."""
 
 
-class Pushable(Protocol):
-    """An arm, as far as the things around it need to know it."""
-
-    def truth(self) -> Any:
-        """The joints as they really are."""
-
-    def push(self, force: Array, moment: Array) -> None:
-        """Push the tip during the next physics step."""
+class Standing(Protocol):
+    """An arm, as far as its world and the things around it need to know it."""
 
     @property
     def robot(self) -> Any:
         """Its names."""
 
-    @property
-    def model(self) -> Any:
-        """Its equations."""
+    def truth(self) -> Any:
+        """The joints as they really are."""
+
+    def tip(self) -> tuple[Array, Array]:
+        """Place [m] and velocity [m/s] of the tip, world axes, each of shape (3,)."""
+
+    def push(self, force: Array, moment: Array) -> None:
+        """Push the tip during the next physics step."""
+
+    def touch(self, touch: Touch) -> None:
+        """Let something act on the tip during the next physics step."""
+
+    def step(self) -> None:
+        """Take a physics step."""
+
+    def release(self) -> None:
+        """Free what it holds."""
 
 
 class Shown(Protocol):
@@ -56,36 +67,41 @@ class World:
     Attributes:
         dt: The physics step, in [s].
         steps: How many physics steps were taken.
-        engine: What integrates the motion.
+        engine: The physics engine that moves its arms, "pybullet" or "mujoco".
+        closed: Whether it was closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
         shown: What only cameras see.
     """
 
-    engine: Engine | None = None
-    _pictures: Pictures | None = None
+    closed = True
 
-    def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
+    def __init__(
+        self, dt: float = 1e-3, things: Iterable[Thing] = (), engine: str | None = None
+    ) -> None:
         """Open a world with gravity.
 
         Args:
             dt: The physics step, in [s].
             things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
+            engine: "pybullet" or "mujoco"; None is what the environment variable LABKIT_ENGINE
+                says, else PyBullet where it is installed, else MuJoCo.
+
+        Raises:
+            UnknownName: There is no such engine.
+            LabkitError: The engine is not installed.
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.engine = PyBullet(self.dt)
+        self.engine = chosen(engine)
         self.steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
-        self.arms: list[Pushable] = []
+        self.arms: list[Standing] = []
         self.shown: list[Shown] = []
+        self._pictures: Any = None
+        self.closed = False
         for thing in things:
             self.put(thing)
-
-    @property
-    def closed(self) -> bool:
-        """Whether it was closed."""
-        return self.engine is None
 
     @property
     def t(self) -> float:
@@ -121,10 +137,18 @@ class World:
 
     @property
     def pictures(self) -> Pictures:
-        """What cameras see of this world, made when it is first asked for."""
+        """What cameras see of this world, made when it is first asked for.
+
+        Raises:
+            LabkitError: PyBullet, which draws, is not installed.
+        """
         if self._pictures is None:
+            chosen("pybullet")
+            from .sim.pybullet import Pictures  # it draws, whichever engine moves the arms
+
             self._pictures = Pictures()
-        return self._pictures
+        made: Pictures = self._pictures
+        return made
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
@@ -132,21 +156,24 @@ class World:
         Raises:
             Closed: The world is closed.
         """
-        engine = self.engine
-        if engine is None:
+        if self.closed:
             raise Closed("this world was closed; make a new World, or a new Arm")
         for _ in range(count):
             for act in self._actors:
                 act()
-            engine.step()
+            for arm in self.arms:
+                arm.step()
             self.steps += 1
 
     def close(self) -> None:
         """Free the world; closing twice is harmless."""
-        for part in (self.engine, self._pictures):
-            if part is not None:
-                part.close()
-        self.engine = self._pictures = None
+        if self.closed:
+            return
+        self.closed = True
+        for arm in self.arms:
+            arm.release()
+        if self._pictures is not None:
+            self._pictures.close()
 
     def __enter__(self) -> Self:
         return self

@@ -1,74 +1,40 @@
-"""The engine: what the lab asks of a physics engine.
+"""The engine: what the lab asks of a physics engine, which is to integrate the motion of one arm.
 
-Joints are numbered from the shoulder; vectors have one number per joint.  Angles are in [rad],
-speeds in [rad/s], torques in [N m], forces in [N] and lengths in [m]; places and forces have the
-world's axes, z upwards.
+Motors, friction, stops and whatever touches the tip come to it as torques on the joints: they are
+the lab's own (`joints`, `scene`), and so the same on every engine.
 """
 
 from __future__ import annotations
 
 from typing import Protocol
 
-from ..plant import Plant
-from ..robot import Robot
 from ..shapes import Array
-
-TIP_RADIUS = 0.01
-"""Radius of the ball about the tip's origin, in [m]; contact begins this far from it."""
-
-TIP_STIFFNESS = 10_000.0
-"""Of the finger's rubber pad, in [N/m]."""
-
-TIP_DAMPING = 20.0
-"""Of the finger's rubber pad, in [N s/m]."""
-
-FACE = 0.02
-"""Thickness of a wall or a table top, in [m]."""
 
 
 class Engine(Protocol):
-    """A world of an engine, with gravity and a fixed step."""
+    r"""An arm of n joints on its fixed base, under gravity along -z of the world.
 
-    def add_arm(self, robot: Robot, plant: Plant) -> int:
-        """Put an arm, with a ball for a fingertip, on its base; the number it goes by."""
+    It is made from a `Robot`, a `Plant` and a step in [s], and takes from the plant the payload and
+    the rotors A.  In a step of :math:`\Delta t` it goes from speeds :math:`\dot q` and angles q to
 
-    def add_box(
-        self, T_wf: Array, size: Array, stiffness: float, damping: float, friction: float
-    ) -> None:
-        """Put a solid slab into the world.
+    .. math:: \dot q^+ = \dot q + \Delta t\,(M(q) + A)^{-1} (\tau - C(q, \dot q)\,\dot q - g(q)),
+        \qquad q^+ = q + \Delta t\,\dot q^+
 
-        Args:
-            T_wf: Pose of its upper face, z out of it, shape (4, 4).
-            size: Of that face, shape (2,).
-            stiffness: In [N/m], in series with the fingertip's.
-            damping: In [N s/m], added to the fingertip's.
-            friction: Coefficient of dry friction.
-        """
+    and has neither stops nor damping nor motors of its own.
+    """
 
-    def place(self, arm: int, q: Array) -> None:
-        """Put the joints at ``q``, at rest."""
+    def place(self, q: Array) -> None:
+        """Put the joints at rest at ``q``, shape (n,) in [rad]."""
 
-    def state(self, arm: int) -> tuple[Array, Array, Array]:
-        """Angles, speeds, and what the joints' motors gave in the last step, dry friction too."""
+    def state(self) -> tuple[Array, Array]:
+        """Joint angles in [rad] and speeds in [rad/s], two new arrays of shape (n,)."""
 
-    def spin(self, arm: int, speeds: Array, effort: list[float]) -> None:
-        """Hold the joints' speeds with torques up to ``effort``, from the next step on."""
-
-    def drive(self, arm: int, tau: Array) -> None:
-        """Drive the joints with torques in the next step, beside what `spin` asked for."""
-
-    def push(self, arm: int, R_wt: Array, force: Array, moment: Array) -> None:
-        """Push the tip in the next step.
+    def step(self, tau: Array) -> None:
+        """Take a step under all torques on the joints, once `state` was asked where it begins.
 
         Args:
-            arm: Whose.
-            R_wt: How the tip is turned now, shape (3, 3).
-            force: At the tip's origin, shape (3,).
-            moment: Shape (3,) in [N m].
+            tau: Shape (n,) in [N m].
         """
-
-    def step(self) -> None:
-        """Advance by one step."""
 
     def close(self) -> None:
         """Free what it holds; nothing is asked of it afterwards."""

@@ -1,8 +1,9 @@
-"""PyBullet: the plant's engine, and the cameras' renderer."""
+"""PyBullet as the engine of an arm, and as the renderer of the cameras."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -11,99 +12,64 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import se3
+from ..model import Model
 from ..plant import Plant
 from ..quiet import quiet
-from ..robot import DOF, Robot
+from ..robot import Robot
 from ..shapes import Array
-from .engine import FACE, TIP_DAMPING, TIP_RADIUS, TIP_STIFFNESS
 
 with quiet():
     import pybullet as bullet
 
-_JOINTS = tuple(range(DOF))
-_HAND = DOF - 1
 _LIGHT = (0.6, 0.35, 1.0)  # where the light comes from, world axes
 
 
 class PyBullet:
-    """A world of PyBullet's."""
+    """An arm in a world of PyBullet's."""
 
-    def __init__(self, dt: float) -> None:
-        """Open a world with a step of ``dt`` [s]."""
+    def __init__(self, robot: Robot, plant: Plant, dt: float) -> None:
+        """Load the arm; nothing that PyBullet does unasked is left in it."""
         self._client: int = bullet.connect(bullet.DIRECT)
-        self._here = {"physicsClientId": self._client}
-        self._levers: dict[int, Array] = {}
-        bullet.setTimeStep(dt, **self._here)
-        bullet.setGravity(0.0, 0.0, -9.81, **self._here)
-        # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
-        bullet.setPhysicsEngineParameter(solverResidualThreshold=0.0, **self._here)
-
-    def add_arm(self, robot: Robot, plant: Plant) -> int:
-        """Nothing that PyBullet does unasked is left in it, above all no damping of its own."""
-        x, y, z = robot.T_hand_tip[:3, 3]
-        ball = (
-            f'<collision><origin xyz="{x} {y} {z}"/><geometry><sphere radius="{TIP_RADIUS}"/>'
-            "</geometry></collision></link>"
-        )
+        here = {"physicsClientId": self._client}
+        bullet.setTimeStep(dt, **here)
+        bullet.setGravity(0.0, 0.0, -9.81, **here)
         with quiet(), TemporaryDirectory() as folder:
             file = Path(folder, "arm.urdf")  # PyBullet reads only files
-            file.write_text(ball.join(robot.urdf(plant).rsplit("</link>", 1)))
+            file.write_text(robot.urdf(plant))
             flags = bullet.URDF_USE_INERTIA_FROM_FILE
-            arm: int = bullet.loadURDF(str(file), useFixedBase=True, flags=flags, **self._here)
-        still = {"linearDamping": 0.0, "angularDamping": 0.0, **self._here}
-        for joint, viscous in enumerate((0.0, *plant.viscous), start=-1):
-            bullet.changeDynamics(arm, joint, jointDamping=viscous, **still)
-        pad = {"contactStiffness": TIP_STIFFNESS, "contactDamping": TIP_DAMPING, **self._here}
-        bullet.changeDynamics(arm, _HAND, lateralFriction=1.0, restitution=0.0, **pad)
-        hand, com = robot.T_hand_tip, bullet.getDynamicsInfo(arm, _HAND, self._client)[3]
-        self._levers[arm] = hand[:3, :3].T @ (
-            hand[:3, 3] - com
-        )  # from the hand's centre to the tip
-        return arm
+            self._arm: int = bullet.loadURDF(str(file), useFixedBase=True, flags=flags, **here)
+        self._joints = tuple(range(len(robot.lower)))
+        still = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
+        for joint in (-1, *self._joints):
+            bullet.changeDynamics(self._arm, joint, **still, **here)
+        for joint in self._joints:  # an empty range of angles is none
+            free = {"jointLowerLimit": 1.0, "jointUpperLimit": -1.0, "maxJointVelocity": inf}
+            bullet.changeDynamics(self._arm, joint, **free, **here)
+        motors = {"forces": [0.0] * len(self._joints), **here}
+        bullet.setJointMotorControlArray(self._arm, self._joints, bullet.VELOCITY_CONTROL, **motors)
+        self._rotors = np.array(plant.armature)
+        self._geared = Model(robot.side, plant) if self._rotors.any() else None
 
-    def add_box(
-        self, T_wf: Array, size: Array, stiffness: float, damping: float, friction: float
-    ) -> None:
-        half = [*(0.5 * size).tolist(), 0.5 * FACE]
-        shape = bullet.createCollisionShape(bullet.GEOM_BOX, halfExtents=half, **self._here)
-        middle = (T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist()
-        turn = se3.quaternion(T_wf[:3, :3]).tolist()
-        body = bullet.createMultiBody(0.0, shape, -1, middle, turn, **self._here)
-        material = {"contactStiffness": stiffness, "contactDamping": damping, **self._here}
-        bullet.changeDynamics(body, -1, restitution=0.0, lateralFriction=friction, **material)
-
-    def place(self, arm: int, q: Array) -> None:
+    def place(self, q: Array) -> None:
         for joint, angle in enumerate(q):
-            bullet.resetJointState(arm, joint, angle, 0.0, **self._here)
+            bullet.resetJointState(self._arm, joint, angle, 0.0, physicsClientId=self._client)
 
-    def state(self, arm: int) -> tuple[Array, Array, Array]:
-        q, dq, _, tau = zip(*bullet.getJointStates(arm, _JOINTS, self._client), strict=True)
-        return np.array(q), np.array(dq), np.array(tau)
+    def state(self) -> tuple[Array, Array]:
+        q, dq, *_ = zip(*bullet.getJointStates(self._arm, self._joints, self._client), strict=True)
+        self._state = np.array(q), np.array(dq)
+        return self._state
 
-    def spin(self, arm: int, speeds: Array, effort: list[float]) -> None:
+    def step(self, tau: Array) -> None:
+        if self._geared is not None:  # PyBullet has no rotors: take off what they would take
+            tau = tau - self._rotors * self._geared.forward_dynamics(*self._state, tau)
         bullet.setJointMotorControlArray(
-            arm, _JOINTS, bullet.VELOCITY_CONTROL,
-            targetVelocities=speeds.tolist(), forces=effort, **self._here,
+            self._arm, self._joints, bullet.TORQUE_CONTROL, forces=tau.tolist(),
+            physicsClientId=self._client,
         )  # fmt: skip
-
-    def drive(self, arm: int, tau: Array) -> None:
-        bullet.setJointMotorControlArray(
-            arm, _JOINTS, bullet.TORQUE_CONTROL, forces=tau.tolist(), **self._here
-        )
-
-    def push(self, arm: int, R_wt: Array, force: Array, moment: Array) -> None:
-        # PyBullet's idea of where the link is lags a step behind: count the lever from there.
-        centre = bullet.getLinkState(arm, _HAND, **self._here)[0]
-        at, frame = (R_wt @ self._levers[arm] + centre).tolist(), bullet.WORLD_FRAME
-        bullet.applyExternalForce(arm, _HAND, force.tolist(), at, frame, **self._here)
-        if moment.any():
-            bullet.applyExternalTorque(arm, _HAND, moment.tolist(), frame, **self._here)
-
-    def step(self) -> None:
         bullet.stepSimulation(self._client)
 
     def close(self) -> None:
-        bullet.disconnect(**self._here)
+        bullet.disconnect(physicsClientId=self._client)
 
 
 class Box(NamedTuple):
