@@ -12,7 +12,10 @@ _OFF = (
     mujoco.mjtDisableBit.mjDSBL_CONSTRAINT,  # stops, contacts and friction are the lab's
     mujoco.mjtDisableBit.mjDSBL_SENSOR,
     mujoco.mjtDisableBit.mjDSBL_ACTUATION,
+    mujoco.mjtDisableBit.mjDSBL_AUTORESET,  # a runaway is for `run` to see
 )
+# It would write its warnings to a file in the working folder.
+mujoco.set_mju_user_warning(lambda text: None)
 
 
 class MuJoCo:

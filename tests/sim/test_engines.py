@@ -14,7 +14,7 @@ from labkit.sim import ENGINES
 READY = lk.robot("left").ready
 ROTORS = lk.Plant(armature=lk.BAXTER.armature)
 PLANTS = {"ideal": lk.IDEAL, "rotors": ROTORS, "baxter": lk.BAXTER}
-each = pytest.mark.parametrize("engine", filter(find_spec, ENGINES))
+each = pytest.mark.parametrize("engine", [*filter(find_spec, ENGINES)])
 
 
 class Equations:
