@@ -71,7 +71,7 @@ def run(
     samples = _Samples(target, whom)
     recorder = Recorder(period, samples.first)
     kind, t, k, asked = None, 0.0, 0, who
-    often = max(1, round(0.01 / period))  # every 10 ms: nothing runs far in so short a time
+    often = max(1, round(0.005 / period))  # every 5 ms: nothing runs far in so short a time
     try:
         for k in range(ticks):
             t, asked = k * period, whom
