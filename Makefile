@@ -13,7 +13,7 @@ AS_ROOT = $(filter 0,$(shell id -u))
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
 
-.PHONY: help demo test quick soak count lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test quick soak count record lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -54,6 +54,9 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 
 campaign: .venv/.course ## every controller on every task: build/campaign.json
 	@$(BIN)/python -m solutions.study.campaign
+
+record: .venv/.course ## make all recorded data again, and say which verdicts changed
+	@$(BIN)/python -m solutions.study.record
 
 build/campaign.json: # the book to hand out has the films
 	@$(BIN)/python -m solutions.study.campaign

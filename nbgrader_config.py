@@ -22,7 +22,7 @@ c.HTMLExporter.filters = {
 }
 
 # Students' code never runs in nbgrader's own process: a submission is brought into the release's
-# form and graded in a sandbox.  `labkit grade --engine nbgrader` takes nbgrader's steps instead.
+# form and graded in a sandbox.
 c.Autograde.pre_convert_hook = "labkit.grader.autograde.unlink_foreign"
 c.Autograde.sanitize_preprocessors = [
     "labkit.grader.autograde.Repair",

@@ -14,17 +14,20 @@ import time
 from pathlib import Path
 
 from labkit.course.layout import Course
-from labkit.grader.synthetic import differences
 
 ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+from tests.synthetic import differences  # noqa: E402
+
 DEMO = ROOT / "build" / "demo"
 ASSIGNMENT = "01_paths"
 LABKIT = str(Path(sys.executable).with_name("labkit"))
+SYNTHETIC = [sys.executable, "-m", "tests.synthetic"]
 COURSE = ["--course", str(DEMO)]
 GRADING = (
     (
         "A class hands in",
-        [LABKIT, "make-class", ASSIGNMENT, "--seed", "1", "--count", "14", *COURSE],
+        [*SYNTHETIC, ASSIGNMENT, "--seed", "1", "--count", "14", *COURSE],
     ),
     ("Grade it, each submission in isolation", [LABKIT, "grade", ASSIGNMENT, *COURSE]),
     ("Are the marks those that it deserves?", [sys.executable, __file__, "--compare"]),
@@ -50,7 +53,7 @@ def main(arguments: list[str] | None = None) -> int:
     for number, (title, command) in enumerate(steps, start=1):
         shown = " ".join(Path(word).name if "/" in word else word for word in command)
         print(f"\n[{number}/{len(steps)}] {title}\n$ {shown}", flush=True)
-        if subprocess.run(command, cwd=DEMO).returncode:
+        if subprocess.run(command, cwd=ROOT).returncode:
             print(f"\nStopped: step {number} failed.", file=sys.stderr)
             return 1
     say_where_to_look(time.monotonic() - began)

@@ -68,9 +68,6 @@ class Plant:
             raise OutOfRange(f"lost_ticks is {self.lost_ticks:g}; it is a share, at most 1")
 
 
-PHYSICS = 2
-"""Of the simulated arm: it goes up whenever the same commands would lead to other motions."""
-
 _PER_JOINT = ("armature", "viscous", "stiction", "velocity_noise", "torque_noise")
 
 

@@ -10,8 +10,8 @@ from collections import Counter
 from pathlib import Path
 
 LABKIT = Path(__file__).parents[1] / "labkit"
-STOREYS = {"course": "course", "grader": "grader", "cli.py": "grader", "verbs.py": "grader"}
-"""Of each folder and of the command line; what is none of them is the lab."""
+STOREYS = {"course": "course", "grader": "grader", "__main__.py": "course"}
+"""Of each folder and of the command line; all else is the lab."""
 LARGE = 200
 BLANK = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
          tokenize.ENDMARKER}  # fmt: skip

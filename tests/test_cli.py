@@ -7,19 +7,18 @@ import sys
 import pytest
 from courses import ROOT
 
-from labkit import cli
+from labkit.__main__ import main, program
+from labkit.course.layout import Course
 
-VERBS = cli.parser()._subparsers._group_actions[0].choices
+VERBS = program().commands
 WARMUP = ROOT / "assignments/00_warmup/00_warmup.ipynb"
 PATHS = ROOT / "assignments/01_paths/01_paths.ipynb"
 
 
 def test_help_shows_examples(capsys):
     """`labkit --help` lists the verbs and shows how they are used."""
-    with pytest.raises(SystemExit) as end:
-        cli.main(["--help"])
+    assert main(["--help"]) == 0
     out = capsys.readouterr().out
-    assert end.value.code == 0
     assert "examples:" in out
     assert "release" in out
 
@@ -27,36 +26,36 @@ def test_help_shows_examples(capsys):
 @pytest.mark.parametrize("words", [[], ["dance"], ["release", "--seed", "many"]])
 def test_wrong_words_end_with_code_two(words, capsys):
     """Words that make no sense end with a usage line and exit code 2."""
-    with pytest.raises(SystemExit) as end:
-        cli.main(words)
-    assert end.value.code == 2
-    assert "usage" in capsys.readouterr().err
+    assert main(words) == 2
+    assert "Usage: labkit" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("name", VERBS)
 def test_each_verb_shows_an_example_that_can_be_typed(name, capsys):
     """`labkit VERB --help` says what it does and ends with an example."""
-    with pytest.raises(SystemExit):
-        cli.main([name, "--help"])
-    out = capsys.readouterr().out
-    program, *words = shlex.split(out.strip().splitlines()[-1].removeprefix("example: "))
-    assert program == "labkit"
-    assert cli.parser().parse_args(words).verb == name
+    assert main([name, "--help"]) == 0
+    last = capsys.readouterr().out.splitlines()[-1].strip()
+    called, verb, *words = shlex.split(last.removeprefix("example: "))
+    assert (called, verb) == ("labkit", name)
+    VERBS[name].make_context(name, words)
+
+
+def test_the_list_of_verbs_says_what_each_does(capsys):
+    """No verb's sentence is cut off in the list."""
+    main(["--help"])
+    assert "..." not in capsys.readouterr().out.partition("Commands:")[2]
 
 
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["release", "--seed", "-1"], "-1 is no whole number from 0 up"),
-        (["grade", "01_paths", "--jobs", "0"], "0 is no whole number from 1 up"),
-        (["make-class", "01_paths", "--count", "-3"], "-3 is no whole number from 1 up"),
-        (["grade", "01_paths", "--shard", "5/2"], "5/2 is no part; write 1/4"),
+        (["release", "--seed", "-1"], "-1 is not in the range x>=0"),
+        (["grade", "01_paths", "--jobs", "0"], "0 is not in the range x>=1"),
+        (["grade", "01_paths", "--shard", "5/2"], "5/2 is not a part; write 1/4"),
     ],
 )
 def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
-    with pytest.raises(SystemExit) as end:
-        cli.main(words)
-    assert end.value.code == 2
+    assert main(words) == 2
     assert sentence in capsys.readouterr().err
 
 
@@ -69,20 +68,31 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["forget", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
-        (["rehearse", "01_paths", "--to", WARMUP, "--course", ROOT], "Not a directory"),
     ],
 )
 def test_a_wrong_file_or_folder_is_a_sentence(words, sentence, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert cli.main([str(word) for word in words]) == 2
+    assert main([str(word) for word in words]) == 2
     err = capsys.readouterr().err
     assert err.startswith(f"labkit {words[0]}: ") and sentence in err and err.count("\n") == 1
     assert not list(tmp_path.iterdir())
 
 
+def test_a_submission_that_calls_itself_a_course_is_none(tmp_path, monkeypatch, capsys):
+    """Whoever stands in it runs none of its code; the one who names it with --course means it."""
+    inside = tmp_path / "submitted" / "mallory"
+    inside.mkdir(parents=True)
+    for folder in (tmp_path, inside):
+        (folder / "nbgrader_config.py").write_text("raise SystemExit('executed')\n")
+    monkeypatch.chdir(inside)
+    assert main(["export", "01_paths"]) == 2
+    assert f"lies inside the course {tmp_path}" in capsys.readouterr().err
+    assert Course.here(inside).root == inside
+
+
 def test_an_unknown_assignment_is_a_sentence(capsys):
     """A name that does not exist ends with one sentence that lists those that do."""
-    assert cli.main(["release", "99_dance"]) == 2
+    assert main(["release", "99_dance"]) == 2
     err = capsys.readouterr().err
     assert err.count("\n") == 1
     assert "'01_paths'" in err
@@ -91,7 +101,7 @@ def test_an_unknown_assignment_is_a_sentence(capsys):
 def test_outside_a_course_it_says_so(tmp_path):
     """Away from a course the command names the folder and the way out, without a traceback."""
     done = subprocess.run(
-        [sys.executable, "-m", "labkit.cli", "grade", "01_paths"],
+        [sys.executable, "-m", "labkit", "grade", "01_paths"],
         cwd=tmp_path,
         capture_output=True,
         text=True,
@@ -101,10 +111,34 @@ def test_outside_a_course_it_says_so(tmp_path):
     assert "Traceback" not in done.stderr
 
 
-def test_ctrl_c_is_no_traceback(monkeypatch, capsys):
-    def stopped(args):
+def test_ctrl_c_is_not_a_traceback(monkeypatch, capsys):
+    """It ends with exit code 130 and one word."""
+
+    def stopped(notebook):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("labkit.cli._submit_check", stopped)
-    assert cli.main(["submit-check", "01_paths.ipynb"]) == 130
+    monkeypatch.setattr("labkit.course.handin.look", stopped)
+    assert main(["submit-check", "01_paths.ipynb"]) == 130
     assert capsys.readouterr().err == "labkit submit-check: stopped\n"
+
+
+def test_a_students_labkit_has_the_students_commands_alone(monkeypatch):
+    """Where the grader's folder is missing, two verbs are left."""
+    monkeypatch.setattr("labkit.__main__.find_spec", lambda name: None)
+    assert set(program().commands) == {"submit-check", "merge"}
+
+
+@pytest.mark.parametrize("package", ["sqlalchemy", "labkit_tests_miss_this"])
+def test_a_missing_package_of_instructors_is_a_sentence(package, monkeypatch, capsys):
+    """Any other one that is missing is an error of the installation, and keeps its traceback."""
+
+    def missing(notebook):
+        raise ModuleNotFoundError(name=f"{package}.exc")
+
+    monkeypatch.setattr("labkit.course.handin.look", missing)
+    if package == "sqlalchemy":
+        assert main(["submit-check", "x"]) == 2
+        assert "pip install 'labkit[instructor]'" in capsys.readouterr().err
+    else:
+        with pytest.raises(ModuleNotFoundError):
+            main(["submit-check", "x"])

@@ -5,13 +5,14 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
-from .cases import Call, Choice, Loop, Tuned
-from .judges import AtMost, AtTip, Close, Gains, Response, TipTorque, Within
-from .marking import Outcome, TestResult, Verdict, fingerprint, mark
-from .question import Mistake, Question, Raised, Test
-from .question_codec import question_data, read_question
+from .equivalence import AtTip, Response, TipTorque
+from .judges import AtMost, Close, Gains, Within
+from .marking import fingerprint, mark
+from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed
-from .student import also, check, hint, use
+from .serialize import question_data, read_question
+from .student import check, hint, use
+from .verdict import Outcome, TestResult, Verdict
 
 __all__ = [
     "AtMost",
@@ -33,7 +34,6 @@ __all__ = [
     "Tuned",
     "Verdict",
     "Within",
-    "also",
     "check",
     "fingerprint",
     "hint",

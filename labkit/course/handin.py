@@ -1,32 +1,33 @@
 """Before handing in: is the notebook whole, is it run, and what do its checks say?
 
-It reads the file and runs nothing.
+It reads the file and runs nothing.  `merge` brings a student's work into a corrected release.
 """
 
 from __future__ import annotations
 
-import json
+import ast
+import copy
 import platform
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
-from .marking import Outcome, Verdict
 from .messages import head
-from .output import last_verdict
+from .notebook import about, check_id, checks, defines, grade_id, last_verdict, read_cells
 from .serialize import decode
+from .source import is_stub, plain
 from .source import look as look_at
 from .student import read_checks
-from .withheld_names import withheld_tools
+from .verdict import Outcome, Verdict
+from .withheld import withheld_tools
 
 LARGEST = 10.0
 """Above this many megabytes a notebook may not pass a learning platform's upload."""
-Cell = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class HandIn:
         lines = [f"[mend] {text}" for text in self.problems]
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
-        right = sum(v is not None and v.outcome is Outcome.RIGHT for v in self.verdicts.values())
+        right = sum(v is not None and v.right for v in self.verdicts.values())
         end = (
             "mend the above first."
             if self.problems
@@ -110,7 +111,7 @@ def look(path: Path) -> HandIn:
     unrun = [name for name, verdict in verdicts.items() if verdict is None]
     if unrun:
         notes.append(f"not run since it was opened: {', '.join(unrun)}; marking runs them again")
-    wrong = [name for name, v in verdicts.items() if v and v.outcome is not Outcome.RIGHT]
+    wrong = [name for name, v in verdicts.items() if v and not v.right]
     if wrong:
         notes.append(f"not yet right: {', '.join(wrong)}; what is right counts all the same")
     return HandIn(name, tuple(problems), tuple(notes), verdicts)
@@ -129,7 +130,7 @@ def _cells_of(cells: list[dict[str, Any]], question: str) -> tuple[list[str], li
             if magic
             else f"no cell defines {question}; bring it back with: labkit merge"
         )
-    for each in (question, f"{question}-check"):
+    for each in (question, check_id(question)):
         if not ids[each]:
             notes.append(f"the cell of {each} is gone or damaged; it is marked all the same")
         elif ids[each] > 1:
@@ -139,55 +140,10 @@ def _cells_of(cells: list[dict[str, Any]], question: str) -> tuple[list[str], li
     return problems, notes
 
 
-def read_cells(path: Path) -> list[dict[str, Any]]:
-    """The cells of a notebook file.
-
-    Raises:
-        LabkitError: It is not there, or is not a notebook.
-    """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-        return [
-            {
-                **cell,
-                "cell_type": cell["cell_type"],
-                "metadata": dict(cell.get("metadata") or {}),
-                "source": "".join(cell["source"]),
-            }
-            for cell in data["cells"]
-        ]
-    except FileNotFoundError:
-        raise LabkitError(f"there is no file {path}") from None
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise LabkitError(
-            f"{path.name} is not a notebook, or was cut off while saving; open it in Jupyter, or "
-            "restore an older version"
-        ) from None
-
-
-def grade_id(cell: Cell) -> str:
-    """What a cell was made for: a question's name, that with "-check", or ""."""
-    nbgrader = cell["metadata"].get("nbgrader")
-    return str(nbgrader.get("grade_id", "")) if isinstance(nbgrader, dict) else ""
-
-
-def defines(cell: Cell, name: str) -> bool:
-    """Whether a code cell defines a function, a class or a value of that name."""
-    if cell["cell_type"] != "code":
-        return False
-    found = look_at(cell["source"])
-    if found["broken"]:
-        pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
-        return bool(re.search(pattern, cell["source"], re.MULTILINE))
-    return name in found["binds"]
-
-
 def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:
     """Whether the cell that defines an answer was run after its check, or not at all."""
     defined = [cell.get("execution_count") for cell in cells if defines(cell, question)]
-    checked = [
-        cell.get("execution_count") for cell in cells if f'check("{question}"' in cell["source"]
-    ]
+    checked = [cell.get("execution_count") for cell in cells if checks(cell, question)]
     ran = [count for count in checked if isinstance(count, int)]
     return bool(ran) and any(not isinstance(count, int) or count > max(ran) for count in defined)
 
@@ -201,3 +157,98 @@ def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdic
         points = float(question["points"])
         return Verdict(name, Outcome.NOT_COUNTED, 0.0, points, withheld=tools)
     return last_verdict(cells, name)
+
+
+def merge(mine: list[dict[str, Any]], new: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The new release's cells with the student's answers, and the cells that they added.
+
+    Args:
+        mine: The student's cells.
+        new: The cells of the new release.
+
+    Returns:
+        The new release, in its order.  An answer is found by the function that it defines, else by
+        the question that its cell was made for; a cell of the student's own follows the cell that
+        it followed.
+
+    Raises:
+        LabkitError: The new notebook is not a release, or none of the student's cells answers any
+            of its questions.
+    """
+    if not new or not all(isinstance(cell.get("id"), str) for cell in new):
+        raise LabkitError("the new notebook is not a release; fetch the assignment's folder again")
+    merged = copy.deepcopy(new)
+    home = _homes(new)
+    asked = [cell for cell in merged if _is_asked(cell)]
+    answers = [_answer(mine, grade_id(cell)) for cell in asked]
+    if asked and not any(_cells_for(mine, grade_id(cell)) for cell in asked):
+        raise LabkitError(
+            f"your notebook answers nothing that the new one asks ({grade_id(asked[0])}, ...); "
+            "are they two releases of the same assignment?"
+        )
+    for cell, answer in zip(asked, answers, strict=True):
+        if answer is not None:
+            cell["source"] = answer
+    anchor = -1
+    after: dict[int, list[dict[str, Any]]] = {}
+    for cell in mine:
+        place = home(cell)
+        if place is not None:
+            anchor = place
+        elif _is_own(cell, new):
+            after.setdefault(anchor, []).append(copy.deepcopy(cell))
+    result = after.get(-1, [])
+    for k, cell in enumerate(merged):
+        result += [cell, *after.get(k, [])]
+    return result
+
+
+def _homes(new: list[dict[str, Any]]) -> Callable[[dict[str, Any]], int | None]:
+    """A function that tells where in the new release a released cell belongs.
+
+    Ids count the cells of a release, so where a question was added they mean other cells from there
+    on; what a cell is for and what it says are better signs.
+    """
+    purposes = {grade_id(cell): k for k, cell in enumerate(new) if grade_id(cell)}
+    sources = {cell["source"]: k for k, cell in enumerate(new)}
+    ids = {cell["id"]: k for k, cell in enumerate(new)}
+
+    def home(cell: dict[str, Any]) -> int | None:
+        for found in (purposes.get(grade_id(cell)), sources.get(cell["source"])):
+            if found is not None:
+                return found
+        return ids.get(str(cell.get("id")))
+
+    return home
+
+
+def _is_asked(cell: dict[str, Any]) -> bool:
+    return bool(about(cell).get("solution"))
+
+
+def _is_own(cell: dict[str, Any], new: list[dict[str, Any]]) -> bool:
+    """Whether the student added a cell; one of an older release has an id of the release's form."""
+    stem = new[0]["id"].rpartition("-")[0]
+    released = re.fullmatch(rf"{re.escape(stem)}-\d+", str(cell.get("id", "")))
+    return not grade_id(cell) and not released and bool(cell["source"].strip())
+
+
+def _answer(mine: list[dict[str, Any]], name: str) -> str | None:
+    """The last cell in which something was written, which is the one that counts in marking."""
+    sources = [str(cell["source"]) for cell in _cells_for(mine, name)]
+    return next((source for source in reversed(sources) if not _is_unwritten(source)), None)
+
+
+def _cells_for(mine: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+    """The cells that define an answer, else those that were made for it."""
+    defining = [cell for cell in mine if defines(cell, name)]
+    return defining or [cell for cell in mine if grade_id(cell) == name]
+
+
+def _is_unwritten(source: str) -> bool:
+    """Whether a cell holds nothing but functions that say that they are still to be written."""
+    try:
+        written = ast.parse(plain(source)).body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    return all(is_stub(x) for x in written if not isinstance(x, ast.Import | ast.ImportFrom))

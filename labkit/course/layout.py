@@ -6,9 +6,12 @@ import importlib
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ..errors import LabkitError, UnknownName
-from .problem import Problem
+
+if TYPE_CHECKING:
+    from .problem import Problem
 
 PUBLIC_SEED = 2019
 """The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
@@ -29,18 +32,24 @@ class Course:
         """The course around a folder, the working directory by default.
 
         Raises:
-            LabkitError: There is none.
+            LabkitError: There is none; or nobody named it, and it lies inside another course, as
+                a submission does that brings a configuration of its own.
         """
-        start = (start or Path.cwd()).resolve()
-        if not start.exists():
-            raise LabkitError(f"there is no {start}; give the course's folder with --course")
-        for folder in (start, *start.parents):
-            if (folder / "nbgrader_config.py").exists():
-                return cls(folder)
-        raise LabkitError(
-            f"{start} is not inside a course: no nbgrader_config.py there or above; "
-            "change to the course's folder, or give it with --course"
-        )
+        place = (start or Path.cwd()).resolve()
+        if not place.exists():
+            raise LabkitError(f"there is no {place}; give the course's folder with --course")
+        around = [x for x in (place, *place.parents) if (x / "nbgrader_config.py").exists()]
+        if not around:
+            raise LabkitError(
+                f"{place} is not inside a course: no nbgrader_config.py there or above; "
+                "change to the course's folder, or give it with --course"
+            )
+        if start is None and len(around) > 1:
+            raise LabkitError(
+                f"{around[0]} has an nbgrader_config.py and lies inside the course {around[-1]}; "
+                "if you trust it, name the course that you mean with --course"
+            )
+        return cls(around[0])
 
     @property
     def build(self) -> Path:
@@ -79,8 +88,7 @@ class Course:
 
     def names(self) -> tuple[str, ...]:
         """All assignments that have a source, in order."""
-        folder = self.root / "solutions" / "notebooks"
-        return tuple(sorted(path.stem for path in folder.glob("[0-9]*.py")))
+        return tuple(sorted(path.stem for path in self.root.glob("solutions/*/[0-9][0-9]_*.py")))
 
     def notebook_source(self, name: str) -> Path:
         """The text an assignment is made from.
@@ -90,7 +98,7 @@ class Course:
         """
         if name not in self.names():
             raise UnknownName("assignment", name, self.names())
-        return self.root / "solutions" / "notebooks" / f"{name}.py"
+        return self.root / "solutions" / name.partition("_")[2] / f"{name}.py"
 
     def problems(self, name: str) -> tuple[Problem, ...]:
         """The problems of an assignment, from the course's own ``solutions`` package.
@@ -102,11 +110,11 @@ class Course:
         self.notebook_source(name)
         if str(self.root) not in sys.path:
             sys.path.insert(0, str(self.root))
-        where = f"solutions.problems.{name.partition('_')[2]}"
+        where = f"solutions.{name.partition('_')[2]}.problems"
         try:
             module = importlib.import_module(where)
         except ModuleNotFoundError as error:
-            if error.name != where:
+            if error.name not in (where, where.removesuffix(".problems")):
                 raise
             path = where.replace(".", "/")
             raise LabkitError(f"{name} has no problems; write {path}.py with PROBLEMS") from None

@@ -5,21 +5,23 @@ lies above it wherever it is found out.  Over draws of the hidden cases, disturb
 and seeds of the noise these distances spread; the margin is how many of their standard deviations
 lie between their mean and the tolerance.  Logarithms are compared, since distances spread over
 decades.  Where nothing spreads there is no sigma.
+
+A run is made once for each function, however many draws ask for it.
 """
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from . import Call, Loop, Question, Tuned
-from .cases import Case
 from .judges import AtMost
 from .problem import Problem
-from .remembered import Remembered
+from .question import Call, Case, Choice, Loop, Question, Tuned
+from .serialize import encode
 
 ROUNDING = 1e-3
 """Distances below this, in tolerances, are rounding, and count as this much."""
@@ -109,3 +111,58 @@ def _rounded(x: Any) -> Any:
     if isinstance(x, np.ndarray):
         return np.round(x, 7)
     return x
+
+
+Memory = dict[Any, dict[str, float]]
+"""Measures of a run, by the function and the run."""
+
+
+@dataclass(frozen=True, eq=False)
+class Remembered:
+    """A case whose run is made once for each function, however often it is asked for.
+
+    Attributes:
+        run: The case.
+        memory: What came of runs so far.
+    """
+
+    run: Loop | Tuned
+    memory: Memory
+
+    @property
+    def expected(self) -> Any:
+        """The run's."""
+        return self.run.expected
+
+    @property
+    def hidden(self) -> bool:
+        """The run's."""
+        return self.run.hidden
+
+    def ask(self, function: Callable[..., Any]) -> dict[str, float]:
+        """The measures of the run, for a log takes room; runs that raise are made again."""
+        key = (function, json.dumps(encode(self.run)))
+        if key not in self.memory:
+            self.memory[key] = self.run.measured(self.run.ask(function))
+        return self.memory[key]
+
+    def measured(self, answer: dict[str, float]) -> dict[str, float]:
+        """What `ask` gave."""
+        return answer
+
+    def shown(self, name: str) -> str:
+        """The run in words."""
+        return self.run.shown(name)
+
+
+def remembering(questions: Sequence[Question]) -> list[Question]:
+    """The same questions, with one memory for the runs of all of them."""
+    memory: Memory = {}
+
+    def case(x: Case) -> Any:
+        return x if isinstance(x, Call | Choice) else Remembered(x, memory)
+
+    return [
+        replace(q, tests=tuple(replace(t, cases=tuple(map(case, t.cases))) for t in q.tests))
+        for q in questions
+    ]

@@ -6,56 +6,24 @@ The function may live here or in another process; marking does not care.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from enum import Enum
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from ..errors import Diverged, LabkitError
 from ..log import Log
+from ..shapes import Array
 from .advice import told
-from .cases import Call, Case, Choice, Loop, Tuned
-from .judges import AtMost, Judge
-from .question import Mistake, Question, Raised, Test
+from .equivalence import Judge
+from .judges import AtMost, numbers
+from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed
+from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import Withheld
 
 
-class Outcome(Enum):
-    """What came of a question, or of one of its tests."""
-
-    NOT_ATTEMPTED = "not attempted"
-    NOT_TRIED = "not tried"  # of a test without a case
-    NOT_COUNTED = "not counted"
-    ERROR = "error"
-    WRONG = "wrong"
-    RIGHT = "right"
-
-
-@dataclass(frozen=True)
-class TestResult:
-    """What came of one test.
-
-    Attributes:
-        name: What it looked at.
-        weight: Its share of the points; 0 is a gate.
-        outcome: Never partly right.
-        says: Why not right; empty where it is.
-        hidden: Whether a hidden case decided; ``says`` then names its class only.
-        tool: The withheld tool that was used, if that decided.
-    """
-
-    __test__ = False
-
-    name: str
-    weight: float
-    outcome: Outcome
-    says: str = ""
-    hidden: bool = False
-    tool: str = ""
-
-
-@dataclass(frozen=True, eq=False)
-class Ran:
+class Ran(NamedTuple):
     """A run of the arm on a case that the student can see.
 
     Attributes:
@@ -71,33 +39,18 @@ class Ran:
     complete: bool
 
 
-@dataclass(frozen=True, eq=False)
-class Verdict:
-    """What came of a question.
+class Evidence(NamedTuple):
+    """What was expected and what came, on one call.
 
     Attributes:
-        name: The question's.
-        outcome: Right only if every test is that was tried.
-        earned: Points.
-        points: What full marks would be.
-        tests: One result each.
-        withheld: The tools that it used and that the question asks to write.
-        complete: Whether no hidden case is left that could change it.
-        mistake: The known mistake that gives the same answers, if there is one.
-        answers: What came back from each public call, for figures.
-        runs: The public runs of the arm, for replays.
+        call: The call as the student would type it.
+        expected: All numbers of the expected answer, shape (n,).
+        given: The same of the student's answer, shape (n,).
     """
 
-    name: str
-    outcome: Outcome
-    earned: float
-    points: float
-    tests: tuple[TestResult, ...] = ()
-    withheld: tuple[str, ...] = ()
-    complete: bool = True
-    mistake: Mistake | None = None
-    answers: tuple[Any, ...] = ()
-    runs: tuple[Ran, ...] = ()
+    call: str
+    expected: Array
+    given: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +69,28 @@ class Tried:
     def outcome(self) -> Outcome:
         """What they come to together."""
         return _outcome(self.results)
+
+    def runs(self, question: Question) -> Iterator[Ran]:
+        """The public runs of the arm, for replays."""
+        for test in question.tests:
+            for case in test.cases:
+                answer = self.answers.get(case)
+                log = answer.log if isinstance(answer, _Failure) else answer
+                if isinstance(case, Loop | Tuned) and isinstance(log, Log):
+                    yield Ran(test.name, case, log, complete=log is answer)
+
+    def evidence(self, question: Question) -> Evidence | None:
+        """The first public call whose answer differs, where both are numbers of one form."""
+        for call in question.calls:
+            answer: Any = self.answers.get(call)
+            try:
+                expected, given = numbers(call.expected), numbers(answer)
+            except (TypeError, ValueError, OverflowError):
+                continue
+            same_form = expected.shape == given.shape and np.isfinite(given).all()
+            if same_form and question.judge(answer, call.expected) is not None:
+                return Evidence(call.shown(question.name), expected, given)
+        return None
 
 
 def mark(question: Question, function: Callable[..., Any], tried: Tried | None = None) -> Verdict:
@@ -137,39 +112,32 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
         else _try(test, [c for c in test.cases if c.hidden], question, function, {}, result)
         for test, result in zip(question.tests, tried.results, strict=True)
     )
-    outcome, mistake = _outcome(results), None
-    answers = [tried.answers.get(call) for call in question.calls]
+    outcome, known = _outcome(results), None
     asked = all(call in tried.answers for call in question.calls)
     if outcome in (Outcome.WRONG, Outcome.ERROR) and asked:
-        mistake = recognise(question, answers)
+        known = recognise(question, [tried.answers[call] for call in question.calls])
     return Verdict(
-        name=question.name,
-        outcome=outcome,
-        earned=_earned(question, outcome, results),
-        points=question.points,
-        tests=results,
+        question.name,
+        outcome,
+        _earned(question, outcome, results),
+        question.points,
+        results,
         withheld=tuple(dict.fromkeys(result.tool for result in results if result.tool)),
         complete=question.complete,
-        mistake=mistake,
-        answers=tuple(answers),
-        runs=tuple(_runs(question, tried)),
+        mistake=known and Misconception(known.name, known.says),
     )
+
+
+def all_alike(question: Question, outcome: Outcome, kind: Kind | None = None) -> Verdict:
+    """The verdict where every test comes to the same outcome, and nothing is earned."""
+    why = None if kind is None else Difference(kind)
+    tests = tuple(TestResult(t.name, t.weight, outcome, difference=why) for t in question.tests)
+    return Verdict(question.name, outcome, 0.0, question.points, tests)
 
 
 def not_counted(question: Question, tools: tuple[str, ...]) -> Verdict:
     """The verdict on an answer whose text uses withheld tools; it is not tried."""
-    tests = tuple(TestResult(t.name, t.weight, Outcome.NOT_COUNTED) for t in question.tests)
-    outcome = Outcome.NOT_COUNTED
-    return Verdict(question.name, outcome, 0.0, question.points, tests, withheld=tools)
-
-
-def _runs(question: Question, tried: Tried) -> Iterator[Ran]:
-    for test in question.tests:
-        for case in test.cases:
-            answer = tried.answers.get(case)
-            log = answer.log if isinstance(answer, _Failure) else answer
-            if isinstance(case, Loop | Tuned) and isinstance(log, Log):
-                yield Ran(test.name, case, log, complete=log is answer)
+    return replace(all_alike(question, Outcome.NOT_COUNTED), withheld=tools)
 
 
 def try_public(question: Question, function: Callable[..., Any]) -> Tried:
@@ -261,39 +229,52 @@ def _try(
     before: TestResult | None = None,
 ) -> TestResult:
     """Put some cases of one test, until one fails; without any, what came of it before stays."""
+    result = TestResult(test.name, test.weight, Outcome.RIGHT, also=test.also)
     for case in cases:
         answer = _answer(case, function)
         if not case.hidden:
             answers[case] = answer
-        hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
-        where = hidden if case.hidden else case.shown(question.name)
-        if isinstance(answer, _Failure):
-            changed = answer.kind == "ArgumentChanged"
-            what = answer.kind if case.hidden else answer.sentence
-            says = f"{where}: {what}" if changed else f"{where} raised {what}"
-            outcome = Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind)
-            outcome = outcome or Outcome.ERROR
-            return TestResult(test.name, test.weight, outcome, says, case.hidden, answer.tool)
         found = _difference(question, case, answer)
         if found is not None:
-            says = where if case.hidden else f"{where}: {found}"
-            return TestResult(test.name, test.weight, Outcome.WRONG, says, case.hidden)
-        before = TestResult(test.name, test.weight, Outcome.RIGHT)
-    return before or TestResult(test.name, test.weight, Outcome.NOT_TRIED)
+            tool = answer.tool if isinstance(answer, _Failure) else ""
+            if case.hidden:  # what it gave away stays with the teacher
+                found = Difference(found.kind, error=found.error) if found.error else None
+            call = "" if case.hidden else case.shown(question.name)
+            return replace(
+                result,
+                outcome=_outcome_of(answer),
+                hidden=case.hidden,
+                call=call,
+                difference=found,
+                tool=tool,
+            )
+        before = result
+    return before or replace(result, outcome=Outcome.NOT_TRIED)
 
 
-def _difference(question: Question, case: Case, answer: Any) -> str | None:
+def _outcome_of(answer: Any) -> Outcome:
+    """The outcome of an answer that is not right."""
+    if not isinstance(answer, _Failure):
+        return Outcome.WRONG
+    return Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind, Outcome.ERROR)
+
+
+def _difference(question: Question, case: Case, answer: Any) -> Difference | None:
     """How an answer differs from what is expected; None if it does not."""
+    if isinstance(answer, _Failure):
+        changed = answer.kind == "ArgumentChanged"
+        kind = Kind.CHANGED if changed else Kind.RAISED
+        return Difference(kind, found=answer.sentence, error=answer.kind)
     if answer is None and isinstance(case, Call | Choice):
-        return "it gave nothing back (None); does every way through it end in a return?"
+        return Difference(Kind.NOTHING)
     try:
         if isinstance(case, Call):
             return question.judge(answer, case.expected)
         return AtMost()(case.measured(answer), case.expected)
     except LabkitError as error:
-        return str(error)
+        return Difference(Kind.REFUSED, found=str(error))
     except Exception:  # there is no end to what an answer can be
-        return "the answer cannot be compared with what is expected"
+        return Difference(Kind.OTHER)
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:

@@ -1,12 +1,16 @@
-"""A verdict as sentences."""
+"""A verdict in words: the only place where sentences are made of one."""
 
 from __future__ import annotations
 
+import math
 import textwrap
 from collections.abc import Iterable, Iterator
 
-from .marking import Outcome, Verdict
-from .question import Question, Test
+from ..control import COMMANDS
+from ..errors import ControllerError
+from ..robot import DOF
+from .question import Loop, Question, Test, Tuned, in_brief
+from .verdict import Difference, Kind, Outcome, TestResult, Value, Verdict
 from .withheld import spoken
 
 WIDTH = 79
@@ -25,6 +29,7 @@ HEADS = {
 
 _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 """Of tests of which no more is to be said."""
+_COMMANDS = [kind.__name__ for kind in COMMANDS]
 
 
 def head(verdict: Verdict) -> str:
@@ -69,9 +74,7 @@ def tell(
         lines.append("  Elsewhere in the notebook you may use it; here write it yourself.")
     else:
         lines += _results(question, verdict)
-        if verdict.mistake is not None:
-            lines.append(f"  This is a well-known one: {verdict.mistake.name}.")
-            lines.append(f"  {verdict.mistake.says}")
+        lines += _mistake(verdict)
     if leans_on and verdict.outcome is not Outcome.RIGHT:
         names = ", ".join(leans_on)
         lines.append(f"  Note: it uses your {names}, which is not right yet; mend that first.")
@@ -79,6 +82,21 @@ def tell(
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         lines.append(f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees it.')
     return "\n".join(wrapped(line) for line in lines)
+
+
+def summary(verdict: Verdict) -> list[str]:
+    """A verdict for a teacher's page: its head, each test where something went wrong, a mistake."""
+    lines = [head(verdict)]
+    if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
+        lines += [f"  {line(test)}" for test in verdict.tests]
+        lines += _mistake(verdict)
+    return lines
+
+
+def _mistake(verdict: Verdict) -> Iterator[str]:
+    if verdict.mistake is not None:
+        yield f"  This is a well-known one: {verdict.mistake.name}."
+        yield f"  {verdict.mistake.says}"
 
 
 def _unseen(question: Question) -> Iterator[str]:
@@ -91,73 +109,164 @@ def _unseen(question: Question) -> Iterator[str]:
             yield f"  Not tried here, and points hang on it: {test.name}."
 
 
-def hint(question: Question, level: int) -> str:
-    """One hint, and how to get the next; or that there is none of that number."""
-    name, hints = question.name, question.hints
-    if not isinstance(level, int) or not 1 <= level <= len(hints):
-        return wrapped(
-            f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
-            "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
-        )
-    more = f'\n(hint("{name}", {level + 1}) says more)' if level < len(hints) else ""
-    return wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}") + more
-
-
 def wrapped(line: str) -> str:
     """A line folded where a notebook would otherwise break it within a word."""
     margin = " " * (len(line) - len(line.lstrip()))
     return textwrap.fill(line, WIDTH, subsequent_indent=f"{margin}  ", break_long_words=False)
 
 
+GATE = " (needed before anything counts)"
+_MEASURES = {
+    "max_mm": ("the largest error of the tip", " mm"),
+    "rms_mm": ("the RMS error of the tip", " mm"),
+    "max_deg": ("the largest tilt of the tip", " degrees"),
+    "rms_velocity_mm_s": ("the RMS error of the tip's speed", " mm/s"),
+    "worst_mm": ("the worst error", " mm"),
+}
+"""Measures of a run in words, with their units."""
+_FACTORS = {
+    -1.0: "the same with the other sign",
+    math.degrees(1.0): "these look like degrees, where radians belong",
+    math.radians(1.0): "these look like degrees taken for radians",
+    1e3: "a thousand times too large: millimetres for metres?",
+    1e-3: "a thousand times too small",
+    2.0: "twice what is expected",
+    0.5: "half of what is expected",
+}
+"""What it means that all numbers are off by one and the same factor."""
+
+
+def line(test: TestResult) -> str:
+    """A test in a line: whether it passed, and if it did not, on which case and why."""
+    gate = "" if test.weight else GATE
+    if test.outcome in _SHORT:
+        return f"[{_SHORT[test.outcome]}] {test.name}{gate}"
+    says = why(test)
+    return f"[failed] {test.name}{gate}{says and f': {says}'}"
+
+
+def why(test: TestResult) -> str:
+    """On which case a test failed, and how; empty where there is nothing to say."""
+    hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
+    where = hidden if test.hidden else test.call
+    if test.difference is None:
+        return where
+    before, expected, got, guess = _words(test.difference)
+    text = f"{before}expected {expected}, got {got}{guess and f'; {guess}'}" if got else before
+    return f"{where}{text if text[:1] == ' ' else f': {text}'}" if where else text.strip()
+
+
+def _words(d: Difference) -> tuple[str, str, str, str]:
+    """A difference in words: what comes first; what was expected and what came; a guess why."""
+    of = f"{d.part}: " if d.part else ""
+    text = ""
+    match d.kind:
+        case Kind.NUMBERS if d.expected is None:
+            text = f"got {_brief(d.found)}, which is none of the right ones"
+        case Kind.NUMBERS:
+            index = ", ".join(f"{k:g}" for k in d.at)
+            at = f"at index {f'({index})' if len(d.at) > 1 else index} " if d.at else ""
+            also = ", or any that moves the tip alike" if d.several else ""
+            return f"{of}{at}", _brief(d.expected) + also, _brief(d.found), _guess(d)
+        case Kind.RESPONSE:
+            return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
+        case Kind.MEASURE:
+            what, unit = _MEASURES.get(d.part, (d.part.replace("_", " "), ""))
+            text = f"{what} is {_much(d.found)}{unit}, allowed {_much(d.expected)}{unit}"
+        case Kind.TYPE if not d.expected:
+            text = f"{of}plain numbers are asked for, not a {d.found}"
+        case Kind.TYPE:
+            text = f"{of}it should be a {d.expected}, not {_instead(d)}"
+        case Kind.VALUE:
+            text = f"{of}it should be {d.expected}, not {_brief(d.found)}"
+        case Kind.KEY:
+            text = f"the key {d.part!r} is missing"
+        case Kind.PARTS:
+            parts = f"{len(d.parts)} things ({', '.join(d.parts)})"
+            text = f"{of}it should be {parts}, not {_brief(d.found)}"
+        case Kind.NOTHING:
+            text = "it gave nothing back (None); does every way through it end in a return?"
+        case Kind.RAISED:
+            text = f" raised {d.found or d.error}"
+        case Kind.REFUSED | Kind.CHANGED:
+            text = str(d.found or d.error)
+        case Kind.OTHER:
+            text = "the answer cannot be compared with what is expected"
+    return text, "", "", ""
+
+
+def _instead(d: Difference) -> str:
+    """What came instead of the type that was asked for, and how to make one of it."""
+    if d.found in _COMMANDS:
+        return f"a {d.found}"
+    what = _brief(d.found) or "plain numbers"
+    if d.expected not in _COMMANDS:
+        return what
+    return f"{what}; return lk.{d.expected}(...) with the {DOF} numbers in it"
+
+
+def _guess(d: Difference) -> str:
+    """What a telling factor means; a single number may be twice or half of another by chance."""
+    if d.times is None:
+        return ""
+    single = isinstance(d.expected, float) and not d.at
+    for factor, means in _FACTORS.items():
+        if math.isclose(d.times, factor, rel_tol=1e-6) and not (single and factor in (2.0, 0.5)):
+            return means
+    return ""
+
+
+def _brief(x: Value) -> str:
+    if isinstance(x, float):
+        return f"{x:.6g}" if abs(x) > 1e-10 else "0"
+    return x if isinstance(x, str) else in_brief(x)
+
+
+def _polar(x: Value) -> str:
+    return f"{x[0]:.4g} at {x[1]:.4g} degrees" if isinstance(x, tuple) else str(x)
+
+
+def _much(x: Value) -> str:
+    if not isinstance(x, float):
+        return str(x)
+    return f"{x:.3g}" if abs(x) < 1e3 else f"{x:.0f}"
+
+
 def _results(question: Question, verdict: Verdict) -> list[str]:
     """Each test in a line; of one that failed also the call, and what came of it."""
     lines: list[str] = []
-    said: set[str] = set()
+    before: list[Difference] = []
     for test, result in zip(question.tests, verdict.tests, strict=True):
-        gate = "" if result.weight else " (needed before anything counts)"
-        if result.outcome in _SHORT:
-            lines.append(f"  [{_SHORT[result.outcome]}] {result.name}{gate}")
-            continue
-        where, why = _split(question, test, result.says)
-        short = f"  [failed] {result.name}{gate}: {where}{why}"
-        if _again(why, said):
-            lines.append(f"  [failed] {result.name}{gate}: the same")
-        elif len(short) <= WIDTH:
+        short = f"  {line(result)}"
+        failed = f"  [failed] {result.name}{'' if result.weight else GATE}:"
+        difference = result.difference
+        if difference is not None and _again(test, difference, before):
+            lines.append(f"{failed} the same")
+        elif len(short) <= WIDTH or result.outcome in _SHORT:
             lines.append(short)
         else:
-            lines.append(f"  [failed] {result.name}{gate}:")
-            lines += [f"      {part}" for part in _parts(f"{where}{why}", verdict.mistake is None)]
-        said.add(why)
+            parts = _parts(result, verdict.mistake is None)
+            lines += [failed, *(f"      {part}" for part in parts)]
+        before += [difference] if difference else []
     return lines
 
 
-def _again(why: str, said: set[str]) -> bool:
+def _again(test: Test, difference: Difference, before: list[Difference]) -> bool:
     """Whether that was told before; a run stops as the single calls did, in the arm's words."""
-    if why.startswith(" raised controller failed"):
-        kinds = {text.split(":")[0].removeprefix(" raised ") for text in said if " raised " in text}
-        return any(f": {kind}: " in why for kind in kinds)
-    none = why.startswith(" raised ControllerError: controller returned") and bool(said)
-    return none or (why in said and ", got " not in why)
+    if difference.kind is Kind.RAISED and any(isinstance(x, Loop | Tuned) for x in test.cases):
+        if difference.error == ControllerError.__name__:
+            return bool(before)
+        return any(x.kind is Kind.RAISED and x.error == difference.error for x in before)
+    return difference in before and not _words(difference)[2]
 
 
-def _split(question: Question, test: Test, says: str) -> tuple[str, str]:
-    """What was tried, and what came of it."""
-    for case in test.cases:
-        where = case.shown(question.name)
-        if says.startswith(where):
-            return where, says.removeprefix(where)
-    return "", says
-
-
-def _parts(text: str, guess: bool) -> list[str]:
+def _parts(test: TestResult, guess: bool) -> list[str]:
     """A call and two answers too long for a line: the answers below each other, and a guess why."""
-    before, found, rest = text.partition("expected ")
-    expected, got, given = rest.partition(", got ")
-    if not (found and got):
-        return [text]
-    given, _, means = given.partition("; ")
+    start, expected, got, means = _words(test.difference) if test.difference else ("", "", "", "")
+    if not got:
+        return [why(test)]
     more = [f"({means})"] if means and guess else []
-    return [before.rstrip(), f"  expected {expected}", f"  got      {given}", *more]
+    return [f"{test.call}: {start}".rstrip(), f"  expected {expected}", f"  got      {got}", *more]
 
 
 def _printed(text: str, most: int = 6) -> list[str]:

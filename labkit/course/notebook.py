@@ -1,39 +1,163 @@
-"""From an assignment's source text to its notebooks.
+"""A notebook's cells: the only module that knows what the metadata of a cell means.
 
-In the source, a code cell with ``question="name"`` holds a stub whose solution region imports the
-answer; ``setup=true`` marks cells that students should leave alone.  A brief before the stub and
-the check after it are written here, from the question.
+A course's cells are of five kinds: "setup" cells, which students leave alone; the "walk", which
+they may change; and for each question a "brief", an "answer" and a "check".  nbgrader knows an
+answer by the question's name and its check by that name with "-check".
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+import re
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import nbformat
-
 from ..errors import LabkitError
-from . import Question
-from .handin import defines
-from .question_codec import pack_hidden
+from ..formats import stamp
+from .question import Question
+from .serialize import read_record, record_data
+from .source import look
+from .verdict import Verdict
 
+Cell = Mapping[str, Any]
 Notebook = Any
 KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}
-END_HIDDEN = "### END HIDDEN TESTS\n"
+_CHECK = "-check"
+_OUTPUT = "labkit"
+"""Under this name the output of a check holds its verdict."""
+
+
+def read_cells(path: Path) -> list[dict[str, Any]]:
+    """The cells of a notebook file.
+
+    Raises:
+        LabkitError: It is not there, or is not a notebook.
+    """
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+        return [
+            {
+                **cell,
+                "cell_type": cell["cell_type"],
+                "metadata": dict(cell.get("metadata") or {}),
+                "source": "".join(cell["source"]),
+            }
+            for cell in data["cells"]
+        ]
+    except FileNotFoundError:
+        raise LabkitError(f"there is no file {path}") from None
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        raise LabkitError(
+            f"{path.name} is not a notebook, or was cut off while saving; open it in Jupyter, or "
+            "restore an older version"
+        ) from None
+
+
+def kind(cell: Cell) -> str:
+    """Which of the five kinds a released cell is of; "" for any other."""
+    return str(_metadata(cell).get("lab", ""))
+
+
+def grade_id(cell: Cell) -> str:
+    """What a cell was made for: a question's name, that with "-check", or ""."""
+    found = about(cell).get("grade_id")
+    return found if isinstance(found, str) else ""
+
+
+def about(cell: Cell) -> Mapping[str, Any]:
+    """What nbgrader knows of a cell: grade_id, grade, solution, points; empty for most cells."""
+    found = _metadata(cell).get("nbgrader")
+    return found if isinstance(found, dict) else {}
+
+
+def check_id(question: str) -> str:
+    """What nbgrader calls the check of a question."""
+    return question + _CHECK
+
+
+def question_of(grade_id: str) -> str:
+    """The question to which a cell belongs, by what nbgrader calls the cell."""
+    return grade_id.removesuffix(_CHECK)
+
+
+def is_check(grade_id: str) -> bool:
+    """Whether nbgrader calls a question's check so."""
+    return grade_id.endswith(_CHECK)
+
+
+def defines(cell: Cell, name: str) -> bool:
+    """Whether a code cell defines a function, a class or a value of that name."""
+    if cell["cell_type"] != "code":
+        return False
+    found = look(cell["source"])
+    if found["broken"]:
+        pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
+        return bool(re.search(pattern, cell["source"], re.MULTILINE))
+    return name in found["binds"]
+
+
+def checks(cell: Cell, name: str) -> bool:
+    """Whether a cell calls the check of a question."""
+    return f'check("{name}"' in cell["source"]
+
+
+def verdict_metadata(verdict: Verdict) -> dict[str, Any]:
+    """The metadata of an output that shows a verdict, for whoever reads the file."""
+    return {_OUTPUT: {**stamp(), "verdict": record_data(verdict)}}
+
+
+def last_verdict(cells: Sequence[Cell], question: str) -> Verdict | None:
+    """The verdict that stands last in a notebook's file on a question, or None."""
+    for cell in reversed(cells):
+        outputs = cell.get("outputs")
+        for output in outputs if isinstance(outputs, list) else ():
+            verdict = verdict_in(output)
+            if verdict is not None and verdict.name == question:
+                return verdict
+    return None
+
+
+def verdict_in(output: Any) -> Verdict | None:
+    """The verdict that an output of a notebook's file shows; None if there is no whole one."""
+    try:
+        data = output["metadata"][_OUTPUT]
+        current = data.items() >= stamp().items()
+        return read_record(Verdict, data["verdict"]) if current else None
+    except (LabkitError, KeyError, TypeError, AttributeError):
+        return None
+
+
+def manifest(source: Notebook) -> list[dict[str, Any]]:
+    """What each cell is, in order: how a grader knows cells without trusting a submission."""
+    return [
+        {
+            "id": cell.id,
+            "type": cell.cell_type,
+            "kind": kind(cell),
+            "grade_id": grade_id(cell) or None,
+            "source": cell.source,
+        }
+        for cell in source.cells
+    ]
 
 
 def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
-    """The notebook that nbgrader takes as its source: solutions and hidden cases inside.
+    """The notebook that nbgrader takes as its source, with the solutions inside.
+
+    In the source text, a code cell with ``question="name"`` holds a stub whose solution region
+    imports the answer; ``setup=true`` marks cells that students should leave alone.  A brief before
+    the stub and the check after it are written here, from the question.
 
     Args:
         path: The source, in jupytext's percent format.
-        questions: By name, hidden cases included.
+        questions: By name.
 
     Raises:
         LabkitError: Stubs and questions do not match.
     """
-    import jupytext  # slow to load, and only a release needs it
+    import jupytext  # slow to load, and only a release needs them
+    import nbformat
 
     text = jupytext.read(path, fmt="py:percent")
     cells: list[dict[str, Any]] = []
@@ -41,9 +165,8 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     for cell in text.cells:
         name, setup = cell.metadata.get("question"), cell.metadata.get("setup", False)
         if name is None:
-            kind = "setup" if setup else "walk"
             meta = _nbgrader(f"setup-{len(cells)}", locked=True) if setup else {}
-            cells.append(_cell(cell.cell_type, cell.source, kind, meta))
+            cells.append(_cell(cell.cell_type, cell.source, "setup" if setup else "walk", meta))
             continue
         if name not in questions:
             raise LabkitError(f"{path.name} asks {name!r}, which has no Problem")
@@ -52,10 +175,8 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
         _check_stub(path, name, cell)
         cells.append(_cell("markdown", brief(question), "brief", {}))
         cells.append(_cell("code", cell.source, "answer", _nbgrader(name, solution=True)))
-        hidden = f'from labkit.course import also\n\nalso("{name}", "{pack_hidden(question)}")'
-        check = f'### BEGIN HIDDEN TESTS\n{hidden}\n{END_HIDDEN}check("{name}", {name})'
-        meta = _nbgrader(f"{name}-check", locked=True, grade=True, points=question.points)
-        cells.append(_cell("code", check, "check", meta))
+        meta = _nbgrader(check_id(name), locked=True, grade=True, points=question.points)
+        cells.append(_cell("code", f'check("{name}", {name})', "check", meta))
     for name in questions:
         if asked.count(name) != 1:
             raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
@@ -65,22 +186,6 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     return nbformat.from_dict(
         {"cells": cells, "metadata": meta, "nbformat": 4, "nbformat_minor": 5}
     )
-
-
-def without_hidden(source: str) -> str:
-    """A cell's text as students have it."""
-    return source.rpartition(END_HIDDEN)[2]
-
-
-def _check_stub(path: Path, name: str, cell: Mapping[str, Any]) -> None:
-    marks = [line.strip() for line in cell["source"].splitlines() if "### " in line]
-    if marks != ["### BEGIN SOLUTION", "### END SOLUTION"]:
-        raise LabkitError(
-            f"{path.name}: the stub of {name} needs one region between a line ### BEGIN SOLUTION "
-            "and a line ### END SOLUTION"
-        )
-    if not defines(cell, name):
-        raise LabkitError(f"{path.name}: the stub of {name} defines no {name}")
 
 
 def brief(question: Question) -> str:
@@ -98,6 +203,22 @@ def brief(question: Question) -> str:
     if question.hints:
         lines.append(f'- Stuck? `hint("{question.name}", 1)`: free, and nobody is told.')
     return "\n".join(lines)
+
+
+def _check_stub(path: Path, name: str, cell: Cell) -> None:
+    marks = [line.strip() for line in cell["source"].splitlines() if "### " in line]
+    if marks != ["### BEGIN SOLUTION", "### END SOLUTION"]:
+        raise LabkitError(
+            f"{path.name}: the stub of {name} needs one region between a line ### BEGIN SOLUTION "
+            "and a line ### END SOLUTION"
+        )
+    if not defines(cell, name):
+        raise LabkitError(f"{path.name}: the stub of {name} does not define {name}")
+
+
+def _metadata(cell: Cell) -> Mapping[str, Any]:
+    found = cell.get("metadata")
+    return found if isinstance(found, dict) else {}
 
 
 def _cell(kind: str, source: str, lab: str, nbgrader: dict[str, Any]) -> dict[str, Any]:

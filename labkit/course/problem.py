@@ -11,9 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from . import Call, Close, Mistake, Question, Test, fingerprint
-from .cases import Case
-from .judges import Judge
+from .equivalence import Judge
+from .judges import Close
+from .marking import fingerprint
+from .question import Call, Case, Mistake, Question, Test
 
 CLOSE = Close()
 

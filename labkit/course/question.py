@@ -1,16 +1,191 @@
 """Questions as data: what is asked, how it is tried and judged, what goes wrong.
 
-A question holds no code of its own answer, so it may travel to a student; its hidden cases travel
-apart.
+A question holds no code of its own answer, so it may travel to a student; its hidden cases stay
+with the grader.  A case asks the student's function for one thing and does not judge it.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, is_dataclass, replace
+from inspect import isroutine
 from typing import Any
 
-from .cases import Call, Case, Choice
-from .judges import Judge
+import numpy as np
+
+from ..arm import Arm
+from ..control import springs
+from ..errors import TypeMismatch
+from ..log import Log
+from ..metrics import since, summary
+from ..plant import IDEAL, Plant
+from ..recordings import Runner, Trials
+from ..run import run
+from ..shapes import Array
+from ..world import Thing, World
+from .calling import call
+from .equivalence import Judge
+from .verdict import Misconception
+
+
+@dataclass(frozen=True, eq=False)
+class Call:
+    """One call of the student's function.
+
+    Attributes:
+        args: Its arguments.
+        kwargs: Its arguments by name.
+        expected: What the judge compares the answer with.
+        hidden: Whether the student never sees it.
+    """
+
+    args: tuple[Any, ...]
+    kwargs: Mapping[str, Any] = field(default_factory=dict)
+    expected: Any = None
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The function's answer."""
+        return call(function, self.args, self.kwargs)
+
+    def shown(self, name: str) -> str:
+        """The call as a student would type it."""
+        words = [_short(x) for x in self.args]
+        if len(", ".join(words)) > 60:
+            words = [_sized(x) if isinstance(x, np.ndarray) else _short(x) for x in self.args]
+        words += [f"{key}={_short(x)}" for key, x in self.kwargs.items()]
+        return f"{name}({', '.join(words)})"
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """One closed-loop run with the student's function as the controller.
+
+    Attributes:
+        target: What the arm follows.
+        kwargs: What the controller is given besides state and target.
+        side: Which arm.
+        plant: What it is like.
+        things: What it meets, such as a `labkit.Push`.
+        seed: Of its noise.
+        q0: Where it starts, shape (7,) in [rad]; None is its ready pose.
+        rate: Control rate, in [Hz].
+        duration: In [s]; None takes the target's.
+        settle: How long it may take to recover from its start, in [s]; measured from then on.
+        expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
+        hidden: Whether the student never sees it.
+    """
+
+    target: Any
+    kwargs: Mapping[str, Any] = field(default_factory=dict)
+    side: Any = "left"
+    plant: Plant = IDEAL
+    things: tuple[Thing, ...] = ()
+    seed: int = 0
+    q0: Any = None
+    rate: float = 200.0
+    duration: float | None = None
+    settle: float = 0.0
+    expected: Any = field(default_factory=dict)
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Log:
+        """The run that the function makes."""
+
+        def controller(state: Any, target: Any) -> Any:
+            return call(function, (state, target), self.kwargs)
+
+        arm = Arm(self.side, self.plant, self.seed, world=World(things=self.things))
+        arm.reset(arm.robot.ready if self.q0 is None else self.q0)
+        try:
+            return run(arm, self.target, controller, self.rate, self.duration)
+        finally:
+            arm.world.close()
+
+    def measured(self, answer: Log) -> dict[str, float]:
+        """The measures of a run, fields of `metrics.Summary`."""
+        return asdict(summary(since(answer, self.settle)))
+
+    def shown(self, name: str) -> str:
+        """The run in words."""
+        return f"a run of the {self.side} arm ({self.plant.name}) with {name} as its controller"
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """The student's function chooses gains with a runner that has a limited number of tries.
+
+    Attributes:
+        trials: What the runner knows.
+        expected: Largest allowed ``worst_mm``.
+        unseen: What the choice is tried on instead; None takes ``trials`` again.
+        budget: How many tries the runner has.
+        hidden: Whether the student never sees it.
+    """
+
+    trials: Trials
+    expected: Any
+    unseen: Trials | None = None
+    budget: int = 20
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Any:
+        """The gains that the function chooses, with a fresh runner."""
+        return function(Runner(self.trials, self.budget))
+
+    def measured(self, answer: Any) -> dict[str, float]:
+        """The worst error that the chosen gains give, in [mm].
+
+        Raises:
+            LabkitError: The answer is no pair of gains that were recorded.
+        """
+        try:
+            Kp, Kd = answer
+        except (TypeError, ValueError):
+            raise TypeMismatch("the answer should be two gains, (Kp, Kd)") from None
+        return {"worst_mm": (self.unseen or self.trials).worst(Kp, Kd)}
+
+    def shown(self, name: str) -> str:
+        """The choice in words."""
+        return f"{name}(runner) with {self.budget} tries"
+
+
+@dataclass(frozen=True, eq=False)
+class Tuned:
+    """One closed-loop run with gains that the student's function chose.
+
+    The law is `labkit.control.springs`, which is given to students as it stands: a law with
+    more in it would be the answer to some other question.
+
+    Attributes:
+        args: What the function is given; it answers (kp, kd).
+        loop: The run, its ``kwargs`` and ``expected`` unused.
+        expected: Largest allowed value of measures of the run, fields of `metrics.Summary`.
+        hidden: Whether the student never sees it.
+    """
+
+    args: tuple[Any, ...]
+    loop: Loop
+    expected: Any = field(default_factory=dict)
+    hidden: bool = False
+
+    def ask(self, function: Callable[..., Any]) -> Log:
+        """The run that the function's gains make."""
+        kp, kd = call(function, self.args, {})
+        return self.loop.ask(springs(kp, kd))
+
+    def measured(self, answer: Log) -> dict[str, float]:
+        """The measures of a run, fields of `metrics.Summary`."""
+        return self.loop.measured(answer)
+
+    def shown(self, name: str) -> str:
+        """The run in words."""
+        plant = self.loop.plant
+        carries = f", {plant.payload:g} kg in its gripper" if plant.payload else ""
+        return f"a run of the {self.loop.side} arm ({plant.name}{carries}) with the gains of {name}"
+
+
+Case = Call | Loop | Choice | Tuned
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,17 +219,13 @@ class Raised:
 
 
 @dataclass(frozen=True, eq=False)
-class Mistake:
+class Mistake(Misconception):
     """A wrong answer that people really give, known by its fingerprint.
 
     Attributes:
-        name: In a few words.
-        says: What to tell who made it.
         answers: What it gives on each public call, in order; `Raised` where it raises.
     """
 
-    name: str
-    says: str
     answers: tuple[Any, ...]
 
 
@@ -104,3 +275,30 @@ class Question:
                 for test in self.tests
             ),
         )
+
+
+def in_brief(x: Any) -> str:
+    """A number, or a vector or matrix of them, as one would write it by hand."""
+    a = np.asarray(x, dtype=float)
+    if a.ndim:
+        tiny = 1e-9 * max(1.0, float(np.max(np.abs(a), initial=0.0)))
+        return f"[{', '.join(map(in_brief, np.where(np.abs(a) < tiny, 0.0, a)))}]"
+    return f"{float(a) + 0.0:.5g}"  # adding zero takes the sign from -0
+
+
+def _short(x: Any) -> str:
+    if isinstance(x, np.ndarray):
+        return _sized(x) if x.ndim > 1 or x.size > 7 else in_brief(x)
+    if isroutine(x):
+        return x.__name__
+    text = " ".join(repr(x).split())
+    if isinstance(x, float):
+        return text if len(text) <= 8 else in_brief(x)
+    if len(text) <= 48:
+        return text
+    named = is_dataclass(x) or hasattr(x, "_fields")
+    return f"{type(x).__name__}(...)" if named else f"{text[:45]}..."
+
+
+def _sized(x: Array) -> str:
+    return f"<{' x '.join(map(str, x.shape))} numbers>"

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
-from . import Outcome, margins
 from .layout import Course
+from .margins import least, remembering
 from .marking import mark
 from .problem import Problem
-from .remembered import remembering
+from .verdict import Outcome
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question, its name, or "assignment/name" where two assignments ask it."""
@@ -166,7 +166,7 @@ def _row(
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(DRAWS))
-    margin, nearest = margins.least(questions, problem, right, wrong)
+    margin, nearest = least(questions, problem, right, wrong)
     return Row(
         name,
         problem.name,

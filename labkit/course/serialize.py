@@ -1,7 +1,9 @@
-"""Values as JSON and back: how inputs travel to a student's code, and answers from it.
+"""Everything of a course as JSON data and back: values, questions, verdicts, results.
 
-Only the kinds named here travel; never pickle, never code.  `decode` builds whatever labkit wrote;
-`decode_answer` builds only plain data, because an answer was written by somebody else.
+Records of labkit's own, such as verdicts, are read by msgspec as strictly as their fields are
+typed.  Values say what they are: only the kinds named here travel, never pickle, never code.
+`decode` builds whatever labkit wrote; `decode_answer` builds only plain data, because an answer was
+written by somebody else.
 """
 
 from __future__ import annotations
@@ -9,17 +11,19 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable, Mapping
 from types import MethodType
-from typing import Any
+from typing import Any, TypeVar, get_args
 
+import msgspec
 import numpy as np
 
 from .. import control, paths, plant, scene, trajectory
-from ..errors import TypeMismatch
+from ..errors import LabkitError, TypeMismatch
 from ..log import Log
 from ..model import Model
 from ..recordings import Runner, Trials
 from ..shapes import locked
-from .judges import Ratio
+from .equivalence import Judge, Ratio, TipTorque
+from .question import Case, Mistake, Question, Raised, Test
 
 DATA = (
     control.State,
@@ -57,6 +61,9 @@ GIVEN = (
 )
 """What a student's function may be given on top, values that are sent as what they are made of."""
 
+QUESTION = (Question, Test, Mistake, Raised, TipTorque, *get_args(Case), *get_args(Judge))
+"""What a question is made of on top."""
+
 _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
     paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
     trajectory.Chain: lambda chain: {"parts": chain.parts},
@@ -69,19 +76,49 @@ Kinds = Mapping[str, Any]
 """Types by their names."""
 
 _DATA: Kinds = {kind.__name__: kind for kind in DATA}
-TRUSTED: Kinds = {kind.__name__: kind for kind in (*DATA, *GIVEN)}
+_ALL: Kinds = {kind.__name__: kind for kind in (*DATA, *GIVEN, *QUESTION)}
 """What `decode` builds, beside methods."""
+_Record = TypeVar("_Record")
 
 _COMMANDS: dict[str, type] = {kind.__name__: kind for kind in control.COMMANDS}
 
 
-def encode(value: Any, kinds: Kinds = TRUSTED) -> Any:
+def question_data(question: Question) -> dict[str, Any]:
+    """A question as JSON data, all its cases included."""
+    data: dict[str, Any] = encode(question)
+    return data
+
+
+def read_question(data: Any) -> Question:
+    """The question that `question_data` wrote."""
+    question: Question = decode(data)
+    return question
+
+
+def record_data(record: Any) -> Any:
+    """A record of labkit's own, such as a `Verdict`, as JSON data."""
+    return msgspec.to_builtins(record)
+
+
+def read_record(kind: type[_Record], data: Any) -> _Record:
+    """The record that `record_data` wrote.
+
+    Raises:
+        LabkitError: A field is missing, or is not of its type; the sentence says which.
+    """
+    try:
+        return msgspec.convert(data, kind)
+    except (msgspec.ValidationError, RecursionError) as error:
+        raise LabkitError(str(error)) from None
+
+
+def encode(value: Any) -> Any:
     """A value as JSON data.
 
     Args:
         value: None, a truth value, number, text, list, tuple, dict with text keys, array of
-            numbers, one of ``kinds``, a method of one of these, or a type of command.
-        kinds: What may travel beside plain data.
+            numbers, one of `DATA`, `GIVEN` or `QUESTION`, a method of one of these, or a type of
+            command.
 
     Returns:
         What `json.dumps` takes; numbers keep every bit.
@@ -89,10 +126,6 @@ def encode(value: Any, kinds: Kinds = TRUSTED) -> Any:
     Raises:
         TypeMismatch: It is none of these.
     """
-
-    def inner(x: Any) -> Any:
-        return encode(x, kinds)
-
     if value is None or isinstance(value, bool | str):
         return value
     if isinstance(value, np.bool_):
@@ -107,21 +140,21 @@ def encode(value: Any, kinds: Kinds = TRUSTED) -> Any:
         numbers = [_number(x) for x in value.ravel().tolist()]
         return {"$": "array", "shape": list(value.shape), "numbers": numbers}
     name = type(value).__name__
-    if type(value) is kinds.get(name):
-        return {"$": name, **{key: inner(x) for key, x in _made_of(value).items()}}
+    if type(value) is _ALL.get(name):
+        return {"$": name, **{key: encode(x) for key, x in _made_of(value).items()}}
     if isinstance(value, list):
-        return [inner(x) for x in value]
+        return [encode(x) for x in value]
     if isinstance(value, tuple):
-        return {"$": "tuple", "items": [inner(x) for x in value]}
+        return {"$": "tuple", "items": [encode(x) for x in value]}
     if isinstance(value, dict):
         if not all(isinstance(key, str) for key in value):
             raise TypeMismatch("a dict travels only with text keys")
-        return {"$": "dict", "items": {key: inner(x) for key, x in value.items()}}
+        return {"$": "dict", "items": {key: encode(x) for key, x in value.items()}}
     if isinstance(value, MethodType):
-        return {"$": "method", "of": inner(value.__self__), "name": value.__name__}
+        return {"$": "method", "of": encode(value.__self__), "name": value.__name__}
     if type(value).__module__.startswith("control.") and hasattr(value, "num"):
         num, den = (tuple(float(x) for x in part[0][0]) for part in (value.num, value.den))
-        return inner(Ratio(num, den))
+        return encode(Ratio(num, den))
     if isinstance(value, type) and value is _COMMANDS.get(value.__name__):
         return {"$": "command type", "name": value.__name__}
     raise TypeMismatch(
@@ -139,14 +172,9 @@ def _made_of(value: Any) -> dict[str, Any]:
     return fields
 
 
-def decode(data: Any, kinds: Kinds = TRUSTED) -> Any:
-    """The value that `encode` wrote; arrays come read-only.
-
-    Args:
-        data: From `json.loads`, written by labkit itself.
-        kinds: As `encode` was given.
-    """
-    return _decode(data, kinds)
+def decode(data: Any) -> Any:
+    """The value that `encode` wrote, from JSON that labkit itself wrote; arrays come read-only."""
+    return _decode(data, _ALL)
 
 
 def decode_answer(data: Any) -> Any:

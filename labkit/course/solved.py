@@ -10,20 +10,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..errors import LabkitError
-from .inline import names_defined
-from .notebook import Notebook, without_hidden
+from .notebook import Notebook, grade_id, kind
 from .problem import Problem
+from .source import names_defined
 
 
 def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:
-    """The solved notebook: the answers' own source in place of the stubs, no hidden cases."""
+    """The solved notebook: the answers' own source in place of the stubs."""
     notebook = copy.deepcopy(source)
     for cell in notebook.cells:
-        kind, grade_id = cell.metadata.get("lab"), cell.metadata.get("nbgrader", {}).get("grade_id")
-        if kind == "answer":
-            cell.source = inlined(problems[grade_id])
-        elif kind == "check":
-            cell.source = without_hidden(cell.source)
+        if kind(cell) == "answer":
+            cell.source = inlined(problems[grade_id(cell)])
     return notebook
 
 

@@ -15,18 +15,18 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
-from . import messages as words
+from ..formats import check_stamp
 from .advice import line_of
 from .calling import heard
-from .evidence import evidence
-from .marking import Outcome, Verdict, mark, not_counted
-from .output import as_metadata
+from .marking import Evidence, mark, not_counted, try_public
+from .messages import tell, wrapped
+from .notebook import verdict_metadata
 from .question import Question
-from .question_codec import read_question, with_hidden
 from .reply import Here
+from .serialize import read_question
 from .source import look
-from .withheld import withhold
-from .withheld_names import withheld_tools
+from .verdict import Verdict
+from .withheld import withheld_tools, withhold
 
 FILE = "checks.json"
 
@@ -38,14 +38,16 @@ def read_checks(folder: Path) -> dict[str, Any]:
         LabkitError: It is not there, or damaged.
     """
     file = folder / FILE
+    mend = "fetch the assignment's whole folder again"
     try:
         data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     except (FileNotFoundError, ValueError) as error:
         there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
         raise LabkitError(
             f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
-            "beside it, so fetch the assignment's whole folder again"
+            f"beside it, so {mend}"
         ) from None
+    check_stamp(data, f"{FILE} in {folder.name!r}", mend)
     return data
 
 
@@ -77,8 +79,10 @@ class Desk:
             raise UnknownName("question", name, self.questions)
         return self.questions[name]
 
-    def verdict(self, name: str, function: Callable[..., Any]) -> tuple[Verdict, str]:
-        """Try a function, and what it printed meanwhile.
+    def verdict(
+        self, name: str, function: Callable[..., Any]
+    ) -> tuple[Verdict, str, Evidence | None]:
+        """Try a function; also what it printed meanwhile, and the numbers that differ.
 
         Raises:
             KeyboardInterrupt: The student stopped it; says in which line.
@@ -89,11 +93,11 @@ class Desk:
         student = shell().user_ns if shell() else getattr(function, "__globals__", {})
         try:
             with heard() as out, withhold(question.withheld, student):
-                verdict = (
-                    not_counted(question, used)
-                    if used
-                    else mark(question, Here(function, question.withheld))
-                )
+                verdict, found = not_counted(question, used), None
+                if not used:
+                    here = Here(function, question.withheld)
+                    tried = try_public(question, here)
+                    verdict, found = mark(question, here, tried), tried.evidence(question)
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""
@@ -101,16 +105,14 @@ class Desk:
                 f"{name} was stopped{where}; does every loop in it come to its end?"
             ) from None
         self.seen[name] = (function, verdict)
-        return verdict, out.text
+        return verdict, out.text, found
 
     def leaning(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
         """Other answers that a function calls by name, and that were tried and are not right."""
         called = getattr(getattr(function, "__code__", None), "co_names", ())
         seen = {other: verdict for other, (_, verdict) in self.seen.items() if other != name}
         return tuple(
-            other
-            for other in dict.fromkeys(called)
-            if other in seen and seen[other].outcome is not Outcome.RIGHT
+            other for other in dict.fromkeys(called) if other in seen and not seen[other].right
         )
 
 
@@ -160,16 +162,11 @@ def check(name: str, function: Callable[..., Any]) -> float:
         UnknownName: No such question.
     """
     question = desk().question(name)
-    verdict, printed = desk().verdict(name, function)
-    _say(words.tell(question, verdict, printed, desk().leaning(name, function)), verdict)
-    if verdict.mistake is not None:
-        _show_evidence(question, verdict)
+    verdict, printed, found = desk().verdict(name, function)
+    _say(tell(question, verdict, printed, desk().leaning(name, function)), verdict)
+    if verdict.mistake is not None and found is not None:
+        _show(found)
     return float(verdict.earned)
-
-
-def also(name: str, packed: str) -> None:
-    """Add hidden cases to a question; the teacher's copy of a notebook does so."""
-    desk().questions[name] = with_hidden(desk().question(name), packed)
 
 
 def hint(name: str, level: int = 1) -> None:
@@ -180,7 +177,17 @@ def hint(name: str, level: int = 1) -> None:
     Raises:
         UnknownName: No such question.
     """
-    print(words.hint(desk().question(name), level))
+    hints = desk().question(name).hints
+    if not isinstance(level, int) or not 1 <= level <= len(hints):
+        text = (
+            f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
+            "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
+        )
+        print(wrapped(text))
+        return
+    print(wrapped(f"{name}, hint {level} of {len(hints)}: {hints[level - 1]}"))
+    if level < len(hints):
+        print(f'(hint("{name}", {level + 1}) says more)')
 
 
 def use(
@@ -202,8 +209,8 @@ def use(
     """
     known, verdict = desk().seen.get(name, (None, None))
     if known is not function or verdict is None:
-        verdict, _ = desk().verdict(name, function)
-    if verdict.outcome is Outcome.RIGHT:
+        verdict, *_ = desk().verdict(name, function)
+    if verdict.right:
         return yours or function
     if name not in desk().badges:
         desk().badges.add(name)
@@ -218,13 +225,12 @@ def _say(text: str, verdict: Verdict) -> None:
         return
     from IPython.display import display
 
-    display({"text/plain": text}, metadata=as_metadata(verdict), raw=True)
+    display({"text/plain": text}, metadata=verdict_metadata(verdict), raw=True)
 
 
-def _show_evidence(question: Question, verdict: Verdict) -> None:
+def _show(found: Evidence) -> None:
     """A small figure of the answers that gave a known mistake away, where there is a notebook."""
-    found = evidence(question, verdict)
-    if found is None or shell() is None:
+    if shell() is None:
         return
     from IPython.display import Image, display
 

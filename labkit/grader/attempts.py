@@ -18,25 +18,26 @@ reads.
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Annotated
+
+import msgspec
 
 from ..course.layout import Course
 from ..errors import LabkitError
 from .clean import safe_name
-from .handback import SECRET, read_secret
+from .exchange import SECRET, TIMESTAMP, read_secret, read_stamp, read_time
 from .results import digest, write
 from .sandbox.limits import Limits
 from .submission import read_file
 
 FOLDER = "attempts"
 BY_HAND = "by hand"
-TIMESTAMP = "timestamp.txt"
 _RECORD = "attempt.json"
 _REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
 
@@ -55,7 +56,7 @@ class Seen:
         collected: When it was taken, in ISO 8601.
     """
 
-    when: datetime
+    when: Annotated[datetime, msgspec.Meta(tz=True)]
     origin: str
     number: str
     file: str
@@ -75,6 +76,15 @@ class Attempt:
     """
 
     path: Path
+    sha256: str
+    seen: tuple[Seen, ...]
+
+
+@dataclass(frozen=True)
+class _Record:
+    """What ``attempt.json`` holds."""
+
+    file: str
     sha256: str
     seen: tuple[Seen, ...]
 
@@ -149,10 +159,9 @@ def keep(
     if secret is not None and seen.when >= newest:
         _put(before.path.parent / SECRET, secret)
     if all((x.when, x.origin, x.file) != (seen.when, seen.origin, seen.file) for x in before.seen):
-        about = [asdict(x) | {"when": str(x.when)} for x in (*before.seen, seen)]
-        record = {"file": before.path.name, "sha256": sha256, "seen": about}
-        text = json.dumps(record, indent=1, ensure_ascii=False) + "\n"
-        write(before.path.parent / _RECORD, text)
+        record = _Record(before.path.name, sha256, (*before.seen, seen))
+        text = msgspec.json.format(msgspec.json.encode(record), indent=1).decode()
+        write(before.path.parent / _RECORD, text + "\n")
     return sha256 not in there
 
 
@@ -184,7 +193,7 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
             known = digest(data) in ours
         if not known:
             new = digest(data) not in ours
-            stated = read_time(_text(folder / TIMESTAMP)) if new else None
+            stated = read_time(read_stamp(folder)) if new else None
             when = stated or datetime.fromtimestamp(int(path.stat().st_mtime), UTC)
             seen = Seen(when, BY_HAND, "", path.name, exact=stated is not None, collected=now)
             keep(course, student, assignment, data, seen, read_secret(folder) if new else None)
@@ -249,18 +258,6 @@ def called(file: str, assignment: str) -> bool:
     return _REPEATED.sub(".ipynb", file) == f"{assignment}.ipynb"
 
 
-def read_time(text: str) -> datetime | None:
-    """A time as nbgrader writes it, in UTC if it does not say; None if it is no time."""
-    from dateutil.parser import parse
-
-    try:
-        when: datetime = parse(text)
-        when = when.astimezone(UTC) if when.tzinfo else when.replace(tzinfo=UTC)
-    except (ValueError, OverflowError):
-        return None
-    return when if 2000 <= when.year < 2100 else None
-
-
 def _rank(seen: Seen, assignment: str) -> tuple[bool, int, str]:
     """Which of several that were handed in together counts."""
     match = _REPEATED.search(seen.file)  # the number that a browser or platform put there
@@ -269,18 +266,12 @@ def _rank(seen: Seen, assignment: str) -> tuple[bool, int, str]:
 
 def _read(path: Path) -> Attempt:
     try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-        seen = [x | {"when": datetime.fromisoformat(x["when"])} for x in record["seen"]]
-        file = path.with_name(record["file"])
-        return Attempt(file, record["sha256"], tuple(Seen(**x) for x in seen))
-    except (ValueError, TypeError, KeyError, AttributeError):
+        record = msgspec.json.decode(path.read_bytes(), type=_Record)
+    except msgspec.DecodeError:
         raise LabkitError(
             f"{path} is damaged; restore it, or move its folder out of {FOLDER}/ and collect again"
         ) from None
-
-
-def _text(path: Path) -> str:
-    return path.read_text(encoding="utf-8", errors="replace")[:200] if path.is_file() else ""
+    return Attempt(path.with_name(record.file), record.sha256, record.seen)
 
 
 def _put(path: Path, data: bytes) -> None:

@@ -2,29 +2,26 @@
 
 `unlink_foreign` comes before nbgrader copies what lies beside a notebook; `Repair` is the first of
 ``Autograde.sanitize_preprocessors`` and brings a submission into the release's form; `Isolated`
-takes the place of nbgrader's ``Execute`` and runs nothing here.
+replaces nbgrader's ``Execute`` and runs nothing here.
 """
 
 from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
 from nbgrader.preprocessors import NbGraderPreprocessor
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
-from .batch import job
-from .engines import is_name
-from .lock import alone
-from .pool import Worker, result_of
-from .results import Bundle, Result, Results
-from .sandbox.limits import Limits
-from .submission import Submission
-from .written import in_release_form, release_source, with_verdicts
+from .autograded_notebook import in_release_form, release_source, with_verdicts
+from .batch import GradeOptions, grade_aside
+from .lock import exclusive_run
+from .results import Result, Results
+from .submission import Submission, is_name
 
 
 class Isolated(NbGraderPreprocessor):  # type: ignore[misc]
@@ -41,13 +38,13 @@ class Repair(NbGraderPreprocessor):  # type: ignore[misc]
     def preprocess(self, nb: Any, resources: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         """The release's cells with the student's answers."""
         about = resources["nbgrader"]
-        _check(Course.here(), about["assignment"], about["student"])
-        source = release_source(Course.here(), about["assignment"])
+        _check(Course.here(Path.cwd()), about["assignment"], about["student"])
+        source = release_source(Course.here(Path.cwd()), about["assignment"])
         return in_release_form(source, _grade(about)), resources
 
 
 def unlink_foreign(notebooks: Iterable[str], **_: str) -> None:
-    """Put a note in the place of each link and special file beside notebooks that are graded next.
+    """Replace each link and special file beside the notebooks to be graded by a note.
 
     nbgrader copies what it finds there into ``autograded/`` and from there into ``feedback/``: what
     a link leads to would come to the student, and a device would fill the disk.
@@ -63,7 +60,7 @@ def unlink_foreign(notebooks: Iterable[str], **_: str) -> None:
 
 
 def _foreign(folder: Path) -> list[Path]:
-    """Links and special files in a folder, which is none itself."""
+    """Links and special files in a folder that is not a link itself."""
     if folder.is_symlink() or folder.parent.is_symlink():
         return []
     found = (Path(top, name) for top, *names in os.walk(folder) for part in names for name in part)
@@ -74,11 +71,11 @@ def _check(course: Course, assignment: str, student: str) -> None:
     """Refuse a submission of which nbgrader must not copy anything."""
     folder = Submission.of(course, assignment, student).folder
     if not is_name(student):
-        raise LabkitError(f"{student!a} is not fit for a name; rename the folder in submitted/")
+        raise LabkitError(f"{student!a} is not allowed as a name; rename the folder in submitted/")
     if folder.is_symlink() or folder.parent.is_symlink():
         raise LabkitError(f"{folder} is a link; put the student's own files there")
     if _foreign(folder):
-        raise LabkitError(f"{_foreign(folder)[0]} is a link or no file; take it away")
+        raise LabkitError(f"{_foreign(folder)[0]} is a link or a special file; remove it")
 
 
 _known: dict[tuple[str, str], Result] = {}
@@ -86,16 +83,18 @@ _known: dict[tuple[str, str], Result] = {}
 
 def _grade(about: dict[str, Any]) -> Result:
     """The result of the submission that nbgrader is at, graded once for both steps, and kept."""
-    course = Course.here()
+    course = Course.here(Path.cwd())
     key = (about["assignment"], about["student"])
     result = _known.pop(key, None)
     if result is None:
         bundle = Bundle.of(course, about["assignment"])
         submission = Submission.of(course, about["assignment"], about["student"])
-        todo = job(course, bundle, submission, Limits())
         results = Results(course, about["assignment"])
-        with alone(results.folder), closing(Worker()) as worker:
-            result = Result.read(result_of(todo, worker.ask(todo)))
-            results.keep(result)
+        with exclusive_run(results.folder):
+            (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
+            if isinstance(graded, LabkitError):
+                raise graded
+            results.keep(graded)
+        result = graded
         _known[key] = result
     return result

@@ -1,40 +1,44 @@
-"""A batch: grade a class, resume where it stopped, say what the class has in common."""
+"""A batch: grade a class, resume where the last run stopped, say what the class has in common."""
 
 from __future__ import annotations
 
 import os
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 from functools import partial
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
+from ..course.verdict import Outcome
 from ..errors import LabkitError
-from .each import for_student
+from .each import Failed, for_student
+from .executor import executor
 from .grade import hashes
-from .lock import WHOLE, alone
-from .pool import Done, Job, locally, through_dask
-from .results import Bundle, Result, Results, digest
+from .lock import WHOLE, exclusive_run
+from .results import Result, Results, digest
 from .sandbox.limits import Limits
 from .sandbox.mounts import NoIsolation
 from .submission import Submission
+from .worker import Task, grade_submission
 
-LOUD = 0.3
-"""Above this share of a class that fails one test, the run says so; is the test to blame?"""
-FEW = 5
-"""Of fewer who tried nothing is concluded."""
+FAILURE_RATE_ALERT = 0.3
+"""If more than this share of a class fails one test, the run says so: is the test to blame?"""
+MIN_ATTEMPTS = 5
+"""Nothing is concluded from fewer than these."""
 
 
 @dataclass(frozen=True)
-class How:
+class GradeOptions:
     """How to grade.
 
     Attributes:
         jobs: Workers at once.
-        isolated: False only where somebody asked for it in so many words.
+        isolated: False only if somebody typed ``--unsafe-no-isolation``.
         dask: Address of a scheduler, or None for this machine.
         shard: (i, n): the i-th of n parts of the class, from 1.
-        again: Whether results that are there already are made anew.
+        again: Whether to grade again what has a result that is up to date.
         limits: What a submission may use, on a quick machine.
     """
 
@@ -47,7 +51,7 @@ class How:
 
 
 @dataclass(frozen=True)
-class Graded:
+class GradedSubmission:
     """One submission, graded.
 
     Attributes:
@@ -70,36 +74,34 @@ def in_shard(student: str, shard: tuple[int, int]) -> bool:
 
 
 def grade_class(
-    course: Course, assignment: str, students: Sequence[str], how: How
-) -> Iterator[Graded | LabkitError]:
+    course: Course, assignment: str, students: Sequence[str], options: GradeOptions
+) -> Iterator[GradedSubmission | LabkitError]:
     """Grade submissions, each into a result file of its own.
 
     Args:
         course: The course.
-        assignment: Which.
-        students: Whose.
-        how: In which way.
+        assignment: Its name.
+        students: Whose submissions.
+        options: How to grade.
 
     Yields:
         Each result, or what failed.
 
     Raises:
         LabkitError: The assignment was not released, or another run is under way.
-        NoIsolation: There is no sandbox to be had.
+        NoIsolation: No sandbox can be made here.
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
-    with alone(results.folder, how.shard):
-        for student in students:
-            if not in_shard(student, how.shard):
-                continue
+    with exclusive_run(results.folder, options.shard):
+        for student in (x for x in students if in_shard(x, options.shard)):
             submission = Submission.of(course, assignment, student)
-            before = None if how.again else _still_good(results, submission, bundle, how)
-            if before is not None:
-                yield Graded(before, "as before")
-                continue
-            todo.append(submission)
-        for result in grade_aside(course, bundle, todo, how):
+            before = None if options.again else _still_good(results, submission, bundle, options)
+            if before is None:
+                todo.append(submission)
+            else:
+                yield GradedSubmission(before, "as before")
+        for result in grade_aside(course, bundle, todo, options):
             yield (
                 result
                 if isinstance(result, LabkitError)
@@ -108,77 +110,56 @@ def grade_class(
 
 
 def grade_aside(
-    course: Course, bundle: Bundle, submissions: Iterable[Submission], how: How
-) -> Iterator[Result | LabkitError]:
+    course: Course, bundle: Bundle, submissions: Iterable[Submission], options: GradeOptions
+) -> Iterator[Result | Failed]:
     """Grade submissions and keep nothing of it.
 
     Yields:
-        Each result, or what failed.
+        Each result as it is finished, or what failed.
 
     Raises:
-        NoIsolation: There is no sandbox to be had.
+        NoIsolation: No sandbox can be made here.
+        LabkitError: There is no such Dask scheduler.
     """
-    jobs = [job(course, bundle, submission, how.limits) for submission in submissions]
-    done: Iterator[Done] = (
-        through_dask(jobs, how.dask, isolated=how.isolated)
-        if how.dask
-        else locally(jobs, how.jobs, isolated=how.isolated)
-    )
-    for text in done:
-        if isinstance(text, NoIsolation):
-            raise text  # it would be so for all of them
-        yield text if isinstance(text, LabkitError) else _read(text)
+    key = bundle.data["hash"]
+    tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
+    with executor(options.jobs, options.dask) as pool:
+        students = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
+        for future in as_completed(students):
+            yield for_student(students[future], future.result, of_all=(NoIsolation,))
 
 
-def _read(text: str) -> Result | LabkitError:
-    try:
-        return Result.read(text)
-    except LabkitError as error:
-        return error
-
-
-def _keep(results: Results, result: Result) -> Graded:
-    """Let a result count, unless a mark would fall that nobody has earned worse."""
+def _keep(results: Results, result: Result) -> GradedSubmission:
+    """Store a result, unless it would lower the mark of an unchanged submission."""
     before = results.get(result.student)
     same = before is not None and before.hashes["submission"] == result.hashes["submission"]
     if before is not None and same and result.score < before.score:
-        return Graded(before, f"kept; it would be {result.score:g} now, see `labkit regrade`")
+        return GradedSubmission(
+            before, f"kept; it would be {result.score:g} now, see `labkit regrade`"
+        )
     results.keep(result)
-    return Graded(result, "" if before is None else f"was {before.score:g}")
-
-
-def job(course: Course, bundle: Bundle, submission: Submission, limits: Limits) -> Job:
-    """What a worker is told of a submission."""
-    return {
-        "student": submission.student,
-        "assignment": submission.assignment,
-        "folder": str(submission.folder),
-        "bundle": str(course.bundle / f"{submission.assignment}.json"),
-        "hash": bundle.data["hash"],
-        "hidden": [str(course.root)],
-        "limits": limits.data(),
-    }
+    return GradedSubmission(result, "" if before is None else f"was {before.score:g}")
 
 
 def common_failures(results: Sequence[Result]) -> Iterator[str]:
-    """Questions with a test that so many fail that it, or the lecture, may be to blame.
+    """Name the questions with a test that many students fail: is the test to blame?
 
     Yields:
-        One sentence for each question, the test that most fail in it.
+        One sentence for each such question, on the test that most students fail.
     """
     graded = [r for r in results if not r.rejected]
     failed: Counter[tuple[str, str]] = Counter()
     tried: Counter[str] = Counter()
     for result in graded:
         for question in result.questions:
-            if question["outcome"] in ("not attempted", "not counted"):
+            if question.verdict.outcome in (Outcome.NOT_ATTEMPTED, Outcome.NOT_COUNTED):
                 continue
-            tried[question["name"]] += 1
-            for one in question["tests"]:
-                failed[question["name"], one["name"]] += one["outcome"] != "right"
+            tried[question.verdict.name] += 1
+            for one in question.verdict.tests:
+                failed[question.verdict.name, one.name] += one.outcome is not Outcome.RIGHT
     loud: dict[str, list[tuple[int, str]]] = {}
     for (name, test), count in failed.most_common():
-        if count > LOUD * tried[name] and tried[name] >= FEW:
+        if count > FAILURE_RATE_ALERT * tried[name] and tried[name] >= MIN_ATTEMPTS:
             loud.setdefault(name, []).append((count, test))
     for name, ((count, test), *others) in loud.items():
         more = f"; so it is with {len(others)} more of its tests" if others else ""
@@ -189,11 +170,11 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
 
 
 def _still_good(
-    results: Results, submission: Submission, bundle: Bundle, how: How
+    results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
-    """A result that came from these very contents."""
+    """The result before, if it came from these very contents."""
     before = results.get(submission.student)
-    if before is None or (how.isolated and before.isolation.startswith("none")):
+    if before is None or (options.isolated and before.isolation.startswith("none")):
         return None
-    data, _, _ = submission.read(how.limits.notebook)
+    data, _, _ = submission.read(options.limits.notebook)
     return before if before.hashes == hashes(data, bundle) else None

@@ -10,16 +10,24 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations, islice
 from pathlib import Path
 from statistics import mean, median
+from typing import NamedTuple
 
 from ..course.messages import uses
 from ..course.problem import Problem
+from ..course.verdict import Outcome, Verdict
 from .batch import common_failures
 from .clean import clean_line
+from .pages import render
 from .results import Result
 
 ALIKE = 0.9
 """Answers that share this much of their structure are looked at together."""
 SLOW = 30.0
+COUNTED = (
+    *(Outcome.RIGHT, Outcome.WRONG, Outcome.ERROR),
+    *(Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED),
+)
+"""Outcomes that have a column."""
 
 
 def report(
@@ -40,19 +48,25 @@ def report(
     """
     who = {r.student: _as_text(called(r.student)) for r in results}
     graded = [r for r in results if not r.rejected]
-    lines = [f"# {assignment}: what the class understood", ""]
-    lines += _marks(graded, len(results) - len(graded), left_out)
-    lines += _questions(graded)
-    lines += _mistakes(graded, problems)
-    lines += _listed("Withheld tools, and what may be a way around one", _tools(graded, who))
-    lines += _listed("Tests to doubt", common_failures(graded))
-    rejected = (f"{who[r.student]}: {_as_text(r.rejected)}" for r in results if r.rejected)
-    lines += _listed("Rejected", rejected)
     times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
-    slow = (f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW)
-    lines += _listed(f"Slower than {SLOW:g} s", slow)
-    lines += _listed("Look-alikes", _alike(graded, who))
-    return "\n".join(lines) + "\n"
+    return render(
+        "class_report.md.j2",
+        assignment=assignment,
+        handed_in=len(results) + left_out,
+        left_out=left_out,
+        rejected=[f"{who[r.student]}: {_as_text(r.rejected)}" for r in results if r.rejected],
+        scores=sorted(r.score for r in graded),
+        points=graded[0].points if graded else 0.0,
+        mean=mean,
+        median=median,
+        questions=list(_questions(graded)),
+        mistakes=list(_mistakes(graded, problems)),
+        tools=list(_tools(graded, who)),
+        doubtful=list(common_failures(graded)),
+        slow_limit=f"{SLOW:g}",
+        slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
+        alike=list(_alike(graded, who)),
+    )
 
 
 def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:
@@ -60,66 +74,53 @@ def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], s
     count = 0
     for result in results:
         for question in result.questions:
-            if question["source"] and question["outcome"] != "not attempted":
-                path = folder / called(result.student) / f"{question['name']}.py"
+            if question.source and question.verdict.outcome is not Outcome.NOT_ATTEMPTED:
+                path = folder / called(result.student) / f"{question.verdict.name}.py"
                 path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(question["source"], encoding="utf-8", errors="replace")
+                path.write_text(question.source, encoding="utf-8", errors="replace")
                 count += 1
     return count
 
 
-def _marks(graded: Sequence[Result], rejected: int, left_out: int) -> Iterator[str]:
-    more = f", {rejected} rejected" if rejected else ""
-    more += f", {left_out} left out, without a result that counts" if left_out else ""
-    handed_in = len(graded) + rejected + left_out
-    yield f"{handed_in} handed in, {len(graded)} graded{more}."
-    if graded:
-        scores = sorted(r.score for r in graded)
-        yield (
-            f"Mean {mean(scores):.1f}, median {median(scores):.1f} of {graded[0].points:g} points; "
-            f"{scores[0]:g} to {scores[-1]:g}."
-        )
-    yield ""
+class _QuestionRow(NamedTuple):
+    name: str
+    counts: list[int]
+    share: float | None
+    """Of the points, on average; None where the question has none."""
 
 
-def _questions(graded: Sequence[Result]) -> Iterator[str]:
-    outcomes: dict[str, Counter[str]] = defaultdict(Counter)
-    shares: dict[str, list[float]] = defaultdict(list)
+class _MistakeRow(NamedTuple):
+    students: int
+    question: str
+    name: str
+    say: str
+
+
+def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
+    verdicts: dict[str, list[Verdict]] = defaultdict(list)
     for result in graded:
         for question in result.questions:
-            outcomes[question["name"]][question["outcome"]] += 1
-            if question["points"]:
-                shares[question["name"]].append(question["earned"] / question["points"])
-    yield from ("## Questions", "")
-    yield "| question | right | wrong | error | not counted | not tried | mean |"
-    yield "|---|---:|---:|---:|---:|---:|---:|"
-    for name, count in outcomes.items():
-        cells = [count[x] for x in ("right", "wrong", "error", "not counted", "not attempted")]
-        share = f"{mean(shares[name]):.0%}" if shares[name] else "voided"
-        yield f"| {name} | {' | '.join(map(str, cells))} | {share} |"
-    yield ""
+            verdicts[question.verdict.name].append(question.verdict)
+    for name, mine in verdicts.items():
+        count = Counter(verdict.outcome for verdict in mine)
+        shares = [verdict.earned / verdict.points for verdict in mine if verdict.points]
+        yield _QuestionRow(name, [count[x] for x in COUNTED], mean(shares) if shares else None)
 
 
-def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[str]:
-    count: Counter[tuple[str, str]] = Counter()
-    for result in graded:
-        for question in result.questions:
-            if question["mistake"]:
-                count[question["name"], question["mistake"]["name"]] += 1
-    if not count:
-        return
-    yield from ("## Misconceptions, and what to say in the next lecture", "")
-    for (name, mistake), n in count.most_common():
+def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_MistakeRow]:
+    verdicts = (question.verdict for result in graded for question in result.questions)
+    made = Counter((v.name, v.mistake.name) for v in verdicts if v.mistake)
+    for (name, mistake), count in made.most_common():
         known = problems[name].wrong if name in problems else ()
         say = next((w.lecture or w.says for w in known if w.name == mistake), "")
-        yield f"- **{n} x {name}: {mistake}.** {say}"
-    yield ""
+        yield _MistakeRow(count, name, mistake, say)
 
 
 def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
     """What each student used that a question withholds, and what in a cell needs a look."""
     for result in graded:
-        used = [f"{q['name']} {uses(q['withheld'])}" for q in result.questions if q.get("withheld")]
+        verdicts = [question.verdict for question in result.questions]
+        used = [f"{v.name} {uses(v.withheld)}" for v in verdicts if v.withheld]
         if used:
             yield f"{who[result.student]}, not counted: {'; '.join(used)}"
         if result.tricks:
@@ -132,9 +133,9 @@ def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
     common: Counter[tuple[str, frozenset[str]]] = Counter()
     for result in graded:
         shapes[result.student] = {
-            q["name"]: _shape(q["source"])
+            q.verdict.name: _shape(q.source)
             for q in result.questions
-            if q["outcome"] != "not attempted"
+            if q.verdict.outcome is not Outcome.NOT_ATTEMPTED
         }
         common.update((name, shape) for name, shape in shapes[result.student].items() if shape)
     rare = max(2, len(graded) // 20)
@@ -168,9 +169,3 @@ def _shape(source: str) -> frozenset[str]:
 def _as_text(text: str) -> str:
     """A line in which Markdown sees no markup."""
     return re.sub(r"([\\`*\[\]<>|&])", r"\\\1", clean_line(text))
-
-
-def _listed(title: str, items: Iterator[str]) -> Iterator[str]:
-    lines = list(items)
-    if lines:
-        yield from (f"## {title}", "", *(f"- {line}" for line in lines), "")

@@ -1,4 +1,4 @@
-"""Text that somebody else wrote, made safe to store and to show; done once, where it enters."""
+"""Data and names that a stranger wrote, made safe to store and to show."""
 
 from __future__ import annotations
 
@@ -6,36 +6,17 @@ import re
 import unicodedata
 from typing import Any
 
-_CONTROL = r"\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff"
-_UNSAFE = re.compile(f"[{_CONTROL}]")
-_SURROGATE = re.compile("[\ud800-\udfff]")
+from .sandbox.clean import clean_line, clean_text
+
+__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "safe_name"]
+
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 LONGEST = 80
 """Bytes of a folder's name, after which results, pages and attempts are called."""
 
 
-def clean_text(text: str) -> str:
-    """A text of several lines that any file, database and terminal takes.
-
-    Lone surrogates, which UTF-8 cannot hold, become U+FFFD.  Control characters other than tab and
-    newline, among them a terminal's escape and the marks that turn the direction of writing, are
-    left out; a carriage return before a newline goes with them.
-    """
-    return _UNSAFE.sub("", _SURROGATE.sub("\ufffd", text))
-
-
-def clean_line(text: str, most: int = 500) -> str:
-    """A text as one short line: `clean_text`, with every run of white space as one space.
-
-    Args:
-        text: What somebody wrote: a sentence, the name of a person or of a file.
-        most: Characters to keep.
-    """
-    return re.sub(r"\s+", " ", _UNSAFE.sub(" ", _SURROGATE.sub("\ufffd", text))).strip()[:most]
-
-
 def clean_data(data: Any) -> Any:
-    """Plain data, as JSON gives it, with `clean_text` of every text in it."""
+    """Plain data, as from JSON, with `clean_text` of every text in it."""
     if isinstance(data, str):
         return clean_text(data)
     if isinstance(data, list):

@@ -16,12 +16,11 @@ from pathlib import Path
 from ..course.layout import Course
 from ..errors import LabkitError
 from .attempts import Seen, adopt, attempts, counts, install, keep
-from .downloads import File, in_exchange, in_zip, open_zip
 from .each import Failed, for_student
 from .enrol import settle
-from .identity import places
-from .lms import Known, alone, known_all_term, remember
-from .platforms import Named
+from .exchange import in_exchange
+from .identity import all_lms_users, alone, places, remember
+from .platforms import File, LmsUser, Named, in_zip, open_zip
 from .results import digest
 from .roster import Roster, read_roster
 
@@ -46,12 +45,8 @@ class Taken:
         return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
-@dataclass(frozen=True)
-class _HandedIn:
-    """A file with its one owner."""
-
-    file: File
-    named: Named
+_HandedIn = tuple[File, Named]
+"""A file, and the one reading of its name that is right."""
 
 
 def collect(
@@ -96,29 +91,28 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
     roster = read_roster(course)
     for sentence in settle(course, roster):
         yield Taken("", "", sentence, fine=False)
-    known = known_all_term(course)
+    known = all_lms_users(course)
     handed_in: list[_HandedIn] = []
     for file in files:
         named = _whose(file, roster)
         if isinstance(named, str):
             yield Taken("", file.label, named, fine=False)
         else:
-            handed_in.append(_HandedIn(file, named))
-    people = {one.named.who.key: one.named.who for one in handed_in}
+            handed_in.append((file, named))
+    people = {named.who.key: named.who for _, named in handed_in}
     there = [path.name for path in course.submitted.glob("*")]
     found = places(people.values(), assignment, known, roster, there)
+    by_folder = {place.folder: people[key] for key, place in found.items()}
     if not roster.students:
         yield from _namesakes(people.values())
-        yield from _known_by_name(
-            assignment, {place.folder: people[key] for key, place in found.items()}, known
-        )
+        yield from _known_by_name(assignment, by_folder, known)
     for place in found.values():
         if place.doubt:
             yield Taken(place.folder, "", place.doubt, fine=False)
-    remember(course, assignment, {place.folder: people[key] for key, place in found.items()})
+    remember(course, assignment, by_folder)
     by_student: dict[str, list[_HandedIn]] = {}
-    for one in handed_in:
-        by_student.setdefault(found[one.named.who.key].folder, []).append(one)
+    for file, named in handed_in:
+        by_student.setdefault(found[named.who.key].folder, []).append((file, named))
     for student, mine in sorted(by_student.items()):
         yield from _keep(course, assignment, student, mine)
 
@@ -136,7 +130,7 @@ def _whose(file: File, roster: Roster) -> Named | str:
     return f"not taken; it is of {people}; the roster does not say which"
 
 
-def _is_called_so(who: Known, roster: Roster) -> bool:
+def _is_called_so(who: LmsUser, roster: Roster) -> bool:
     """Whether the roster has this user of Canvas, under this name."""
     names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
     return _letters(who.name) in map(_letters, names)
@@ -146,7 +140,7 @@ def _letters(name: str) -> str:
     return "".join(c for c in name.casefold() if c.isalnum())
 
 
-def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
+def _namesakes(people: Iterable[LmsUser]) -> Iterator[Taken]:
     called = Counter(one.name for one in people if one.system == "moodle")
     for name, count in called.items():
         if count > 1:
@@ -154,7 +148,7 @@ def _namesakes(people: Iterable[Known]) -> Iterator[Taken]:
 
 
 def _known_by_name(
-    assignment: str, people: Mapping[str, Known], known: Mapping[str, Mapping[str, Known]]
+    assignment: str, people: Mapping[str, LmsUser], known: Mapping[str, Mapping[str, LmsUser]]
 ) -> Iterator[Taken]:
     """Who is taken for somebody of an earlier assignment by name alone, which people can change.
 
@@ -181,11 +175,10 @@ def _keep(
     course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     """Keep one student's notebooks, and let the right one count."""
-    notebooks = [one for one in mine if not _no_notebook(one.named)]
-    for one in mine:
-        if one not in notebooks:
-            says = f"not taken; {_no_notebook(one.named)}"
-            yield Taken(student, one.named.file, says, fine=bool(notebooks))
+    notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
+    for _, named in mine:
+        if says := _no_notebook(named):
+            yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
     done = for_student(
         student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
     )
@@ -209,10 +202,9 @@ def _keep_notebooks(
     now = str(datetime.now(UTC))
     adopt(course, student, assignment, now)
     before = counts(attempts(course, student, assignment), assignment)
-    shown = max((one.file.when for one in notebooks), default=datetime.now(UTC))
+    shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
     kept: list[tuple[Seen, str, bool]] = []
-    for one in notebooks:
-        file, named = one.file, one.named
+    for file, named in notebooks:
         try:
             data, secret = file.read(), file.secret()
         except LabkitError as error:

@@ -12,14 +12,17 @@ from importlib.util import find_spec
 from pathlib import Path
 from textwrap import wrap
 
+from .pages import render
 from .sandbox import seccomp
-from .sandbox.launch import Broken, Sandbox
+from .sandbox.launch import Sandbox, SandboxLost
 from .sandbox.limits import Limits, slowness
 from .sandbox.mounts import NoIsolation
 
 _APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
-_NAMESPACES = Path("/proc/sys/user/max_user_namespaces")
-_CLONE = Path("/proc/sys/kernel/unprivileged_userns_clone")
+_SWITCHES = (
+    (Path("/proc/sys/kernel/unprivileged_userns_clone"), "0", "kernel.unprivileged_userns_clone=1"),
+    (Path("/proc/sys/user/max_user_namespaces"), "0", "user.max_user_namespaces=10000"),
+)
 
 DOCKER = (
     "--security-opt=seccomp=unconfined",
@@ -39,7 +42,7 @@ class Finding:
     Attributes:
         what: It.
         fine: Whether it is as it should be.
-        says: What was found, or the line that mends it.
+        says: What was found, or the command that repairs it.
         needed: Whether grading refuses without it.
     """
 
@@ -59,8 +62,8 @@ def examine() -> Iterator[Finding]:
     says = platform.python_version() if fine else "PyBullet's newest wheels are for Python 3.11"
     yield Finding("Python", fine, says)
     missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
-    mend = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
-    yield Finding("instructor's packages", not missing, mend if missing else "there")
+    says = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
+    yield Finding("instructor's packages", not missing, says if missing else "installed")
     program = shutil.which("bwrap")
     yield Finding("bubblewrap", program is not None, program or f"missing; {_install()}")
     fine = seccomp.supported()
@@ -75,9 +78,9 @@ def examine() -> Iterator[Finding]:
 def sandbox() -> Iterator[Finding]:
     """Make a sandbox and try to get out of it."""
     try:
-        with Sandbox() as made, made.enter("student", Limits()) as inside:
-            inside.line.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
-            failed = str(inside.line.read(30.0).get("error", "it did not answer"))
+        with Sandbox() as made, made.spawn("student", Limits()) as process:
+            process.connection.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
+            failed = str(process.connection.read(30.0).get("error", "it did not answer"))
             yield Finding("sandbox", not failed, failed or made.level)
             counted = made.group is not None
             says = made.group.says if made.group else (
@@ -89,7 +92,7 @@ def sandbox() -> Iterator[Finding]:
             away = os.geteuid() == 0
             says = f"user {made.uid}" if away else "yours, without any rights, in a user namespace"
             yield Finding("a user of its own", away, says, needed=False)
-    except (NoIsolation, Broken) as error:
+    except (NoIsolation, SandboxLost) as error:
         yield Finding("sandbox", False, f"{error}\n\n{elsewhere()}")
 
 
@@ -126,28 +129,21 @@ if bad:
 
 
 def _namespaces() -> Iterator[Finding]:
+    """Whether users other than root may make user namespaces."""
     if os.geteuid() == 0:
         return
-    if _CLONE.exists() and _CLONE.read_text().strip() == "0":
-        yield Finding(
-            "user namespaces",
-            False,
-            "switched off; type: sudo sysctl kernel.unprivileged_userns_clone=1",
-        )
-    elif _NAMESPACES.exists() and _NAMESPACES.read_text().strip() == "0":
-        yield Finding(
-            "user namespaces",
-            False,
-            "switched off; type: sudo sysctl user.max_user_namespaces=10000",
-        )
-    elif _APPARMOR.exists() and _APPARMOR.read_text().strip() == "1":
-        yield Finding(
-            "user namespaces",
-            Path("/etc/apparmor.d/bwrap").exists(),
+    for switch, off, command in _SWITCHES:
+        if switch.exists() and switch.read_text().strip() == off:
+            says = f"switched off; type: sudo sysctl {command}"
+            yield Finding("user namespaces", False, says)
+            return
+    if _APPARMOR.exists() and _APPARMOR.read_text().strip() == "1":
+        says = (
             "Ubuntu's AppArmor restricts them; give bubblewrap a profile (as below), or for this "
-            "boot: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0",
-            needed=False,
+            "boot: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0"
         )
+        profile = Path("/etc/apparmor.d/bwrap").exists()
+        yield Finding("user namespaces", profile, says, needed=False)
     else:
         yield Finding("user namespaces", True, "allowed")
 
@@ -168,33 +164,4 @@ def elsewhere() -> str:
     options = " ".join([*DOCKER, "--memory=8g", "--pids-limit=500", "IMAGE"])
     lines = " \\\n    ".join(wrap(f"docker run {options}", 80, break_on_hyphens=False))
     rights = [x.removeprefix("--cap-add=") for x in DOCKER if x.startswith("--cap-add=")]
-    return f"""Debian
-  sudo apt-get install bubblewrap
-
-Ubuntu 24.04, WSL 2
-  sudo apt-get install bubblewrap apparmor-utils
-  write this to /etc/apparmor.d/bwrap, then: sudo systemctl reload apparmor
-    abi <abi/4.0>,
-    include <tunables/global>
-    profile bwrap /usr/bin/bwrap flags=(unconfined) {{
-      userns,
-    }}
-  where there is a profile that leaves its children no rights (Ubuntu 25.04), first:
-    sudo aa-disable /etc/apparmor.d/bwrap-userns-restrict
-
-Docker, for a container that grades and does nothing else
-  {lines}
-
-Kubernetes, a Job of its own and no pod of the students' hub
-  spec:
-    hostUsers: false
-    containers:
-      - securityContext:
-          capabilities: {{add: [{", ".join(rights)}]}}
-          procMount: Unmasked
-          seccompProfile: {{type: Unconfined}}
-          appArmorProfile: {{type: Unconfined}}
-  An indexed Job shares a class out: labkit grade NAME --shard i/n
-
-macOS, Windows
-  the container, or WSL 2"""
+    return render("isolation.txt.j2", docker_run=lines, capabilities=rights).rstrip()

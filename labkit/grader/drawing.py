@@ -1,112 +1,124 @@
-"""Figures of the feedback page as SVG text, in the colours of the page, light or dark.
+"""Figures of the feedback page: Matplotlib's SVG, in the colours of the page, light or dark.
 
-Any numbers can be drawn: those that are not finite are left out, and no difference of two numbers
-is taken that could leave the range of floating point.
+Any numbers can be drawn.  Those that are not finite are left out; very large and very small ones
+are divided by a power of ten, which stands at the axis.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from html import escape
-from math import ceil, floor, isfinite, log10
+import io
+import re
+from math import floor, log10
+from typing import Any
+from xml.etree import ElementTree as ET
 
-WIDTH, HEIGHT = 460, 200
-LEFT, RIGHT, TOP, BOTTOM = 52, 18, 14, 38
+import numpy as np
+from markupsafe import Markup
+from matplotlib import rc_context, rc_params_from_file
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike, NDArray
+
+from .pages import TEMPLATES
+
+SIZE = (6.4, 2.8)
+"""Inches; the page scales it to its width."""
+PLAIN = (1e-3, 1e6)
+"""Numbers of this size are drawn as they are."""
 LEAST = 1e-300
-"""Of an axis; what spreads less is drawn as if it were equal."""
+"""What is smaller is drawn as 0."""
+TEXT, GRID, NO, TIP = "#000001", "#000002", "#000003", "#000004"
+"""Colours that stand for variables of ``feedback.css``."""
+_VARIABLES = {TEXT: "var(--text)", GRID: "var(--grid)", NO: "var(--no)", TIP: "var(--tip)"}
+_STYLE = rc_params_from_file(TEMPLATES / "figure.mplstyle", use_default_template=False)
+_SVG = "http://www.w3.org/2000/svg"
+_GROUP = f"{{{_SVG}}}g"
+_LEFT_OUT = {f"{{{_SVG}}}{name}" for name in ("metadata", "style", "clipPath")}
+_PLACES = {"d", "x", "y", "transform"}
+_DECIMALS = re.compile(r"(?<=\.\d)\d+")
+ET.register_namespace("", _SVG)
+ET.register_namespace("xlink", "http://www.w3.org/1999/xlink")
 
 
 def curve(
-    t: Sequence[float], y: Sequence[float], labels: tuple[str, str], alt: str, limit: float | None
-) -> str:
+    t: ArrayLike, y: ArrayLike, labels: tuple[str, str], alt: str, limit: float | None
+) -> Markup:
     """A curve over time.
 
     Args:
-        t: Times.
-        y: Values, none negative.
+        t: (n,) Times.
+        y: (n,) Values.
         labels: Of both axes.
         alt: The figure in words.
         limit: Drawn as a dashed line, where there is one.
     """
-    axes = _Axes(t, [0.0, 1e-9, *y, limit or 0.0])
-    drawn = [pair for pair in zip(t, y, strict=True) if all(map(isfinite, pair))]
-    points = " ".join(axes.point(a, b) for a, b in drawn)
-    parts = [*axes.drawn(labels), f'<polyline class="yours" points="{points}"/>']
-    if limit is not None and isfinite(limit):
-        ends = " ".join(axes.point(a, limit) for a in axes.across)
-        parts.append(f'<polyline class="limit" points="{ends}"/>')
-    return _figure(parts, alt)
+    with rc_context(_STYLE):
+        figure, axes = _axes()
+        values, unit = _scaled(y, limit)
+        axes.plot(np.asarray(t, dtype=float), values[:-1], color=NO, linewidth=2.0)
+        if np.isfinite(values[-1]):
+            axes.axhline(values[-1], color=TEXT, linestyle=(0, (6, 4)), linewidth=1.2)
+        axes.set_ylim(bottom=float(np.nanmin(values, initial=0.0)))
+        axes.set_title(labels[1] + unit, loc="left")
+        axes.set_xlabel(labels[0], loc="right")
+        return _svg(figure, alt)
 
 
-def side_by_side(expected: Sequence[float], given: Sequence[float], alt: str) -> str:
-    """The numbers of an answer, crosses, beside those expected, rings."""
-    axes = _Axes([0.5, len(expected) + 0.5], [0.0, *expected, *given])
-    parts = [*axes.drawn(("number in the answer", ""), whole=True)]
-    for k, (wanted, came) in enumerate(zip(expected, given, strict=True), start=1):
-        if not (isfinite(wanted) and isfinite(came)):
-            continue
-        x, ring, cross = axes.x(k), axes.y(wanted), axes.y(came)
-        parts += [
-            f'<line class="grid" x1="{x:.1f}" y1="{ring:.1f}" x2="{x:.1f}" y2="{cross:.1f}"/>',
-            f'<circle class="wanted" cx="{x:.1f}" cy="{ring:.1f}" r="5"/>',
-            f'<path class="yours" d="M{x - 4:.1f} {cross - 4:.1f}l8 8m0 -8l-8 8"/>',
-        ]
-    return _figure(parts, alt)
+def side_by_side(expected: ArrayLike, given: ArrayLike, alt: str) -> Markup:
+    """The numbers of an answer (n,), crosses, beside those expected (n,), rings."""
+    with rc_context(_STYLE):
+        figure, axes = _axes()
+        values, unit = _scaled(np.stack([np.asarray(expected), np.asarray(given)]), None)
+        wanted, came = values[:-1].reshape(2, -1)
+        number = np.arange(1, len(wanted) + 1)
+        axes.vlines(number, wanted, came, colors=GRID, linewidth=1.0)
+        ring: Any = {"markerfacecolor": "none", "markeredgecolor": TIP}
+        axes.plot(number, wanted, "o", markersize=9.0, markeredgewidth=1.5, **ring)
+        axes.plot(number, came, "x", markersize=7.0, markeredgewidth=2.0, color=NO)
+        axes.xaxis.set_major_locator(MaxNLocator(6, integer=True, min_n_ticks=1))
+        axes.set_xlim(0.5, max(len(number), 1) + 0.5)
+        axes.set_title(unit.strip(), loc="left")
+        axes.set_xlabel("number in the answer", loc="right")
+        return _svg(figure, alt)
 
 
-class _Axes:
-    """Where numbers lie in the picture; either axis goes from its least number to its largest."""
-
-    def __init__(self, across: Sequence[float], up: Sequence[float]) -> None:
-        self.across, self.up = _range(across), _range(up)
-
-    def x(self, value: float) -> float:
-        return LEFT + _share(value, self.across) * (WIDTH - LEFT - RIGHT)
-
-    def y(self, value: float) -> float:
-        return HEIGHT - BOTTOM - _share(value, self.up) * (HEIGHT - TOP - BOTTOM)
-
-    def point(self, across: float, up: float) -> str:
-        return f"{self.x(across):.1f},{self.y(up):.1f}"
-
-    def drawn(self, labels: tuple[str, str], *, whole: bool = False) -> Iterator[str]:
-        right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
-        for value in _ticks(self.up, 4):
-            y = self.y(value)
-            yield f'<line class="grid" x1="{LEFT}" y1="{y:.1f}" x2="{right}" y2="{y:.1f}"/>'
-            yield f'<text x="{LEFT - 6}" y="{y + 4:.1f}" class="end">{value:g}</text>'
-        for value in _ticks(self.across, 6, least=1.0 if whole else 0.0):
-            x = self.x(value)
-            yield f'<text x="{x:.1f}" y="{bottom + 16}" class="middle">{value:g}</text>'
-        yield f'<text x="{right}" y="{HEIGHT - 4}" class="end">{escape(labels[0])}</text>'
-        yield f'<text x="4" y="{TOP - 3}">{escape(labels[1])}</text>'
+def _axes() -> tuple[Figure, Axes]:
+    figure = Figure(figsize=SIZE)
+    axes = figure.add_axes((0.1, 0.2, 0.87, 0.68))
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    return figure, axes
 
 
-def _range(numbers: Sequence[float]) -> tuple[float, float]:
-    """The least and the largest number that is finite, apart enough to lie on an axis."""
-    finite = [x for x in numbers if isfinite(x)] or [0.0]
-    low, high = min(finite), max(finite)
-    size = max(abs(low), abs(high))
-    if high / 2 - low / 2 > max(LEAST, 1e-12 * size):
-        return low, high
-    return (min(low, 0.0), max(high, 0.0)) if size > LEAST else (0.0, 1.0)
+def _scaled(numbers: ArrayLike, limit: float | None) -> tuple[NDArray[np.float64], str]:
+    """Numbers and at last the limit, flat, as they can be drawn, and their unit."""
+    flat = np.append(np.ravel(np.asarray(numbers, dtype=float)), np.nan if limit is None else limit)
+    flat[~np.isfinite(flat)] = np.nan
+    size = float(np.nanmax(np.abs(flat), initial=0.0))
+    if size < LEAST or PLAIN[0] <= size < PLAIN[1]:
+        return np.where(np.abs(flat) < LEAST, 0.0, flat), ""
+    power = floor(log10(size))
+    return flat / 10.0**power, f" \u00d7 1e{power}"
 
 
-def _share(value: float, axis: tuple[float, float]) -> float:
-    """Where a number lies on an axis, 0 at its start and 1 at its end."""
-    low, high = axis
-    return (value / 2 - low / 2) / (high / 2 - low / 2)
-
-
-def _ticks(axis: tuple[float, float], most: int, least: float = 0.0) -> list[float]:
-    """Round numbers on an axis, at least so far apart."""
-    low, high = axis
-    rough = max(high / most - low / most, least)
-    power = 10.0 ** floor(log10(rough))
-    step = next(k * power for k in (1, 2, 5, 10) if k * power >= rough)
-    return [k * step for k in range(ceil(low / step - 1e-9), floor(high / step + 1e-9) + 1)]
-
-
-def _figure(parts: Sequence[str], alt: str) -> str:
-    head = f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(alt)}">'
-    return "\n".join([head, *parts, "</svg>"])
+def _svg(figure: Figure, alt: str) -> Markup:
+    """A figure as an element of a page whose policy allows no style of an element's own."""
+    text = io.StringIO()
+    with rc_context({"svg.hashsalt": alt}):
+        figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
+    root = ET.fromstring(text.getvalue())
+    for parent in list(root.iter()):
+        for child in parent.findall("*"):
+            if child.tag in _LEFT_OUT:
+                parent.remove(child)
+    for element in root.iter():
+        about = element.attrib
+        for rule in filter(None, about.pop("style", "").split(";")):
+            name, _, value = map(str.strip, rule.partition(":"))
+            if not name.startswith("font"):
+                about[name] = _VARIABLES.get(value, value)
+        for name in ("clip-path", "id") if element.tag == _GROUP else ("clip-path",):
+            about.pop(name, None)
+        about |= {name: _DECIMALS.sub("", about[name]) for name in _PLACES & about.keys()}
+    root.attrib = {"viewBox": root.attrib["viewBox"], "role": "img", "aria-label": alt}
+    return Markup(ET.tostring(root, encoding="unicode"))

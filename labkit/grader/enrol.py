@@ -11,15 +11,24 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count
+from pathlib import Path
 
 from ..course.layout import Course
 from ..errors import LabkitError
 from .attempts import move
+from .class_list import Entry, read_list
 from .clean import safe_name
-from .identity import places
-from .lms import Known, known, known_all_term, remember
-from .roster import Roster, Student, same_name
-from .student_list import Entry
+from .identity import all_lms_users, alone, lms_users, places, remember
+from .platforms import LmsUser
+from .roster import (
+    FILE,
+    Roster,
+    Student,
+    read_roster,
+    same_name,
+    save_roster,
+    tell_gradebook,
+)
 
 _Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number")
@@ -42,7 +51,7 @@ class Enrolled:
 
 
 def enrol(
-    roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, Known]]
+    roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> Enrolled:
     """Take a list into the roster.
 
@@ -78,6 +87,67 @@ def enrol(
     )
 
 
+@dataclass(frozen=True)
+class Imported:
+    """What came of `import_list`, in sentences.
+
+    Attributes:
+        told: What was done.
+        left: Work of one student that is in two folders.
+        alike: Students whom a download of Moodle's does not tell apart.
+    """
+
+    told: tuple[str, ...]
+    left: tuple[str, ...]
+    alike: tuple[str, ...]
+
+
+def import_list(course: Course, file: Path, assignment: str | None = None) -> Imported:
+    """Take a list of students into the course's roster, and bring earlier work to its owners.
+
+    Args:
+        course: The course.
+        file: A CSV file; see `read_list`.
+        assignment: Where the file is Moodle's grading worksheet of this assignment.
+
+    Raises:
+        LabkitError: The list does not fit the roster or itself, or it is not a list.
+    """
+    if assignment:
+        course.notebook_source(assignment)
+    entries = read_list(file)
+    numbered = sum(bool(entry.participant) for entry in entries)
+    if assignment and not numbered:
+        raise LabkitError(
+            f"{file} has no column 'Identifier'; give the grading worksheet of "
+            f"{assignment}, in English: Submissions, Actions, Download grading worksheet"
+        )
+    with alone(course):
+        before = read_roster(course)
+        done = enrol(before, entries, all_lms_users(course))
+        save_roster(course, done.roster)
+        tell_gradebook(course, done.roster)
+        left = settle(course, done.roster)
+        left += keep_numbers(course, assignment, done.rows) if assignment else []
+    listed = {student.id for _, student in done.rows}
+    absent = [str(student) for student in before.students if student.id not in listed]
+    told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
+    if absent:
+        told.append(f"not in this list, and still in the roster: {', '.join(absent)}")
+    if assignment:
+        told.append(f"participants of {assignment}: {numbered}")
+    elif numbered:
+        told.append(
+            "the participants' numbers are those of one assignment; --assignment NAME keeps them"
+        )
+    alike = (
+        f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who is "
+        "who until you import the assignment's grading worksheet, with --assignment"
+        for group in done.roster.namesakes()
+    )
+    return Imported(tuple(told), tuple(left), () if assignment else tuple(alike))
+
+
 def settle(course: Course, roster: Roster) -> list[str]:
     """Bring all work to those whom the roster has come to know since it was collected.
 
@@ -85,7 +155,7 @@ def settle(course: Course, roster: Roster) -> list[str]:
         What a person should look at, a sentence each.
     """
     left: list[str] = []
-    collected = known_all_term(course)
+    collected = all_lms_users(course)
     for assignment, people in collected.items():
         found = places(people.values(), assignment, collected, roster, ())
         moved = {
@@ -104,8 +174,8 @@ def keep_numbers(
     Returns:
         What a person should look at, a sentence each.
     """
-    mine = {s.id: Known("moodle", e.participant, s.name) for e, s in rows if e.participant}
-    before = {one.key: folder for folder, one in known(course, assignment).items()}
+    mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
+    before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
     left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
     remember(course, assignment, mine)
     return [sentence for sentence in left if sentence]
@@ -162,7 +232,7 @@ def _find(
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
         raise LabkitError(
-            f"line {entry.line} could be {people} of the roster; mend the list, or "
+            f"line {entry.line} could be {people} of the roster; correct the list, or "
             "course_private/roster.csv"
         )
     name = same_name(entry.name)
@@ -173,7 +243,7 @@ def _find(
 
 
 def _folders(
-    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, Known]]
+    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> dict[str, str]:
     """A folder for each new student: the one of their earlier work, or a new one."""
     used: dict[str, Counter[str]] = {id: Counter() for id in new}

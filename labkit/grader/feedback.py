@@ -1,41 +1,62 @@
 """Feedback: one page for each student, verdicts in words, nothing that should stay hidden.
 
-It is made from the result alone, so no hidden case and no reference value of one can be in it;
+It is made from the result alone, so it cannot hold a hidden case or a reference value of one;
 whatever a student's code said is shown as text.  A page with a replay brings the viewer and the
 robot along, 1.7 MB; its policy names each script by its hash, and nothing is loaded from anywhere.
 """
 
 from __future__ import annotations
 
+import json
 from base64 import b64encode
-from collections.abc import Iterable, Mapping
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, partial
 from hashlib import sha256
-from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from ..course import Outcome
+import numpy as np
+from markupsafe import Markup
+
 from ..course.layout import Course
-from ..course.messages import HEADS
-from ..replay import viewer_scripts
+from ..course.messages import GATE, HEADS, why
+from ..metrics import SETTLED
+from ..replay import recorded_html, viewer_scripts
+from ..replay.motion import unpack
+from .drawing import curve, side_by_side
 from .each import Failed, for_student
-from .own_work import has_replay, own_work
+from .pages import TEMPLATES, render
 from .results import Result, write
 
-PAGE = Path(__file__).parents[1] / "data" / "feedback"
-_HEAD = """<!doctype html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta http-equiv="Content-Security-Policy" content="{policy}">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body>
-<main>
-"""
+MEASURES = {
+    "rms_mm": ("position error of the tip, RMS", "mm", 1.0),
+    "max_mm": ("position error of the tip, largest", "mm", 1.0),
+    "rms_deg": ("orientation error of the tip, RMS", "degrees", 1.0),
+    "max_deg": ("orientation error of the tip, largest", "degrees", 1.0),
+    "rms_velocity_mm_s": ("velocity error of the tip, RMS", "mm/s", 1.0),
+    "settling": (f"until it stays within {1e3 * SETTLED:g} mm", "s", 1.0),
+    "effort": ("motor torque, RMS", "N m", 1.0),
+    "saturated": ("commands that a limit cut", "%", 100.0),
+    "duration": ("duration", "s", 1.0),
+}
+"""What each field of `metrics.Summary` is called, its unit, and what one is in that unit."""
+
+
+class Picture(NamedTuple):
+    """A figure, and its words."""
+
+    svg: Markup
+    words: str
+
+
+class Measure(NamedTuple):
+    """A line of the table of a run: value and limit with their unit, and whether it is over."""
+
+    words: str
+    value: str
+    limit: str
+    over: bool
 
 
 def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
@@ -48,35 +69,24 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
     Returns:
         HTML in one piece, readable without its scripts.
     """
-    title = escape(f"{result.assignment}: feedback for {result.student}")
-    style, scripts = _style(), _scripts() if has_replay(result) else ()
-    lines = [
-        _HEAD.format(title=title, style=style, policy=_policy(style, scripts)),
-        f"<h1>{title}</h1>",
-    ]
-    if result.rejected:
-        lines.append(
-            f'<p class="total"><strong>0 of {result.points:g} points:</strong> '
-            f"it could not be graded; {escape(result.rejected)}.</p>"
-            "<p>Mend this and hand it in again, or talk to your teacher.</p>"
-        )
-    else:
-        right = sum(q["outcome"] == "right" for q in result.questions)
-        lines.append(
-            f'<p class="total"><strong>{result.score:g} of {result.points:g} points.</strong> '
-            f"{right} of {len(result.questions)} questions are right.</p>"
-        )
-    lines += [f"<p>Note: {escape(note)}.</p>" for note in result.notes]
-    for question in result.questions:
-        lines += _question(question, (comments or {}).get(question["name"], ""))
-    if result.cells:
-        lines.append("<h2>Cells that did not run</h2><ul>")
-        for cell in result.cells:
-            what = f"{cell['kind']}: {cell['error']}" if cell["kind"] != "died" else cell["error"]
-            lines.append(f"<li>Cell {cell['cell'] + 1}: {escape(what)}</li>")
-        lines.append("</ul>")
-    lines += ["</main>", *(f"<script>{script}</script>" for script in scripts)]
-    return "\n".join([*lines, "</body>", "</html>", ""])
+    replays = any(run["motion"] for q in result.questions for run in q.runs)
+    style, scripts = _file("feedback.css"), _scripts() if replays else ()
+    return render(
+        "feedback.html.j2",
+        result=result,
+        comments=defaultdict(str, comments or {}),
+        heads=HEADS,
+        gate=GATE,
+        why=why,
+        style=style,
+        scripts=scripts,
+        policy=_policy(style, scripts),
+        motion_of=lambda run: json.loads(run["motion"] or "null"),
+        error_over_time=error_over_time,
+        measures=measures,
+        number_by_number=number_by_number,
+        recorded_html=recorded_html,
+    )
 
 
 def write_feedback(
@@ -102,14 +112,58 @@ def write_feedback(
     return [for_student(result.student, partial(make, result)) for result in results]
 
 
+def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> Picture:
+    """The position error of a run's tip, with the largest that is allowed."""
+    error = 1e3 * np.abs(unpack(motion["error"])[:, 0])
+    t = motion["start"] + motion["period"] * np.arange(len(error))
+    peak, limit = int(error.argmax()), run["limits"].get("max_mm")
+    alt = (
+        f"Position error of the tip over {t[-1]:.3g} s: {_plain(error[0])} mm at the start, "
+        f"largest at {t[peak]:.3g} s with {_plain(error[peak])} mm, {_plain(error[-1])} mm at the "
+        "end."
+    )
+    from_then = f" from {run['since']:g} s on" if run["since"] else ""
+    line = f" The dashed line is the largest that is allowed{from_then}, "
+    line = "" if limit is None else f"{line}{limit:g} mm."
+    return Picture(curve(t, error, ("time [s]", "position error [mm]"), alt, limit), alt + line)
+
+
+def number_by_number(found: Mapping[str, Any]) -> Picture:
+    """The numbers of an answer beside those expected."""
+    expected, given = found["expected"], found["given"]
+    apart = [abs(a - b) for a, b in zip(expected, given, strict=True)]
+    worst = max(range(len(apart)), key=apart.__getitem__)
+    alt = (
+        f"Of {found['of']} numbers, number {worst + 1} is farthest off: expected "
+        f"{expected[worst]:.4g}, yours {given[worst]:.4g}."
+    )
+    some = "" if found["of"] == len(given) else f" The first {len(given)} are shown."
+    return Picture(side_by_side(expected, given, alt), alt + some)
+
+
+def measures(run: Mapping[str, Any]) -> Iterator[Measure]:
+    """What was measured of a run, beside its limits."""
+    for name, value in run["measures"].items():
+        words, unit, factor = MEASURES.get(name, (name, "", 1.0))
+        limit = run["limits"].get(name)
+        said = ["never" if x is None else f"{_plain(factor * x)} {unit}" for x in (value, limit)]
+        over = limit is not None and (value is None or value > limit)
+        yield Measure(words, said[0], "" if limit is None else said[1], over)
+
+
+def _plain(x: float) -> str:
+    """Three digits or more, without an exponent up to a billion."""
+    return f"{x:.0f}" if 1e3 <= abs(x) < 1e9 else f"{x:.3g}"
+
+
 @cache
-def _style() -> str:
-    return (PAGE / "page.css").read_text(encoding="utf-8")
+def _file(name: str) -> str:
+    return (TEMPLATES / name).read_text(encoding="utf-8")
 
 
 @cache
 def _scripts() -> tuple[str, ...]:
-    return (*viewer_scripts(), (PAGE / "page.js").read_text(encoding="utf-8"))
+    return (*viewer_scripts(), _file("feedback.js"))
 
 
 @cache
@@ -122,35 +176,3 @@ def _policy(style: str, scripts: tuple[str, ...]) -> str:
 
 def _hash(text: str) -> str:
     return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"
-
-
-def _question(question: Mapping[str, Any], comment: str) -> Iterable[str]:
-    outcome, name = question["outcome"], escape(question["name"])
-    mark = "yes" if outcome == "right" else "no"
-    yield f'<section aria-labelledby="{name}"><h2 id="{name}"><code>{name}</code></h2>'
-    yield (
-        f'<p><strong class="{mark}">{HEADS[Outcome(outcome)].capitalize()}.</strong> '
-        f"{question['earned']:g} of {question['points']:g} points.</p>"
-    )
-    if outcome in {"wrong", "error"}:
-        yield "<ul>"
-        for test in question["tests"]:
-            right = test["outcome"] == "right"
-            gate = "" if test["weight"] else " (needed before anything counts)"
-            says = "" if right else f": {escape(test['says'])}"
-            word = '<span class="yes">passed</span>' if right else '<span class="no">failed</span>'
-            yield f"<li>{word}: {escape(test['name'])}{gate}{says}</li>"
-        yield "</ul>"
-    yield from own_work(question)
-    if question["mistake"]:
-        yield (
-            f'<p class="tip"><strong>A well-known one: {escape(question["mistake"]["name"])}.'
-            f"</strong> {escape(question['mistake']['says'])}</p>"
-        )
-    yield from (f"<p>Note: {escape(note)}.</p>" for note in question["notes"])
-    if comment:
-        yield f'<p class="tip"><strong>Your teacher:</strong> {escape(comment)}</p>'
-    if question["source"] and outcome != "not attempted":
-        source = escape(question["source"])
-        yield f'<details><summary>Your answer</summary><pre tabindex="0">{source}</pre></details>'
-    yield "</section>"

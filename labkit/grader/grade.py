@@ -1,29 +1,32 @@
-"""The checker: owns what is expected, asks a sandboxed student for answers, reaches the verdicts.
+"""Grade one notebook: read it, plan what runs, ask its functions, reach the verdicts.
 
-It shares no process with the student's code; what comes back is plain data, read with limits.
+This side owns what is expected and shares no process with the student's code; what comes back is
+plain data, read with limits.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Mapping
+from contextlib import closing, suppress
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
-from ..course.marking import Outcome, TestResult, Tried, Verdict, mark, not_counted, try_public
+from ..course.bundle import Bundle
+from ..course.marking import Tried, all_alike, mark, not_counted, try_public
 from ..course.messages import uses
 from ..course.question import Question
-from ..course.withheld_names import withheld_tools
+from ..course.serialize import read_record, record_data
+from ..course.verdict import Kind, Outcome, Verdict
+from ..course.withheld import withheld_tools
 from . import seen
-from .clean import clean_line
+from .clean import clean_data, clean_line
 from .plan import Plan, plan
-from .results import Bundle, Result, digest, engine, versions
+from .results import Answer, FailedCell, Hashes, OwnCell, Result, digest, engine, versions
 from .sandbox.launch import Sandbox
 from .sandbox.limits import TRICKS, Limits, TextBudget
-from .sandbox.protocol import Gone, TooLate, TooMuch
-from .sandbox.remote import RemoteFunction
-from .sandbox.session import Session
+from .sandbox.protocol import Disconnected, ProtocolError
+from .sandbox.session import RemoteFunction, Session
 
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "
@@ -56,27 +59,32 @@ def grade(
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
     questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
-    with Session(sandbox, todo, limits) as session:
-        with suppress(Gone):
+    with closing(Session(sandbox, todo.steps, limits)) as session:
+        with suppress(Disconnected):
             session.start()
         functions = [RemoteFunction(question, session) for question in questions]
-        tried = [_public(function) for function in functions]
+        tried = {function.question.name: _public(function) for function in functions}
         failed = session.failed()  # nothing shown of cells is made after the first hidden case
         verdicts = {
-            function.question.name: _guarded(function, before)
-            for function, before in zip(functions, tried, strict=True)
+            name: _guarded(function, before)
+            for function, (name, before) in zip(functions, tried.items(), strict=True)
         }
         spent = session.spent
     result = replace(
         _ungraded(student, bundle, sandbox.level, data),
         score=round(sum(v.earned for v in verdicts.values()), 2),
         questions=tuple(
-            _verdict(question, verdicts.get(question.name) or _untried(question, tools), todo)
+            _answer(
+                question,
+                verdicts.get(question.name) or _untried(question, tools),
+                tried.get(question.name),
+                todo,
+            )
             for question in bundle.questions
         ),
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
-        cells=failed,
-        own=todo.own,
+        cells=cast(tuple[FailedCell, ...], failed),
+        own=cast(tuple[OwnCell, ...], todo.own),
         tricks=todo.tricks,
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
     )
@@ -92,25 +100,38 @@ def _shortened(result: Result) -> Result:
     """The same with no more of the student's texts than a result has room for."""
     budget = TextBudget()
 
-    def short(things: Iterable[Mapping[str, Any]], *keys: str) -> tuple[dict[str, Any], ...]:
-        return tuple({**x, **{key: budget.take(x[key]) for key in keys}} for x in things)
-
     tricks = tuple(map(budget.take, result.tricks[:TRICKS]))
     more = len(result.tricks) - TRICKS
+    cells: Any = tuple(
+        x | {"error": budget.take(x["error"]), "output": budget.take(x["output"])}
+        for x in result.cells
+    )
+    own: Any = tuple(x | {"source": budget.take(x["source"])} for x in result.own)
     result = replace(
         result,
         tricks=(*tricks, f"and {more} more such things") if more > 0 else tricks,
         questions=tuple(
-            {**x, "tests": list(short(x["tests"], "says"))}
-            for x in short(result.questions, "source")
+            replace(x, source=budget.take(x.source), verdict=_short(x.verdict, budget))
+            for x in result.questions
         ),
-        cells=short(result.cells, "error", "output"),
-        own=short(result.own, "source"),
+        cells=cells,
+        own=own,
     )
     if not budget.cut:
         return result
     note = f"there is more text than is kept; {budget.cut} of its pieces are cut short here"
     return replace(result, notes=(*result.notes, note))
+
+
+def _short(verdict: Verdict, budget: TextBudget) -> Verdict:
+    """A verdict in which what the student's code said has found room."""
+    tests = []
+    for test in verdict.tests:
+        why = test.difference
+        if why is not None and isinstance(why.found, str):
+            why = replace(why, found=budget.take(why.found))
+        tests.append(replace(test, difference=why))
+    return replace(verdict, tests=tuple(tests))
 
 
 def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
@@ -119,14 +140,14 @@ def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
         student,
         0.0,
         bundle.points,
+        bundle.data["seed"],
+        hashes(data, bundle),
         isolation=level,
         versions=versions(),
-        hashes=hashes(data, bundle),
-        seed=bundle.data["seed"],
     )
 
 
-def hashes(data: bytes, bundle: Bundle) -> dict[str, str]:
+def hashes(data: bytes, bundle: Bundle) -> Hashes:
     """What a result is known by."""
     return {"submission": digest(data), "bundle": bundle.data["hash"], "engine": engine()}
 
@@ -134,12 +155,12 @@ def hashes(data: bytes, bundle: Bundle) -> dict[str, str]:
 def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]] | str:
     """The cells of a notebook, read in a process of its own; or why there are none."""
     try:
-        with sandbox.enter("parse", limits, size=len(data)) as inside:
-            inside.line.end.settimeout(limits.parse)
+        with sandbox.spawn("parse", limits, size=len(data)) as process:
+            process.connection.socket.settimeout(limits.parse)
             with suppress(BrokenPipeError):  # an empty file is answered before it is sent
-                inside.line.end.sendall(data)
-            found = inside.line.read(limits.parse)
-    except (OSError, Gone, TooLate, TooMuch):
+                process.connection.socket.sendall(data)
+            found = process.connection.read(limits.parse)
+    except (OSError, ProtocolError):
         return "the file cannot be read within the limits of time and memory"
     if "cells" not in found:
         return str(found.get("rejected", "the file cannot be read"))
@@ -154,9 +175,9 @@ def _public(function: RemoteFunction) -> Tried:
             function.session.right.append(function.question.name)
         return tried
     except Exception:
-        return Tried(tuple(_lost(function.question)), {})
+        return Tried(_lost(function.question).tests, {})
     finally:
-        function.session.close()
+        function.session.close_question()
 
 
 def _guarded(function: RemoteFunction, tried: Tried) -> Verdict:
@@ -165,57 +186,33 @@ def _guarded(function: RemoteFunction, tried: Tried) -> Verdict:
     try:
         return mark(question, function, tried)
     except Exception:
-        tests = tuple(_lost(question))
-        return Verdict(question.name, Outcome.ERROR, 0.0, question.points, tests)
+        return _lost(question)
     finally:
-        function.session.close()
+        function.session.close_question()
 
 
 def _untried(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
     """Of a question that was not asked: it uses what is withheld, or is not in the notebook."""
     if tools[question.name]:
         return not_counted(question, tools[question.name])
-    tests = tuple(TestResult(t.name, t.weight, Outcome.NOT_ATTEMPTED) for t in question.tests)
-    return Verdict(question.name, Outcome.NOT_ATTEMPTED, 0.0, question.points, tests)
+    return all_alike(question, Outcome.NOT_ATTEMPTED)
 
 
-def _lost(question: Question) -> list[TestResult]:
-    says = "the answer cannot be compared with anything"
-    return [TestResult(t.name, t.weight, Outcome.ERROR, says) for t in question.tests]
+def _lost(question: Question) -> Verdict:
+    """Of a question whose answers cannot be compared with anything."""
+    return all_alike(question, Outcome.ERROR, Kind.OTHER)
 
 
-def _verdict(question: Question, verdict: Verdict, todo: Plan) -> dict[str, Any]:
-    return {
-        "name": verdict.name,
-        "outcome": verdict.outcome.value,
-        "earned": verdict.earned,
-        "points": verdict.points,
-        "tests": [
-            {
-                "name": t.name,
-                "weight": t.weight,
-                "outcome": t.outcome.value,
-                "says": clean_line(t.says),
-                "hidden": t.hidden,
-            }
-            for t in verdict.tests
-        ],
-        "withheld": list(verdict.withheld),
-        "mistake": verdict.mistake and {"name": verdict.mistake.name, "says": verdict.mistake.says},
-        "notes": [clean_line(note) for note in _notes(verdict, todo)],
-        "source": todo.source(verdict.name),
-        **_seen(question, verdict),
-    }
-
-
-def _notes(verdict: Verdict, todo: Plan) -> tuple[str, ...]:
+def _answer(question: Question, verdict: Verdict, tried: Tried | None, todo: Plan) -> Answer:
     why = (f"it {uses(verdict.withheld)}",) if verdict.withheld else ()
-    return (*why, *todo.notes.get(verdict.name, ()))
-
-
-def _seen(question: Question, verdict: Verdict) -> dict[str, Any]:
-    """What students may see of their work; nothing where it is too odd to be drawn."""
+    notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()))))
+    clean = read_record(Verdict, clean_data(record_data(verdict)))
+    answer = Answer(clean, notes, todo.source(verdict.name))
+    if tried is None:
+        return answer
     try:
-        return {"runs": seen.runs(question, verdict), "numbers": seen.numbers(question, verdict)}
-    except Exception:
-        return {"runs": [], "numbers": None}
+        return replace(
+            answer, runs=seen.runs(question, tried), numbers=seen.numbers(question, tried)
+        )
+    except Exception:  # it is too odd to be drawn
+        return answer

@@ -17,12 +17,15 @@ from typing import Any
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
+from ..course.notebook import about, grade_id, is_check, question_of
 from ..errors import LabkitError
+from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 from .each import Failed, for_student
-from .engines import nbgrader_api
-from .results import Bundle, Result, write
-from .written import as_text, in_release_form, release_source, with_verdicts
+from .exchange import read_stamp, read_time
+from .nbgrader_api import nbgrader_api
+from .results import Result, write
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
@@ -82,10 +85,10 @@ def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -
 
 def automatic(result: Result, cell: str) -> float | None:
     """The automatic score of a cell of the gradebook; None for one that is marked by hand."""
-    if not cell.endswith("-check") and not result.rejected:
+    if not is_check(cell) and not result.rejected:
         return None
-    earned = {f"{q['name']}-check": q["earned"] for q in result.questions}
-    return float(earned.get(cell, 0.0))
+    earned = {q.verdict.name: q.verdict.earned for q in result.questions}
+    return float(earned.get(question_of(cell), 0.0))
 
 
 def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
@@ -96,6 +99,85 @@ def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
             said = {c.name: c.manual_comment for n in submission.notebooks for c in n.comments}
             found[str(submission.student.id)] = {k: v for k, v in said.items() if v}
     return found
+
+
+def migrate(course: Course, assignment: str, source: Any) -> list[str]:
+    """Bring the gradebook's cells into line with a new release, where some have handed in.
+
+    nbgrader's ``SaveCells`` refuses such a release, "Cannot add or remove cells for notebook ...
+    because there are submissions associated with it", rather than lose marks.  Here the cells that
+    are new get their rows, empty ones in every submission, and those that are gone lose theirs; a
+    mark or a comment that somebody wrote by hand is never lost.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        source: The new release's notebook, with its metadata.
+
+    Returns:
+        The questions that are new to those who have handed in; none where nobody has.
+
+    Raises:
+        LabkitError: A question would go that somebody has marked or commented on by hand.
+    """
+    from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell
+
+    cells = {grade_id(cell): (cell, about(cell)) for cell in source.cells if grade_id(cell)}
+    graded = {name: pair for name, pair in cells.items() if pair[1]["grade"]}
+    solved = {name for name, pair in cells.items() if pair[1]["solution"]}
+    with open_gradebook(course) as book:
+        try:
+            notebook = book.find_notebook(assignment, assignment)
+        except MissingEntry:
+            return []
+        if not notebook.submissions:
+            return []
+        gone = [c for c in notebook.grade_cells if c.name not in graded]
+        gone += [c for c in notebook.solution_cells if c.name not in solved]
+        _keep_what_was_written(gone)
+        for cell in gone:
+            for row in [*cell.grades, *cell.comments]:
+                book.db.delete(row)
+            book.db.delete(cell)
+        for cell in notebook.source_cells:
+            if cell.name not in cells:
+                book.db.delete(cell)
+        new = sorted(set(graded) - {c.name for c in notebook.grade_cells})
+        for name in new:
+            cell, known = graded[name]
+            points = float(known["points"])
+            kind = cell.cell_type
+            add = GradeCell(name=name, notebook=notebook, max_score=points, cell_type=kind)
+            _add(book.db, add, notebook.submissions)
+        for name in solved - {c.name for c in notebook.solution_cells}:
+            _add(book.db, SolutionCell(name=name, notebook=notebook), notebook.submissions)
+        for name in set(cells) - {c.name for c in notebook.source_cells}:
+            kind = cells[name][0].cell_type
+            book.db.add(SourceCell(name=name, notebook=notebook, cell_type=kind))
+        book.db.commit()
+    return [question_of(name) for name in new]
+
+
+def _add(db: Any, cell: Any, submissions: Iterable[Any]) -> None:
+    """A cell, with an empty row for it in every submission."""
+    from nbgrader.api import Comment, Grade, GradeCell
+
+    db.add(cell)
+    db.flush()
+    row = Grade if isinstance(cell, GradeCell) else Comment
+    db.add_all([row(cell_id=cell.id, notebook=submission) for submission in submissions])
+
+
+def _keep_what_was_written(gone: Iterable[Any]) -> None:
+    for cell in gone:
+        marked = [g for g in cell.grades if g.manual_score is not None or g.extra_credit]
+        said = [c for c in cell.comments if c.manual_comment]
+        if marked or said:
+            name = question_of(cell.name)
+            raise LabkitError(
+                f"{name} would go, with {len(marked) + len(said)} marks or comments given by hand; "
+                "keep the question and give it 0 points"
+            )
 
 
 @contextmanager
@@ -124,7 +206,7 @@ def open_gradebook(course: Course) -> Iterator[Any]:
                 raise
     except OperationalError as error:
         raise LabkitError(
-            f"gradebook.db: {error.orig}; mend that and type the same again"
+            f"gradebook.db: {error.orig}; correct that and type the same again"
         ) from None
     except DatabaseError as error:
         raise _damaged(error.orig) from None
@@ -148,16 +230,10 @@ def quiet_database() -> Iterator[None]:
 
 def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
     """When a submission came in, as whoever collected it says; and a note if that is unreadable."""
-    from dateutil.parser import parse
-
-    path = course.submitted / result.student / result.assignment / "timestamp.txt"
-    if path.is_symlink() or not path.is_file() or path.stat().st_size > 200:
-        return None, ""
-    text = path.read_text(encoding="utf-8", errors="replace").strip()
-    try:
-        return parse(text), ""
-    except (ValueError, OverflowError):
-        return None, f"timestamp.txt says {text[:40]!r}, which is no time; counted as in time"
+    text = read_stamp(course.submitted / result.student / result.assignment)
+    when = read_time(text)
+    bad = f"timestamp.txt says {text[:40]!r}, which is not a time; counted as in time"
+    return when, bad if text and when is None else ""
 
 
 def _write_scores(submission: Any, result: Result) -> Iterator[str]:

@@ -1,26 +1,111 @@
-"""Which folder is whose: one for each person, the same in all assignments.
+"""Whom a platform means: its users, by the folder that holds their work, the same all term.
 
 A person has the folder that the roster says.  Whoever is not in the roster, or is there twice, gets
 a folder of their own that is nobody else's, and is named.  Without a roster Canvas's users and
 those of the exchange are known by what stays the same all term; Moodle's participants have another
 number in each assignment, so they are known by name, and by the number where two have one name.
+
+The users whose work was collected stand in ``course_private/lms.json``, by assignment and by
+folder.  Git ignores the file, and it goes with the term.
 """
 
 from __future__ import annotations
 
+import fcntl
+import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import chain, count
 
-from .clean import safe_name
-from .lms import Known
+import msgspec
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .clean import clean_line, safe_name
+from .platforms import LmsUser
+from .results import write
 from .roster import Roster, same_name
 
+FILE = "course_private/lms.json"
+_READ_GREEDILY = re.compile(r"([^_/]*)_([0-9]+)_assignsubmission_file")
 _BY_HAND = (
     "{} has the name of a folder that somebody made by hand, so their work is kept apart; a list "
     "of students that you import first says whose a folder is"
 )
+
+
+def lms_users(course: Course, assignment: str) -> dict[str, LmsUser]:
+    """Who was collected from a platform, by the name of their folder.
+
+    Raises:
+        LabkitError: The record is damaged.
+    """
+    return all_lms_users(course).get(assignment, {})
+
+
+def all_lms_users(course: Course) -> dict[str, dict[str, LmsUser]]:
+    """The same for each assignment.
+
+    Raises:
+        LabkitError: The record is damaged.
+    """
+    path = course.root / FILE
+    try:
+        data = msgspec.json.decode(path.read_bytes(), type=dict[str, dict[str, LmsUser]])
+    except FileNotFoundError:
+        return {}
+    except msgspec.DecodeError:
+        raise LabkitError(
+            f"{path} is damaged; restore it from a backup, or move it away and collect the "
+            "downloads again, which writes it anew"
+        ) from None
+    return {x: {folder: _cleaned(one) for folder, one in y.items()} for x, y in data.items()}
+
+
+def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> None:
+    """Add to what is known, by the name of the folder; nobody is left in two folders.
+
+    Raises:
+        LabkitError: The record is damaged.
+    """
+    if not found:
+        return
+    known = all_lms_users(course)
+    mine = known.get(assignment, {})
+    now = {one.key for one in found.values()}
+    kept = {folder: one for folder, one in mine.items() if one.key not in now}
+    for folder, one in found.items():
+        if one.system != "exchange" or folder not in kept:  # a platform's number is needed later
+            kept[folder] = one
+    if kept != mine:
+        data = msgspec.json.encode(known | {assignment: kept}, order="sorted")
+        write(course.root / FILE, msgspec.json.format(data, indent=1).decode() + "\n")
+
+
+@contextmanager
+def alone(course: Course) -> Iterator[None]:
+    """Keep a second one away from the records of who is who.
+
+    Raises:
+        LabkitError: Somebody else is at it.
+    """
+    lock = course.root / "course_private" / ".identity"
+    lock.parent.mkdir(exist_ok=True)
+    with open(lock, "w") as file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise LabkitError("somebody else is collecting; wait for it to end") from None
+        yield
+
+
+def _cleaned(user: LmsUser) -> LmsUser:
+    """One entry; of those that an older labkit read greedily, the name is the first person's."""
+    greedy = _READ_GREEDILY.match(user.name) if user.system == "moodle" else None
+    number, name = (greedy[2], greedy[1]) if greedy else (user.number, user.name)
+    return LmsUser(*map(clean_line, (user.system, number, name)))
 
 
 @dataclass(frozen=True)
@@ -37,13 +122,13 @@ class Place:
 
 
 def places(
-    people: Iterable[Known],
+    people: Iterable[LmsUser],
     assignment: str,
-    known: Mapping[str, Mapping[str, Known]],
+    known: Mapping[str, Mapping[str, LmsUser]],
     roster: Roster,
     folders: Iterable[str],
 ) -> dict[tuple[str, str], Place]:
-    """Where each person's work goes, by `Known.key`.
+    """Where each person's work goes, by `LmsUser.key`.
 
     Args:
         people: Those of one download.
@@ -83,12 +168,12 @@ def places(
     return found
 
 
-def _claim(one: Known, folder: str, roster: Roster) -> tuple[str, ...]:
+def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
     """Which student of the roster a person of a platform is, or claims to be by name."""
     return (one.system, *([folder] if folder in roster else [s.id for s in roster.whose(one)]))
 
 
-def _doubt(one: Known, students: int) -> str:
+def _doubt(one: LmsUser, students: int) -> str:
     if not students:
         return f"{one} is not in the roster, so their work is kept apart"
     until = "their work is kept apart until you import the assignment's grading worksheet"
@@ -97,19 +182,19 @@ def _doubt(one: Known, students: int) -> str:
     return f"{one} has the name of a student, and so has somebody else who handed in; {until}"
 
 
-def _plain(one: Known) -> str:
+def _plain(one: LmsUser) -> str:
     name = safe_name(one.name)
     return f"{name}-{one.number}" if one.system == "canvas" else name
 
 
-def _all_term(one: Known) -> tuple[str, ...]:
+def _all_term(one: LmsUser) -> tuple[str, ...]:
     """What stays the same from one assignment to the next."""
     return ("called", *same_name(one.name)) if one.system == "moodle" else one.key
 
 
 def _owners(
     assignment: str,
-    known: Mapping[str, Mapping[str, Known]],
+    known: Mapping[str, Mapping[str, LmsUser]],
     roster: Roster,
     folders: Iterable[str],
 ) -> dict[str, set[tuple[str, ...]]]:
@@ -126,7 +211,7 @@ def _owners(
     return owners
 
 
-def _free(one: Known, alone: bool, owners: Mapping[str, set[tuple[str, ...]]]) -> str:
+def _free(one: LmsUser, alone: bool, owners: Mapping[str, set[tuple[str, ...]]]) -> str:
     """The name of a folder that is nobody else's."""
     plain, mine = _plain(one), {one.key, _all_term(one)}
     if one.system == "exchange":

@@ -18,8 +18,8 @@ WHOLE = (1, 1)
 
 
 @contextmanager
-def alone(results: Path, shard: tuple[int, int] = WHOLE) -> Iterator[None]:
-    """Keep other runs on an assignment away, other shards of the same split excepted.
+def exclusive_run(results: Path, shard: tuple[int, int] = WHOLE) -> Iterator[None]:
+    """Keep other runs on an assignment away, except other shards of the same split.
 
     Args:
         results: The folder with the results of the assignment; made if need be.

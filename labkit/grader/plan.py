@@ -12,23 +12,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from ..course.source import look, plain
+from .sandbox.session import Step
 
 Cell = Mapping[str, Any]
-
-
-@dataclass(frozen=True)
-class Step:
-    """One cell to run.
-
-    Attributes:
-        number: Its place in the notebook, from 0; the release's setup cells have negative ones.
-        source: Its text.
-        answers: Questions whose function it defines.
-    """
-
-    number: int
-    source: str
-    answers: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -62,8 +48,8 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     """Match the cells of a submission with those of the release.
 
     Args:
-        cells: As `inside.cells.read` gives them.
-        manifest: As `release.manifest` gives it.
+        cells: As `sandbox.parse.read` returns them.
+        manifest: As `release.manifest` returns it.
     """
     setup = [m["source"] for m in manifest if m["kind"] == "setup" and m["type"] == "code"]
     walk = {_same(m["source"]) for m in manifest if m["kind"] == "walk" and m["type"] == "code"}
@@ -146,16 +132,18 @@ def _answer(
         if place not in at_home:
             notes.append(f"{name} was found by its name, outside its own cell")
         return place, lonely
-    broken = [own[k]["broken"] for k in sorted(at_home) if own[k]["broken"]]
-    magic = [own[k]["magic"] for k in sorted(at_home) if own[k]["magic"]]
     if stubs:
         return max(stubs), set()
-    why = "no cell defines it"
-    if broken:
-        why = f"its cell cannot be read by Python: {broken[0]}"
-    elif magic:
-        why = f"its cell begins with %%{magic[0]}, which keeps what it defines to itself"
-    notes.append(f"{name}: {why}")
+    home = [own[k] for k in sorted(at_home)]
+    why = [
+        f"its cell cannot be read by Python: {cell['broken']}" for cell in home if cell["broken"]
+    ]
+    why += [
+        f"its cell begins with %%{cell['magic']}, which keeps what it defines to itself"
+        for cell in home
+        if cell["magic"]
+    ]
+    notes.append(f"{name}: {why[0] if why else 'no cell defines it'}")
     return None, set()
 
 

@@ -1,4 +1,4 @@
-"""Regrade: whose mark moves after a test has changed, said before anything is written."""
+"""Regrade: whose mark changes after a test has changed, known before anything is written."""
 
 from __future__ import annotations
 
@@ -6,11 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
-from .batch import How, grade_aside
+from .batch import GradeOptions, grade_aside
 from .each import Failed, for_student
-from .results import Bundle, Result, Results
+from .results import Result, Results
 from .submission import Submission
 
 
@@ -34,11 +35,11 @@ class Move:
     def __str__(self) -> str:
         if self.before is None:
             return f"{self.after.student}: new, {self.after.score:g} of {self.after.points:g}"
-        each = {q["name"]: q["earned"] for q in self.before.questions}
+        each = {q.verdict.name: q.verdict.earned for q in self.before.questions}
         parts = [
-            f"{q['name']} {each.get(q['name'], 0.0):g} -> {q['earned']:g}"
-            for q in self.after.questions
-            if q["earned"] != each.get(q["name"], 0.0)
+            f"{v.name} {each.get(v.name, 0.0):g} -> {v.earned:g}"
+            for v in (q.verdict for q in self.after.questions)
+            if v.earned != each.get(v.name, 0.0)
         ]
         says = f" ({'; '.join(parts)})" if parts else ""
         return (
@@ -48,12 +49,12 @@ class Move:
 
 
 def moves(
-    course: Course, assignment: str, students: Sequence[str], how: How
+    course: Course, assignment: str, students: Sequence[str], options: GradeOptions
 ) -> Iterator[Move | LabkitError]:
     """Grade aside, and compare with the results that count; nothing of the course is changed."""
     bundle, now = Bundle.of(course, assignment), Results(course, assignment)
     submissions = [Submission.of(course, assignment, student) for student in students]
-    for result in grade_aside(course, bundle, submissions, how):
+    for result in grade_aside(course, bundle, submissions, options):
         if isinstance(result, LabkitError):
             yield result
         else:
@@ -82,3 +83,16 @@ def accept(
 
     accepted = [move.after for move in moved if lower or move.by >= 0]
     return [for_student(result.student, partial(keep, result)) for result in accepted]
+
+
+def summary(moved: Sequence[Move]) -> Iterator[str]:
+    """Whose mark moves and how many there are, a sentence each."""
+    for move in sorted(moved, key=lambda m: m.by):
+        if move.by or move.before is None:
+            yield str(move)
+    changed = sum(bool(m.by) for m in moved)
+    yield f"{changed} of {len(moved)} marks move, {sum(m.by < 0 for m in moved)} of them down"
+    before = {m.before.points for m in moved if m.before} - {m.after.points for m in moved}
+    if before:
+        full = ", ".join(f"{points:g}" for points in sorted(before))
+        yield f"full marks were {full} and are {moved[0].after.points:g} now"

@@ -9,22 +9,87 @@ import os
 import platform
 import shutil
 from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field
-from functools import cache, cached_property
+from dataclasses import dataclass, field, fields
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
-
-import msgspec
+from typing import Any, TypedDict
 
 import labkit
 
 from ..course.layout import Course
-from ..course.question import Question
-from ..course.question_codec import read_question
+from ..course.serialize import read_record, record_data
+from ..course.verdict import Points, Verdict
 from ..errors import LabkitError
+from ..formats import check_stamp, stamp
 from .clean import clean_data, clean_line
-from .result_data import ResultData
+
+
+class Run(TypedDict):
+    """A run of the arm on a public case; see `seen.runs`."""
+
+    test: str
+    says: str
+    complete: bool
+    since: float
+    measures: dict[str, float | None]
+    limits: dict[str, float | None]
+    words: str
+    motion: str
+
+
+class Numbers(TypedDict):
+    """The numbers of an answer beside those expected; see `seen.numbers`."""
+
+    call: str
+    expected: list[float]
+    given: list[float]
+    of: int
+
+
+class FailedCell(TypedDict):
+    """A cell that failed or was stopped; `cell` counts from 0."""
+
+    cell: int
+    kind: str
+    error: str
+    output: str
+    seconds: float
+
+
+class OwnCell(TypedDict):
+    """A cell of the student's own, and the cell of the release that it follows."""
+
+    type: str
+    source: str
+    after: str
+
+
+class Hashes(TypedDict):
+    """What a result is known by."""
+
+    submission: str
+    bundle: str
+    engine: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What came of one question.
+
+    Attributes:
+        verdict: As `mark` reached it.
+        notes: What was unusual, sentences.
+        source: The text of the cell that answers.
+        runs: The public runs of the arm.
+        numbers: The answer's numbers beside those expected, where they differ.
+    """
+
+    verdict: Verdict
+    notes: tuple[str, ...] = ()
+    source: str = ""
+    runs: tuple[Run, ...] = ()
+    numbers: Numbers | None = None
 
 
 @dataclass(frozen=True)
@@ -36,69 +101,77 @@ class Result:
         student: Whose.
         score: Points; 0 where it was rejected.
         points: What full marks would be.
+        seed: Of the hidden cases.
+        hashes: Of the submission, the release and the engine.
         rejected: Why it could not be graded, in a sentence; empty where it was.
-        questions: One verdict each, as data: name, outcome, earned, points, tests, the withheld
-            tools that it used, mistake, notes, source, and what `seen` adds, which older results
-            lack: runs, numbers.
+        questions: One for each question.
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
         own: The student's own cells, where they stood.
         tricks: What may be a way around a withheld tool, for the instructor, sentences.
         isolation: What kept it apart while it ran.
         versions: Of what graded it.
-        hashes: Of the submission, the release and the engine.
-        seed: Of the hidden cases.
         seconds: How long it took: in all, and in the student's own code.
     """
 
     assignment: str
     student: str
-    score: float
-    points: float
+    score: Points
+    points: Points
+    seed: int
+    hashes: Hashes
     rejected: str = ""
-    questions: tuple[Mapping[str, Any], ...] = ()
+    questions: tuple[Answer, ...] = ()
     notes: tuple[str, ...] = ()
-    cells: tuple[Mapping[str, Any], ...] = ()
-    own: tuple[Mapping[str, str], ...] = ()
+    cells: tuple[FailedCell, ...] = ()
+    own: tuple[OwnCell, ...] = ()
     tricks: tuple[str, ...] = ()
     isolation: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
-    hashes: Mapping[str, str] = field(default_factory=dict)
-    seed: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
 
     def text(self) -> str:
         """As JSON."""
-        return json.dumps(asdict(self), ensure_ascii=True, indent=1) + "\n"
+        data = stamp() | record_data(self)
+        return json.dumps(data, ensure_ascii=True, indent=1, allow_nan=False) + "\n"
 
     @classmethod
-    def read(cls, text: str) -> Result:
+    def read(cls, text: str, name: str = "the result") -> Result:
         """What `text` wrote, with every text in it made safe to store and to show.
 
+        Args:
+            text: JSON.
+            name: What to call it where it is refused.
+
         Raises:
-            LabkitError: It is not a whole result; the sentence says where.
+            LabkitError: It is not a whole result, or one of another version; the sentence says so.
         """
         try:
             data = clean_data(json.loads(text, parse_constant=_refuse))
-            msgspec.convert(data, ResultData)
-            for name in ("questions", "notes", "cells", "own", "tricks"):
-                data[name] = tuple(data[name])
-            result = cls(**data)
-        except (msgspec.ValidationError, ValueError, TypeError, RecursionError) as error:
-            raise LabkitError(f"it is not a whole result: {clean_line(str(error), 120)}") from None
-        result._check_sums()
+        except (ValueError, RecursionError) as error:
+            raise _damaged(name, str(error)) from None
+        if not isinstance(data, dict):
+            raise _damaged(name, "it is not a table")
+        check_stamp(data, name, "grade it again")
+        known = {x.name for x in fields(cls)} | stamp().keys()
+        if unknown := data.keys() - known:
+            raise _damaged(name, f"nobody knows the field {min(unknown)!r}")
+        try:
+            result = read_record(cls, data)
+        except LabkitError as error:
+            raise _damaged(name, str(error)) from None
+        result._check_sums(name)
         return result
 
-    def _check_sums(self) -> None:
+    def _check_sums(self, name: str) -> None:
         """Raise a LabkitError unless the score is what the questions earned."""
-        earned = [q["earned"] for q in self.questions if q["earned"] <= q["points"]]
-        names = {q["name"] for q in self.questions}
-        whole = len(names) == len(self.questions) == len(earned)
+        verdicts = [question.verdict for question in self.questions]
+        earned = [v.earned for v in verdicts if v.earned <= v.points]
+        names = {v.name for v in verdicts}
+        whole = len(names) == len(verdicts) == len(earned)
         if not whole or bool(self.rejected) == bool(names) or abs(sum(earned) - self.score) > 0.01:
-            raise LabkitError(
-                f"it is not a whole result: the score is {self.score:g}, "
-                f"and {len(self.questions)} questions earned {sum(earned):g}"
-            )
+            whole_sum = f"{len(verdicts)} questions earned {sum(earned):g}"
+            raise _damaged(name, f"the score is {self.score:g}, and {whole_sum}")
 
     def __str__(self) -> str:
         came = f"{self.score:g} of {self.points:g}"
@@ -107,7 +180,7 @@ class Result:
     @property
     def verdict(self) -> dict[str, Any]:
         """Everything that must come out the same wherever it is graded."""
-        data = asdict(self)
+        data: dict[str, Any] = record_data(self)
         del data["seconds"], data["isolation"]
         for cell in data["cells"]:
             del cell["seconds"]
@@ -136,15 +209,13 @@ class Results:
         """
         path = self.path(student)
         try:
-            result = Result.read(path.read_text(encoding="utf-8"))
+            result = Result.read(path.read_text(encoding="utf-8"), path.name)
         except FileNotFoundError:
             return None
         except OSError as error:
             raise LabkitError(f"{path.name} cannot be read: {error.strerror}") from None
         except ValueError:
             raise LabkitError(f"{path.name} is not text") from None
-        except LabkitError as error:
-            raise LabkitError(f"{path.name} is damaged; {error}") from None
         if (result.student, result.assignment) != (student, self.folder.name):
             whose = f"{result.student}'s {result.assignment}"
             raise LabkitError(f"{path.name} is damaged; it is the result of {whose}")
@@ -161,8 +232,7 @@ class Results:
         """Write a result; an older one that came from other contents goes to ``old/``."""
         path, before = self.path(result.student), self.get(result.student)
         if path.exists() and (before is None or before.hashes != result.hashes):
-            hashes = {} if before is None else before.hashes
-            key = "-".join(hashes.get(x, "")[:8] for x in ("submission", "bundle", "engine"))
+            key = "--" if before is None else "-".join(str(x)[:8] for x in before.hashes.values())
             old = self.folder / "old" / f"{result.student}-{key}.json"
             old.parent.mkdir(parents=True, exist_ok=True)
             if path.is_file():
@@ -196,54 +266,13 @@ def write(path: Path, text: str) -> None:
         new.unlink(missing_ok=True)
 
 
+def _damaged(name: str, why: str) -> LabkitError:
+    why = clean_line(why, 120)
+    return LabkitError(f"{name} is damaged; it is not a whole result: {why}")
+
+
 def _refuse(constant: str) -> None:
     raise ValueError(f"{constant} is not a number of JSON")
-
-
-@dataclass(frozen=True)
-class Bundle:
-    """What a release leaves for graders.
-
-    Attributes:
-        data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
-            any, the questions ``added`` when some had handed in already.
-    """
-
-    data: Mapping[str, Any]
-
-    @classmethod
-    def of(cls, course: Course, assignment: str) -> Bundle:
-        """The bundle of an assignment.
-
-        Raises:
-            LabkitError: It was not released, or its file is damaged.
-        """
-        path = course.bundle / f"{assignment}.json"
-        if not path.exists():
-            raise LabkitError(
-                f"{assignment} was not released here; type: labkit release {assignment}"
-            )
-        try:
-            return cls(json.loads(path.read_text(encoding="utf-8")))
-        except ValueError as error:
-            raise LabkitError(
-                f"{path} is damaged: {error}; restore it, or type: labkit release {assignment}"
-            ) from None
-
-    @cached_property
-    def questions(self) -> tuple[Question, ...]:
-        """Its questions, hidden cases included; read once for all submissions."""
-        return tuple(map(read_question, self.data["questions"]))
-
-    @property
-    def added(self) -> frozenset[str]:
-        """Questions that came when some had handed in already."""
-        return frozenset(self.data.get("added", ()))
-
-    @property
-    def points(self) -> float:
-        """Full marks."""
-        return float(sum(q["points"] for q in self.data["questions"]))
 
 
 def digest(data: bytes) -> str:

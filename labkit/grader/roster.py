@@ -1,7 +1,7 @@
 """The roster: who is in the class, and how platforms know them.
 
 It stands in ``course_private/roster.csv``, which git ignores, with the columns of nbgrader's own
-list of students and two more; a person can read and mend it.  It goes with the term.
+list of students and two more; a person can read and edit it.  It goes with the term.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ from functools import cached_property
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .class_list import read_table, refuse_long_rows
 from .clean import safe_name
 from .gradebook import open_gradebook
-from .lms import Known
+from .platforms import LmsUser
 from .results import write
-from .student_list import read_table, refuse_long_rows
 
 FILE = "course_private/roster.csv"
 
@@ -70,7 +70,7 @@ class Roster:
         """The student who has a folder."""
         return self._by_id.get(id)
 
-    def whose(self, one: Known) -> tuple[Student, ...]:
+    def whose(self, one: LmsUser) -> tuple[Student, ...]:
         """Whom a platform may mean: nobody, one student, or all who have the same name."""
         key = same_name(one.name) if one.system == "moodle" else one.number.casefold()
         return self._by_key.get((one.system, key), ())
@@ -161,6 +161,6 @@ def tell_gradebook(course: Course, roster: Roster) -> None:
 
 def _damaged(path: object, why: str) -> LabkitError:
     return LabkitError(
-        f"{path} is damaged: {why}; mend it, or move it away and type: "
+        f"{path} is damaged: {why}; correct it, or move it away and type: "
         "labkit students import FILE.csv"
     )

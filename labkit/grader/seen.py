@@ -10,12 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ..course.cases import Tuned
-from ..course.evidence import evidence
-from ..course.marking import Ran, Verdict
-from ..course.question import Question
+from ..course.marking import Ran, Tried
+from ..course.question import Question, Tuned
 from ..log import Log
 from ..replay import Motion, motion_of
+from .results import Numbers, Run
 
 LARGEST = 60_000
 """Bytes that one motion may take in a result."""
@@ -27,38 +26,38 @@ MOST = 400
 """So many numbers of an answer are kept beside those expected."""
 
 
-def runs(question: Question, verdict: Verdict) -> list[dict[str, Any]]:
+def runs(question: Question, tried: Tried) -> tuple[Run, ...]:
     """The public runs of a question as data: measures, their limits, and the motion.
 
     Args:
         question: What was asked.
-        verdict: What came of it.
+        tried: What came of its public cases.
 
     Returns:
         One table for each run.  ``motion`` is what the viewer reads, as text, and empty where there
         is nothing to be seen; ``words`` describes it; a measure that is infinite is None.
     """
-    return [_run(question, ran) for ran in verdict.runs]
+    return tuple(_run(question, ran) for ran in tried.runs(question))
 
 
-def numbers(question: Question, verdict: Verdict) -> dict[str, Any] | None:
+def numbers(question: Question, tried: Tried) -> Numbers | None:
     """The numbers of the first public call whose answer differs; None if there are none.
 
     Returns:
         ``call``, the first `MOST` numbers ``expected`` and ``given``, and ``of`` how many.
     """
-    found = evidence(question, verdict)
+    found = tried.evidence(question)
     if found is None or not len(found.given) or not np.isfinite(found.expected).all():
         return None
     return {
         "call": found.call,
-        "expected": [_short(x) for x in found.expected[:MOST]],
-        "given": [_short(x) for x in found.given[:MOST]],
+        "expected": [float(f"{x:.6g}") for x in found.expected[:MOST]],
+        "given": [float(f"{x:.6g}") for x in found.given[:MOST]],
         "of": len(found.given),
     }
 
 
-def _run(question: Question, ran: Ran) -> dict[str, Any]:
+def _run(question: Question, ran: Ran) -> Run:
     loop = ran.case.loop if isinstance(ran.case, Tuned) else ran.case
     says = ran.case.shown(question.name)
     motion = _motion(ran.log, f"Your run: {ran.test}")

@@ -1,4 +1,4 @@
-"""Where everybody stands: the result that counts for each student, or why none does."""
+"""Standing: the result that counts for each student, or why none does."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ from functools import partial
 from ..course.layout import Course
 from ..errors import LabkitError
 from .each import Failed, for_student
-from .engines import is_name, misnamed, plain_name, students
 from .results import Result, Results, digest
 from .sandbox.limits import Limits
-from .submission import Submission
+from .submission import Submission, is_name, misnamed, plain_name, students
 
 
 def standing(
@@ -47,17 +46,17 @@ def grade_again(assignment: str, student: str) -> str:
 
 def _counts(course: Course, results: Results, student: str, is_handed_in: bool) -> Result:
     assignment = results.folder.name
-    mend = grade_again(assignment, student)
+    remedy = grade_again(assignment, student)
     if not is_handed_in:
-        mend = f"nothing of theirs is in submitted/; restore {results.path(student)} or delete it"
+        remedy = f"nothing of theirs is in submitted/; restore {results.path(student)} or delete it"
     try:
         result = results.read(student)
     except LabkitError as error:
-        raise LabkitError(f"{error}; {mend}") from None
+        raise LabkitError(f"{error}; {remedy}") from None
     if result is None:
-        raise LabkitError(f"handed in and not graded; {mend}")
+        raise LabkitError(f"handed in and not graded; {remedy}")
     if is_handed_in:
         data, _, _ = Submission.of(course, assignment, student).read(Limits().notebook)
         if digest(data) != result.hashes["submission"]:
-            raise LabkitError(f"handed in again and not graded since; {mend}")
+            raise LabkitError(f"handed in again and not graded since; {remedy}")
     return result

@@ -1,4 +1,4 @@
-"""Submissions: the files that came back, found and read with care."""
+"""Submissions: who handed in, and the files that came back, found and read with care."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from pathlib import Path
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .clean import clean_line
+from .each import Failed
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,38 @@ class Submission:
             return read_file(path, most), note, ""
         except LabkitError as error:
             return b"", "", str(error)
+
+
+def students(course: Course, name: str) -> list[str]:
+    """Who handed in an assignment, in order; only folders whose name is allowed."""
+    return [student for student in _folders(course, name) if is_name(student)]
+
+
+def misnamed(course: Course, name: str) -> list[Failed]:
+    """Folders whose name no database, page or terminal should be given; named in plain letters."""
+    return [
+        Failed(
+            plain_name(student),
+            "a folder in submitted/ has this name, in which a page would see markup or a terminal "
+            "commands; rename the folder and grade again",
+        )
+        for student in _folders(course, name)
+        if not is_name(student)
+    ]
+
+
+def is_name(student: str) -> bool:
+    """Whether a student may have this name: one clean line, which is not markup."""
+    return clean_line(student) == student and not set(student) & set('<>"\\')
+
+
+def plain_name(student: str) -> str:
+    """A name as it may be shown: in plain letters if it is not allowed."""
+    return student if is_name(student) else ascii(student)
+
+
+def _folders(course: Course, name: str) -> list[str]:
+    return sorted(p.name for p in course.submitted.glob("*") if os.path.lexists(p / name))
 
 
 def read_file(path: Path, most: int) -> bytes:

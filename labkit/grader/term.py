@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from ..course.layout import PUBLIC_SEED, Course
-from ..course.release import release
 from ..errors import LabkitError
-from . import attempts, lms, pseudonyms, roster
+from . import attempts, identity, pseudonyms, roster
+from .release import release
 from .results import write
 
-NAMED = (
+PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db"),
-    *(attempts.FOLDER, roster.FILE, lms.FILE, pseudonyms.FILE),
+    *(attempts.FOLDER, roster.FILE, identity.FILE, pseudonyms.FILE),
 )
 """Where students' names stand, or what leads to them; all of it is ignored by git."""
 
@@ -57,8 +57,8 @@ def seed_for(course: Course, assignment: str) -> int:
     return seed
 
 
-def said_of(seed: int) -> str:
-    """What to say of cases that are made with a seed; nothing if it is no public one."""
+def public_warning(seed: int) -> str:
+    """What to say of cases that are made with a seed; "" if it is not the public one."""
     if seed != PUBLIC_SEED:
         return ""
     return (
@@ -106,7 +106,7 @@ def _keep(course: Course, record: dict[str, Any]) -> None:
 
 def archive(course: Course) -> Path | None:
     """Move what holds the last term's names into one folder; None if there is nothing."""
-    there = [course.root / name for name in NAMED if (course.root / name).exists()]
+    there = [course.root / name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None
     folder = _private(course) / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
@@ -119,7 +119,7 @@ def archive(course: Course) -> Path | None:
     return folder
 
 
-def forget(course: Course) -> list[Path]:
+def purge(course: Course) -> list[Path]:
     """Delete every archived term, and the names with it.
 
     Returns:

@@ -1,150 +1,126 @@
-"""A worker: a process of its own that grades one submission after another in its own sandbox.
-
-It reads jobs and writes results as lines of JSON, so it may live on any machine.  When nobody
-listens any more it ends, whatever it is at, and its sandbox with it.
-"""
+"""A worker process: grades one submission after another in a sandbox that it keeps."""
 
 from __future__ import annotations
 
-import json
-import os
-import queue
-import resource
-import sys
+import atexit
+import signal
 import threading
 import warnings
-from functools import lru_cache
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass
+from functools import cache, lru_cache
 
+from ..course.bundle import Bundle
+from ..course.layout import Course
 from ..errors import LabkitError
 from .grade import grade, rejection
 from .plan import imports
-from .results import Bundle, Result
-from .sandbox.cgroup import WORKER, Group
-from .sandbox.launch import Broken, Sandbox
+from .results import Result
+from .sandbox.cgroup import MEMORY, limit_memory
+from .sandbox.launch import Sandbox, SandboxLost
 from .sandbox.limits import Limits, slowness
 from .sandbox.mounts import NoIsolation
 from .submission import Submission
 
 TRIES = 2
-MEMORY = 2**30  # bytes, beside what is loaded
+"""How often a submission is tried whose sandbox is lost."""
 
 
-class Desk:
-    """What a worker keeps from one job to the next: its sandbox."""
+@dataclass(frozen=True)
+class Task:
+    """One submission to be graded.
 
-    def __init__(self, *, isolated: bool) -> None:
-        self.isolated = isolated
-        self.sandbox: Sandbox | None = None
-        self._hidden: list[str] = []
+    Attributes:
+        course: Where it belongs; hidden from the sandbox.
+        submission: The student's files.
+        bundle: The hash of the release that it is held against.
+        isolated: Whether its code runs in a sandbox.
+        limits: What it may use on a quick machine.
+    """
 
-    def do(self, job: dict[str, Any]) -> Result:
-        """Grade one submission; a sandbox that is lost is made again, once.
+    course: Course
+    submission: Submission
+    bundle: str
+    isolated: bool
+    limits: Limits
 
-        Raises:
-            NoIsolation: There is no sandbox on this machine.
-            LabkitError: The sandbox was lost each time.
-        """
-        bundle = _bundle(job["bundle"], job["hash"])
-        submission = Submission(job["student"], job["assignment"], Path(job["folder"]))
-        limits = Limits(**job["limits"]).scaled(slowness())
-        data, note, why = submission.read(limits.notebook)
-        lost = ""
-        for _ in range(TRIES):
-            try:
-                sandbox = self._sandbox(bundle, job["hidden"])
-                if why:
-                    return rejection(why, submission.student, bundle, sandbox.level)
-                return grade(data, submission.student, bundle, sandbox, limits, note)
-            except Broken as error:
-                lost = str(error)
-                self.close()
-        raise LabkitError(
-            f"its sandbox was lost {TRIES} times ({lost}); is there memory enough? Grade again, "
-            "or look at it yourself"
-        )
 
-    def _sandbox(self, bundle: Bundle, hidden: list[str]) -> Sandbox:
-        """The sandbox there is, or a new one if another course is to be hidden."""
-        if self.sandbox is not None and self._hidden != hidden:
-            self.close()
-        if self.sandbox is None:
-            loads = imports(bundle.data["cells"])
-            self.sandbox = Sandbox(loads, map(Path, hidden), isolated=self.isolated)
-            self._hidden = hidden
-        return self.sandbox
+_busy = threading.Lock()
+_sandboxes: dict[tuple[Course, bool], Sandbox] = {}
+"""This worker's sandbox, if it has one."""
 
-    def close(self) -> None:
-        """End the sandbox."""
-        sandbox, self.sandbox = self.sandbox, None
-        if sandbox is not None:
-            sandbox.close()
+
+def grade_submission(task: Task) -> Result:
+    """Grade one submission in this worker.
+
+    The kernel ends a worker that takes longer than `Limits.worker`, whatever it is doing.
+
+    Raises:
+        NoIsolation: There is no sandbox on this machine.
+        LabkitError: The sandbox was lost each time, memory ran out, or the grader failed.
+    """
+    with _busy, warnings.catch_warnings():
+        _limit_once()
+        warnings.simplefilter("ignore")  # what a student's numbers overflow is in the verdict
+        limits = task.limits.scaled(slowness())
+        signal.setitimer(signal.ITIMER_REAL, limits.worker)
+        try:
+            return Result.read(_grade(task, limits).text())  # as its file will be read
+        except NoIsolation:
+            raise
+        except MemoryError:
+            why = f"judging it takes over {MEMORY >> 20} MB; look at it yourself"
+        except LabkitError as error:
+            why = str(error)
+        except Exception as error:
+            why = f"the grader failed: {type(error).__name__}: {error}"
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+        raise LabkitError(why)
+
+
+def _grade(task: Task, limits: Limits) -> Result:
+    bundle = _bundle(task.course, task.submission.assignment, task.bundle)
+    student = task.submission.student
+    data, note, why = task.submission.read(limits.notebook)
+    lost = ""
+    for _ in range(TRIES):
+        try:
+            sandbox = _sandbox(task, bundle)
+            if why:
+                return rejection(why, student, bundle, sandbox.level)
+            return grade(data, student, bundle, sandbox, limits, note)
+        except SandboxLost as error:
+            lost = str(error)
+            close_sandbox()
+    raise LabkitError(
+        f"its sandbox was lost {TRIES} times ({lost}); is there enough memory? Grade again, "
+        "or look at the submission yourself"
+    )
+
+
+def _sandbox(task: Task, bundle: Bundle) -> Sandbox:
+    """The sandbox there is, or a new one if it is to hide another course."""
+    key = task.course, task.isolated
+    if key not in _sandboxes:
+        close_sandbox()
+        loads = imports(bundle.data["cells"])
+        _sandboxes[key] = Sandbox(loads, [task.course.root], isolated=task.isolated)
+    return _sandboxes[key]
+
+
+@atexit.register
+def close_sandbox() -> None:
+    """End this worker's sandbox."""
+    while _sandboxes:
+        _sandboxes.popitem()[1].close()
 
 
 @lru_cache(maxsize=4)
-def _bundle(path: str, key: str) -> Bundle:
-    bundle = Bundle(json.loads(Path(path).read_text(encoding="utf-8")))
+def _bundle(course: Course, assignment: str, key: str) -> Bundle:
+    bundle = Bundle.of(course, assignment)
     if bundle.data["hash"] != key:
-        raise ValueError(f"{path} was released again while it was graded")
+        raise LabkitError(f"{assignment} was released again while it was graded; grade again")
     return bundle
 
 
-def limit_memory() -> None:
-    """Whatever a submission makes this process keep, it ends in a MemoryError of its own."""
-    with open("/proc/self/status") as file:
-        used = next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmData"))
-    _, most = resource.getrlimit(resource.RLIMIT_DATA)
-    resource.setrlimit(resource.RLIMIT_DATA, (used + MEMORY, most))
-    group = Group.make(f"{os.getpid()}-worker", WORKER)
-    if group is not None:
-        group.enter()
-
-
-def main(*, isolated: bool) -> int:
-    """Serve until stdin ends."""
-    out = os.fdopen(os.dup(1), "w", encoding="ascii")
-    os.dup2(2, 1)
-    limit_memory()
-    warnings.simplefilter("ignore")  # what a student's numbers overflow is in the verdict
-    jobs: queue.SimpleQueue[str] = queue.SimpleQueue()
-    idle = threading.Event()
-    threading.Thread(target=_listen, args=(jobs, idle), daemon=True).start()
-    desk = Desk(isolated=isolated)
-    try:
-        while line := jobs.get():
-            answer = _answer(desk, json.loads(line))
-            idle.set()
-            print(json.dumps(answer), file=out, flush=True)
-    finally:
-        desk.close()
-    return 0
-
-
-def _answer(desk: Desk, job: dict[str, Any]) -> dict[str, str]:
-    """A job's result, or what kept it from being made."""
-    try:
-        return {"result": desk.do(job).text()}
-    except NoIsolation as error:
-        return {"no isolation": str(error)}
-    except LabkitError as error:
-        return {"failed": str(error)}
-    except MemoryError:
-        return {"failed": f"judging it takes over {MEMORY >> 20} MB; look at it yourself"}
-    except Exception as error:
-        return {"failed": f"the grader failed: {type(error).__name__}: {error}"}
-
-
-def _listen(jobs: queue.SimpleQueue[str], idle: threading.Event) -> None:
-    """Take jobs from stdin; where it ends while one is under way, nobody waits for the answer."""
-    idle.set()
-    for line in sys.stdin:
-        idle.clear()
-        jobs.put(line)
-    if not idle.is_set():
-        os._exit(1)  # the kernel ends the sandbox, too
-    jobs.put("")
-
-
-if __name__ == "__main__":
-    sys.exit(main(isolated="--no-isolation" not in sys.argv))
+_limit_once = cache(limit_memory)

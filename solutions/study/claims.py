@@ -17,7 +17,7 @@ import numpy as np
 
 from labkit.errors import OutOfRange
 
-from ..comparison import paired_difference
+from ..comparison.answers import paired_difference
 from .grid import Row, pick
 
 THREE = ("workspace velocity", "joint velocity", "joint torque")

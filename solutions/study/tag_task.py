@@ -22,7 +22,7 @@ from labkit.tags.camera import Camera, looking_at
 from labkit.tags.stream import TagStream, TagTarget
 from labkit.tags.tag import Tag
 
-from ..tag_following import TagFollower
+from ..tags.following import TagFollower
 from .tasks import Task, ready_pose
 from .visual_servoing import SequentialServoing
 

@@ -20,7 +20,7 @@ from .grid import Meter, cells, pick, work_through
 from .joint_velocity import JointVelocityPD
 from .recording import save_trials
 
-HELD_OUT = Path(__file__).parents[1] / "held_out" / "trials.json"
+HELD_OUT = Path(__file__).parents[1] / "comparison" / "trials.json"
 
 KP = (2.0, 4.0, 8.0, 14.0, 22.0, 34.0, 50.0, 70.0, 100.0)
 KD = (0.0, 0.4, 1.0)

@@ -3,10 +3,11 @@
 import shutil
 import time
 
-from labkit.course.release import release
-from labkit.grader.batch import How, grade_class, workers
-from labkit.grader.engines import grade_with_nbgrader, students
+from labkit.grader.batch import GradeOptions, grade_class, workers
+from labkit.grader.release import release
+from labkit.grader.submission import students
 
+from ..plain_nbgrader import grade_with_nbgrader, pack_hidden
 from .courses import fresh_course
 
 ASSIGNMENT = "00_warmup"
@@ -19,6 +20,7 @@ SERIAL = 10
 def submit_solved(course):
     """Hand in the solved notebook so many times."""
     release(course, ASSIGNMENT, seed=1)
+    pack_hidden(course, ASSIGNMENT)
     solved = course.solution / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
     for k in range(COUNT):
         place = course.submitted / f"s{k:03d}" / ASSIGNMENT
@@ -38,11 +40,11 @@ def measure():
         submit_solved(course)
         who = students(course, ASSIGNMENT)
         start = time.perf_counter()
-        done = list(grade_class(course, ASSIGNMENT, who, How(jobs=jobs)))
+        done = list(grade_class(course, ASSIGNMENT, who, GradeOptions(jobs=jobs)))
         isolated = (time.perf_counter() - start) / COUNT
         scores = {getattr(getattr(one, "result", None), "score", None) for one in done}
         start = time.perf_counter()
-        theirs = {grade_with_nbgrader(course, ASSIGNMENT, s).score for s in who[:SERIAL]}
+        theirs = {grade_with_nbgrader(course, ASSIGNMENT, s) for s in who[:SERIAL]}
         serial = (time.perf_counter() - start) / SERIAL
     if scores != theirs or len(scores) != 1:
         raise RuntimeError(f"the engines disagree: {scores} and {theirs}")

@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 
 from labkit.tags import sensing
-from labkit.verbs import whole
 
 LIMITS = {"found": 0.99, "position_p95_mm": 2.0, "position_max_mm": 5.0, "orientation_p95_deg": 0.5}
 STEEP = pi / 12
@@ -50,7 +49,7 @@ def figures(seed, distance, count=200):
 def main():
     """Measure, write, and say whether the limits hold."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--seed", type=whole(0), required=True, help="of the poses")
+    parser.add_argument("--seed", type=int, required=True, help="of the poses")
     parser.add_argument("--out", type=Path, default=Path("build/tags.json"))
     options = parser.parse_args()
     near, far = figures(options.seed, 0.7), figures(options.seed, 1.5)

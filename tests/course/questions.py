@@ -1,6 +1,12 @@
 """A small question for the tests, made by hand."""
 
-from labkit.course import Call, Close, Mistake, Question, Test
+from labkit.course import Call, Close, Mistake, Outcome, Question, Test, TestResult
+from labkit.course.messages import why
+
+
+def says(difference):
+    """A difference in words."""
+    return why(TestResult("a test", 1.0, Outcome.WRONG, difference=difference))
 
 
 def double(x):

@@ -8,11 +8,10 @@ from pathlib import Path
 import pytest
 
 from labkit import LabkitError
-from labkit.cli import main
-from labkit.course.handin import look, read_cells
-from labkit.course.marking import Outcome, Verdict
-from labkit.course.merging import merge
-from labkit.course.output import as_metadata
+from labkit.__main__ import main
+from labkit.course.handin import look, merge
+from labkit.course.notebook import read_cells, verdict_metadata
+from labkit.course.verdict import Outcome, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
 
@@ -25,7 +24,7 @@ def folder(tmp_path):
 def output(name, outcome, points=2.0, **more):
     """What a check leaves in its cell."""
     earned = points if outcome is Outcome.RIGHT else 0.0
-    metadata = as_metadata(Verdict(name, outcome, earned, points, **more))
+    metadata = verdict_metadata(Verdict(name, outcome, earned, points, **more))
     return {"output_type": "display_data", "data": {}, "metadata": metadata}
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from questions import says
 
 import labkit as lk
 from labkit.course import (
@@ -22,7 +23,7 @@ from labkit.course import (
     question_data,
     read_question,
 )
-from labkit.course.judges import Ratio
+from labkit.course.equivalence import Ratio
 from labkit.course.marking import mark
 
 CLOSE = Close(rtol=1e-6, atol=1e-9)
@@ -53,15 +54,15 @@ def test_lists_and_rounding_are_the_same(answer):
 )
 def test_differences_are_sentences(answer, words):
     """A wrong shape, a NaN, a missing return: each says what came."""
-    assert words in CLOSE(answer, V)
+    assert words in says(CLOSE(answer, V))
     assert CLOSE.distance(answer, V) > 1.0
 
 
 def test_a_command_is_asked_for_by_name():
     """Plain numbers are told how to become a command, another command is called by its name."""
     velocity = lk.JointVelocity(np.zeros(7))
-    assert "plain numbers; give lk.JointVelocity(...)" in CLOSE(np.ones(7), velocity)
-    assert CLOSE(lk.JointTorque(np.ones(7)), velocity).endswith("not a JointTorque")
+    assert "plain numbers; return lk.JointVelocity(...)" in says(CLOSE(np.ones(7), velocity))
+    assert says(CLOSE(lk.JointTorque(np.ones(7)), velocity)).endswith("not a JointTorque")
 
 
 def test_mistakes_are_alike_within_a_rounding():
@@ -71,15 +72,15 @@ def test_mistakes_are_alike_within_a_rounding():
 
 def test_a_number_is_told_its_sign_but_no_chance_factor():
     """The other sign of a single number tells something, twice the number does not."""
-    assert CLOSE(-4.0, 4.0).endswith("the same with the other sign")
-    assert CLOSE(8.0, 4.0) == "expected 4, got 8"
+    assert says(CLOSE(-4.0, 4.0)).endswith("the same with the other sign")
+    assert says(CLOSE(8.0, 4.0)) == "expected 4, got 8"
 
 
 def test_numbers_are_numbers():
     """Python's, numpy's and zero-dimensional arrays are one number; None is not."""
     for answer in (2, 2.0, np.float64(2.0), np.int64(2), np.array(2.0)):
         assert CLOSE(answer, 2.0) is None
-    assert "got 3" in CLOSE(3.0, 2.0)
+    assert "got 3" in says(CLOSE(3.0, 2.0))
     assert CLOSE(None, 2.0) is not None
     assert CLOSE(float("nan"), 2.0) is not None
 
@@ -88,26 +89,26 @@ def test_commands_keep_their_type():
     """A torque is not a speed, an array is no command, and the numbers count too."""
     wanted = lk.JointVelocity(np.zeros(7))
     assert CLOSE(lk.JointVelocity(np.zeros(7)), wanted) is None
-    assert "JointVelocity" in CLOSE(lk.JointTorque(np.zeros(7)), wanted)
-    assert "JointVelocity" in CLOSE(np.zeros(7), wanted)
-    assert "expected" in CLOSE(lk.JointVelocity(np.ones(7)), wanted)
+    assert "JointVelocity" in says(CLOSE(lk.JointTorque(np.zeros(7)), wanted))
+    assert "JointVelocity" in says(CLOSE(np.zeros(7), wanted))
+    assert "expected" in says(CLOSE(lk.JointVelocity(np.ones(7)), wanted))
 
 
 def test_parts_are_named():
     """In a tuple the part that differs is called by its name; too few parts are counted."""
     judge = Close(parts=("s", "ds", "dds"))
     assert judge((1.0, 2.0, 3.0), (1.0, 2.0, 3.0)) is None
-    assert judge([1.0, 2.0, 4.0], (1.0, 2.0, 3.0)).startswith("dds")
-    assert "3 things (s, ds, dds), not 2" in judge((1.0, 2.0), (1.0, 2.0, 3.0))
-    assert "3 things" in judge(1.0, (1.0, 2.0, 3.0))
+    assert says(judge([1.0, 2.0, 4.0], (1.0, 2.0, 3.0))).startswith("dds")
+    assert "3 things (s, ds, dds), not 2" in says(judge((1.0, 2.0), (1.0, 2.0, 3.0)))
+    assert "3 things" in says(judge(1.0, (1.0, 2.0, 3.0)))
 
 
 def test_samples_tables_and_texts():
     """A tuple passes for a sample; a dict misses a key; a text is compared as it is."""
     sample = lk.Sample(V, V, V)
     assert CLOSE((V, V, V), sample) is None
-    assert CLOSE((V, V, 2 * V), sample).startswith("acceleration")
-    assert "'b' is missing" in CLOSE({"a": 1.0}, {"a": 1.0, "b": 2.0})
+    assert says(CLOSE((V, V, 2 * V), sample)).startswith("acceleration")
+    assert "'b' is missing" in says(CLOSE({"a": 1.0}, {"a": 1.0, "b": 2.0}))
     assert CLOSE("yes", "yes") is None
     assert CLOSE("no", "yes") is not None
     assert CLOSE(1, True) is not None
@@ -127,7 +128,7 @@ def test_within_intervals():
     """Several numbers may be right; the distance grows from the middle."""
     judge, intervals = Within(), [[0.9, 1.1], [2.0, 3.0]]
     assert judge(1.0, intervals) is None and judge(2.5, intervals) is None
-    assert "got 1.5" in judge(1.5, intervals)
+    assert "got 1.5" in says(judge(1.5, intervals))
     assert judge(None, intervals) is not None
     assert judge(float("nan"), intervals) is not None
     assert judge.distance(1.0, intervals) < 1.0 < judge.distance(1.5, intervals)
@@ -137,7 +138,7 @@ def test_at_most():
     """The first measure beyond its limit is told with its unit; NaN is beyond any."""
     judge = AtMost()
     assert judge({"max_mm": 1.0, "effort": 2.0}, {"max_mm": 1.5}) is None
-    assert judge({"max_mm": 2.0}, {"max_mm": 1.5}) == (
+    assert says(judge({"max_mm": 2.0}, {"max_mm": 1.5})) == (
         "the largest error of the tip is 2 mm, allowed 1.5 mm"
     )
     assert judge({"max_mm": float("nan")}, {"max_mm": 1.5}) is not None
@@ -154,7 +155,9 @@ def test_a_transfer_function_is_no_plain_function():
     """What cannot be multiplied and plotted is told so, though it gives the right numbers."""
     judge, right = Response((1.0, 10.0)), Ratio((2.0,), (1.0, 0.0))
     assert judge(right, right) is None
-    assert "it should be a transfer function, not <function" in judge(lambda s: 2.0 / s, right)
+    assert "it should be a transfer function, not <function" in says(
+        judge(lambda s: 2.0 / s, right)
+    )
 
 
 def at_tip():
@@ -177,7 +180,7 @@ def test_torques_are_judged_by_what_the_tip_does():
     for joint in np.eye(7):
         answer = lk.JointTorque(expected.value + 0.01 * joint)
         assert judge.distance(answer, expected) > 1.0
-        words = judge(answer, expected)
+        words = says(judge(answer, expected))
         assert words.startswith("expected [") and "or any that moves the tip alike, got [" in words
 
 
@@ -185,7 +188,7 @@ def test_torques_are_judged_by_what_the_tip_does():
 def test_a_torque_is_asked_for_by_name(answer):
     """What is no torque has no acceleration to be judged by, and is told what it should be."""
     judge, (expected, _) = AtTip(), at_tip()
-    assert "it should be a JointTorque" in judge(answer, expected)
+    assert "it should be a JointTorque" in says(judge(answer, expected))
     assert judge.distance(answer, expected) == np.inf
 
 

@@ -1,22 +1,18 @@
 """How a student's function is asked: what it is given stays whole, what it gives is data."""
 
 import json
-import sys
 from collections import OrderedDict
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parent))
 from questions import DOUBLE
 
 import labkit as lk
 from labkit.course import Call, Close, Outcome, Question, Test
 from labkit.course.calling import ArgumentChanged, call
 from labkit.course.marking import mark
-from labkit.course.messages import tell
+from labkit.course.messages import tell, why
 from labkit.course.reply import Failed, Here, answer, reply
 from labkit.course.withheld import Withheld
 from labkit.errors import LabkitError
@@ -238,7 +234,7 @@ def test_a_loop_without_end_is_stopped():
 
     verdict = mark(DOUBLE, Here(endless, (), seconds=0.2))
     assert verdict.outcome is Outcome.ERROR and len(calls) == 1
-    assert "TimeoutError: it did not come back within 0.2 s; does every" in verdict.tests[0].says
+    assert "TimeoutError: it did not come back within 0.2 s; does every" in why(verdict.tests[0])
 
 
 def test_an_interrupt_is_nobodys_answer():

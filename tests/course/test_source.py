@@ -3,7 +3,7 @@
 import pytest
 
 from labkit.course.source import look
-from labkit.course.withheld_names import withheld_tools
+from labkit.course.withheld import withheld_tools
 
 WITHHELD = (
     "labkit.Circle",

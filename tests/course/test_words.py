@@ -1,10 +1,7 @@
 """Verdicts in words: read aloud, they say what was asked, what came back and what to do."""
 
-import sys
 from dataclasses import replace
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parent))
 import numpy as np
 from questions import CALLS, DOUBLE, HIDDEN, double, square
 

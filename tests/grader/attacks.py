@@ -143,8 +143,8 @@ FRAMES = answers(
     modules="import sys\nfor m in sys.modules:\n"
     "    if m.startswith('solutions') or m.endswith(('checker', 'bundle')): raise Exception('GOT ' + m)\n"
     "return 0, 0, 0",
-    import_solutions="from solutions.paths import bang_bang\nreturn bang_bang(t, duration)",
-    import_reference="import solutions.problems.paths as p\nraise Exception('GOT ' + str(p))",
+    import_solutions="from solutions.paths.answers import bang_bang\nreturn bang_bang(t, duration)",
+    import_reference="import solutions.paths.problems as p\nraise Exception('GOT ' + str(p))",
     withheld="import labkit\nreturn labkit.BangBang(duration)(t)",
     withheld_module="from labkit.paths import BangBang\nreturn BangBang(duration)(t)",
     withheld_subclass="import labkit\nclass Mine(labkit.BangBang): pass\nreturn Mine(duration)(t)",
@@ -164,9 +164,9 @@ FAKES = cells(
     del_modules="import sys\nfor m in list(sys.modules):\n    if m.startswith('labkit'): del sys.modules[m]",
 )
 FILES = reads(
-    "../../../solutions/paths.py",
+    "../../../solutions/paths/answers.py",
     str(Path(__file__).parents[2] / "solutions" / "paths.py"),
-    "{root}/solutions/paths.py",
+    "{root}/solutions/paths/answers.py",
     "{root}/build/course/bundle/01_paths.json",
     "{root}/gradebook.db",
     "{root}/submitted/student-001/01_paths/01_paths.ipynb",

@@ -9,9 +9,9 @@ import shutil
 import pytest
 from handmade import ROOT
 
+from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
-from labkit.course.release import release
-from labkit.grader.results import Bundle
+from labkit.grader.release import release
 from labkit.grader.sandbox.launch import Sandbox
 
 SEED = 7

@@ -124,7 +124,7 @@ CONTROLS: dict[str, Control] = {
         "import os, sys\nos.makedirs('labkit')\nsys.path.insert(0, '')\n"
         "open('labkit/__init__.py', 'w').write('')\n"
         "open('labkit/course.py', 'w').write('check = lambda name, function: 2.0\\n'\n"
-        "    'also = hint = use = check\\n')",
+        "    'from unittest.mock import MagicMock\\nread_question = student = MagicMock()\\n')",
     ),
     "files": cell(
         takes,

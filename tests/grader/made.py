@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 from handmade import hand_in
 
+from labkit.course.bundle import Bundle
+from labkit.course.verdict import Difference, Kind, Outcome, TestResult, Verdict
 from labkit.grader.grade import hashes, rejection
 from labkit.grader.gradebook import record
-from labkit.grader.results import Bundle, Result, Results
+from labkit.grader.results import Answer, Result, Results
 
 NAME = "01_paths"
 NOTEBOOK = {"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
@@ -25,28 +28,39 @@ def result_of(course, student, *, share=1.0, rejected="", data=None, **more):
     data = notebook_of(student) if data is None else data
     if rejected:
         return rejection(rejected, student, bundle, "made by hand", data)
-    outcome = "right" if share == 1.0 else "wrong"
+    outcome = Outcome.RIGHT if share == 1.0 else Outcome.WRONG
     questions = tuple(
-        {
-            "name": q.name,
-            "outcome": outcome,
-            "earned": round(share * q.points, 2),
-            "points": q.points,
-            "tests": [
-                {"name": t.name, "weight": t.weight, "outcome": outcome, "says": "", "hidden": True}
-                for t in q.tests
-            ],
-            "mistake": None,
-            "notes": [],
-            "source": f"def {q.name}():\n    return {student!r}",
-            "runs": [],
-            "numbers": None,
-        }
+        Answer(
+            Verdict(
+                q.name,
+                outcome,
+                round(share * q.points, 2),
+                q.points,
+                tuple(TestResult(t.name, t.weight, outcome, hidden=True) for t in q.tests),
+            ),
+            source=f"def {q.name}():\n    return {student!r}",
+        )
         for q in bundle.questions
     )
-    score = round(sum(q["earned"] for q in questions), 2)
+    score = round(sum(q.verdict.earned for q in questions), 2)
     made = {"hashes": hashes(data, bundle), "seconds": {"all": 1.0, "student": 0.5}}
-    return Result(NAME, student, score, bundle.points, questions=questions, **(made | more))
+    seed = bundle.data["seed"]
+    return Result(NAME, student, score, bundle.points, seed, questions=questions, **(made | more))
+
+
+def changed(result, number=0, verdict=None, **more):
+    """A result with other contents in one of its answers, and in that answer's verdict."""
+    answers = list(result.questions)
+    found = replace(answers[number].verdict, **(verdict or {}))
+    answers[number] = replace(answers[number], verdict=found, **more)
+    return replace(result, questions=tuple(answers))
+
+
+def saying(verdict, words):
+    """A verdict each test of which failed with an exception that says so."""
+    why = Difference(Kind.RAISED, found=words, error="ValueError")
+    tests = tuple(replace(t, outcome=Outcome.ERROR, difference=why) for t in verdict.tests)
+    return replace(verdict, tests=tests)
 
 
 def handed_in(course, *students):

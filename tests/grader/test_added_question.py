@@ -10,17 +10,17 @@ from dataclasses import replace
 import pytest
 from handmade import QUICK, ROOT, hand_in
 
-from labkit.cli import main
-from labkit.course.handin import read_cells
+from labkit.__main__ import main
+from labkit.course.handin import merge
 from labkit.course.layout import Course
-from labkit.course.merging import merge
-from labkit.course.release import release
+from labkit.course.notebook import read_cells
 from labkit.errors import LabkitError
-from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
-from labkit.grader.engines import nbgrader_api
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.nbgrader_api import nbgrader_api
+from labkit.grader.release import release
 from labkit.grader.results import Results
 
 pytestmark = pytest.mark.slow  # whole classes are graded
@@ -31,7 +31,7 @@ SEED = 7
 
 def becomes(course, monkeypatch, *, complete):
     """The course's sources with the later question, or without it."""
-    whole = (ROOT / "solutions/notebooks" / f"{NAME}.py").read_text()
+    whole = Course(ROOT).notebook_source(NAME).read_text()
     cell = re.search(rf'^# %% question="{LATER}"\n.*?(?=^# %%)', whole, re.MULTILINE | re.DOTALL)
     text = whole if complete else whole.replace(cell.group(), "")
     course.notebook_source(NAME).write_text(text)
@@ -44,8 +44,7 @@ def becomes(course, monkeypatch, *, complete):
 def early(tmp_path_factory):
     """A question less at first; two hand in, are graded, and one gets a mark by hand."""
     root = tmp_path_factory.mktemp("early") / "course"
-    (root / "solutions").mkdir(parents=True)
-    shutil.copytree(ROOT / "solutions/notebooks", root / "solutions/notebooks")
+    shutil.copytree(ROOT / "solutions/paths", root / "solutions/paths")
     shutil.copy(ROOT / "nbgrader_config.py", root)
     course = Course(root)
     with pytest.MonkeyPatch.context() as monkeypatch:
@@ -75,8 +74,8 @@ def marked(early, tmp_path, monkeypatch):
 
 
 def graded(course):
-    done = grade_class(course, NAME, ["ada", "bob"], How(jobs=2, limits=QUICK))
-    results = [one.result for one in done if isinstance(one, Graded)]
+    done = grade_class(course, NAME, ["ada", "bob"], GradeOptions(jobs=2, limits=QUICK))
+    results = [one.result for one in done if isinstance(one, GradedSubmission)]
     return sorted(results, key=lambda result: result.student)
 
 
@@ -119,10 +118,10 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
         assert book.find_comment("circle", NAME, NAME, "bob").manual_comment == "see me"
         assert book.find_submission(NAME, "ada").max_score == 20
     for result in Results(course, NAME):
-        found = {q["name"]: q for q in result.questions}[LATER]
-        assert (found["outcome"], found["earned"]) == ("not attempted", 0.0)
+        found = {q.verdict.name: q.verdict for q in result.questions}[LATER]
+        assert (found.outcome, found.earned) == ("not attempted", 0.0)
         assert "came after the notebook was handed in" in page(result)
-        assert not [q for q in result.questions if q["name"] != LATER and q["notes"]]
+        assert not [q for q in result.questions if q.verdict.name != LATER and q.notes]
 
 
 def test_an_added_question_counts_once_it_is_handed_in(marked):
@@ -191,5 +190,7 @@ def test_a_question_without_points_is_reported_as_void(marked):
     """A voided question is in the report, without a mean."""
     course, _ = marked
     (one, *_) = Results(course, NAME)
-    questions = tuple(dict(q, points=0.0, earned=0.0) for q in one.questions)
+    questions = tuple(
+        replace(q, verdict=replace(q.verdict, points=0.0, earned=0.0)) for q in one.questions
+    )
     assert "| voided |" in report(NAME, [replace(one, questions=questions)], {}, str)

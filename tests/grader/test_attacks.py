@@ -10,6 +10,7 @@ import pytest
 from attacks import CLASSES
 from handmade import QUICK, raw
 
+from labkit.course.messages import why
 from labkit.grader.grade import grade
 from labkit.grader.sandbox.limits import Limits
 
@@ -18,7 +19,7 @@ FAST = Limits(cell=0.5, call=0.3, question=5.0, wall=30.0)
 
 def said(result):
     """All that the student's code could make the result say."""
-    words = [t["says"] for q in result.questions for t in q["tests"]]
+    words = [why(t) for q in result.questions for t in q.verdict.tests]
     return "\n".join([*words, *(f"{c['error']} {c['output']}" for c in result.cells)])
 
 
@@ -51,7 +52,7 @@ def test_attacks_earn_nothing(kind, _blank, solved, released, bundle, sandbox):
         text = said(result)
         if result.score or result.rejected or "GOT" in text:
             wrong.append((name, result.score, result.rejected, text[text.find("GOT") :][:90]))
-        if any(ord(c) < 32 for q in result.questions for t in q["tests"] for c in t["says"]):
+        if any(ord(c) < 32 for q in result.questions for t in q.verdict.tests for c in why(t)):
             wrong.append((name, "control characters"))
         if os.geteuid() == 0 and processes_of(sandbox.uid):
             wrong.append((name, "left processes"))

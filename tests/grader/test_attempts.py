@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from labkit.errors import LabkitError
 from labkit.grader.attempts import attempts, install
 from labkit.grader.collect import collect
+from labkit.grader.exchange import SECRET
 from labkit.grader.gradebook import timestamp
-from labkit.grader.handback import SECRET
 from labkit.grader.roster import FILE as ROSTER
 
 ADA = ("Ada Lovelace", 101)

@@ -15,16 +15,23 @@ from pathlib import Path
 
 import pytest
 from handmade import QUICK, ROOT, add, hand_in
+from plain_nbgrader import grade_with_nbgrader, pack_hidden
 from processes import below, child, wait_until_gone
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.grader import gradebook
-from labkit.grader.batch import Graded, How, common_failures, grade_class, in_shard
-from labkit.grader.engines import grade_with_nbgrader, students
-from labkit.grader.export import rows
+from labkit.grader.batch import (
+    GradedSubmission,
+    GradeOptions,
+    common_failures,
+    grade_class,
+    in_shard,
+)
 from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.marks import marks_of
 from labkit.grader.results import Results
-from labkit.grader.synthetic import differences, make_class
+from labkit.grader.submission import students
+from tests.synthetic import differences, make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 
@@ -35,8 +42,10 @@ PART = 8
 def grade_all(course, **how):
     return [
         one
-        for one in grade_class(course, NAME, students(course, NAME), How(limits=QUICK, **how))
-        if isinstance(one, Graded)
+        for one in grade_class(
+            course, NAME, students(course, NAME), GradeOptions(limits=QUICK, **how)
+        )
+        if isinstance(one, GradedSubmission)
     ]
 
 
@@ -106,7 +115,7 @@ def test_killed_worker(part):
     """A worker that is killed loses nothing: its submission goes to the next one."""
 
     def kill_one():
-        worker = child(os.getpid(), "labkit.grader.worker")
+        worker = child(os.getpid(), "spawn_main")
         below(worker, at_least=4)
         os.kill(worker, signal.SIGKILL)
 
@@ -119,12 +128,12 @@ def test_killed_worker(part):
 
 
 STOPS = [
-    ("SIGTERM", 6),
-    ("SIGINT", 6),
-    ("SIGHUP", 6),
-    ("SIGKILL", 3),
-    pytest.param("SIGTERM", 2, marks=pytest.mark.soak),
-    pytest.param("SIGKILL", 6, marks=pytest.mark.soak),
+    ("SIGTERM", 7),
+    ("SIGINT", 7),
+    ("SIGHUP", 7),
+    ("SIGKILL", 4),
+    pytest.param("SIGTERM", 3, marks=pytest.mark.soak),
+    pytest.param("SIGKILL", 7, marks=pytest.mark.soak),
 ]
 """Signals to the grader, and the number of its processes at the moment when they come."""
 
@@ -136,19 +145,19 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
     """Whatever ends the grader ends all that it started; the next run keeps what is done."""
     for student in ("ada", "bob", "eve"):
         hand_in(course, NAME, student, solved)
-    words = [sys.executable, "-m", "labkit.cli", "grade", NAME, "--jobs", "1"]
+    words = [sys.executable, "-m", "labkit", "grade", NAME, "--jobs", "1"]
     environment = dict(os.environ, PYTHONPATH=str(ROOT))
     with subprocess.Popen(
         [*words, "--course", str(course.root)], env=environment, stdout=subprocess.PIPE, text=True
     ) as run:
-        if processes == 6:  # it is at the second submission
+        if processes == 7:  # it is at the second submission
             hand_in(course, NAME, "bob", add(copy.deepcopy(solved), "while True: pass"))
             assert "ada: 20 of 20" in run.stdout.readline()
         everything = below(run.pid, at_least=processes)
         run.send_signal(getattr(signal, name))
         wait_until_gone(everything)
     before = [result.student for result in Results(course, NAME)]
-    assert before == (["ada"] if processes == 6 else [])
+    assert before == (["ada"] if processes == 7 else [])
     hand_in(course, NAME, "bob", solved)
     done = grade_all(course)
     assert [one.says for one in sorted(done, key=lambda one: one.result.student)] == [
@@ -175,13 +184,14 @@ def test_results_outlive_a_crash_while_writing(part):
 @pytest.mark.slow
 def test_same_scores_as_nbgrader_on_honest_work(course):
     """On honest submissions nbgrader's own engine comes to the same scores."""
+    pack_hidden(course, NAME)
     make_class(course, NAME, seed=5, count=12)
     kinds = json.loads((course.build.parent / "class" / f"{NAME}.json").read_text())
     honest = ("perfect", "perfect, in other words", "mistakes, the first of each")
     for student, about in kinds.items():
         if about["kind"] in honest:
-            mark = grade_with_nbgrader(course, NAME, student)
-            assert mark.score == about["score"], about["kind"]
+            score = grade_with_nbgrader(course, NAME, student)
+            assert score == about["score"], about["kind"]
 
 
 def test_loud_when_many_fail(part):
@@ -190,7 +200,9 @@ def test_loud_when_many_fail(part):
     said = list(common_failures(results * 2))
     assert said
     assert all("fail the test" in sentence for sentence in said)
-    assert len(said) <= len({q["name"] for r in results for q in r.questions}), "one a question"
+    assert len(said) <= len({q.verdict.name for r in results for q in r.questions}), (
+        "one a question"
+    )
     assert not list(common_failures([r for r in results if r.score == r.points] * 5))
 
 
@@ -286,7 +298,7 @@ def test_late_rules_and_timestamps(part):
     with open_gradebook(part) as book:
         assert book.find_submission(NAME, late).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
-    marks = {row.student: (row.raw, row.score) for row in rows(part, NAME)}
+    marks = {row.student: (row.raw, row.score) for row in marks_of(part, NAME)}
     assert marks[late] == (20.0, 0.0)
     assert all(raw == score for student, (raw, score) in marks.items() if student != late)
 

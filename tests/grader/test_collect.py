@@ -25,16 +25,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_platforms import FILES, TEXTS
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
+from labkit.grader.class_list import read_list
 from labkit.grader.collect import collect
 from labkit.grader.enrol import enrol, keep_numbers, settle
-from labkit.grader.handback import SECRET
-from labkit.grader.lms import FILE, Known, known, known_all_term
+from labkit.grader.exchange import SECRET
+from labkit.grader.identity import FILE, all_lms_users, lms_users
+from labkit.grader.platforms import LmsUser
 from labkit.grader.roster import FILE as ROSTER
 from labkit.grader.roster import read_roster, save_roster
 from labkit.grader.sandbox.limits import Limits
-from labkit.grader.student_list import read_list
 
 NOBODY = 64990
 """A user number that this machine does not know."""
@@ -64,8 +65,8 @@ def test_no_name_of_a_file_replaces_anothers_work(bare, tmp_path):
     entry = moodle_writes("Eve Mallory", 77, file, in_folders=False)
     take(bare, zipped(tmp_path / "2.zip", [(entry, "eve's")], (2026, 3, 9, 1, 1, 0)))
     assert counting(bare) == {"Ada-Lovelace": "ada's", "Eve-Mallory": "eve's"}
-    assert known(bare, NAME)["Ada-Lovelace"] == Known("moodle", "42", "Ada Lovelace")
-    assert known(bare, NAME)["Eve-Mallory"] == Known("moodle", "77", "Eve Mallory")
+    assert lms_users(bare, NAME)["Ada-Lovelace"] == LmsUser("moodle", "42", "Ada Lovelace")
+    assert lms_users(bare, NAME)["Eve-Mallory"] == LmsUser("moodle", "77", "Eve Mallory")
 
 
 @settings(max_examples=20, deadline=None)
@@ -81,7 +82,7 @@ def test_everybodys_work_is_under_their_own_number(people):
         entries = [entry for entry in entries if not {"", ".", ".."} & set(entry[0].split("/"))]
         found = list(collect(course, NAME, zipped(Path(folder, "1.zip"), entries)))
         refused = sum(not one.fine for one in found)
-        folders = {who.number: folder for folder, who in known(course, NAME).items()}
+        folders = {who.number: folder for folder, who in lms_users(course, NAME).items()}
         assert {folders[n]: n for _, n in entries if n in folders} == counting(course)
         assert len(counting(course)) == len(entries) - refused
         assert len({folder.casefold() for folder in folders.values()}) == len(folders)
@@ -102,7 +103,7 @@ def test_people_of_one_name_are_told_apart(bare, tmp_path):
         **{"Li-Wei": "7", "Bob": "8", "Li-Wei-9": "9", "Kim-1": "1", "Kim-2": "2"},
         **{"KIM-3": "3", "Kim-4": "4"},
     }
-    assert not known(bare, "02_model")
+    assert not lms_users(bare, "02_model")
 
 
 def test_downloads_of_moodle_canvas_and_the_exchange(bare, tmp_path):
@@ -149,7 +150,7 @@ def roster(course, *lines):
 
 def enrolled(course, path, assignment=None):
     """What `labkit students import` does, but for the gradebook."""
-    done = enrol(read_roster(course), read_list(path), known_all_term(course))
+    done = enrol(read_roster(course), read_list(path), all_lms_users(course))
     save_roster(course, done.roster)
     left = settle(course, done.roster)
     return left + (keep_numbers(course, assignment, done.rows) if assignment else [])
@@ -247,7 +248,7 @@ def test_what_was_collected_before_it_was_known_whose_it_is_is_brought_to_them(b
     assert not enrolled(bare, lst)
     assert counting(bare) == {"grace": NAME} and counting(bare, "02_model") == {"grace": "02_model"}
     assert kept(bare, "grace") == {NAME}
-    assert list(known(bare, NAME)) == ["grace"]
+    assert list(lms_users(bare, NAME)) == ["grace"]
     assert not troubles(bare, tmp_path / f"{NAME}.zip")
 
 
@@ -344,7 +345,7 @@ def test_a_secret_that_is_a_link_is_not_followed(bare, tmp_path):
 
 def test_collect_waits_for_nothing_and_follows_nobody(bare, tmp_path, monkeypatch):
     """A pipe, a link or a huge file costs its own student, in words."""
-    monkeypatch.setattr("labkit.grader.downloads.Limits", lambda: Limits(notebook=1))
+    monkeypatch.setattr("labkit.grader.exchange.Limits", lambda: Limits(notebook=1))
     folders = [handed_in(tmp_path / "in", who, "x") for who in ("ada", "bob", "carl")]
     pipe, link, huge = (folder / f"{NAME}.ipynb" for folder in folders)
     pipe.unlink()
@@ -439,7 +440,7 @@ def test_an_entry_that_lies_is_named(bare, tmp_path, changes, words):
 
 def test_a_bomb_is_not_unpacked(bare, tmp_path, monkeypatch):
     """However small it says it is, and however small it is packed."""
-    monkeypatch.setattr("labkit.grader.downloads.Limits", lambda: Limits(notebook=1))
+    monkeypatch.setattr("labkit.grader.platforms.Limits", lambda: Limits(notebook=1))
     path = tmp_path / "1.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(ADA, b" " * 2**22)
@@ -517,7 +518,7 @@ def test_what_an_older_labkit_knew_is_read(bare, tmp_path):
     }
     (bare.root / "course_private").mkdir()
     (bare.root / FILE).write_text(json.dumps({NAME: old}))
-    assert known(bare, NAME)["Eve"] == Known("moodle", "77", "Eve Mallory")
+    assert lms_users(bare, NAME)["Eve"] == LmsUser("moodle", "77", "Eve Mallory")
     people = [(("Ada Lovelace", 42), "x.ipynb", "a"), (("Eve Mallory", 77), "x.ipynb", "e")]
     take(bare, from_moodle(tmp_path / "1.zip", people))
     assert counting(bare) == {"Ada-Lovelace": "a", "Eve": "e"}

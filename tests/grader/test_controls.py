@@ -16,15 +16,17 @@ import pytest
 from attacks import CLASSES
 from controls import CONTROLS, PLAIN, VICTIM, After
 from handmade import add, hand_in, nbgrader
+from plain_nbgrader import pack_hidden
 
-from labkit.grader.batch import Graded, How, grade_class
-from labkit.grader.engines import students
+from labkit.course.notebook import kind
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.sandbox.limits import Limits
+from labkit.grader.submission import students
 
 NAME = "01_paths"
-FAST = How(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))
+FAST = GradeOptions(limits=Limits(cell=0.5, call=0.3, question=5.0, wall=30.0))
 EVERYBODY = (*CONTROLS, VICTIM)
 
 
@@ -39,6 +41,7 @@ def graded(course, tmp_path):
     mark = f"0.000{os.getpid()}"
     with (course.root / "nbgrader_config.py").open("a") as file:
         file.write("c.pop('Autograde')\nc.pop('HTMLExporter')\n")  # nbgrader's own steps
+    pack_hidden(course, NAME)
     ask_plainly(course)
     try:
         with server() as (port, heard):
@@ -110,7 +113,7 @@ def short(path):
     """A notebook of which only what is graded is left, so that it runs quickly."""
     notebook = json.loads(path.read_text())
     kept = ("answer", "check")
-    notebook["cells"] = [c for c in notebook["cells"] if c["metadata"]["lab"] in kept]
+    notebook["cells"] = [c for c in notebook["cells"] if kind(c) in kept]
     return add(notebook, "from labkit.course import check", at=0)
 
 
@@ -135,7 +138,7 @@ def grade_with_nbgrader(course):
 def grade_isolated(course):
     """Grade with the isolated engine, every student in one run."""
     done = list(grade_class(course, NAME, students(course, NAME), FAST))
-    assert all(isinstance(one, Graded) and not one.result.rejected for one in done), done
+    assert all(isinstance(one, GradedSubmission) and not one.result.rejected for one in done), done
     results = {one.result.student: one.result for one in done}
     of = {kind: results[student(kind)] for kind in EVERYBODY}
     return (

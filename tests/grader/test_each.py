@@ -8,9 +8,9 @@ import os
 
 import pytest
 from handmade import QUICK, add, hand_in
-from made import NAME, graded, handed_in, result_of
+from made import NAME, changed, graded, handed_in, result_of
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import batch, feedback, gradebook, results
 from labkit.grader.each import Failed, Failures, for_student
@@ -72,11 +72,11 @@ def test_a_lone_surrogate_costs_nobody_a_mark(course, solved, capsys, monkeypatc
     assert "ufffd" in Results(course, NAME).path("bob").read_text("ascii")
 
 
-@pytest.mark.parametrize("part", [{"source": "x = 1 # \ud800"}, {"notes": ["\ud800"]}])
+@pytest.mark.parametrize("part", [{"source": "x = 1 # \ud800"}, {"notes": ("\ud800",)}])
 def test_a_result_that_cannot_be_written_is_rolled_back_alone(course, part):
     """Of a class of three, two are recorded and one is named; a rerun with a good one mends it."""
     done = [result_of(course, student) for student in CLASS]
-    done[1].questions[0].update(part)
+    done[1] = changed(done[1], **part)
     bad = graded(course, *done, recorded=False) or record(course, NAME, done)
     if "source" in part:
         (failed,) = bad
@@ -119,8 +119,7 @@ def test_numbers_of_any_size_have_a_page(marked, capsys):
     """An answer whose numbers span all of floating point is drawn like any other."""
     one = result_of(marked, "bob")
     numbers = {"call": "f()", "expected": [0.0, 1.0, 5e-324], "given": [-1e308, 1e308, -1.7e308]}
-    one.questions[0]["numbers"] = numbers | {"of": 3}
-    graded(marked, one)
+    graded(marked, changed(one, numbers=numbers | {"of": 3}))
     assert verb(marked, capsys, "feedback")[0] == 0
     text = (marked.root / "feedback" / "bob" / NAME / f"{NAME}.html").read_text()
     assert "1e+308" in text and "nan" not in text

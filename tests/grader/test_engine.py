@@ -10,18 +10,21 @@ import pytest
 from handmade import QUICK, add, cell_of, put, raw
 
 from labkit.course import Call, Loop, question_data, read_question
+from labkit.course.bundle import Bundle
 from labkit.course.judges import Close
 from labkit.course.marking import mark
+from labkit.course.messages import why
 from labkit.course.question import Question, Test
 from labkit.course.source import look
+from labkit.course.verdict import Outcome
 from labkit.grader.grade import grade
 from labkit.grader.plan import imports, plan
-from labkit.grader.results import Bundle, Result
+from labkit.grader.results import Result
 from labkit.grader.sandbox import parse as cells
 
 
 def earned(result):
-    return {q["name"]: q["earned"] for q in result.questions}
+    return {q.verdict.name: q.verdict.earned for q in result.questions}
 
 
 @pytest.fixture
@@ -35,12 +38,12 @@ def test_full_marks_and_none(marks, solved, blank):
     assert marks(solved).score == 20
     result = marks(blank)
     assert result.score == 0
-    assert {q["outcome"] for q in result.questions} == {"not attempted"}
+    assert {q.verdict.outcome for q in result.questions} == {"not attempted"}
 
 
 def test_same_verdicts_as_in_the_notebook(marks, blank, released, bundle):
     """Each known mistake is told by the same words here as by `mark` in one process."""
-    from labkit.course.inline import inline
+    from tests.synthetic.inline import inline
 
     problems = {p.name: p for p in released.problems("01_paths")}
     questions = {q["name"]: read_question(q) for q in bundle.data["questions"]}
@@ -51,11 +54,7 @@ def test_same_verdicts_as_in_the_notebook(marks, blank, released, bundle):
         result = marks(blank)
         for name, problem in problems.items():
             here = mark(questions[name], problem.wrong[k % len(problem.wrong)].function)
-            there = next(q for q in result.questions if q["name"] == name)
-            assert there["earned"] == here.earned
-            assert there["outcome"] == here.outcome.value
-            assert (there["mistake"] or {}).get("name") == (here.mistake and here.mistake.name)
-            assert [t["outcome"] for t in there["tests"]] == [t.outcome.value for t in here.tests]
+            assert next(q.verdict for q in result.questions if q.verdict.name == name) == here
 
 
 def test_noise_costs_nothing(marks, solved):
@@ -84,8 +83,8 @@ def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
         "def trapezoid(t, distance, v_max, a_max):\n    return within_limits(1.0).duration, 0, 0"
     )
     put(solved, "trapezoid", source)
-    says = next(q for q in marks(solved).questions if q["name"] == "trapezoid")["tests"][0]["says"]
-    assert "NameError" not in says
+    asked = next(q.verdict for q in marks(solved).questions if q.verdict.name == "trapezoid")
+    assert "NameError" not in why(asked.tests[0])
 
 
 YOURS = """
@@ -136,9 +135,9 @@ def test_one_question_lost(marks, solved, body, says):
     put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
     result = marks(solved)
     assert result.score == 16
-    circle = next(q for q in result.questions if q["name"] == "circle")
-    assert circle["outcome"] == "error"
-    assert says in circle["tests"][0]["says"]
+    circle = next(q.verdict for q in result.questions if q.verdict.name == "circle")
+    assert circle.outcome is Outcome.ERROR
+    assert says in why(circle.tests[0])
 
 
 def test_a_deadly_cell_is_left_out(marks, solved):
@@ -155,8 +154,8 @@ def test_withheld_names_stop_working_for_one_question_only(marks, solved):
     result = marks(solved)
     assert earned(result)["circle"] == 0
     assert earned(result)["compose"] == 4  # is given circles
-    circle = next(q for q in result.questions if q["name"] == "circle")
-    assert circle["outcome"] == "not counted" and circle["withheld"] == ["labkit.Circle"]
+    circle = next(q.verdict for q in result.questions if q.verdict.name == "circle")
+    assert circle.outcome is Outcome.NOT_COUNTED and circle.withheld == ("labkit.Circle",)
 
 
 def test_hidden_cases_stay_hidden(marks, blank, bundle):
@@ -167,10 +166,10 @@ def test_hidden_cases_stay_hidden(marks, blank, bundle):
         "    y = 1 - x\n    a = 4 / duration**2\n"
         "    if x < .5: return 2 * x * x, 4 * x / duration * ins, a * ins\n"
         "    return 1 - 2 * y * y, 4 * y / duration * ins, -a * ins")  # fmt: skip
-    tests = next(q for q in marks(blank).questions if q["name"] == "bang_bang")["tests"]
-    hidden = [t for t in tests if t["hidden"]]
+    asked = next(q.verdict for q in marks(blank).questions if q.verdict.name == "bang_bang")
+    hidden = [why(t) for t in asked.tests if t.hidden]
     assert hidden
-    assert all(t["says"].endswith("raised Exception") for t in hidden)
+    assert all(says.endswith("raised Exception") for says in hidden)
 
 
 def test_big_pictures_are_welcome(bundle, sandbox, solved):
@@ -230,12 +229,12 @@ def test_a_magic_that_keeps_names_to_itself_defines_nothing(marks, solved, magic
     """In a notebook there is no answer then; here neither, and the note says why."""
     cell = cell_of(solved, "circle")
     cell["source"] = f"{magic}\n{''.join(cell['source'])}"
-    circle = next(q for q in marks(solved).questions if q["name"] == "circle")
+    circle = next(q for q in marks(solved).questions if q.verdict.name == "circle")
     word = magic.split()[0]
-    assert circle["notes"] == [
-        f"circle: its cell begins with {word}, which keeps what it defines to itself"
-    ]
-    assert circle["earned"] == 0
+    assert circle.notes == (
+        f"circle: its cell begins with {word}, which keeps what it defines to itself",
+    )
+    assert circle.verdict.earned == 0
 
 
 def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
@@ -248,7 +247,7 @@ def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
     add(solved, "\ud83d = 1\n# \u2066 \u2028")
     result = marks(solved)
     assert result.score == 20
-    sources = [q["source"] for q in result.questions] + [own["source"] for own in result.own]
+    sources = [q.source for q in result.questions] + [own["source"] for own in result.own]
     assert all("x = '\\ud800'" in source for source in sources[:-1])
     for text in sources:
         text.encode("utf-8")
@@ -260,14 +259,14 @@ def test_an_argument_that_is_changed_is_told(marks, solved):
     put(solved, "segment_at", "def segment_at(durations, t):\n    n = 0\n"
         "    while len(durations) > 1 and t >= durations[0]:\n"
         "        t -= durations.pop(0)\n        n += 1\n    return n, t")  # fmt: skip
-    asked = next(q for q in marks(solved).questions if q["name"] == "segment_at")
-    assert asked["outcome"] == "wrong"
+    asked = next(q.verdict for q in marks(solved).questions if q.verdict.name == "segment_at")
+    assert asked.outcome is Outcome.WRONG
     assert any(
-        test["says"].endswith(
+        why(test).endswith(
             ": segment_at changes the list `durations` that it is given; "
             "work on a copy, list(durations)"
         )
-        for test in asked["tests"]
+        for test in asked.tests
     )
 
 
@@ -327,11 +326,11 @@ def test_the_arm_stays_with_the_checker(bundle, sandbox, blank):
         notebook = {"nbformat": 4, "cells": [{"cell_type": "code", "id": "x", "source": source}]}
         result = grade(raw(notebook), "ada", Bundle(data), sandbox, QUICK)
         assert result.score == points, result.questions
-        assert result.questions[0]["runs"] == [], "a hidden run is not for his eyes"
+        assert result.questions[0].runs == (), "a hidden run is not for his eyes"
     tests = (Test("it follows", (replace(tight, hidden=False),)),)
     shown = Bundle(data | {"questions": [question_data(replace(question, tests=tests))]})
     seen = [grade(raw(notebook), "ada", shown, sandbox, QUICK) for _ in range(2)]
-    (run,) = seen[0].questions[0]["runs"]
+    (run,) = seen[0].questions[0].runs
     assert run["measures"][measure] == pytest.approx(here[measure], rel=1e-5)
     assert run["motion"]
     assert seen[0].verdict == seen[1].verdict, "the same run again, to the last digit"

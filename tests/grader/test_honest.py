@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labkit.course.inline import inline
 from labkit.course.layout import Course
 from labkit.course.solved import inlined
 from labkit.course.source import look
-from labkit.course.withheld_names import withheld_tools
+from labkit.course.withheld import withheld_tools
 from labkit.grader import synthetic_kinds
 from labkit.grader.plan import plan
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.tricks import tricks
-from labkit.grader.synthetic import Draft
+from tests.synthetic import Draft
+from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
 
@@ -74,7 +74,7 @@ def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blan
         "if __name__ == '__main__': print(f.__name__, lk.__version__, lk.Circle.__doc__)",
         "lk.plotting.show('x'); plt.rcParams['figure.dpi'] = 90; np.random.seed(1)",
         "fields = {name: getattr(log, name) for name in ('q', 'dq')}; vars(args)",
-        "from labkit.course import check, hint, use, also\nimport labkit.tags.tag",
+        "from labkit.course import check, hint, use\nimport labkit.tags.tag",
         "x = lk.Circle(a, b)(0.3)\nring = lk.BangBang(2.0)\nhelp(lk); dir(lk)",
         "import pinocchio as pin\npin.rnea(model, data, q, dq, ddq)",
         "np.testing.assert_allclose(a, b)\nwith open('notes.txt') as file: text = file.read()",
@@ -102,8 +102,8 @@ def test_what_students_do_is_no_trick(source):
         ("np.abs = max", "changes numpy.abs"),
         ("object.__new__(lk.BangBang)", "uses __new__"),
         ("saved = lk.BangBang.__init__", "uses __init__"),
-        ("lk.scalings._Profile", "uses labkit.paths._Profile"),
-        ("open(lk.scalings.__file__)", "uses labkit.paths.__file__"),
+        ("lk.paths._Profile", "uses labkit.paths._Profile"),
+        ("open(lk.paths.__file__)", "uses labkit.paths.__file__"),
         ("vars(lk)['BangBang']", "reaches into labkit by vars"),
         ("getattr(lk, 'Bang' + 'Bang')", "reaches into labkit by getattr"),
         ("exec('x')", "calls exec"),

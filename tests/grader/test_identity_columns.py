@@ -7,8 +7,9 @@ import io
 
 import pytest
 
-from labkit.grader.export import LAYOUTS, Row, as_csv, left_out
-from labkit.grader.lms import Known
+from labkit.grader.export import LAYOUTS, as_csv, left_out
+from labkit.grader.marks import Mark
+from labkit.grader.platforms import LmsUser
 from labkit.grader.roster import Student
 
 ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")
@@ -16,7 +17,7 @@ ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")
 
 def row(student="ada", known=None, person=None, email="", first="", last=""):
     who = (student, first, last, email, "", "", "")
-    return Row(*who, {}, 1.0, 0.0, 2.0, known=known, person=person)
+    return Mark(*who, {}, 1.0, 0.0, 2.0, user=known, person=person)
 
 
 def table(layout, *marks):
@@ -25,7 +26,7 @@ def table(layout, *marks):
 
 def test_the_roster_says_who_a_student_is():
     """Also for one whose work came from another platform, or was brought by hand."""
-    mark = row(person=ADA, known=Known("moodle", "42", "Ada Lovelace"), email=ADA.email)
+    mark = row(person=ADA, known=LmsUser("moodle", "42", "Ada Lovelace"), email=ADA.email)
     canvas = table("canvas", mark)[-1]
     assert [canvas[x] for x in ("ID", "SIS User ID", "SIS Login ID")] == ["7", "1001", "alovelace"]
     moodle = table("moodle", mark)[-1]
@@ -35,17 +36,19 @@ def test_the_roster_says_who_a_student_is():
 
 def test_a_login_of_the_exchange_is_one():
     """A folder that was named after a person in a download is none."""
-    assert row("ada-2", Known("exchange", "ada", "ada")).login == "ada"
-    assert row("Ada-Lovelace", Known("moodle", "1", "Ada Lovelace")).login == ""
+    assert row("ada-2", LmsUser("exchange", "ada", "ada")).login == "ada"
+    assert row("Ada-Lovelace", LmsUser("moodle", "1", "Ada Lovelace")).login == ""
     assert row("ada").login == "ada"
     assert row("Ada", person=Student("Ada", "Ada")).login == ""
 
 
 def test_no_participant_has_two_marks():
     """Where an older labkit gave one number to two students, neither gets the other's mark."""
-    marks = [row(who, Known("moodle", n, who)) for who, n in (("a", "42"), ("b", "42"), ("c", "3"))]
+    marks = [
+        row(who, LmsUser("moodle", n, who)) for who, n in (("a", "42"), ("b", "42"), ("c", "3"))
+    ]
     assert [line["Identifier"] for line in table("moodle-worksheet", *marks)] == ["Participant 3"]
-    assert left_out("moodle-worksheet", marks) == "2 of 3 cannot be told by this table: a, b"
+    assert left_out("moodle-worksheet", marks) == "2 of 3 cannot be matched by this table: a, b"
 
 
 @pytest.mark.parametrize("login", ["+491234", "-ada", "@ada", "+a-b.c@x.org"])
@@ -63,4 +66,4 @@ def test_what_could_be_a_formula_is_quoted_and_named(login):
     assert table("canvas", mark)[-1]["SIS Login ID"] == f"'{login}"
     assert table("moodle", mark)[-1]["First name"] == f"'{login}"
     assert table("moodle", mark)[-1]["Email address"] == f"'{login}"
-    assert "1 of 1 cannot be told by this table" in left_out("moodle", [mark])
+    assert "1 of 1 cannot be matched by this table" in left_out("moodle", [mark])

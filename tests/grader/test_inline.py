@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.course.inline import inline
 from labkit.course.layout import Course
+from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
 
 
 def test_a_parameter_keeps_its_name_though_a_question_has_it_too():
     """`coriolis` is given a function that is called as another answer of its module."""
-    from solutions.model import coriolis
+    from solutions.model.answers import coriolis
 
     names = {}
     exec(inline(coriolis, "coriolis"), names)

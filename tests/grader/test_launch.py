@@ -23,9 +23,9 @@ PLACES = (Path("/tmp"), Path("/dev/shm"), Path("/usr/local/share"), Path(sys.pre
 
 def run(sandbox, source):
     """What a cell prints, alone in a session; what it raises fails the test."""
-    with sandbox.enter("student", Limits()) as inside:
-        inside.line.send({"cell": 0, "source": source, "answers": [], "seconds": 30.0})
-        said = inside.line.read(60.0)
+    with sandbox.spawn("student", Limits()) as inside:
+        inside.connection.send({"cell": 0, "source": source, "answers": [], "seconds": 30.0})
+        said = inside.connection.read(60.0)
     assert not said["error"]
     return said["output"]
 

@@ -7,11 +7,11 @@ import itertools
 import pytest
 from made import NAME, handed_in
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import lock
-from labkit.grader.batch import How, grade_class
-from labkit.grader.lock import WHOLE, alone
+from labkit.grader.batch import GradeOptions, grade_class
+from labkit.grader.lock import WHOLE, exclusive_run
 
 SHARDS = [WHOLE, (1, 2), (2, 2), (1, 3)]
 
@@ -25,16 +25,16 @@ def hurried(monkeypatch):
 def test_only_other_shards_of_one_split_run_together(tmp_path, first, second):
     """A whole run excludes all; 1/2 goes with 2/2 alone, and never with itself or with 1/3."""
     together = first != second and first[1] == second[1]
-    with alone(tmp_path / "r", first):
+    with exclusive_run(tmp_path / "r", first):
         if together:
-            with alone(tmp_path / "r", second):
+            with exclusive_run(tmp_path / "r", second):
                 pass
         else:
             with pytest.raises(LabkitError, match="another run is grading r; wait for it"):
-                alone(tmp_path / "r", second).__enter__()
-        with alone(tmp_path / "other", second):
+                exclusive_run(tmp_path / "r", second).__enter__()
+        with exclusive_run(tmp_path / "other", second):
             pass
-    with alone(tmp_path / "r", second):
+    with exclusive_run(tmp_path / "r", second):
         pass
 
 
@@ -42,8 +42,11 @@ def test_only_other_shards_of_one_split_run_together(tmp_path, first, second):
 def test_verbs_that_grade_exclude_each_other(course, capsys, words):
     """Beside a run that is under way, grade, a shard of it and regrade end in a sentence."""
     handed_in(course, "ada")
-    with alone(course.results / NAME):
+    with exclusive_run(course.results / NAME):
         assert main([*words, NAME, "--course", str(course.root)]) == 2
         assert "another run is grading" in capsys.readouterr().err
-    with alone(course.results / NAME, (2, 2)), pytest.raises(LabkitError, match="another run"):
-        next(grade_class(course, NAME, ["ada"], How()))
+    with (
+        exclusive_run(course.results / NAME, (2, 2)),
+        pytest.raises(LabkitError, match="another run"),
+    ):
+        next(grade_class(course, NAME, ["ada"], GradeOptions()))

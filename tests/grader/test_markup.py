@@ -7,13 +7,14 @@ from pathlib import Path
 
 import nbformat
 import pytest
-from made import NAME, graded, result_of
+from made import NAME, changed, graded, result_of, saying
 from nbconvert import HTMLExporter
 from nbgrader.server_extensions.formgrader.handlers import template_path
 from traitlets.config import Config
 from traitlets.config.loader import PyFileConfigLoader
 
-from labkit.cli import main
+from labkit.__main__ import main
+from labkit.course.verdict import Outcome
 from labkit.grader.markup import clean
 
 MARKDOWN = [
@@ -122,8 +123,9 @@ def test_what_grading_writes_down_does_not_run(course, show, configured):
     cells = ("text", "code")
     own = [{"after": "", "type": kind, "source": x} for x in MARKDOWN for kind in cells]
     one = result_of(course, "ada", own=tuple(own), notes=(MARKDOWN[0],))
-    one.questions[0].update(source=MARKDOWN[0], notes=[MARKDOWN[1]], outcome="wrong")
-    one.questions[0]["tests"][0].update(says=MARKDOWN[6], outcome="wrong")
+    tests = saying(one.questions[0].verdict, MARKDOWN[6]).tests
+    wrong = {"outcome": Outcome.WRONG, "tests": tests}
+    one = changed(one, verdict=wrong, source=MARKDOWN[0], notes=(MARKDOWN[1],))
     assert graded(course, one) == []
     path = course.root / "autograded" / "ada" / NAME / f"{NAME}.ipynb"
     page = show(nbformat.read(path, 4), "formgrade", configured=configured)
@@ -147,7 +149,7 @@ def test_what_everybody_writes_is_shown(show):
 
 
 def test_html_of_a_table_is_kept():
-    """Known elements stay and unknown ones are text; bytes are taken as well."""
+    """LmsUser elements stay and unknown ones are text; bytes are taken as well."""
     shown = clean(b"<table><tr><td>1</td></tr></table><script>x</script>")
     assert "<td>1</td>" in shown and shown.endswith("&lt;script&gt;x&lt;/script&gt;")
 

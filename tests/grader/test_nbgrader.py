@@ -9,7 +9,7 @@ import pytest
 from controls import CONTROLS
 from handmade import cell_of, hand_in, nbgrader
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.results import Results
 

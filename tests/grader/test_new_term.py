@@ -7,13 +7,13 @@ import pytest
 from courses import copied
 
 from labkit import LabkitError
-from labkit.cli import main
+from labkit.__main__ import main
+from labkit.course.bundle import Bundle
 from labkit.course.layout import PUBLIC_SEED, Course
-from labkit.course.release import FORBIDDEN
 from labkit.errors import UnknownName
 from labkit.grader import term
-from labkit.grader.repositories import export_course
-from labkit.grader.results import Bundle
+from labkit.grader.release import FORBIDDEN
+from labkit.grader.student_bundle import export_course
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -59,7 +59,7 @@ def test_the_next_term_archives_the_names_and_forgets_them(course):
     folder = term.archive(course)
     assert not course.submitted.exists()
     assert (folder / "submitted" / "ada").is_dir()
-    assert term.forget(course) == [folder]
+    assert term.purge(course) == [folder]
     assert not folder.exists()
 
 
@@ -107,7 +107,7 @@ def test_the_students_repository_holds_no_answer(tmp_path):
     assert (student / "labkit/run.py").exists()
     assert not (student / "solutions").exists()
     assert not (student / "labkit/grade").exists()
-    assert (private / "solutions/paths.py").exists()
+    assert (private / "solutions/paths/answers.py").exists()
     for path in student.rglob("*.ipynb"):
         assert not any(word in path.read_text() for word in FORBIDDEN)
 

@@ -9,13 +9,13 @@ import pytest
 from courses import copied
 from handmade import ROOT
 
-from labkit.cli import main
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.batch import How
-from labkit.grader.rehearsal import rehearse
+from labkit.grader.batch import GradeOptions
 from labkit.grader.results import Results
-from labkit.grader.synthetic import expected_file
+from tests.synthetic import expected_file
+from tests.synthetic.__main__ import main
+from tests.synthetic.rehearsal import rehearse
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 
@@ -26,10 +26,10 @@ NAME, COUNT = "00_warmup", 6
 def played(tmp_path_factory):
     """A folder in which the first three steps are done, and then, anew, all of them."""
     to = tmp_path_factory.mktemp("rehearsal") / "term"
-    steps = rehearse(Course(ROOT), NAME, to, COUNT, How(jobs=2))
+    steps = rehearse(Course(ROOT), NAME, to, COUNT, GradeOptions(jobs=2))
     first = [next(steps) for _ in range(3)]
     steps.close()
-    return Course(to), first, list(rehearse(Course(ROOT), NAME, to, COUNT, How(jobs=2)))
+    return Course(to), first, list(rehearse(Course(ROOT), NAME, to, COUNT, GradeOptions(jobs=2)))
 
 
 def test_a_term_is_played_through(played):
@@ -49,7 +49,7 @@ def test_it_goes_on_where_it_was_stopped(played):
     assert f"{COUNT} of {COUNT} are new" in first[2]
     assert f"0 of {COUNT} are new" in then[0]
     assert f"{COUNT} of {COUNT} anew" in then[1]
-    again = list(rehearse(Course(ROOT), NAME, course.root, COUNT, How(jobs=2)))
+    again = list(rehearse(Course(ROOT), NAME, course.root, COUNT, GradeOptions(jobs=2)))
     assert f"0 of {COUNT} anew" in again[1]
 
 
@@ -75,7 +75,7 @@ def test_a_mark_that_nobody_deserved_is_said(played):
     data[who]["questions"] = dict.fromkeys(data[who]["questions"], 99.0)
     path.write_text(json.dumps(data))
     with pytest.raises(LabkitError, match="not what was deserved"):
-        list(rehearse(Course(ROOT), NAME, course.root, COUNT, How(jobs=2)))
+        list(rehearse(Course(ROOT), NAME, course.root, COUNT, GradeOptions(jobs=2)))
     path.write_text(text)
 
 
@@ -86,15 +86,16 @@ def test_a_true_course_is_no_stage(tmp_path):
     notebook.parent.mkdir(parents=True)
     notebook.write_text("work of a week")
     with pytest.raises(LabkitError, match="new or empty"):
-        next(rehearse(course, NAME, course.root, COUNT, How()))
+        next(rehearse(course, NAME, course.root, COUNT, GradeOptions()))
     assert notebook.exists() and not course.release.exists()
 
 
-def test_command(played, capsys):
-    """`labkit rehearse` does it from the command line, and writes nothing into the course."""
+def test_command(played, monkeypatch, capsys):
+    """`python -m tests.synthetic --rehearse` does it, and writes nothing into the course."""
     course, _, _ = played
     before = sorted(Results(Course(ROOT), NAME).folder.glob("*"))
-    words = ["rehearse", NAME, "--count", str(COUNT), "--to", str(course.root)]
-    assert main([*words, "--course", str(ROOT)]) == 0
+    words = ["--count", str(COUNT), "--course", str(ROOT), "--rehearse", str(course.root)]
+    monkeypatch.setattr("sys.argv", ["synthetic", NAME, *words])
+    assert main() == 0
     assert "every mark is what was deserved" in capsys.readouterr().out
     assert sorted(Results(Course(ROOT), NAME).folder.glob("*")) == before

@@ -8,16 +8,15 @@ import nbformat
 import pytest
 from courses import copied
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course import read_question
 from labkit.course.layout import Course
 from labkit.course.notebook import brief, source_notebook
 from labkit.course.problem import _none
-from labkit.course.release import FORBIDDEN, release
+from labkit.course.refusals import refusals, stand_ins
 from labkit.course.solved import inlined, solution_notebook
-from labkit.course.stand_in import stand_ins
-from labkit.course.unearned import refusals
 from labkit.errors import LabkitError
+from labkit.grader.release import FORBIDDEN, release
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
@@ -66,7 +65,7 @@ def test_stubs_and_questions_must_match(tmp_path):
     for source, sentence in (
         ("# %%\nx = 1\n", "has 0 stubs of joint_error"),
         (stub + stub, "has 2 stubs of joint_error"),
-        (stub.replace("def joint_error", "def error"), "defines no joint_error"),
+        (stub.replace("def joint_error", "def error"), "does not define joint_error"),
         (stub.replace("    ### END SOLUTION\n", ""), "needs one region"),
     ):
         text.write_text(source)
@@ -92,7 +91,7 @@ def test_solutions_are_whole(name):
 def test_an_answer_that_leaks_stops_the_release(tmp_path):
     """If an answer stands outside its solution region, nothing is released."""
     course = copied(tmp_path)
-    path = tmp_path / "solutions" / "notebooks" / f"{NAME}.py"
+    path = course.notebook_source(NAME)
     path.write_text(path.read_text() + "\n# %%\nfrom solutions.warmup import joint_error\n")
     with pytest.raises(LabkitError, match="nothing released"):
         release(course, NAME, 1)
@@ -102,8 +101,9 @@ def test_an_answer_that_leaks_stops_the_release(tmp_path):
 def test_a_notebook_without_problems_is_a_sentence(tmp_path):
     """A source that somebody has begun says which file is still to be written."""
     course = copied(tmp_path)
-    (tmp_path / "solutions/notebooks/08_dance.py").write_text("# %%\n")
-    with pytest.raises(LabkitError, match=r"write solutions/problems/dance\.py with PROBLEMS"):
+    (tmp_path / "solutions/dance").mkdir()
+    (tmp_path / "solutions/dance/08_dance.py").write_text("# %%\n")
+    with pytest.raises(LabkitError, match=r"write solutions/dance/problems\.py with PROBLEMS"):
         course.problems("08_dance")
 
 
@@ -124,7 +124,7 @@ def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, cap
     def missing(*args):
         raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
 
-    monkeypatch.setattr("labkit.course.release.release", missing)
+    monkeypatch.setattr("labkit.grader.release.release", missing)
     assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
     said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
     assert capsys.readouterr().err == said

@@ -11,14 +11,19 @@ import pytest
 from handmade import QUICK, raw
 from hypothesis import given
 from hypothesis import strategies as st
-from made import NAME, graded, result_of
+from made import NAME, graded, result_of, saying
+from made import changed as changed_in
 
-from labkit.cli import main
+from labkit.__main__ import main
+from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError
+from labkit.formats import FORMAT, stamp
 from labkit.grader import results as module
 from labkit.grader.clean import clean_data
+from labkit.grader.each import Failed
 from labkit.grader.grade import grade
 from labkit.grader.results import Result, Results, write
+from labkit.grader.standing import standing
 
 WRONG = {
     "hashes {}": {"hashes": {}},
@@ -47,7 +52,8 @@ def marked(course):
 
 def changed(question):
     def change(data):
-        data["questions"][0].update(question)
+        place = data["questions"][0]
+        (place if "numbers" in question else place["verdict"]).update(question)
 
     return change
 
@@ -74,13 +80,38 @@ def test_what_is_not_a_whole_result_is_none(marked, capsys, change):
         assert line.endswith(f"type: labkit grade {NAME} --student ada")
 
 
+@pytest.mark.parametrize("numbers", [{}, {"format": FORMAT + 1}, {"physics": 99}])
+def test_results_of_another_version_are_refused(marked, numbers):
+    """One of version 0.1, or of a newer labkit, is not read as a result; grading makes it anew."""
+    results = Results(marked, NAME)
+    data = json.loads(results.path("ada").read_text())
+    old = {key: x for key, x in data.items() if key not in stamp()}
+    results.path("ada").write_text(json.dumps(old | stamp() | numbers if numbers else old))
+    assert results.get("ada") is None
+    with pytest.raises(
+        LabkitError, match=r"^ada\.json has (format|physics) \d+, this labkit reads"
+    ):
+        results.read("ada")
+    (failed,) = [x for x in standing(marked, NAME) if isinstance(x, Failed)]
+    assert str(failed).endswith(f"type: labkit grade {NAME} --student ada")
+
+
+def test_a_bundle_of_another_version_is_refused(course):
+    """It is released again with its own seed, which the sentence names."""
+    path = course.bundle / f"{NAME}.json"
+    data = json.loads(path.read_text())
+    path.write_text(json.dumps({key: x for key, x in data.items() if key not in stamp()}))
+    with pytest.raises(LabkitError, match=f"labkit release {NAME} --seed {data['seed']}$"):
+        Bundle.of(course, NAME)
+
+
 @pytest.mark.parametrize("text", [*TEXTS, b"\xff\xfe"])
 def test_what_is_no_json_of_a_result_is_none(marked, text):
     """Half a file, an empty one, a list, other encodings, nesting without end."""
     path = Results(marked, NAME).path("ada")
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     assert Results(marked, NAME).get("ada") is None
-    with pytest.raises(LabkitError, match=r"ada\.json is"):
+    with pytest.raises(LabkitError, match=r"ada\.json (is|has)"):
         Results(marked, NAME).read("ada")
 
 
@@ -112,8 +143,8 @@ def test_texts_are_safe_once_they_are_read(course):
     """Surrogates, a terminal's commands and turned writing are gone from every field."""
     bad = "a\ud800\x1b[2J\u202eb"
     one = result_of(course, "ada", notes=(bad,), own=({"after": bad, "type": bad, "source": bad},))
-    one.questions[0].update(source=bad, notes=[bad])
-    one.questions[0]["tests"][0]["says"] = bad
+    (test, *_) = saying(one.questions[0].verdict, bad).tests
+    one = changed_in(one, verdict={"tests": (test,)}, source=bad, notes=(bad,))
     text = Result.read(one.text()).text()
     assert not [x for x in ("ud800", "u001b", "u202e") if x in text]
     assert text.count(r"a\ufffd[2Jb") == 7

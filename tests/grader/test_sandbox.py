@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import subprocess
@@ -13,6 +14,7 @@ from handmade import ROOT
 from labkit.grader.doctor import DOCKER, elsewhere, examine
 from labkit.grader.sandbox.launch import FIRST_UID, Sandbox
 
+SANDBOX = ROOT / "labkit" / "grader" / "sandbox"
 DOCKERS_OWN = (
     "chown dac_override fowner fsetid kill setgid setuid setpcap net_bind_service net_raw "
     "sys_chroot mknod audit_write setfcap"
@@ -58,7 +60,7 @@ def test_dockers_rights_suffice(added):
         return
     left = ",".join(f"+{name}" for name in (*DOCKERS_OWN.split(), *rights(added)))
     run = subprocess.run(
-        ["setpriv", f"--bounding-set=-all,{left}", sys.executable, "-m", "labkit.cli", "doctor"],
+        ["setpriv", f"--bounding-set=-all,{left}", sys.executable, "-m", "labkit", "doctor"],
         env=dict(os.environ, PYTHONPATH=str(ROOT)),
         capture_output=True,
         text=True,
@@ -66,3 +68,18 @@ def test_dockers_rights_suffice(added):
     )
     assert run.returncode == (0 if added == DOCKER else 1), run.stdout + run.stderr
     assert (elsewhere() in run.stdout) == (added != DOCKER)
+
+
+@pytest.mark.parametrize("path", sorted(SANDBOX.glob("*.py")), ids=lambda path: path.name)
+def test_the_sandbox_knows_nothing_of_the_grader(path):
+    """Its files import each other, the course and the lab, and no other file of the grader."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.ImportFrom):
+            package = ["labkit", "grader", "sandbox"][: 4 - node.level] if node.level else []
+            stem = ".".join([*package, *([node.module] if node.module else [])])
+            names = [f"{stem}.{alias.name}" for alias in node.names]
+        else:
+            names = [alias.name for alias in getattr(node, "names", []) if hasattr(alias, "name")]
+        for name in names:
+            inside = name.startswith("labkit.grader.sandbox.")
+            assert inside or not name.startswith("labkit.grader"), name

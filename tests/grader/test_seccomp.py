@@ -130,9 +130,9 @@ def run(sandbox):
     """Runs one cell in a session of its own; what it raised, empty if nothing."""
 
     def cell(source):
-        with sandbox.enter("student", Limits()) as inside:
-            inside.line.send({"cell": 0, "source": source, "answers": [], "seconds": 30.0})
-            return inside.line.read(60.0)["error"]
+        with sandbox.spawn("student", Limits()) as inside:
+            inside.connection.send({"cell": 0, "source": source, "answers": [], "seconds": 30.0})
+            return inside.connection.read(60.0)["error"]
 
     return cell
 

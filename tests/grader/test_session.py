@@ -9,18 +9,18 @@ import time
 import pytest
 from handmade import QUICK, ROOT, add, cell_of, put, raw
 
-from labkit.course.judges import MOST_COEFFICIENTS, Ratio
+from labkit.course.bundle import Bundle
+from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
 from labkit.course.layout import Course
-from labkit.course.release import release
+from labkit.course.messages import why
 from labkit.errors import OutOfRange
 from labkit.grader import grade as checker
 from labkit.grader.grade import grade
 from labkit.grader.plan import imports
-from labkit.grader.results import Bundle
+from labkit.grader.release import release
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
-from labkit.grader.sandbox.remote import MOST_LOST
-from labkit.grader.sandbox.session import Session
+from labkit.grader.sandbox.session import MAX_LOST, Session
 
 LARGEST = 2_000_000  # bytes of a result
 
@@ -40,11 +40,11 @@ def asked(monkeypatch):
 
 
 def about(result, name):
-    return next(q for q in result.questions if q["name"] == name)
+    return next(q.verdict for q in result.questions if q.verdict.name == name)
 
 
 def says(result, name):
-    return " ".join(test["says"] for test in about(result, name)["tests"])
+    return " ".join(why(test) for test in about(result, name).tests)
 
 
 def on_hidden_cases(solved, bundle, name, does):
@@ -126,7 +126,7 @@ def test_an_endless_question_is_asked_no_more(body, solved, bundle, sandbox, ask
     put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
     assert result.score == 16
-    assert asked.count("circle") <= MOST_LOST
+    assert asked.count("circle") <= MAX_LOST
     assert "TimeoutError" in says(result, "circle")
 
 
@@ -139,7 +139,7 @@ def test_calls_that_are_lost_on_hidden_cases_count_too(solved, bundle, sandbox, 
     limits = Limits(call=0.2, question=2.0)
     result = grade(raw(solved), "mallory", bundle, sandbox, limits)
     public = len(next(q for q in bundle.questions if q.name == "trapezoid").calls)
-    assert public < asked.count("trapezoid") <= public + MOST_LOST < before
+    assert public < asked.count("trapezoid") <= public + MAX_LOST < before
     assert result.score < 20
 
 
@@ -214,7 +214,7 @@ def test_an_honest_answer_five_times_slower_than_ours_is_marked(torque):
         put(notebook, one.name, f"{source}\n{SLOWER}\n{one.name} = _slower({one.name})")
     with Sandbox(imports(bundle.data["cells"])) as sandbox:
         result = grade(raw(notebook), "ada", bundle, sandbox, Limits().scaled(slowness()))
-    assert result.score == 20, [(q["name"], q["tests"]) for q in result.questions]
+    assert result.score == 20, [q.verdict for q in result.questions]
 
 
 EMOJI = "\U0001f600"

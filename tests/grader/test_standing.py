@@ -9,7 +9,7 @@ import shutil
 import pytest
 from made import NAME, graded, handed_in, notebook_of, result_of
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.grader.export import LAYOUTS
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.results import Results

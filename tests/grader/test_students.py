@@ -10,14 +10,14 @@ from downloaded import NAME, bare_course
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.errors import LabkitError
+from labkit.grader.class_list import Entry, read_list
 from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.enrol import enrol
 from labkit.grader.gradebook import open_gradebook
-from labkit.grader.lms import Known
+from labkit.grader.platforms import LmsUser
 from labkit.grader.roster import FILE, Roster, Student, read_roster, same_name, save_roster
-from labkit.grader.student_list import Entry, read_list
 
 
 def listed(tmp_path, text, encoding="utf-8"):
@@ -74,7 +74,7 @@ def test_what_columns_hold(tmp_path):
         ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
         ("PK\x03\x04", "is not a text; save the spreadsheet as CSV"),
         ("name,login\nLovelace, Ada,ada\n", "line 2 has 3 cells and the first line has 2"),
-        ('name,login\n"Ada,ada\n', "unexpected end of data; mend the table"),
+        ('name,login\n"Ada,ada\n', "unexpected end of data; correct the table"),
         ("name,email\n,a@x\n", "line 2 has neither a name nor a login"),
     ],
 )
@@ -126,7 +126,10 @@ def test_a_student_keeps_the_folder_of_earlier_work(tmp_path):
         tmp_path, "Student,ID,SIS Login ID,Section\nHopper,7,gh,\nKim,8,k1,\nKim,9,k2,\n"
     )
     collected = {
-        "01_paths": {"hopper-7": Known("canvas", "7", "hopper"), "Kim": Known("moodle", "1", "Kim")}
+        "01_paths": {
+            "hopper-7": LmsUser("canvas", "7", "hopper"),
+            "Kim": LmsUser("moodle", "1", "Kim"),
+        }
     }
     roster = enrolled(entries, collected=collected)
     assert [student.id for student in roster.students] == ["hopper-7", "k1", "k2"]

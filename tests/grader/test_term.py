@@ -10,21 +10,24 @@ from html.parser import HTMLParser
 
 import pytest
 from handmade import QUICK
+from made import saying
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.serialize import encode
-from labkit.grader.batch import Graded, How, grade_class
+from labkit.course.verdict import Outcome
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
-from labkit.grader.engines import students
-from labkit.grader.export import LAYOUTS, Row, as_csv, left_out, rows
+from labkit.grader.export import LAYOUTS, as_csv, left_out
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
-from labkit.grader.lms import Known
+from labkit.grader.marks import Mark, marks_of
+from labkit.grader.platforms import LmsUser
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.regrade import accept, moves
 from labkit.grader.results import Results
-from labkit.grader.synthetic import make_class
+from labkit.grader.submission import students
 from labkit.grader.term import archive
+from tests.synthetic import make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 
@@ -42,8 +45,8 @@ def term(released, tmp_path_factory):
     shutil.copytree(released.root, root, symlinks=True)
     course = Course(root)
     make_class(course, NAME, seed=4, count=9)
-    done = grade_class(course, NAME, students(course, NAME), How(jobs=2, limits=QUICK))
-    record(course, NAME, [one.result for one in done if isinstance(one, Graded)])
+    done = grade_class(course, NAME, students(course, NAME), GradeOptions(jobs=2, limits=QUICK))
+    record(course, NAME, [one.result for one in done if isinstance(one, GradedSubmission)])
     return course
 
 
@@ -65,14 +68,14 @@ class Page(HTMLParser):
 def test_feedback_page_shows_text_as_text(term):
     """Whatever a student's code said, the page holds no element but its own, and a policy."""
     result = max(Results(term, NAME), key=lambda r: len(r.cells) + sum(
-        q["outcome"] == "wrong" for q in r.questions))  # fmt: skip
+        q.verdict.outcome is Outcome.WRONG for q in r.questions))  # fmt: skip
     evil = "<script>alert(1)</script><img src=x onerror=alert(1)>"
     worst = replace(
         result,
         notes=(evil,),
         cells=({"cell": 3, "kind": evil, "error": evil, "output": evil, "seconds": 0.0},),
         questions=tuple(
-            dict(q, source=evil, notes=[evil], tests=[dict(t, says=evil) for t in q["tests"]])
+            replace(q, source=evil, notes=(evil,), verdict=saying(q.verdict, evil))
             for q in result.questions
         ),
     )
@@ -113,7 +116,7 @@ def test_feedback_lies_where_nbgrader_looks(term, capsys):
 
 def test_tables(term, capsys):
     """Every layout has a row for each student and the gradebook's scores."""
-    marks = list(rows(term, NAME))
+    marks = list(marks_of(term, NAME))
     scores = {r.student: r.score for r in Results(term, NAME)}
     assert {r.student: r.score for r in marks} == scores
     for layout, extra in (("nbgrader", 1), ("questions", 2), ("canvas", 2), ("moodle", 1)):
@@ -128,7 +131,7 @@ def test_tables(term, capsys):
 
 def test_nothing_becomes_a_formula():
     """A name that a spreadsheet would run is written as text."""
-    row = Row("=1+1", "@a", "+b", "-c", "1", "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0)
+    row = Mark("=1+1", "@a", "+b", "-c", "1", "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0)
     for layout in LAYOUTS.values():
         for cells in csv.reader(io.StringIO(as_csv(layout("x", [row])))):
             assert not [c for c in cells if c[:1] in set("=+@")]
@@ -138,7 +141,7 @@ def test_regrade_says_first_and_never_lowers_unasked(course, capsys):
     """After a threshold moves, --diff names who moves; marks fall only with --lower."""
     make_class(course, NAME, seed=4, count=5)
     who = students(course, NAME)
-    how = How(jobs=2, limits=QUICK)
+    how = GradeOptions(jobs=2, limits=QUICK)
     before = {one.result.student: one.result for one in grade_class(course, NAME, who, how)}
     path = course.bundle / f"{NAME}.json"
     data = json.loads(path.read_text())
@@ -167,7 +170,7 @@ def test_class_report(term):
     results = list(Results(term, NAME))
     problems = {p.name: p for p in term.problems(NAME)}
     text = report(NAME, results, problems, pseudonyms(term))
-    mistakes = [q["mistake"]["name"] for r in results for q in r.questions if q["mistake"]]
+    mistakes = [q.verdict.mistake.name for r in results for q in r.questions if q.verdict.mistake]
     assert mistakes
     assert all(name in text for name in mistakes)
     assert not [r.student for r in results if r.student in text]
@@ -186,7 +189,9 @@ def test_pseudonyms_last_a_term_and_are_nobody_elses(course):
 def test_look_alikes(term):
     """Two who handed in the same unusual work are listed together, with what to ask."""
     results = list(Results(term, NAME))
-    one = next(r for r in results if sum(q["outcome"] == "wrong" for q in r.questions) > 2)
+    one = next(
+        r for r in results if sum(q.verdict.outcome is Outcome.WRONG for q in r.questions) > 2
+    )
     text = report(NAME, [*results, replace(one, student="zz")], {}, str)
     assert "Look-alikes" in text
     assert f"{one.student} and zz" in text
@@ -194,7 +199,7 @@ def test_look_alikes(term):
 
 def test_canvas_layout():
     """Canvas' five columns in its order, full marks below, students by Canvas' own number."""
-    canvas = row("hoppergrace-7", known=Known("canvas", "7", "hoppergrace"))
+    canvas = row("hoppergrace-7", known=LmsUser("canvas", "7", "hoppergrace"))
     table = LAYOUTS["canvas"]("Paths (4711)", [canvas, row("ada", lms="42", first="A", last="L")])
     assert table[0] == ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Paths (4711)"]
     assert "Points Possible" in table[1][0]
@@ -206,11 +211,13 @@ def test_canvas_layout():
 
 def test_moodle_layouts():
     """The gradebook knows users by address, the worksheet by the number of the download."""
-    moodle = row("Ada-Lovelace", known=Known("moodle", "101", "Ada Lovelace"))
+    moodle = row("Ada-Lovelace", known=LmsUser("moodle", "101", "Ada Lovelace"))
     table = LAYOUTS["moodle-worksheet"]("Paths", [moodle, row("carl")])
     assert {"Identifier", "Grade", "Last modified (grade)"} <= set(table[0])
     assert table[1:] == [["Participant 101", "Ada Lovelace", 1.0, 2.0, ""]]
-    assert left_out("moodle-worksheet", [moodle, row("carl")]).startswith("1 of 2 cannot be told")
+    assert left_out("moodle-worksheet", [moodle, row("carl")]).startswith(
+        "1 of 2 cannot be matched"
+    )
     table = LAYOUTS["moodle"]("Paths", [row("carl", email="c@x.org", lms="9")])
     assert table[0][2:] == ["ID number", "Username", "Email address", "Paths"]
     assert table[1][2:] == ["9", "carl", "c@x.org", 1.0]
@@ -218,4 +225,4 @@ def test_moodle_layouts():
 
 
 def row(student, *, first="", last="", email="", lms="", known=None):
-    return Row(student, first, last, email, lms, "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0, known)
+    return Mark(student, first, last, email, lms, "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0, known)

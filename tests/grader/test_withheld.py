@@ -8,10 +8,11 @@ import pytest
 from handmade import QUICK, add, put, raw
 from ways import WAYS, Way
 
+from labkit.course.bundle import Bundle
+from labkit.course.verdict import Outcome
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
 from labkit.grader.grade import grade
-from labkit.grader.results import Bundle
 
 pytestmark = pytest.mark.slow  # a sandbox for each way
 
@@ -40,9 +41,10 @@ def test_every_known_way_is_told(graded, name):
     way = WAYS[name]
     result = graded(way.answer, way.cell)
     (question,) = result.questions
-    assert (question["earned"] > 0) == way.counted, question
-    assert question["withheld"] == ["labkit.BangBang"] or result.tricks
-    assert question["outcome"] == ("not counted" if question["withheld"] else question["outcome"])
+    assert (question.verdict.earned > 0) == way.counted, question
+    assert question.verdict.withheld == ("labkit.BangBang",) or result.tricks
+    if question.verdict.withheld:
+        assert question.verdict.outcome is Outcome.NOT_COUNTED
     assert bool(result.cells) == way.fails, result.cells
 
 
@@ -72,6 +74,6 @@ def test_what_is_not_counted_says_why(graded):
     result = graded(WAYS["by name"].answer)
     (question,) = result.questions
     sentence = "it uses lk.BangBang, which this question asks you to write"
-    assert question["notes"][0] == sentence
+    assert question.notes[0] == sentence
     assert sentence in page(result)
-    assert {test["outcome"] for test in question["tests"]} == {"not counted"}
+    assert {test.outcome for test in question.verdict.tests} == {Outcome.NOT_COUNTED}

@@ -31,7 +31,7 @@ class Way:
 MADE = "unit = lk.BangBang(1.0)"
 SCALED = "s, ds, dds = {}\nreturn s, ds / duration, dds / duration**2"
 ANEW = "import sys\nfor name in list(sys.modules):\n    if name.partition('.')[0] == 'labkit': del sys.modules[name]\nimport labkit as anew"
-OTHER_NAME = "import importlib.util as u\nspec = u.spec_from_file_location('labkit.mine', lk.scalings.__file__)\nmine = u.module_from_spec(spec)\nimport sys\nsys.modules['labkit.mine'] = mine\nspec.loader.exec_module(mine)"
+OTHER_NAME = "import importlib.util as u\nspec = u.spec_from_file_location('labkit.mine', lk.paths.__file__)\nmine = u.module_from_spec(spec)\nimport sys\nsys.modules['labkit.mine'] = mine\nspec.loader.exec_module(mine)"
 
 WAYS = {
     "by name": Way("return lk.BangBang(duration)(t)"),
@@ -59,7 +59,7 @@ WAYS = {
     "exec with labkit's file": Way("return f(t, duration)", "names = {'lk': lk}\nexec(compile('def f(t, T): return lk.BangBang(T)(t)', lk.__file__, 'exec'), names)\nf = names['f']", counted=True),
     "deleting and importing again": Way("return anew.BangBang(duration)(t)", ANEW),
     "loading under another name": Way("return mine.BangBang(duration)(t)", OTHER_NAME, counted=True),
-    "reading the file": Way("return names['BangBang'](duration)(t)", "names = {'__package__': 'labkit', '__name__': 'labkit.paths'}\nexec(open(lk.scalings.__file__).read(), names)", counted=True),
+    "reading the file": Way("return names['BangBang'](duration)(t)", "names = {'__package__': 'labkit', '__name__': 'labkit.paths'}\nexec(open(lk.paths.__file__).read(), names)", counted=True),
     "patching who is trusted": Way("return getattr(lk, 'Bang' + 'Bang')(duration)(t)", "import labkit.course.withheld as w\nw._student_asks = lambda: False", counted=True),
     "patching what is found": Way("return getattr(lk, 'Bang' + 'Bang')(duration)(t)", "import labkit.course.withheld as w\nw.find = lambda name: (None, None)", counted=True),
     "patching isinstance": Way(SCALED.format("unit(t / duration)"), f"import builtins\nbuiltins.isinstance = lambda *a: False\n{MADE}", fails=True),

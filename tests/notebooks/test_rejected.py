@@ -15,7 +15,7 @@ import labkit as lk
 from labkit.course import Outcome
 from labkit.course.layout import Course
 from labkit.course.marking import mark
-from solutions.held_out.comparison import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
+from solutions.comparison.hidden import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
 
 COURSE = Course.here(Path(__file__))
 PROBLEMS = {f"{name[:2]} {p.name}": p for name in COURSE.names() for p in COURSE.problems(name)}

@@ -15,9 +15,8 @@ from courses import copied
 from labkit.course import question_data
 from labkit.course.layout import Course
 from labkit.course.notebook import source_notebook
-from labkit.course.question_codec import KINDS
-from labkit.course.release import FORBIDDEN, release
 from labkit.course.serialize import encode
+from labkit.grader.release import FORBIDDEN, release
 
 COURSE = Course.here(Path(__file__))
 NAMES = COURSE.names()
@@ -90,7 +89,7 @@ def test_no_hidden_case_leaves(name):
         for test in problem.question(2019).tests:
             for case in test.cases:
                 if case.hidden:
-                    numbers = set(long.findall(json.dumps(encode(case, KINDS))))
+                    numbers = set(long.findall(json.dumps(encode(case))))
                     assert not {
                         x
                         for x in numbers

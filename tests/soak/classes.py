@@ -29,7 +29,7 @@ folders are called is the collector's affair.
 """
 HEAD = """import numpy as np
 import labkit as lk
-from labkit.course.judges import Ratio
+from labkit.course.equivalence import Ratio
 class Odd:
     def __init__(self, method, error=ZeroDivisionError):
         def fails(*args): raise error('odd')

@@ -78,7 +78,7 @@ def _run(words: tuple[str, ...], folder: str, out: str, err: str) -> None:
     os.chdir(folder)
     sys.argv = list(words)
     if words[0] == "labkit":
-        from labkit.cli import main
+        from labkit.__main__ import main
 
         sys.exit(main(words[1:]))
     from nbgrader.apps.nbgraderapp import main as nbgrader

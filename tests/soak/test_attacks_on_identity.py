@@ -13,7 +13,7 @@ from soak.attacks.identity import ADA, IMPOSTORS, MOODLE, write_zip
 from soak.attacks.place import NAME, released
 from soak.attacks.undefended import COMMANDS
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.layout import Course
 
 GATE = (

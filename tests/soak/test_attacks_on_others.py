@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import re
+import shutil
 from types import SimpleNamespace
 
 import pytest
-from soak.attacks.defended import FULL, HONEST, defended, wins
-from soak.attacks.place import place, released
+from soak.attacks.defended import FULL, HONEST, defended, suspected, wins
+from soak.attacks.place import SEED, place, released
 from soak.attacks.sets import ATTACKS, GOALS, SAMPLE
 from soak.attacks.undefended import COMMANDS, WINS, undefended
 
 soak = pytest.mark.soak
+SPEAK = [name for name, attack in ATTACKS.items() if attack.wins == "tells"]
+"""Attacks that tell what is hidden; those by the kind of an exception first."""
+SPEAK.sort(key=lambda name: "kind" not in name)
 SETS = {"sample": SAMPLE, "all": ATTACKS}
 
 
@@ -78,11 +83,26 @@ def test_every_verb_does_its_work(graded):
 
 def test_honest_students_are_not_suspected(graded):
     """The report names nobody for a withheld tool who used none."""
-    of = graded.of
-    accused = [line for line in of.report.splitlines() if "BangBang" in line]
-    assert not [
-        line for line in accused for who in HONEST if f"{who}:" in line or f"{who} " in line
-    ]
+    accused = suspected(graded.of.report)
+    assert not [line for line in accused if line.startswith(tuple(f"- {who}, " for who in HONEST))]
+
+
+@pytest.mark.parametrize("names", [SPEAK[:3], pytest.param(SPEAK[3:], marks=soak)], ids=len)
+def test_pages_do_not_depend_on_what_is_hidden(_released, tmp_path, names):
+    """Under two seeds, whose hidden cases differ, a student is told the same but for the marks."""
+    attacks = {name: ATTACKS[name] for name in names}
+    other = shutil.copytree(_released.root, tmp_path / "other", symlinks=True)
+    told = []
+    for seed, of in ((SEED, _released), (SEED + 1, released(other, SEED + 1))):
+        with place(tmp_path / f"{seed}" / "course", of) as here:
+            made = defended(attacks, here)
+            told.append({n: _without_times(made.pages[who]) for who, n in made.attackers.items()})
+    assert not [name for name in names if told[0][name] != told[1][name]]
+
+
+def _without_times(page):
+    """A page without when its cells ran, which differs from run to run."""
+    return re.sub(r"started \d+\.\d+", "started", page)
 
 
 def test_nothing_is_left(graded):

@@ -10,16 +10,16 @@ from soak.attacks.attack import code_cell
 from soak.attacks.place import ROOT
 
 from labkit.course.layout import Course
-from labkit.course.release import release
-from labkit.grader.batch import Graded, How, grade_class
+from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
+from labkit.grader.release import release
 
-NAMES = sorted(p.stem for p in (ROOT / "solutions" / "notebooks").glob("[0-9]*.py"))
+NAMES = Course(ROOT).names()
 CASES = [pytest.param(n, marks=() if n == "01_paths" else pytest.mark.soak) for n in NAMES]
 
 BY_HEART = """
 def {name}(*args, **kwargs):
     import json
-    from labkit.course import codec
+    from labkit.course import serialize as codec
     def numbers(x):
         if isinstance(x, bool) or x is None or isinstance(x, str): return []
         if isinstance(x, (int, float)): return [float(x)]
@@ -64,8 +64,8 @@ def graded(request, root):
     for who, data in made.items():
         (course.submitted / who / name).mkdir(parents=True, exist_ok=True)
         (course.submitted / who / name / f"{name}.ipynb").write_text(json.dumps(data))
-    done = list(grade_class(course, name, sorted(made), How(jobs=2)))
-    assert all(isinstance(one, Graded) for one in done), done
+    done = list(grade_class(course, name, sorted(made), GradeOptions(jobs=2)))
+    assert all(isinstance(one, GradedSubmission) for one in done), done
     return {one.result.student: one.result for one in done}
 
 
@@ -101,7 +101,7 @@ def put(notebook, name, source):
 
 
 def earned(result):
-    return {q["name"]: q["earned"] for q in result.questions if q["earned"]}
+    return {q.verdict.name: q.verdict.earned for q in result.questions if q.verdict.earned}
 
 
 def test_public_cases_by_heart_earn_nothing(graded):
@@ -112,7 +112,7 @@ def test_public_cases_by_heart_earn_nothing(graded):
 def test_public_cases_are_known_by_heart(graded):
     """The control: on public cases alone most of those answers are right."""
     questions = graded["heart"].questions
-    hidden = [q for q in questions if any(t["hidden"] for t in q["tests"])]
+    hidden = [q for q in questions if any(t.hidden for t in q.verdict.tests)]
     assert len(hidden) >= len(questions) / 3
 
 

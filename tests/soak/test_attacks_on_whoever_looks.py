@@ -16,7 +16,7 @@ from soak.attacks.attack import CANARY, markdown_cell
 from soak.attacks.place import NAME, ROOT, place, released
 from soak.attacks.shown import MARKUP
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.layout import Course
 
 soak = pytest.mark.soak

@@ -17,8 +17,8 @@ from soak.attacks.place import NAME, place, released
 from soak.attacks.sets import ATTACKS
 from soak.attacks.undefended import COMMANDS
 
-from labkit.cli import main
-from labkit.grader.synthetic import differences, make_class
+from labkit.__main__ import main
+from tests.synthetic import differences, make_class
 
 WORST = (
     "others: half a character in a comment",

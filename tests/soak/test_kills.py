@@ -17,7 +17,7 @@ import pytest
 from soak.attacks.family import Family, descendants, parent
 from soak.attacks.place import NAME, ROOT, released
 
-from labkit.grader.synthetic import differences, make_class
+from tests.synthetic import differences, make_class
 
 STUDENTS = 8
 GUARD = 300.0
@@ -64,7 +64,7 @@ def _copy(course, root):
 def _start(course, *words):
     with (course.root / "said.txt").open("wb") as out:
         return subprocess.Popen(
-            [sys.executable, "-m", "labkit.cli", *(words or ("grade", NAME, "--jobs", "2"))]
+            [sys.executable, "-m", "labkit", *(words or ("grade", NAME, "--jobs", "2"))]
             + ["--course", str(course.root)],
             env=dict(os.environ, PYTHONPATH=str(ROOT)),
             cwd=course.root,

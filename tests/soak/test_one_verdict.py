@@ -13,17 +13,16 @@ import pytest
 from handmade import put, raw
 
 from labkit.course import question_data
+from labkit.course.bundle import Bundle
 from labkit.course.handin import look
-from labkit.course.inline import inline
 from labkit.course.layout import Course
-from labkit.course.notebook import source_notebook
-from labkit.course.output import verdict_in
-from labkit.course.release import manifest
+from labkit.course.notebook import source_notebook, verdict_in
 from labkit.course.withheld import find
 from labkit.grader.grade import grade
-from labkit.grader.results import Bundle
+from labkit.grader.release import manifest
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
+from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
 IN_THE_GATE = ("00_warmup", "01_paths")
@@ -141,9 +140,7 @@ def test_three_verdicts_are_one(assignment, sandbox, tmp_path):
         file.write_bytes(raw(notebook))
         repeated = {name: seen(verdict) for name, verdict in look(file).verdicts.items()}
         result = grade(raw(notebook), "ada", bundle, sandbox, Limits())
-        counted = {
-            q["name"]: (q["outcome"], q["earned"], tuple(q["withheld"])) for q in result.questions
-        }
+        counted = {q.verdict.name: seen(q.verdict) for q in result.questions}
         assert repeated == said
         assert counted == said
         for name, (outcome, earned, withheld) in said.items():

@@ -9,7 +9,7 @@ from scipy import stats
 
 import labkit as lk
 from labkit import recordings
-from solutions.comparison import paired_difference
+from solutions.comparison.answers import paired_difference
 from solutions.study import campaign as report
 from solutions.study import pictures
 from solutions.study.claims import Outcome, judge, verdicts

@@ -9,7 +9,7 @@ from labkit.tags.stream import Reading
 from solutions.study.tag_scenes import RADIUS, SPEED, circling_board
 from solutions.study.visual_servoing import SequentialServoing, stalled
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
-from solutions.tag_following import TagFollower, blend, predict
+from solutions.tags.following import TagFollower, blend, predict
 
 GENTLE = SPEED**2 / RADIUS  # what the board itself needs, in [m/s^2]
 

@@ -1,8 +1,12 @@
-"""Memory and processes of a group of processes, where the kernel lets us count them together."""
+"""Limits that the kernel keeps: of the process that judges, and of groups of processes.
+
+Groups are limited where the kernel lets us count their processes together.
+"""
 
 from __future__ import annotations
 
 import os
+import resource
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -16,6 +20,9 @@ SANDBOX: Mapping[str, int] = {
 """What a whole sandbox may use."""
 WORKER: Mapping[str, int] = {"memory": 2 * 2**30}
 """What the process that judges may use; its sandbox is counted apart."""
+
+MEMORY = 2**30
+"""What the process that judges may use beside what is loaded, in bytes."""
 
 _ROOT = Path("/sys/fs/cgroup")
 _FILES = {
@@ -67,6 +74,17 @@ class Group:
         for folder in self.folders:
             with suppress(OSError):
                 folder.rmdir()
+
+
+def limit_memory() -> None:
+    """Limit this process: whatever a submission makes it keep ends in a MemoryError of its own."""
+    with open("/proc/self/status") as file:
+        used = next(int(line.split()[1]) * 1024 for line in file if line.startswith("VmData"))
+    _, most = resource.getrlimit(resource.RLIMIT_DATA)
+    resource.setrlimit(resource.RLIMIT_DATA, (used + MEMORY, most))
+    group = Group.make(f"{os.getpid()}-worker", WORKER)
+    if group is not None:
+        group.enter()
 
 
 def sweep() -> None:

@@ -15,7 +15,7 @@ from . import seccomp
 DEVICES = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom")
 """Those that a sandbox has."""
 _OWN = ("/tmp", "/dev/shm")
-"""Folders in memory, made anew for each process that is confined."""
+"""Folders in memory, new for each process that is confined."""
 _NEW_MOUNTS, _NEW_IPC, NEW_PIDS = 0x00020000, 0x08000000, 0x20000000
 _READ_ONLY, _NO_SUID, _NO_DEV, _REMOUNT, _BIND = 1, 2, 4, 32, 4096
 _RECURSIVE, _PRIVATE = 16384, 1 << 18
@@ -42,7 +42,7 @@ def lock_devices() -> None:
 
 
 def shown_below() -> list[str]:
-    """What the sandbox shows below the folders that each process gets anew.
+    """What the sandbox shows below the folders that are new for each process.
 
     A course below ``/tmp`` may have its Python there.
     """
@@ -53,7 +53,7 @@ def shown_below() -> list[str]:
 
 
 def confine(limits: dict[str, Any], uid: int, shown: Sequence[str] = ()) -> None:
-    """Take everything away from this process that a student's code does not need.
+    """Take away from this process everything that a student's code does not need.
 
     It must be the first process of its own process namespace.
 

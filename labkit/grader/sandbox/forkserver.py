@@ -1,13 +1,12 @@
 """The forkserver, first process in a sandbox: loads what notebooks import, forks for each session.
 
 It runs no student's code.  Parsers are forked from a twin of it that has loaded next to nothing,
-which is quicker.  Each child becomes the first process of its own process namespace and
+in two thirds of the time.  Each child becomes the first process of its own process namespace and
 gives up everything (see `confine`) before it reads a word that a student wrote.
 """
 
 from __future__ import annotations
 
-import ctypes
 import gc
 import json
 import os
@@ -18,40 +17,31 @@ import socket
 import sys
 import tempfile
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib import import_module
 from typing import Any
 
-from . import confine, seccomp
-from . import parse as cells
-from .protocol import Gone, Line
+from . import confine, parse, seccomp
+from .protocol import Connection, Disconnected
 
 MAGIC = "IPython.core.inputtransformer2"
 """What reads a notebook's own ``%`` and ``!`` lines."""
-LOADED = (
-    "numpy",
-    "scipy.interpolate",
-    "scipy.linalg",
-    "matplotlib.pyplot",
-    MAGIC,
-)
-"""What cells import that answers lean on, loaded once, before the forks.
+LOADED = ("numpy", "scipy.interpolate", "scipy.linalg", "matplotlib.pyplot", MAGIC)
+"""What answers lean on, loaded once; not more, as a fork takes longer the more is loaded."""
 
-Not more than that: each fork costs time in proportion to what is loaded.
-"""
-_COLLAPSE = 25  # MADV_COLLAPSE, since Linux 6.1
-_HUGE = 2**21  # bytes
+Serve = Callable[[Connection, dict[str, Any]], None]
+"""What a child does, given the connection and the request that it was forked for."""
 
 
 def main() -> None:
-    """Serve the worker until it goes away: at the end of stdin for students, of stdout for parsers.
+    """Serve the worker until it closes its end: stdin's is for students, stdout's for parsers.
 
     Modules named on the command line are loaded too.  With ``--bare`` nothing is confined; see
     `labkit grade --unsafe-no-isolation`.
     """
-    words = sys.argv[1:]
-    bare = "--bare" in words
+    modules = [word for word in sys.argv[1:] if word != "--bare"]
+    bare = "--bare" in sys.argv
     students, parsers = (socket.socket(fileno=os.dup(number)) for number in (0, 1))
     if not bare:
         confine.lock_devices()
@@ -59,120 +49,105 @@ def main() -> None:
     nowhere = os.open(os.devnull, os.O_RDWR)
     os.dup2(nowhere, 0)
     os.dup2(nowhere, 1)
-    codec = withhold = serve = None
     if os.fork():
-        control = students
-        parsers.close()
-        codec, withhold, serve = _load([word for word in words if word != "--bare"])
+        control, other = students, parsers
+        serve = _load(modules)
     else:
-        control = parsers
-        students.close()
+        control, other = parsers, students
         import_module(MAGIC)
+        serve = _parse
+    other.close()
     space = confine.address_space()
     gc.collect()
     gc.freeze()
-    _into_huge_pages()
     home = None if bare else os.open("/proc/self/ns/pid", os.O_RDONLY)
     shown = [] if bare else confine.shown_below()
-    line = Line(control)
-    line.send({"ready": True})
+    worker = Connection(control)
+    worker.send({"ready": True})
     while True:
         try:
-            asked, ends = _read(control)
-        except Gone:
+            request, ends = _read(control)
+        except Disconnected:
             return
-        if "kill" in asked:
-            _end(asked["kill"], whole=asked["whole"])
-            line.send({"killed": asked["kill"]})
+        if "kill" in request:
+            _kill(request["kill"], whole=request["whole"])
+            worker.send({"killed": request["kill"]})
             continue
-        if home is not None:
-            confine.check(confine.libc.unshare(confine.NEW_PIDS), "unshare")
-        child = os.fork()
+        child = _fork(home)
         if child:
-            if home is not None:
-                confine.check(confine.libc.setns(home, confine.NEW_PIDS), "setns")
             os.close(ends[0])
-            line.send({"pid": child})
+            worker.send({"pid": child})
             continue
         os.dup2(nowhere, 2)
-        end = Line(socket.socket(fileno=ends[0]))
+        control.close()
+        connection = Connection(socket.socket(fileno=ends[0]))
         try:
-            control.close()
-            limits = asked["limits"] | {"address_space": space}
+            limits = request["limits"] | {"address_space": space}
             if home is None:
                 os.chdir(tempfile.mkdtemp(prefix="labkit-"))
                 confine.set_limits(limits | {"processes": 4096})
             else:
                 os.close(home)
-                confine.confine(limits, asked["uid"], shown)
-            end.send({"confined": True})
-            if serve is None:
-                end.send(cells.read(_bytes(end, asked["size"])))
-            else:
-                serve(end, codec, withhold, asked["limits"])
+                confine.confine(limits, request["uid"], shown)
+            connection.send({"confined": True})
+            serve(connection, request)
         except BaseException:
             with suppress(BaseException):
-                end.send({"failed": traceback.format_exc(limit=3)[-2000:]})
+                connection.send({"failed": traceback.format_exc(limit=3)[-2000:]})
         os._exit(0)
 
 
-def _load(more: Sequence[str]) -> tuple[Any, Any, Any]:
-    """Import what notebooks use, and put the stubs in place."""
+def _fork(home: int | None) -> int:
+    """Fork; the child begins a process namespace, unless there is no ``home`` to return to."""
+    if home is None:
+        return os.fork()
+    confine.check(confine.libc.unshare(confine.NEW_PIDS), "unshare")
+    child = os.fork()
+    if child:
+        confine.check(confine.libc.setns(home, confine.NEW_PIDS), "setns")
+    return child
+
+
+def _load(modules: Sequence[str]) -> Serve:
+    """Import what notebooks use, and put the stubs in place; return what runs a notebook."""
     with suppress(FileNotFoundError, KeyError):
         shutil.copytree("/lab/mpl", os.environ["MPLCONFIGDIR"])  # making the list of fonts is slow
-    for name in (*LOADED, *more):
+    for name in (*LOADED, *modules):
         import_module(name)
     import labkit
-    from labkit.course import serialize as codec
-    from labkit.course.withheld import withhold
 
-    from . import stubs as standins
-    from .runner import serve
+    from . import runner, stubs
 
     with labkit.Arm("left") as arm:  # the physics engine and the model load what they need
         arm.model.mass_matrix(arm.state().q)
-    standins.install()
-    return codec, withhold, serve
+    stubs.install()
+    return runner.serve
 
 
-def _into_huge_pages() -> None:
-    """Let the kernel keep what is loaded in large pages; a fork copies the table of all pages.
-
-    A kernel that cannot refuses, and forks take longer.
-    """
-    with open("/proc/self/maps") as file:
-        areas = [line.split() for line in file]
-    for span, rights, _, _, inode, *name in areas:
-        if rights.startswith("rw") and inode == "0" and name in ([], ["[heap]"]):
-            begin, end = (int(x, 16) for x in span.split("-"))
-            first = -(-begin // _HUGE) * _HUGE
-            size = (end - first) // _HUGE * _HUGE
-            if size > 0:
-                confine.libc.madvise(ctypes.c_void_p(first), ctypes.c_size_t(size), _COLLAPSE)
+def _parse(connection: Connection, request: dict[str, Any]) -> None:
+    """Read a notebook of ``size`` bytes that follow, and send its cells."""
+    data = bytearray()
+    connection.socket.settimeout(30.0)
+    while len(data) < request["size"]:
+        piece = connection.socket.recv(min(1 << 20, request["size"] - len(data)))
+        if not piece:
+            raise Disconnected("the file never came")
+        data += piece
+    connection.send(parse.read(bytes(data)))
 
 
 def _read(control: socket.socket) -> tuple[dict[str, Any], list[int]]:
+    """A request, and the socket that comes with it, if one does."""
     control.settimeout(None)
     data, ends, _, _ = socket.recv_fds(control, 65536, 1)
     if not data:
-        raise Gone("the worker is gone")
-    message: dict[str, Any] = json.loads(data)
-    return message, ends
+        raise Disconnected("the worker is gone")
+    request: dict[str, Any] = json.loads(data)
+    return request, ends
 
 
-def _bytes(end: Line, size: int) -> bytes:
-    data = bytearray()
-    end.end.settimeout(30.0)
-    while len(data) < size:
-        piece = end.end.recv(min(1 << 20, size - len(data)))
-        if not piece:
-            raise Gone("the file never came")
-        data += piece
-    return bytes(data)
-
-
-def _end(child: int, *, whole: bool) -> None:
-    """Kill a submission's process namespace, or only what its first process has started."""
+def _kill(child: int, *, whole: bool) -> None:
+    """Kill a process and all that descends from it, or only what descends from it."""
     for pid in _family(child) - (set() if whole else {child}):
         with suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)

@@ -1,7 +1,7 @@
-"""A sandbox: bubblewrap around a process that forks for each submission.
+"""A sandbox: bubblewrap around a forkserver, which forks a process for each submission.
 
-No network, no environment, no files but Python and labkit (see `launch`), a folder in memory that
-dies with the submission.
+No network, no environment, no files but Python and labkit (see `mounts`), a folder in memory that
+ends with the submission.
 """
 
 from __future__ import annotations
@@ -12,36 +12,57 @@ import os
 import resource
 import socket
 import subprocess
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from . import mounts
 from .cgroup import SANDBOX, Group
 from .limits import Limits
-from .mounts import INSTALL, NoIsolation, bare_command, bare_environment, command, environment
-from .protocol import Gone, Line, TooLate, TooMuch
+from .mounts import INSTALL, NoIsolation
+from .protocol import Connection, Disconnected, ProtocolError
 
 FIRST_UID = 64000
-MOST_USERS = 1000
+MAX_USERS = 1000
 """When root grades, each sandbox is given a user of its own among these."""
 START = 120.0  # seconds
-_ROLES = ("student", "parse")  # the ends of stdin and of stdout of the process inside
+_ROLES = ("student", "parse")  # the forkservers, on stdin and stdout of the process inside
 _numbers = itertools.count()
 
 
-class Broken(BaseException):
+class SandboxLost(BaseException):
     """A sandbox was lost, at its start or later; a fresh one may work.
 
-    No `Exception`, so that marking never takes it for one of the student's.
+    It is not an `Exception`, so that marking never takes it for one of the student's.
     """
 
 
-class Inside:
-    """A process in the sandbox, the line to it, and the line to what forked it."""
+class SandboxProcess:
+    """A process in the sandbox.
 
-    def __init__(self, line: Line, parent: Line, pid: int) -> None:
-        self.line, self.parent, self.pid = line, parent, pid
+    Args:
+        connection: To the process.
+        kill: Asks its forkserver to kill the process, if ``whole``, and all that it started.
+    """
+
+    def __init__(self, connection: Connection, kill: Callable[..., Any]) -> None:
+        self.connection, self._kill = connection, kill
+
+    def kill_children(self) -> None:
+        """Kill all that the process started."""
+        self._kill(whole=False)
+
+    def close(self) -> None:
+        """Kill the process and all that it started."""
+        self.connection.close()
+        self._kill(whole=True)
+
+    def __enter__(self) -> SandboxProcess:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
 
 
 class Sandbox:
@@ -54,57 +75,54 @@ class Sandbox:
 
     Raises:
         NoIsolation: It cannot be made here.
-        Broken: It was killed while it started.
+        SandboxLost: It was killed while it started.
     """
 
     def __init__(
         self, loads: Sequence[str] = (), hidden: Iterable[Path] = (), *, isolated: bool = True
     ) -> None:
-        words, variables = (
-            (command(hidden), environment()) if isolated else (bare_command(), bare_environment())
-        )
+        command, variables = mounts.isolated(hidden) if isolated else mounts.bare()
         self.isolated = isolated
         self.uid, self._claim = _user()
         self.group = Group.make(f"{os.getpid()}-{next(_numbers)}", SANDBOX) if isolated else None
         self._log = os.memfd_create("labkit-sandbox-log")
-        ends = [socket.socketpair() for _ in _ROLES]
-        self._lines = {role: Line(ours) for role, (ours, _) in zip(_ROLES, ends, strict=True)}
-        stdin, stdout = (theirs for _, theirs in ends)
+        ours, theirs = zip(*(socket.socketpair() for _ in _ROLES), strict=True)
+        self._forkservers = dict(zip(_ROLES, map(Connection, ours), strict=True))
         try:
             self.process = subprocess.Popen(
-                [*words, *loads],
-                stdin=stdin.fileno(),
-                stdout=stdout.fileno(),
+                [*command, *loads],
+                stdin=theirs[0].fileno(),
+                stdout=theirs[1].fileno(),
                 stderr=self._log,
                 env=variables,
-                preexec_fn=self._apart,
+                preexec_fn=self._count_apart,
             )
         except OSError as error:
             raise NoIsolation(f"no sandbox: {error}; try: {INSTALL}") from None
         finally:
-            stdin.close()
-            stdout.close()
+            for end in theirs:
+                end.close()
         self._wait_until_ready()
 
-    def _apart(self) -> None:
-        """Runs in the process to come: it is counted apart from the worker."""
+    def _count_apart(self) -> None:
+        """Run in the process to come: its memory is not the worker's."""
         _, most = resource.getrlimit(resource.RLIMIT_DATA)
         resource.setrlimit(resource.RLIMIT_DATA, (most, most))
         if self.group is not None:
             self.group.enter()
 
     def _wait_until_ready(self) -> None:
-        """Wait for the word of both processes that fork; close where it does not come."""
+        """Wait until both forkservers say so; close the sandbox where one does not."""
         try:
-            for line in self._lines.values():
-                line.read(START)
-        except (Gone, TooLate, TooMuch) as error:
-            said = self._words() or str(error)
+            for forkserver in self._forkservers.values():
+                forkserver.read(START)
+        except ProtocolError as error:
+            why = self._last_words() or str(error)
             self.close()
-            if isinstance(error, Gone) and self.process.returncode != 1:  # what failed says 1
-                raise Broken("it was killed while it started") from None
+            if isinstance(error, Disconnected) and self.process.returncode != 1:  # 1 is a failure's
+                raise SandboxLost("it was killed while it started") from None
             raise NoIsolation(
-                f"the sandbox did not start: {said}; `labkit doctor` says what is missing"
+                f"the sandbox did not start: {why}; `labkit doctor` says what is missing"
             ) from None
 
     @property
@@ -116,41 +134,42 @@ class Sandbox:
         group = self.group.says if self.group else "no cgroup"
         return f"bubblewrap, {who}, no network, seccomp, limits, {group}"
 
-    @contextmanager
-    def enter(self, role: str, limits: Limits, **more: Any) -> Iterator[Inside]:
-        """A fresh process inside, for as long as the block runs; nothing of it stays.
+    def spawn(self, role: str, limits: Limits, **more: Any) -> SandboxProcess:
+        """Fork a fresh process inside, to be closed after use; nothing of it stays.
 
         Args:
             role: "student" or "parse".
             limits: What it may use.
-            more: What else it is told.
-        """
-        ours, theirs = socket.socketpair()
-        message = {"limits": limits.data(), "uid": self.uid, **more}
-        parent = self._lines[role]
-        with theirs:
-            pid = int(self._ask(parent, message, theirs)["pid"])
-        inside = Inside(Line(ours), parent, pid)
-        try:
-            try:
-                said = inside.line.read(20.0)
-            except (Gone, TooLate, TooMuch) as error:
-                raise Broken(f"nothing could be started: {error}") from None
-            if "confined" not in said:
-                raise NoIsolation(f"a sandboxed process could not be confined: {said}")
-            yield inside
-        finally:
-            ours.close()
-            self.kill(inside, whole=True)
+            more: What else its forkserver needs to know.
 
-    def kill(self, inside: Inside, *, whole: bool = False) -> None:
-        """Kill a process inside and all that it started, or only what it started."""
-        self._ask(inside.parent, {"kill": inside.pid, "whole": whole})
+        Raises:
+            NoIsolation: It could not be confined.
+            SandboxLost: Nothing could be started.
+        """
+        forkserver = self._forkservers[role]
+        ours, theirs = socket.socketpair()
+        message = {"limits": asdict(limits), "uid": self.uid, **more}
+        with theirs:
+            pid = self._request(forkserver, message, theirs)["pid"]
+
+        def kill(*, whole: bool) -> None:
+            self._request(forkserver, {"kill": pid, "whole": whole})
+
+        process = SandboxProcess(Connection(ours), kill)
+        try:
+            reply = process.connection.read(20.0)
+        except ProtocolError as error:
+            process.close()
+            raise SandboxLost(f"nothing could be started: {error}") from None
+        if "confined" not in reply:
+            process.close()
+            raise NoIsolation(f"a sandboxed process could not be confined: {reply}")
+        return process
 
     def close(self) -> None:
         """End everything inside."""
-        for line in self._lines.values():
-            line.close()  # the first processes inside see it, and go
+        for forkserver in self._forkservers.values():
+            forkserver.close()  # which sees it, and ends
         try:
             self.process.wait(2.0)
         except subprocess.TimeoutExpired:
@@ -168,36 +187,39 @@ class Sandbox:
     def __exit__(self, *_: object) -> None:
         self.close()
 
-    def _ask(
-        self, line: Line, message: dict[str, Any], end: socket.socket | None = None
+    def _request(
+        self, forkserver: Connection, message: dict[str, Any], end: socket.socket | None = None
     ) -> dict[str, Any]:
-        """Tell one of the first processes what to do, and take its word that it is done."""
+        """Have a forkserver do something, perhaps with a socket, and return its reply."""
         try:
             data = json.dumps(message).encode()
-            socket.send_fds(line.end, [data], [end.fileno()] if end else [])
-            return line.read(20.0)
-        except (OSError, Gone, TooLate, TooMuch) as error:
-            raise Broken(f"{error}; it said: {self._words() or 'nothing'}") from None
+            socket.send_fds(forkserver.socket, [data], [end.fileno()] if end else [])
+            return forkserver.read(20.0)
+        except (OSError, ProtocolError) as error:
+            why = self._last_words() or "nothing"
+            raise SandboxLost(f"{error}; its last words: {why}") from None
 
-    def _words(self) -> str:
+    def _last_words(self) -> str:
         """The last line that bubblewrap or the forkserver wrote, empty if there is none."""
         lines = os.pread(self._log, 100_000, 0).decode(errors="replace").strip().splitlines()
         return lines[-1][:300] if lines else ""
 
 
 def _user() -> tuple[int, socket.socket | None]:
-    """A user that no other sandbox has, and what keeps it ours until it is closed; 0 without root.
+    """A user that no other sandbox has, and what claims it until that is closed; 0 without root.
 
     The kernel counts processes by user, so two graders on one machine must not share one.
     """
     if os.geteuid():
         return 0, None
-    for uid in range(FIRST_UID, FIRST_UID + MOST_USERS):
+    for uid in range(FIRST_UID, FIRST_UID + MAX_USERS):
         claim = socket.socket(socket.AF_UNIX)
         try:
-            claim.bind(f"\0labkit-sandbox-{uid}")  # goes with the process, however that ends
+            claim.bind(f"\0labkit-sandbox-{uid}")  # ends with the process, however that ends
         except OSError:
             claim.close()
             continue
         return uid, claim
-    raise NoIsolation(f"all {MOST_USERS} users for sandboxes are taken; end some graders")
+    raise NoIsolation(
+        f"all {MAX_USERS} user ids for sandboxes are in use; stop other grading processes"
+    )

@@ -1,22 +1,21 @@
-"""How much a submission may use, how much of it is kept, and how quick this machine is."""
+"""How much a submission may use, how much of its text is kept, and how fast this machine is."""
 
 from __future__ import annotations
 
 import json
 import os
 import time
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any
 
 REPLY = 256_000
 """The longest answer to one call, in bytes; the longest honest one has 1,600."""
 VALUES = 10_000
-"""So many numbers, texts, lists and tables an answer may have; the largest honest one has 80."""
+"""How many numbers, texts, lists and objects an answer may have; the largest honest one has 80."""
 TRICKS = 100
-"""So many of the things worth a look are named."""
+"""So many of the tricks in a notebook are named."""
 TEXT = 1_000_000
-"""So much of what a student wrote a result keeps, in bytes; the rest of a result has as much."""
+"""How much of a student's text a result keeps, in bytes; the rest may be as large."""
 _TIMES = ("parse", "cell", "cells", "call", "question", "wall", "grace")
 
 
@@ -24,8 +23,8 @@ _TIMES = ("parse", "cell", "cells", "call", "question", "wall", "grace")
 class Limits:
     """What one submission may use; times in [s], sizes in [MiB].
 
-    The times of one cell and of one call are processor time; whoever waits instead is stopped after
-    ``patience`` times as long.  All other times are those of the clock.
+    The times of one cell and of one call are processor time; code that waits instead is stopped
+    after ``patience`` times as long.  All other times are those of the clock.
 
     Attributes:
         parse: For reading the file.
@@ -65,10 +64,6 @@ class Limits:
     def scaled(self, factor: float) -> Limits:
         """The same with all times multiplied."""
         return replace(self, **{name: getattr(self, name) * factor for name in _TIMES})
-
-    def data(self) -> dict[str, Any]:
-        """As JSON data."""
-        return asdict(self)
 
 
 class TextBudget:

@@ -1,4 +1,4 @@
-"""The command that makes a sandbox: bubblewrap, and what of the disk it shows.
+"""The command that makes a sandbox: bubblewrap, and what it shows of the disk.
 
 Shown, read-only, are the folders with the system's programs and libraries, those of each Python
 that takes part (a virtual environment and what it was made from), the system's fonts, and labkit.
@@ -50,8 +50,8 @@ class NoIsolation(LabkitError):
     """This machine cannot keep a student's code apart; the sentence says how it could."""
 
 
-def command(hidden: Iterable[Path] = ()) -> list[str]:
-    """The command that makes a sandbox with the forkserver in it.
+def isolated(hidden: Iterable[Path] = ()) -> tuple[list[str], dict[str, str]]:
+    """The command that makes a sandbox with the forkserver in it, and bubblewrap's environment.
 
     Args:
         hidden: Folders of which nothing may be seen inside, such as the course's.
@@ -79,22 +79,14 @@ def command(hidden: Iterable[Path] = ()) -> list[str]:
     words += ["--ro-bind", str(_font_list()), f"{_LAB}/mpl"]
     for name, value in _INSIDE.items():
         words += ["--setenv", name, value]
-    return [*words, "--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/", *_FORKSERVER]
+    words += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/", *_FORKSERVER]
+    return words, {"PATH": os.environ.get("PATH", "/usr/bin:/bin")}
 
 
-def environment() -> dict[str, str]:
-    """What bubblewrap itself is given."""
-    return {"PATH": os.environ.get("PATH", "/usr/bin:/bin")}
-
-
-def bare_command() -> list[str]:
-    """The command that starts the forkserver without a sandbox."""
-    return [*_FORKSERVER, "--bare"]
-
-
-def bare_environment() -> dict[str, str]:
-    """What the forkserver is given without a sandbox."""
-    return {**os.environ, **_VARIABLES, "PYTHONPATH": str(_PACKAGE.parent)}
+def bare() -> tuple[list[str], dict[str, str]]:
+    """The command that starts the forkserver without a sandbox, and its environment."""
+    variables = {**os.environ, **_VARIABLES, "PYTHONPATH": str(_PACKAGE.parent)}
+    return [*_FORKSERVER, "--bare"], variables
 
 
 def needed() -> list[Path]:

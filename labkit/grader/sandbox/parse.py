@@ -1,4 +1,4 @@
-"""Read a notebook that somebody else wrote: its sources, and what each cell defines and uses.
+"""Read a stranger's notebook: its sources, and what each cell defines and uses.
 
 Outputs are dropped unread, so a notebook full of pictures is as welcome as any.  Text is cleaned
 here, where it enters: what runs is what an instructor reads.
@@ -10,8 +10,9 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from ...course.notebook import grade_id
 from ...course.source import look
-from ..clean import clean_line, clean_text
+from .clean import clean_line, clean_text
 from .tricks import tricks
 
 MOST_CELLS = 1000
@@ -19,7 +20,7 @@ MOST_SOURCE = 2_000_000  # characters, in all cells together
 
 
 class Rejected(Exception):
-    """The file is no notebook that can be graded; the message says why, in one sentence."""
+    """The file is not a notebook that can be graded; the message says why, in one sentence."""
 
 
 def read(data: bytes) -> dict[str, Any]:
@@ -74,16 +75,11 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
         kind = "code" if cell.get("cell_type") == "code" else "text"
         yield {
             "id": _text(cell.get("id")),
-            "grade_id": _text(_within(_within(cell, "metadata"), "nbgrader").get("grade_id")),
+            "grade_id": clean_line(grade_id(cell), 100),
             "type": kind,
             "source": source,
             **({**look(source), "tricks": tricks(source)} if kind == "code" else {}),
         }
-
-
-def _within(cell: Any, key: str) -> dict[str, Any]:
-    inner = cell.get(key)
-    return inner if isinstance(inner, dict) else {}
 
 
 def _text(x: Any) -> str:

@@ -1,4 +1,4 @@
-"""Lines of JSON over a socket, with a limit on their length and on the time they take."""
+"""JSON messages over a socket, one a line, with limits on their size and on the time they take."""
 
 from __future__ import annotations
 
@@ -8,96 +8,106 @@ import socket
 import time
 from typing import Any
 
-MOST = 2**25
-"""The longest line, in bytes, where nobody asks for less."""
+MAX_BYTES = 2**25
+"""The longest message, where the caller sets no lower limit."""
 
 
-class Gone(Exception):
+class ProtocolError(Exception):
+    """No message came."""
+
+
+class Disconnected(ProtocolError):
     """The other side closed its end."""
 
 
-class TooLate(Exception):
+class Timeout(ProtocolError):
     """Nothing came in time."""
 
 
-class TooMuch(Exception):
-    """The other side sent more than is allowed, or something that is not JSON."""
+class MessageTooLarge(ProtocolError):
+    """The other side sent more than is allowed, or something that is not a message."""
 
 
-class Line:
-    """One end of a conversation in lines of JSON.
-
-    It trusts nothing that comes in: what is too long, too late, or not a JSON object ends in one of
-    the exceptions above.
-    """
+class Connection:
+    """One end of a conversation; it trusts nothing that comes in."""
 
     def __init__(self, end: socket.socket) -> None:
-        self.end = end
-        self._waiting = bytearray()
+        self.socket = end
+        self._received = bytearray()
 
     def send(self, message: dict[str, Any], seconds: float = 30.0) -> None:
         """Write one message.
 
         Raises:
-            Gone: Nobody reads, or nobody has read for that long.
+            Disconnected: Nobody reads, or nobody has read for that long.
         """
-        self.end.settimeout(seconds)
+        self.socket.settimeout(seconds)
         try:
-            self.end.sendall(json.dumps(message, separators=(",", ":")).encode() + b"\n")
+            self.socket.sendall(json.dumps(message, separators=(",", ":")).encode() + b"\n")
         except OSError as error:
-            raise Gone(str(error)) from None
+            raise Disconnected(str(error)) from None
 
     def read(
-        self, seconds: float | None = None, most: int = MOST, values: int = MOST
+        self,
+        seconds: float | None = None,
+        max_bytes: int = MAX_BYTES,
+        max_values: int = MAX_BYTES,
     ) -> dict[str, Any]:
         """Read one message.
 
         Args:
             seconds: How long to wait; None waits for ever.
-            most: The longest line, in bytes.
-            values: How many numbers, texts, lists and tables it may have in all.
+            max_bytes: The longest message.
+            max_values: How many numbers, texts, lists and objects it may have in all.
 
         Raises:
-            Gone: There is no other side any more.
-            TooLate: It took longer than ``seconds``.
-            TooMuch: It is more than that, or not a JSON object.
+            Disconnected: The other side has closed its end.
+            Timeout: It took longer than ``seconds``.
+            MessageTooLarge: It is larger than that, or not a JSON object.
         """
-        data = self._read_line(seconds, most)
-        if data.count(b",") + data.count(b"[") + data.count(b"{") > values:
-            raise TooMuch(f"more than {values:,} values came back")
+        data = self._read_line(seconds, max_bytes)
+        if data.count(b",") + data.count(b"[") + data.count(b"{") > max_values:
+            raise MessageTooLarge(f"more than {max_values:,} values came back")
         try:
             message = json.loads(data)
         except (ValueError, RecursionError):
-            raise TooMuch("what came back is not JSON") from None
+            raise MessageTooLarge("what came back is not JSON") from None
         if not isinstance(message, dict):
-            raise TooMuch("what came back is not a message")
+            raise MessageTooLarge("what came back is not a message")
         return message
 
-    def _read_line(self, seconds: float | None, most: int) -> bytes:
+    def request(
+        self, message: dict[str, Any], seconds: float, max_bytes: int, max_values: int = MAX_BYTES
+    ) -> dict[str, Any]:
+        """Write one message and read the reply, each within ``seconds``; raises as `read` does."""
+        self.send(message, seconds)
+        return self.read(seconds, max_bytes, max_values)
+
+    def _read_line(self, seconds: float | None, max_bytes: int) -> bytes:
         """One line without its end; raises as `read` does."""
         until = None if seconds is None else time.monotonic() + seconds
         start = 0
-        while (found := self._waiting.find(b"\n", start)) < 0:
-            start = len(self._waiting)
-            if start > most:
+        while (end := self._received.find(b"\n", start)) < 0:
+            start = len(self._received)
+            if start > max_bytes:
                 break
-            left = None if until is None else until - time.monotonic()
-            if left is not None and (left <= 0 or not select.select([self.end], [], [], left)[0]):
-                raise TooLate("nothing came in time")
-            self.end.settimeout(None)
+            left = None if until is None else max(0.0, until - time.monotonic())
+            if not select.select([self.socket], [], [], left)[0]:
+                raise Timeout("nothing came in time")
+            self.socket.settimeout(None)
             try:
-                piece = self.end.recv(65536)
+                piece = self.socket.recv(65536)
             except OSError as error:
-                raise Gone(str(error)) from None
+                raise Disconnected(str(error)) from None
             if not piece:
-                raise Gone("the other side is gone")
-            self._waiting += piece
-        if not 0 <= found <= most:
-            raise TooMuch(f"more than {most // 1000:,} kB came back")
-        line = bytes(self._waiting[:found])
-        del self._waiting[: found + 1]
+                raise Disconnected("the other side is gone")
+            self._received += piece
+        if not 0 <= end <= max_bytes:
+            raise MessageTooLarge(f"more than {max_bytes // 1000:,} kB came back")
+        line = bytes(self._received[:end])
+        del self._received[: end + 1]
         return line
 
     def close(self) -> None:
         """Close this end."""
-        self.end.close()
+        self.socket.close()

@@ -15,42 +15,65 @@ import os
 import resource
 import signal
 import sys
-import time
 import traceback
 import warnings
-from collections.abc import Callable
-from contextlib import AbstractContextManager, suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from labkit.course.reply import LONGEST, TimeUp, kind, reply, sentence
+from labkit.course.serialize import decode
 from labkit.course.source import plain
+from labkit.course.withheld import withhold
 
-from . import stubs as standins
-from .protocol import Gone, Line
+from . import stubs
+from .protocol import Connection, Disconnected
+
+
+def serve(connection: Connection, request: dict[str, Any]) -> None:
+    """Do what the worker asks, until it closes its end.
+
+    Args:
+        connection: To the worker.
+        request: With the ``limits``.
+    """
+    notebook = Notebook(request["limits"])
+    signal.signal(signal.SIGALRM, _time_up)
+    signal.signal(signal.SIGPROF, _time_up)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    while True:
+        try:
+            asked = connection.read()
+        except Disconnected:
+            return
+        if "cell" in asked:
+            connection.send(notebook.run(**asked))
+        elif "question" in asked:
+            connection.send({"over": notebook.fork(connection, **asked)})
 
 
 class Notebook:
     """The student's names, and the functions that answer for the questions."""
 
-    def __init__(self, codec: Any, limits: dict[str, Any]) -> None:
+    def __init__(self, limits: dict[str, Any]) -> None:
         module = type(sys)("__main__")
         sys.modules["__main__"] = module
         self.names: dict[str, Any] = vars(module)
         self.names.update(__builtins__=__builtins__, In=[""], Out={})
         self.functions: dict[str, Any] = {}
-        self.codec, self.limits, self.output = codec, limits, 0
+        self.limits, self.output = limits, limits["output"]
         shell = getattr(builtins, "get_ipython", None)
         if shell is not None:
             shell().user_ns = self.names
 
-    def run(self, number: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
+    def run(self, cell: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
         """Run one cell, and keep the functions that it is to define."""
-        out = _Capped(min(20_000, max(0, self.limits["output"] - self.output)))
-        began, error, raised = time.perf_counter(), "", ""
-        with _Streams(out):
+        out = _Capped(min(20_000, self.output))
+        error = raised = ""
+        with _streams(out):
             try:
-                with _Alarm(seconds, self.limits["patience"]):
-                    self._execute(f"<cell {number}>", source)
+                with self._alarm(seconds):
+                    self._execute(f"<cell {cell}>", source)
             except TimeUp:
                 raised, error = "TimeUp", f"it was stopped after {seconds:g} s"
             except BaseException as why:
@@ -58,9 +81,8 @@ class Notebook:
         for name in answers:
             if name in self.names:
                 self.functions[name] = self.names[name]
-        self.output += out.size
-        spent = time.perf_counter() - began
-        return {"kind": raised, "error": error, "output": out.getvalue(), "seconds": spent}
+        self.output -= out.size
+        return {"ran": cell, "kind": raised, "error": error, "output": out.getvalue()}
 
     def _execute(self, name: str, source: str) -> None:
         text = plain(source)
@@ -70,77 +92,69 @@ class Notebook:
         if inspect.iscoroutine(found):
             asyncio.run(found)
 
-    def answer(self, line: Line, name: str) -> None:
-        """Answer one call after another, until told to stop."""
+    def fork(
+        self, connection: Connection, question: str, withheld: list[str], right: list[str]
+    ) -> int:
+        """Answer for one question in a fork of this process; return how the fork ended."""
+        _kill_all_others()
+        child = os.fork()
+        if child:
+            return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        with suppress(BaseException):
+            limit = int(_cpu() + self.limits["question"]) + 1
+            with suppress(ValueError, OSError):
+                resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+            stubs.right.update(right)
+            with withhold(withheld, self.names):
+                self._answer(connection, question)
+        os._exit(0)
+
+    def _answer(self, connection: Connection, name: str) -> None:
+        """Answer one call after another, until none follows."""
         kwargs: dict[str, Any] = {}
-        decode = self.codec.decode
-        line.send({"ready": name})
-        while True:
-            asked = line.read()
-            if "args" not in asked:
-                return
-            with _Streams(_Capped(0)):
+        connection.send({"ready": name})
+        while "args" in (asked := connection.read()):
+            with _streams(_Capped(0)):
                 try:
                     args = [decode(x) for x in asked["args"]]
                     if asked["kwargs"] is not None:
                         kwargs = {key: decode(x) for key, x in asked["kwargs"].items()}
-                    said = self._reply(name, args, kwargs)
+                    data = self._reply(name, args, kwargs)
                 except BaseException as raised:
-                    said = {"raised": kind(raised), "says": sentence(raised)}
-            line.send(said)
+                    data = {"raised": kind(raised), "says": sentence(raised)}
+            connection.send(data)
 
     def _reply(self, name: str, args: list[Any], kwargs: dict[str, Any]) -> dict[str, Any]:
         seconds = self.limits["call"]
         if name not in self.functions:
             raise NameError(f"the notebook defines no {name}")
         try:
-            with _Alarm(seconds, self.limits["patience"]):
+            with self._alarm(seconds):
                 return reply(self.functions[name], args, kwargs)
         except TimeUp:
             return {"raised": "TimeUp", "says": f"it did not come back within {seconds:g} s"}
 
+    @contextmanager
+    def _alarm(self, seconds: float) -> Iterator[None]:
+        """Raise `TimeUp` after some seconds of computing, and again, should it be caught.
 
-def serve(
-    line: Line,
-    codec: Any,
-    withhold: Callable[..., AbstractContextManager[None]],
-    limits: dict[str, Any],
-) -> None:
-    """Do what the checker asks, until it closes its end."""
-    notebook = Notebook(codec, limits)
-    signal.signal(signal.SIGALRM, _time_up)
-    signal.signal(signal.SIGPROF, _time_up)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    while True:
+        Code that only waits is stopped after ``patience`` times as long; code that computes where
+        no exception can reach it is ended by the kernel soon after.
+        """
+        signal.setitimer(signal.ITIMER_PROF, seconds, 0.5)
+        signal.setitimer(signal.ITIMER_REAL, seconds * self.limits["patience"], 0.5)
+        _limit_cpu(seconds + 1.0)
         try:
-            asked = line.read()
-        except Gone:
-            return
-        if "cell" in asked:
-            result = notebook.run(
-                asked["cell"], asked["source"], asked["answers"], asked["seconds"]
-            )
-            line.send({"ran": asked["cell"]} | result)
-        if "question" not in asked:
-            continue
-        _sweep()
-        child = os.fork()
-        if child == 0:
-            with suppress(BaseException):
-                limit = int(_cpu() + limits["question"]) + 1
-                with suppress(ValueError, OSError):
-                    resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
-                standins.right.update(asked["right"])
-                with withhold(asked["withheld"], notebook.names):
-                    notebook.answer(line, asked["question"])
-            os._exit(0)
-        _, status = os.waitpid(child, 0)
-        line.send({"over": os.waitstatus_to_exitcode(status)})
+            yield
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            _limit_cpu(None)
 
 
-def _sweep() -> None:
-    """End what the cells left running; a question needs room for a process of its own."""
-    if os.getpid() == 1:  # first of its namespace: -1 is all the others
+def _kill_all_others() -> None:
+    """End what the cells left running; a question needs a process of its own within the limit."""
+    if os.getpid() == 1:  # the first of its namespace: -1 is all the others
         with suppress(ProcessLookupError):
             os.kill(-1, signal.SIGKILL)
         with suppress(ChildProcessError):
@@ -159,8 +173,8 @@ def _time_up(number: int, frame: Any) -> None:
     raise TimeUp
 
 
-def _stop_after(seconds: float | None) -> None:
-    """Let the kernel end this process after that much more computing."""
+def _limit_cpu(seconds: float | None) -> None:
+    """Let the kernel end this process after that much more computing; None lifts the limit."""
     _, hard = resource.getrlimit(resource.RLIMIT_CPU)
     soft = hard if seconds is None else min(hard, math.ceil(_cpu() + seconds))
     with suppress(ValueError, OSError):
@@ -172,27 +186,6 @@ def _cpu() -> float:
     return used.ru_utime + used.ru_stime
 
 
-class _Alarm:
-    """Raises `TimeUp` after some seconds of computing, and again and again, should it be caught.
-
-    Code that only waits is stopped after ``patience`` times as long; code that computes where no
-    exception can reach it, by the kernel, soon after.
-    """
-
-    def __init__(self, seconds: float, patience: float) -> None:
-        self.seconds, self.patience = seconds, patience
-
-    def __enter__(self) -> None:
-        signal.setitimer(signal.ITIMER_PROF, self.seconds, 0.5)
-        signal.setitimer(signal.ITIMER_REAL, self.seconds * self.patience, 0.5)
-        _stop_after(self.seconds + 1.0)
-
-    def __exit__(self, *_: object) -> None:
-        signal.setitimer(signal.ITIMER_PROF, 0.0)
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        _stop_after(None)
-
-
 class _Capped(io.StringIO):
     """Text that stops growing."""
 
@@ -201,21 +194,18 @@ class _Capped(io.StringIO):
         self.most, self.size = most, 0
 
     def write(self, text: str) -> int:
-        room = self.most - self.size
-        if room > 0:
-            self.size += super().write(text[:room])
+        left = self.most - self.size
+        if left > 0:
+            self.size += super().write(text[:left])
         return len(text)
 
 
-class _Streams:
-    """Python's own streams and warnings go into a buffer while the block runs."""
-
-    def __init__(self, out: _Capped) -> None:
-        self.out = out
-
-    def __enter__(self) -> None:
-        sys.stdout = sys.stderr = self.out
-        warnings.simplefilter("ignore")
-
-    def __exit__(self, *_: object) -> None:
+@contextmanager
+def _streams(out: _Capped) -> Iterator[None]:
+    """Put Python's own streams into a buffer, and silence warnings, for a block."""
+    sys.stdout = sys.stderr = out
+    warnings.simplefilter("ignore")
+    try:
+        yield
+    finally:
         sys.stdout = sys.stderr = sys.__stdout__

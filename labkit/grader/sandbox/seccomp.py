@@ -1,4 +1,4 @@
-"""Which system calls a student's process may make: a small filter, written for the kernel here.
+"""Which system calls a student's process may make: a small filter for the kernel.
 
 A list of what is allowed (`syscalls`): what Python, NumPy with its threads, Pinocchio, PyBullet,
 OpenCV, Matplotlib, `multiprocessing` and `subprocess` use.  A call that nobody thought of, or that

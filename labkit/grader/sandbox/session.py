@@ -1,31 +1,59 @@
-"""A session: one submission's process in the sandbox, made again where it dies."""
+"""A session: one submission's process in the sandbox, started again where it dies."""
 
 from __future__ import annotations
 
+import builtins
 import time
-from contextlib import AbstractContextManager, suppress
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from typing import Any
 
+from ... import errors
 from ...course.question import Question
-from ..clean import clean_line, clean_text
-from ..plan import Plan, Step
-from .launch import Inside, Sandbox
+from ...course.reply import Failed, answer
+from ...course.serialize import encode
+from .clean import clean_line, clean_text
+from .launch import Sandbox, SandboxProcess
 from .limits import REPLY, VALUES, Limits
-from .protocol import Gone, TooLate, TooMuch
+from .protocol import Disconnected, MessageTooLarge, ProtocolError, Timeout
 
-MOST_STARTS = 6
-LEAST = 0.05
-"""Share of the time of all cells that each still has when those before it have spent it."""
+MAX_STARTS = 6
+MAX_LOST = 3
+"""After so many calls that died or hung, a question is not asked any more."""
+LEAST_SHARE = 0.05
+"""Of the time of all cells: what each still has once those before it have spent it."""
+_EXCEPTIONS = {"ArgumentChanged", "LinAlgError"} | {
+    name
+    for module in (builtins, errors)
+    for name, thing in vars(module).items()
+    if isinstance(thing, type) and issubclass(thing, BaseException)
+}
+
+
+@dataclass(frozen=True)
+class Step:
+    """One cell to run.
+
+    Attributes:
+        number: Its place in the notebook, from 0; the release's setup cells have negative ones.
+        source: Its text.
+        answers: Questions whose function it defines.
+    """
+
+    number: int
+    source: str
+    answers: tuple[str, ...] = ()
 
 
 class Session:
-    """Runs a plan's cells in a fresh process, and puts calls to its functions.
+    """Runs cells in a fresh process, and puts calls to the functions that they define.
 
-    A cell that kills the process is left out when the process is made again.
+    A cell that kills the process is left out when the process is started again.
 
     Args:
         sandbox: Where.
-        todo: The cells.
+        steps: The cells.
         limits: What may be used.
 
     Attributes:
@@ -33,156 +61,148 @@ class Session:
         right: Questions whose public cases it passed; other answers may lean on these.
     """
 
-    def __init__(self, sandbox: Sandbox, todo: Plan, limits: Limits) -> None:
-        self.sandbox, self.todo, self.limits = sandbox, todo, limits
+    def __init__(self, sandbox: Sandbox, steps: Sequence[Step], limits: Limits) -> None:
+        self.sandbox, self.steps, self.limits = sandbox, steps, limits
         self.spent = 0.0
-        self._until = time.monotonic() + limits.wall
-        self._cells = limits.cells
-        self._output = limits.output
         self.right: list[str] = []
+        self._until = time.monotonic() + limits.wall
+        self._cells, self._output = limits.cells, limits.output
         self._reports: dict[int, dict[str, Any]] = {}
         self._deadly: set[int] = set()
-        self._entered: AbstractContextManager[Inside] | None = None
-        self._inside: Inside | None = None
+        self._process: SandboxProcess | None = None
         self._asked = ""
         self._starts = 0
 
     @property
     def over(self) -> bool:
-        """Whether it had its chances."""
-        return time.monotonic() > self._until or (
-            self._inside is None and self._starts >= MOST_STARTS
-        )
+        """Whether its time is used up, or it may not be started again."""
+        dead = self._process is None and self._starts >= MAX_STARTS
+        return dead or time.monotonic() > self._until
 
-    def start(self) -> Inside:
-        """Make a process in which all cells have run, unless there is one.
+    def start(self) -> SandboxProcess:
+        """Return the process, in which all cells have run; start it if need be.
 
         Raises:
-            Gone: It died too often.
+            Disconnected: It died too often.
         """
-        while self._inside is None:
+        while self._process is None:
             if self.over:
-                raise Gone("it died too often")
+                raise Disconnected("it died too often")
             self._starts += 1
-            self._entered = self.sandbox.enter("student", self.limits)
-            self._inside = self._entered.__enter__()
+            self._process = self.sandbox.spawn("student", self.limits)
             died = self._run_cells()
             if died is not None:
                 self._deadly.add(died)
-                self._leave()
-        return self._inside
+                self.close()
+        return self._process
 
     def open(self, question: Question) -> bool:
-        """Make a process ready to be asked; True if it is a new one.
+        """Make the process ready to answer a question; return whether it was not before.
 
         Raises:
-            Gone: It cannot be made.
+            Disconnected: It cannot be started.
         """
         if self._asked == question.name:
             return False
-        inside = self.start()
+        connection = self.start().connection
+        message = {"question": question.name, "withheld": question.withheld, "right": self.right}
         try:
-            about = {"withheld": list(question.withheld), "right": self.right}
-            inside.line.send({"question": question.name, **about}, self.limits.grace)
-            if "ready" not in inside.line.read(2 * self.limits.grace, REPLY):
-                raise Gone("it did not get ready")
-        except (Gone, TooLate, TooMuch) as error:
-            self._leave()
-            raise Gone(str(error)) from None
+            if "ready" not in connection.request(message, 2 * self.limits.grace, REPLY):
+                raise Disconnected("it did not get ready")
+        except ProtocolError as error:
+            self.close()
+            raise Disconnected(str(error)) from None
         self._asked = question.name
         return True
 
     def ask(self, message: dict[str, Any], seconds: float) -> dict[str, Any]:
-        """Put one call; the process must be open.
+        """Put one call to the question that is open, and return the reply.
 
         Args:
             message: The call.
             seconds: How long to wait at most.
 
         Raises:
-            TooLate: No answer in time; the process was killed.
-            TooMuch: What came back is no answer; likewise.
-            Gone: It died.
+            Timeout: No reply in time; the fork that answers was killed.
+            MessageTooLarge: What came back is not a reply; likewise.
+            Disconnected: The fork, or the whole process, died.
         """
-        assert self._inside is not None
+        assert self._process is not None
         began = time.monotonic()
-        most = self.limits.call * self.limits.patience + self.limits.grace
+        longest = self.limits.call * self.limits.patience + self.limits.grace
+        wait = max(0.0, min(seconds, longest, self._until - began))
         try:
-            wait = max(0.0, min(seconds, most, self._until - began))
-            self._inside.line.send(message, wait)
-            reply = self._inside.line.read(wait, REPLY, VALUES)
-        except (TooLate, TooMuch):
-            self._end_question()
+            reply = self._process.connection.request(message, wait, REPLY, VALUES)
+        except Disconnected:
+            self.close()
             raise
-        except Gone:
-            self._leave()
+        except ProtocolError:
+            self._kill_question()
             raise
         finally:
             self.spent += time.monotonic() - began
         if "over" in reply:
             self._asked = ""
-            raise Gone("it died")
+            raise Disconnected("it died")
         return reply
 
-    def close(self) -> None:
-        """No more calls to this question."""
-        if self._asked and self._inside is not None:
-            try:
-                self._inside.line.send({"end": True}, self.limits.grace)
-                if "over" in self._inside.line.read(self.limits.grace, REPLY):
+    def close_question(self) -> None:
+        """End the question that is open, if there is one."""
+        if self._asked and self._process is not None:
+            with suppress(ProtocolError):
+                connection = self._process.connection
+                if "over" in connection.request({"end": True}, self.limits.grace, REPLY):
                     self._asked = ""
                     return
-            except (TooLate, TooMuch, Gone):
-                pass
-            self._end_question()
+            self._kill_question()
 
     def failed(self) -> tuple[dict[str, Any], ...]:
-        """What is to be said of cells, in order, as they ran the last time."""
+        """What is to be said of cells that failed, in order, as they ran the last time."""
         return tuple(
             {"cell": number, **report}
             for number, report in sorted(self._reports.items())
             if number >= 0 and (report["error"] or report["kind"])
         )
 
-    def __enter__(self) -> Session:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._leave()
+    def close(self) -> None:
+        """End the process, and all that it started."""
+        self._asked = ""
+        process, self._process = self._process, None
+        if process is not None:
+            process.close()
 
     def _run_cells(self) -> int | None:
-        """Run all cells; returns the number of one that the process did not outlive."""
-        again = []
-        for step in self.todo.steps:
+        """Run all cells; return the number of one that the process did not outlive."""
+        again = []  # cells that met a NameError: theirs may stand in another order
+        for step in self.steps:
             if step.number not in self._deadly:
                 kind = self._run(step)
                 if kind == "died":
                     return step.number
-                if kind == "NameError":  # its cells may stand in another order
+                if kind == "NameError":
                     again.append(step)
         return next((step.number for step in again if self._run(step) == "died"), None)
 
     def _run(self, step: Step) -> str:
-        """Run one cell, note what came of it; returns the kind of its exception, or "died"."""
-        assert self._inside is not None
+        """Run one cell and report on it; return the kind of its exception, or "died"."""
+        assert self._process is not None
         began = time.monotonic()
-        seconds = min(self.limits.cell, max(LEAST * self.limits.cells, self._cells))
+        seconds = min(self.limits.cell, max(LEAST_SHARE * self.limits.cells, self._cells))
         wait = seconds * self.limits.patience + self.limits.grace
         wait = max(0.1, min(wait, self._until - began))
-        message = {"cell": step.number, "source": step.source, "answers": list(step.answers)}
+        cell = {"cell": step.number, "source": step.source, "answers": step.answers}
         kind, error, output = "died", "", ""
         try:
-            self._inside.line.send({**message, "seconds": seconds}, wait)
-            said = self._inside.line.read(wait, REPLY)
+            said = self._process.connection.request(cell | {"seconds": seconds}, wait, REPLY)
             if said.get("ran") == step.number:
                 kind = clean_line(str(said.get("kind", "")), 60)
                 error = clean_line(str(said.get("error", "")), 400)
                 output = clean_text(str(said.get("output", ""))[: min(20_000, self._output)])
             else:
                 error = "it broke into the conversation with the grader"
-        except TooLate:
+        except Timeout:
             error = f"it was stopped after {seconds:g} s"
-        except (TooMuch, Gone):
+        except ProtocolError:
             error = "it ended the process"
         spent = time.monotonic() - began
         self.spent += spent
@@ -192,21 +212,81 @@ class Session:
         self._reports[step.number] = report
         return kind
 
-    def _end_question(self) -> None:
+    def _kill_question(self) -> None:
         """Kill the fork that answers; if the process then says nothing, kill that too."""
         self._asked = ""
-        if self._inside is None:
+        if self._process is None:
             return
-        self.sandbox.kill(self._inside)
-        with suppress(TooLate, TooMuch, Gone):
+        self._process.kill_children()
+        with suppress(ProtocolError):
             until = time.monotonic() + self.limits.grace
             while (left := until - time.monotonic()) > 0:
-                if "over" in self._inside.line.read(left, REPLY):
+                if "over" in self._process.connection.read(left, REPLY):
                     return
-        self._leave()
+        self.close()
 
-    def _leave(self) -> None:
-        self._asked = ""
-        entered, self._entered, self._inside = self._entered, None, None
-        if entered is not None:
-            entered.__exit__(None, None, None)
+
+class RemoteFunction:
+    """A student's function as one that lives here; each call is put to the session that has it.
+
+    Attributes:
+        left: Seconds that its answers may still take, those to hidden cases included.
+        lost: How many calls died or hung.
+    """
+
+    def __init__(self, question: Question, session: Session) -> None:
+        self.question, self.session = question, session
+        self.left = session.limits.question
+        self.lost = 0
+        self._sent: Mapping[str, Any] = {}
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """The answer to one call.
+
+        Raises:
+            Failed: There is none.
+            Withheld: The function used a tool that the question withholds.
+        """
+        if self.lost >= MAX_LOST or self.session.over or self.left <= 0.0:
+            raise Failed("TimeoutError", "TimeoutError: too much time was spent already")
+        try:
+            if self.session.open(self.question):
+                self._sent = {}
+            data = [encode(x) for x in args]
+            return self._answer({"args": data, "kwargs": self._unless_sent(kwargs)})
+        except Timeout:
+            limit = self.session.limits.call
+            failed = "TimeoutError", f"TimeoutError: it did not come back within {limit:g} s"
+        except MessageTooLarge as error:
+            failed = "TypeMismatch", str(error)
+        except Disconnected:
+            failed = "SystemExit", "SystemExit: it ended its own process"
+        self.lost += 1
+        raise Failed(*failed)
+
+    def _unless_sent(self, kwargs: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Keyword arguments as data; None where they are those of the call before.
+
+        A closed loop has the same ones in each of its thousand calls.
+        """
+        same = self._sent.keys() == kwargs.keys()
+        same = same and all(x is self._sent[key] for key, x in kwargs.items())
+        self._sent = kwargs
+        return None if same and kwargs else {key: encode(x) for key, x in kwargs.items()}
+
+    def _answer(self, message: dict[str, Any]) -> Any:
+        """What came of one call; decoding it counts as the student's time."""
+        began = time.monotonic()
+        try:
+            reply = self.session.ask(message, self.left)
+            if "raised" not in reply:
+                return answer(reply, self.question.withheld)
+        finally:
+            self.left -= time.monotonic() - began
+        kind, says = str(reply["raised"]), clean_line(str(reply.get("says", "")))
+        if kind == "TimeUp":
+            self.lost += 1
+            kind = "TimeoutError"
+        if kind not in _EXCEPTIONS:
+            kind = "Exception"  # a name of its own could carry a secret out
+        return answer({"raised": kind, "says": says}, self.question.withheld)

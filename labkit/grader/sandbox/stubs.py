@@ -1,6 +1,6 @@
 """Stubs of what a notebook has around it: checks that check nothing, a shell that does little.
 
-A submission is marked elsewhere; in here `check` must only not be missing.
+A submission is marked elsewhere; in here `check` only has to exist.
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ from typing import Any
 
 
 def install() -> None:
-    """Put them in the places where a notebook looks."""
+    """Put the stubs in the places where a notebook looks."""
     import labkit
 
     checks = ModuleType("labkit.course")
-    for function in (check, hint, use, also):
+    for function in (check, hint, use):
         setattr(checks, function.__name__, function)
+    vars(checks)["also"] = hint  # which some notebooks of version 0.1 import, and none calls
     for name in ("course", "check"):  # notebooks of version 0.1 say labkit.check
         sys.modules[f"labkit.{name}"] = checks
         vars(labkit)[name] = checks
@@ -47,12 +48,8 @@ def hint(name: str, level: int = 1) -> None:
     """No hint."""
 
 
-def also(name: str, packed: str) -> None:
-    """Nothing more."""
-
-
 right: set[str] = set()
-"""Questions whose public cases the student's functions passed, as the checker says."""
+"""Questions whose public cases the student's functions passed, as the grader says."""
 
 
 def use(
@@ -76,8 +73,18 @@ def display(*things: Any, **options: Any) -> None:
     """Show nothing."""
 
 
-class Shell:
-    """As much of IPython's shell as a cell may ask for."""
+class Nothing:
+    """What has every attribute and takes every call, such as the shell's ``events.register``."""
+
+    def __getattr__(self, name: str) -> Nothing:
+        return Nothing()
+
+    def __call__(self, *args: Any, **options: Any) -> None:
+        """Do nothing."""
+
+
+class Shell(Nothing):
+    """As much of IPython's shell as a cell may ask for; it runs no commands."""
 
     def __init__(self) -> None:
         self.user_ns: dict[str, Any] = {}
@@ -87,22 +94,6 @@ class Shell:
         if name == "time":
             exec(compile(line, "<magic>", "exec"), self.user_ns)
 
-    def system(self, command: str) -> None:
-        """No commands."""
-
     def getoutput(self, command: str) -> list[str]:
-        """No commands, no output."""
+        """No output."""
         return []
-
-    def __getattr__(self, name: str) -> Nothing:
-        return Nothing()
-
-
-class Nothing:
-    """What has every attribute and takes every call, such as the shell's ``events.register``."""
-
-    def __getattr__(self, name: str) -> Nothing:
-        return Nothing()
-
-    def __call__(self, *args: Any, **options: Any) -> None:
-        """Do nothing."""

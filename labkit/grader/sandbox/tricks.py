@@ -1,4 +1,4 @@
-"""What in a cell may be a way around a withheld tool; for the instructor to look at.
+"""Tricks: what in a cell may go around a withheld tool, for the instructor to look at.
 
 Nothing here changes a mark.  It names what no answer to the course's questions needs: labkit's
 insides, text that is run as code, modules loaded by hand.
@@ -28,9 +28,7 @@ ATTRIBUTES = {
 INSIDE = ("labkit.course.", "labkit.grader.", "sys.modules.", "sys.meta_path.", "sys.path_hooks.")
 OURS = ("labkit", "numpy", "pinocchio", "builtins", "sys")
 """Modules that no answer changes."""
-STUDENTS = {"labkit.course"} | {
-    f"labkit.course.{name}" for name in ("also", "check", "hint", "use")
-}
+STUDENTS = {"labkit.course"} | {f"labkit.course.{name}" for name in ("check", "hint", "use")}
 
 _WORTH_A_LOOK = re.compile(
     r"__|\b(_\w|eval|exec|compile|getattr|setattr|vars|sys|labkit|pinocchio)"

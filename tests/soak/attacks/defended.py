@@ -19,10 +19,10 @@ from soak.attacks.others import VICTIM
 from soak.attacks.place import NAME, Place
 from soak.attacks.undefended import COMMANDS, started
 
-from labkit.cli import main
+from labkit.__main__ import main
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.batch import How, grade_class
+from labkit.grader.batch import GradeOptions, grade_class
 from labkit.grader.sandbox.limits import Limits
 
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)
@@ -108,7 +108,7 @@ def _hand_in_solved(here: Place, who: str) -> bytes:
 
 
 def _grade(here: Place, students: list[str], jobs: int, made: Class) -> None:
-    how = How(jobs=jobs, limits=LIMITS)
+    how = GradeOptions(jobs=jobs, limits=LIMITS)
     done = grade_class(here.course, NAME, students, how) if students else ()
     made.failed += [str(one) for one in done if isinstance(one, LabkitError)]
 
@@ -156,11 +156,17 @@ def said(data: Any) -> Iterator[str]:
             yield from said(inner)
 
 
-def told(made: Class, student: str, tool: str) -> bool:
-    """Whether result and class report say that a withheld tool was used."""
-    name = tool.rpartition(".")[2]
-    in_result = any(name in text for text in said(made.results[student]))
-    return in_result and any(student in line and name in line for line in made.report.splitlines())
+def suspected(report: str) -> list[str]:
+    """The lines of a class report on withheld tools, and on ways around them."""
+    _, _, after = report.partition("## Withheld tools")
+    return after.partition("\n## ")[0].splitlines()
+
+
+def told(made: Class, student: str) -> bool:
+    """Whether result and class report say that a withheld tool, or a way around it, was used."""
+    result = made.results[student]
+    in_result = result["tricks"] or any(q["withheld"] for q in result["questions"])
+    return bool(in_result) and any(student in line for line in suspected(made.report))
 
 
 def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
@@ -173,7 +179,7 @@ def wins(name: str, attack: Attack, made: Class) -> Iterator[str]:
         deserved = attack.earns if who == student else 0.0
         score = made.results[who]["score"]
         if attack.wins == "answers":
-            if not told(made, who, "BangBang"):
+            if not told(made, who):
                 yield f"{score:g} points, and nobody was told"
         elif score > deserved:
             yield f"{score:g} points, deserved {deserved:g}"

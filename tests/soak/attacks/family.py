@@ -7,6 +7,7 @@ import os
 import signal
 import time
 from contextlib import suppress
+from multiprocessing import resource_tracker
 from pathlib import Path
 
 _ADOPTS = 36  # PR_SET_CHILD_SUBREAPER: orphans become this process's children, not init's
@@ -23,6 +24,7 @@ class Family:
 
     def __enter__(self) -> Family:
         ctypes.CDLL(None).prctl(_ADOPTS, 1, 0, 0, 0)
+        resource_tracker.ensure_running()  # multiprocessing's own, which stays as long as we do
         self.before = set(descendants())
         return self
 

@@ -23,8 +23,8 @@ def reads(**paths: str) -> dict[str, Attack]:
 
 
 FILES = reads(
-    answers="{root}/solutions/paths.py",
-    answers_from_where_it_works="../../../solutions/paths.py",
+    answers="{root}/solutions/paths/answers.py",
+    answers_from_where_it_works="../../../solutions/paths/answers.py",
     the_bundle="{root}/build/course/bundle/01_paths.json",
     the_source_with_hidden_cases="{root}/build/course/source/01_paths/01_paths.ipynb",
     the_solved_notebook="{root}/build/course/solution/01_paths/01_paths.ipynb",
@@ -59,7 +59,6 @@ FILES = reads(
     "        s = socket.socket(fileno=os.dup(f))\n        data = s.recv(10**6, socket.MSG_PEEK | socket.MSG_DONTWAIT)\n"
     f"        if {_WORD}.encode() in data: raise Exception('GOT ' + str(data[:80]))\n    except OSError: pass".replace("import socket", "import os, socket", 1),
     users="import pwd\nfound = [x.pw_name for x in pwd.getpwall()]\nif found: raise Exception('GOT ' + str(found))",
-    host="import socket\nfound = socket.gethostname()\nif found == '{host}': raise Exception('GOT ' + found)",
     homes="import os\nfound = [p for p in ('/home', '/root', '{root}/home') if os.path.isdir(p) and os.listdir(p)]\n"
     "found = [p for p in found if p != '/root' or '.ssh' in os.listdir(p) or '.bashrc' in os.listdir(p)]\n"
     "if found: raise Exception('GOT ' + str(found))",
@@ -109,12 +108,12 @@ INSIDE = answers(
     f"    if isinstance(x, (dict, list, tuple)) and len(x) < 50 and {_WORD} in repr(x)[:20000]: raise Exception('GOT')\nreturn 0, 0, 0",
     referrers_of_the_arguments="import gc\nfor x in gc.get_referrers(duration):\n"
     "    if isinstance(x, (list, tuple)) and len(x) > 2 and not isinstance(x[0], str): raise Exception('GOT ' + repr(x)[:80])\nreturn 0, 0, 0",
-    modules="import sys\nfor name in sys.modules:\n    if name.startswith('solutions') or name.endswith(('.checker', '.bundle', '.results')): raise Exception('GOT ' + name)\n"
+    modules="import sys\nfor name in sys.modules:\n    if name.startswith(('solutions', 'labkit.grader.', 'naive')) and not name.startswith(('labkit.grader.sandbox', 'labkit.grader.clean')): raise Exception('GOT ' + name)\n"
     "return 0, 0, 0",
     globals_of_main="import __main__\nfor name, x in vars(__main__).items():\n"
     f"    if {_WORD} in repr(x)[:2000]: raise Exception('GOT ' + name)\nreturn 0, 0, 0",
-    solutions="from solutions.paths import bang_bang\nraise Exception('GOT ' + str(bang_bang))",
-    problems="import solutions.problems.paths as p\nraise Exception('GOT ' + str(p))",
+    solutions="from solutions.paths.answers import bang_bang\nraise Exception('GOT ' + str(bang_bang))",
+    problems="import solutions.paths.problems as p\nraise Exception('GOT ' + str(p))",
 )  # fmt: skip
 
 _SYSCALLS = {

@@ -1,0 +1,74 @@
+"""The program ``labkit``, or ``python -m labkit``: what students and instructors type.
+
+A students' labkit comes without the folder ``grader`` and so without the instructor's commands.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib.util import find_spec
+from io import TextIOWrapper
+
+import click
+
+from . import __version__
+from .course.cli import merge, submit_check
+
+EXAMPLES = """\b
+examples:
+  labkit submit-check 01_paths.ipynb    before handing in: is the notebook whole?
+"""
+EXAMPLES_FOR_INSTRUCTORS = """\
+  labkit release                        make all assignments, for students and for graders
+  labkit release 01_paths --seed 7      one of them, with hidden cases of your own
+  labkit student-bundle                 a zip for students, with a start page
+  labkit grade 01_paths                 grade everything under submitted/
+  labkit report-card                    how well the checks tell right from wrong
+"""
+
+
+def program() -> click.Group:
+    """All commands of this installation."""
+    commands: list[click.Command] = [submit_check, merge]
+    examples = EXAMPLES
+    if find_spec("labkit.grader"):
+        from .grader import cli, cli_course
+
+        commands += [*cli_course.COMMANDS, *cli.COMMANDS]
+        examples += EXAMPLES_FOR_INSTRUCTORS
+    group = click.Group(
+        "labkit",
+        help="A teaching laboratory for robot control.",
+        epilog=examples,
+        context_settings={"help_option_names": ["-h", "--help"]},
+        subcommand_metavar="VERB ...",
+    )
+    for command in commands:
+        group.add_command(command)
+    return click.version_option(__version__, message="labkit %(version)s")(group)
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Run a command.
+
+    Args:
+        words: What was typed after ``labkit``; by default that of this process.
+
+    Returns:
+        The exit code.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a file's name may hold anything
+    try:
+        return int(program().main(words, "labkit", standalone_mode=False))
+    except click.ClickException as error:
+        error.show()
+        return error.exit_code
+    except click.Abort:
+        return 130
+
+
+if __name__ == "__main__":
+    sys.exit(main())

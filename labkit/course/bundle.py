@@ -1,0 +1,100 @@
+"""The bundle: what a release leaves for graders, hidden cases included."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from ..errors import LabkitError
+from ..formats import check_stamp, stamp
+from .layout import PUBLIC_SEED, Course
+from .question import Question
+from .serialize import question_data, read_question
+
+
+@dataclass(frozen=True)
+class Bundle:
+    """What a release leaves for graders.
+
+    Attributes:
+        data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
+            any, the questions ``added`` when some had handed in already.
+    """
+
+    data: Mapping[str, Any]
+
+    @classmethod
+    def of(cls, course: Course, assignment: str) -> Bundle:
+        """The bundle of an assignment.
+
+        Raises:
+            LabkitError: It was not released, or its file is damaged.
+        """
+        path = course.bundle / f"{assignment}.json"
+        if not path.exists():
+            raise LabkitError(
+                f"{assignment} was not released here; type: labkit release {assignment}"
+            )
+        try:
+            data = json.loads(path.read_text(encoding="utf-8"))
+        except ValueError as error:
+            raise LabkitError(
+                f"{path} is damaged: {error}; restore it, or type: labkit release {assignment}"
+            ) from None
+        seed = data.get("seed", PUBLIC_SEED)
+        check_stamp(data, str(path), f"type: labkit release {assignment} --seed {seed}")
+        return cls(data)
+
+    @cached_property
+    def questions(self) -> tuple[Question, ...]:
+        """Its questions, hidden cases included; read once for all submissions."""
+        return tuple(map(read_question, self.data["questions"]))
+
+    @property
+    def added(self) -> frozenset[str]:
+        """Questions that came when some had handed in already."""
+        return frozenset(self.data.get("added", ()))
+
+    @property
+    def points(self) -> float:
+        """Full marks."""
+        return float(sum(q["points"] for q in self.data["questions"]))
+
+
+def write_bundle(
+    course: Course,
+    assignment: str,
+    seed: int,
+    cells: list[dict[str, Any]],
+    questions: Mapping[str, Question],
+    added: Iterable[str],
+) -> None:
+    """Write a release's bundle; questions that were added stay so until the next term.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        seed: Of the hidden cases.
+        cells: The manifest of its notebook.
+        questions: By name, hidden cases included.
+        added: Those that are new to students who have handed in already.
+    """
+    path = course.bundle / f"{assignment}.json"
+    before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    late = sorted({*before.get("added", ()), *added} & set(questions))
+    data: dict[str, Any] = {
+        **stamp(),
+        "assignment": assignment,
+        "seed": seed,
+        "cells": cells,
+        "questions": [question_data(q) for q in questions.values()],
+        **({"added": late} if late else {}),
+    }
+    text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), sort_keys=True)
+    data["hash"] = hashlib.sha256(text.encode()).hexdigest()
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(json.dumps(data) + "\n", encoding="utf-8")

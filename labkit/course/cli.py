@@ -1,0 +1,99 @@
+"""The student's commands, ``labkit submit-check`` and ``labkit merge``, and how commands fail."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import click
+
+from ..errors import LabkitError
+
+PATH = click.Path(path_type=Path)
+FOR_INSTRUCTORS = ("nbgrader", "jupytext", "sqlalchemy")
+"""Packages that a student's environment does without."""
+
+
+class Verb(click.Command):
+    """A command that returns its exit code: 0 if all was done, 1 if the output names failures.
+
+    A mistake of the caller ends in one sentence and exit code 2, Ctrl-C in exit code 130.
+    """
+
+    def invoke(self, ctx: click.Context) -> int:
+        """Run it."""
+        try:
+            return int(super().invoke(ctx))
+        except LabkitError as error:
+            return self._stop(str(error))
+        except ModuleNotFoundError as error:
+            package = (error.name or "").partition(".")[0]
+            if package not in FOR_INSTRUCTORS:
+                raise
+            return self._stop(f"{package} is missing; type: pip install 'labkit[instructor]'")
+        except KeyboardInterrupt:
+            return self._stop("stopped", code=130)
+        except BrokenPipeError:  # whoever was reading has seen enough
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+            return 1
+        except OSError as error:  # a folder that does not exist, a full disk
+            where = "" if error.filename is None else f"{error.filename}: "
+            return self._stop(f"{where}{error.strerror or error}")
+
+    def _stop(self, sentence: str, code: int = 2) -> int:
+        """Say why, without what a terminal would obey: a file's name may hold anything."""
+        text = "".join(x if x.isprintable() or x == "\n" else "\ufffd" for x in sentence)
+        print(f"labkit {self.name}: {text}", file=sys.stderr)
+        return code
+
+
+def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
+    """Make a command of a function: its name and its docstring are the command's.
+
+    Args:
+        example: What may follow the name; the help ends with it.
+    """
+
+    def make(function: Callable[..., int]) -> Verb:
+        name = function.__name__.replace("_", "-")
+        epilog = f"example: labkit {name} {example}".rstrip()
+        return click.command(name, Verb, epilog=f"\b\n{epilog}")(function)
+
+    return make
+
+
+@verb("01_paths.ipynb")
+@click.argument("notebook", type=PATH)
+@click.option("--forum", is_flag=True, help="Print a block to copy into a forum.")
+def submit_check(notebook: Path, forum: bool) -> int:
+    """Before handing in: is the notebook whole?"""
+    from .handin import look
+
+    found = look(notebook)
+    print(found.for_the_forum() if forum else found)
+    return 1 if found.problems else 0
+
+
+@verb("01_paths.ipynb new/01_paths.ipynb --to merged.ipynb")
+@click.argument("mine", type=PATH)
+@click.argument("new", type=PATH)
+@click.option("--to", type=PATH, required=True, metavar="FILE", help="Where to write.")
+def merge(mine: Path, new: Path, to: Path) -> int:
+    """Bring your work into a corrected release.
+
+    MINE is the notebook that you worked in, NEW is the corrected one.
+    """
+    from .handin import merge
+    from .notebook import read_cells
+
+    cells, released = read_cells(mine), read_cells(new)
+    if to.exists():
+        raise LabkitError(f"{to} is there already; give another name with --to")
+    notebook = json.loads(new.read_text(encoding="utf-8")) | {"cells": merge(cells, released)}
+    text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
+    to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
+    print(f"{to}: the new release with your work; look it through, then run it all")
+    return 0

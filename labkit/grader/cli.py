@@ -1,0 +1,243 @@
+"""Commands on what was collected: grade, hand back, report, export."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, TextIO
+
+import click
+
+from ..course.cli import PATH, verb
+from ..course.layout import Course
+from ..course.serialize import record_data
+from ..errors import LabkitError
+from .cli_course import of_assignment
+from .each import Failures
+
+one_student = click.option("--student", metavar="S", help="Only this one.")
+jobs = click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    default=lambda: len(os.sched_getaffinity(0)),
+    help="Workers; by default one per core.",
+)
+to_file = click.option("--to", type=PATH, metavar="FILE", help="Instead of the screen.")
+
+
+def _shard(text: str) -> tuple[int, int]:
+    first, _, last = text.partition("/")
+    if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
+        raise click.BadParameter(f"{text} is not a part; write 1/4, 2/4, 3/4 or 4/4")
+    return int(first), int(last)
+
+
+@verb("01_paths --student ada")
+@of_assignment
+@one_student
+@jobs
+@click.option("--json", "as_json", is_flag=True, help="One JSON object per line, for programs.")
+@click.option("--again", is_flag=True, help="Grade anew what is graded already.")
+@click.option("--dask", metavar="ADDRESS", help="Of a Dask scheduler that shares the folder.")
+@click.option(
+    "--shard", type=_shard, default="1/1", metavar="i/n", help="Only the i-th of n parts."
+)
+@click.option(
+    "--unsafe-no-isolation",
+    "isolated",
+    flag_value=False,
+    default=True,
+    help="Run students' code with your own rights, able to read and delete your files.",
+)
+def grade(course: Course, assignment: str, student: str | None, as_json: bool, **how: Any) -> int:
+    """Grade what was handed in and is not graded yet.
+
+    Each submission is graded in a sandbox of its own.
+    """
+    from .batch import GradeOptions, common_failures, grade_class
+    from .gradebook import record
+    from .lock import WHOLE
+    from .results import Result, Results
+
+    with Failures() as failures:
+        who = _handed_in(course, assignment, student, failures)
+        graded: list[Result] = []
+        done = failures.sift(
+            grade_class(course, assignment, who, GradeOptions(**how)), "not graded"
+        )
+        for number, one in enumerate(done, start=1):
+            graded.append(one.result)
+            says = f" ({one.says})" if one.says else ""
+            line = f"[{number}/{len(who)}] {one.result}{says}"
+            print(json.dumps(record_data(one.result)) if as_json else line, flush=True)
+        said = sys.stderr if as_json else sys.stdout
+        if how["shard"] == WHOLE:
+            recorded = record(course, assignment, graded)
+            _tell(failures.sift(recorded, "not in the gradebook"), said)
+            everybody = graded if student else list(Results(course, assignment))
+            _tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
+        if graded and not as_json:
+            print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
+    return failures.code
+
+
+@verb("01_paths --diff")
+@of_assignment
+@one_student
+@click.option("--diff", is_flag=True, help="Only say whose mark would move.")
+@click.option("--lower", is_flag=True, help="Let marks fall too.")
+@jobs
+def regrade(
+    course: Course, assignment: str, student: str | None, diff: bool, lower: bool, jobs: int
+) -> int:
+    """Grade again after a test or its points have changed."""
+    from .batch import GradeOptions
+    from .gradebook import record
+    from .lock import exclusive_run
+    from .regrade import accept, moves, summary
+    from .results import Results
+
+    with Failures() as failures, exclusive_run(Results(course, assignment).folder):
+        who = _handed_in(course, assignment, student, failures)
+        found = moves(course, assignment, who, GradeOptions(jobs=jobs))
+        moved = list(failures.sift(found, "not graded"))
+        _tell(summary(moved), sys.stdout)
+        if not diff:
+            counts = accept(course, assignment, moved, lower=lower)
+            accepted = list(failures.sift(counts, "not kept"))
+            left = len(moved) - len(counts)
+            if left:
+                print(f"{left} marks would fall and stay as they are; --lower lets them")
+            recorded = record(course, assignment, accepted)
+            _tell(failures.sift(recorded, "not in the gradebook"), sys.stdout)
+    return failures.code
+
+
+@verb("01_paths --student ada")
+@of_assignment
+@one_student
+@click.option(
+    "--moodle", type=PATH, metavar="ZIP", help="Also write the feedback files that Moodle takes."
+)
+def feedback(course: Course, assignment: str, student: str | None, moodle: Path | None) -> int:
+    """Write a page for each student."""
+    from .exchange import for_exchange
+    from .feedback import write_feedback
+    from .gradebook import comments
+    from .return_feedback import moodle_zip
+    from .standing import standing
+
+    with Failures() as failures:
+        results = list(failures.sift(standing(course, assignment, student), "no page"))
+        if not results and not failures.code:
+            raise _nobody(assignment, student)
+        pages = write_feedback(course, assignment, results, comments(course, assignment))
+        made = list(failures.sift(pages, "no page"))
+        size = sum(path.stat().st_size for path in made) / 1e6
+        print(f"pages in {course.root / 'feedback'}: {len(made)}, {size:.1f} MB")
+        sent = for_exchange(course, assignment, made)
+        if any(list(failures.sift(sent, "not for the exchange"))):
+            print(f"back to the exchange: nbgrader release_feedback {assignment}")
+        if moodle:
+            count = moodle_zip(course, assignment, made, moodle)
+            size = moodle.stat().st_size / 1e6
+            print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {moodle}")
+    return failures.code
+
+
+@verb("01_paths --to marks.csv")
+@of_assignment
+@click.option(
+    "--layout",
+    type=click.Choice(["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"]),
+    default="questions",
+    help="moodle is for its gradebook, moodle-worksheet for the assignment's own page.",
+)
+@click.option(
+    "--column", metavar="NAME", help="The assignment as the platform calls it: 'Paths (4711)'."
+)
+@to_file
+def export(
+    course: Course, assignment: str, layout: str, column: str | None, to: Path | None
+) -> int:
+    """Write marks as a table."""
+    from .export import LAYOUTS, as_csv, remarks
+    from .marks import marks_of
+
+    marks = list(marks_of(course, assignment))
+    if not marks:
+        raise _nobody(assignment, None)
+    _tell(remarks(layout, marks), sys.stderr)
+    _write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
+    return int(any(mark.missing for mark in marks))
+
+
+@verb("01_paths --names")
+@of_assignment
+@click.option("--names", is_flag=True, help="With names, for your eyes only.")
+@to_file
+@click.option("--jplag", type=PATH, metavar="DIR", help="Also write answers for JPlag there.")
+def class_report(
+    course: Course, assignment: str, names: bool, to: Path | None, jplag: Path | None
+) -> int:
+    """Say what the class got right and wrong."""
+    from .class_report import for_jplag, report
+    from .pseudonyms import pseudonyms
+    from .standing import standing
+
+    with Failures() as failures:
+        results = list(failures.sift(standing(course, assignment), "left out"))
+        if not results:
+            raise _nobody(assignment, None)
+        problems = {p.name: p for p in course.problems(assignment)}
+        pseudonym = pseudonyms(course)
+        called = str if names else pseudonym
+        _write(report(assignment, results, problems, called, len(failures.sentences)), to)
+        if jplag:
+            written = for_jplag(results, jplag, pseudonym)
+            print(f"{written} answers in {jplag}", file=sys.stderr)
+    return failures.code
+
+
+def _handed_in(
+    course: Course, assignment: str, student: str | None, failures: Failures
+) -> list[str]:
+    """Who handed in, or the one asked for; folders with a name that is not fit are failures."""
+    from .submission import misnamed, students
+
+    found = students(course, assignment)
+    who = [student] if student else found
+    if student is None:
+        failures.add("not graded", misnamed(course, assignment))
+    if set(who) - set(found) or not (who or failures.code):
+        raise LabkitError(
+            f"nothing of {student or 'anybody'} lies in submitted/*/{assignment}; "
+            "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
+        )
+    return who
+
+
+def _nobody(assignment: str, student: str | None) -> LabkitError:
+    """What to say where nothing is graded yet."""
+    who = f"{student} is not" if student else "nobody is"
+    return LabkitError(f"{who} graded in {assignment}; type: labkit grade {assignment}")
+
+
+def _tell(sentences: Iterable[str], where: TextIO) -> None:
+    for sentence in sentences:
+        print(sentence, file=where, flush=True)
+
+
+def _write(text: str, where: Path | None) -> None:
+    if where is None:
+        sys.stdout.write(text)
+    else:
+        where.write_text(text, encoding="utf-8")
+        print(f"written: {where}")
+
+
+COMMANDS = (grade, regrade, feedback, export, class_report)

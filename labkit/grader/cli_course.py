@@ -1,0 +1,245 @@
+"""Commands before grading: the machine, the term, what students get, who they are, what came in."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import click
+
+from ..course.cli import PATH, verb
+from ..course.layout import PUBLIC_SEED, Course
+
+Option = Callable[[Callable[..., int]], Callable[..., int]]
+SEED = click.IntRange(min=0)
+
+
+def of_course(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command the option ``--course`` and hand it the course."""
+
+    @click.option("--course", type=PATH, metavar="DIR", help="Default: the one around you.")
+    @wraps(command)
+    def on_course(course: Path | None, **given: Any) -> int:
+        return command(course=Course.here(course), **given)
+
+    return on_course
+
+
+def of_assignment(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command an assignment's name; the course must have an assignment of that name."""
+
+    @click.argument("assignment")
+    @of_course
+    @wraps(command)
+    def on_assignment(course: Course, assignment: str, **given: Any) -> int:
+        course.notebook_source(assignment)
+        return command(course=course, assignment=assignment, **given)
+
+    return on_assignment
+
+
+names = click.argument("names", nargs=-1, metavar="[NAME]...")
+
+
+@verb("01_paths --seed 7")
+@names
+@click.option("--seed", type=SEED, help="Of the hidden cases; the term's by default, or the last.")
+@of_course
+def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
+    """Make the students' notebooks.
+
+    Each NAME is an assignment such as 01_paths; without one, all are made.
+    """
+    from .release import release
+    from .term import public_warning, seed_for
+
+    seeds = set()
+    for name in names or course.names():
+        course.notebook_source(name)
+        used = seed_for(course, name) if seed is None else seed
+        print(release(course, name, used), flush=True)
+        seeds.add(used)
+    for warning in filter(None, map(public_warning, seeds)):
+        print(warning)
+    print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
+    return 0
+
+
+@verb("00_warmup 01_paths --to week1.zip")
+@names
+@click.option("--to", type=PATH, metavar="FILE", help="Default: dist/baxter-lab.zip.")
+@of_course
+def student_bundle(course: Course, names: tuple[str, ...], to: Path | None) -> int:
+    """Write a zip for students: labkit and notebooks.
+
+    Without a NAME it takes all assignments that are released.
+    """
+    from .student_bundle import student_bundle
+
+    path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip")
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+    return 0
+
+
+@verb("00_warmup 01_paths")
+@names
+@click.option("--seed", type=SEED, help="Of the hidden cases; drawn by default.")
+@of_course
+def new_term(course: Course, names: tuple[str, ...], seed: int | None) -> int:
+    """Archive the last term, release with a new seed.
+
+    Without a NAME it releases all assignments.
+    """
+    from .term import new_term
+
+    record = new_term(course, seed, names)
+    for name, digest in record["bundles"].items():
+        print(f"{name}: bundle {digest[:16]}")
+    print(
+        f"a term with seed {record['seed']} begins; keep course_private/term.json, which holds it"
+    )
+    return 0
+
+
+@verb("")
+@of_course
+def forget(course: Course) -> int:
+    """Delete archived terms, and the names with them."""
+    from .term import purge
+
+    gone = purge(course)
+    print("\n".join(f"deleted {folder.name}" for folder in gone) or "there is no archived term")
+    return 0
+
+
+@verb("--to ../handout")
+@click.option("--to", type=PATH, required=True, metavar="DIR", help="A folder that is new.")
+@of_course
+def export_course(course: Course, to: Path) -> int:
+    """Write a repository for students, and a private one."""
+    from .student_bundle import export_course
+
+    student, private = export_course(course, to)
+    print(f"for students, without answers: {student}\nprivate, everything: {private}")
+    return 0
+
+
+def _functions(of: str) -> Option:
+    """An option that takes more known answers from a file."""
+    says = f"A Python file with a dict {of.upper()} = {{question: [functions]}}."
+    return click.option(f"--{of}", type=PATH, metavar="FILE", help=says)
+
+
+@verb("01_paths --mistakes seen_in_class.py")
+@names
+@click.option(
+    "--seed", type=SEED, default=PUBLIC_SEED, help=f"Of the first draw; {PUBLIC_SEED} by default."
+)
+@_functions("mistakes")
+@_functions("variants")
+@of_course
+def report_card(
+    course: Course, names: tuple[str, ...], seed: int, mistakes: Path | None, variants: Path | None
+) -> int:
+    """Say how well the checks tell right from wrong.
+
+    Without a NAME it looks at all assignments.
+    """
+    from ..course.report_card import functions_from, make, write
+
+    card = make(
+        course,
+        names or course.names(),
+        seed,
+        functions_from(mistakes, "MISTAKES") if mistakes else None,
+        functions_from(variants, "VARIANTS") if variants else None,
+        progress=lambda row: print(
+            f"{row.assignment} {row.question}: {row.rejected} of {row.mistakes} mistakes rejected, "
+            f"{row.accepted} of {row.variants} right answers accepted",
+            flush=True,
+        ),
+    )
+    table, page = write(card, course.root / "build")
+    print(page.read_text(encoding="utf-8"))
+    print(f"written: {table} and {page}")
+    return int(any(row.failures for row in card.rows))
+
+
+@verb("import participants.csv")
+@click.argument("action", type=click.Choice(["import"]), metavar="import")
+@click.argument("file", type=PATH, metavar="FILE.csv")
+@click.option(
+    "--assignment",
+    metavar="NAME",
+    help="The file is Moodle's grading worksheet of it, which says whose each number is.",
+)
+@of_course
+def students(course: Course, action: str, file: Path, assignment: str | None) -> int:
+    """Take a list of students into the roster.
+
+    The list is Moodle's, Canvas's or any table with a line for each student.
+
+    Exit code: 0 if the list was taken, 1 if work of somebody is in two folders (named at the end),
+    2 if the list was not taken.
+    """
+    from .enrol import import_list
+
+    taken = import_list(course, file, assignment)
+    print("\n".join(taken.told))
+    for sentence in (*taken.left, *taken.alike):
+        print(sentence, file=sys.stderr)
+    return 1 if taken.left else 0
+
+
+@verb("01_paths moodle.zip")
+@of_assignment
+@click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
+@click.option(
+    "--unverified",
+    is_flag=True,
+    help="From the exchange, also take what users handed in whom this machine does not know.",
+)
+def collect(course: Course, assignment: str, sources: tuple[Path, ...], unverified: bool) -> int:
+    """Take downloads from Moodle, Canvas or the exchange.
+
+    The exchange is nbgrader's; give its inbound folder. Nothing that was handed in is lost: all of
+    it is under attempts/.
+
+    Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
+    (named at the end), 2 if nothing could be done.
+    """
+    from .collect import collect
+
+    doubtful = []
+    try:
+        for source in sources:
+            for taken in collect(course, assignment, source, unverified=unverified):
+                if taken.fine:
+                    print(taken, flush=True)
+                else:
+                    doubtful.append(taken)
+    finally:
+        for taken in doubtful:
+            print(taken, file=sys.stderr)
+    return 1 if doubtful else 0
+
+
+@verb("")
+def doctor() -> int:
+    """Say what this machine lacks, and how to get it."""
+    from .doctor import examine
+
+    bad = False
+    for finding in examine():
+        print(finding, flush=True)
+        bad |= finding.needed and not finding.fine
+    return 1 if bad else 0
+
+
+COMMANDS = (
+    *(doctor, new_term, release, student_bundle, students, collect),
+    *(report_card, export_course, forget),
+)

@@ -1,0 +1,37 @@
+"""nbgrader's interface to a course, for whatever nbgrader itself is to do."""
+
+from __future__ import annotations
+
+import logging
+import os
+import re
+import sys
+from pathlib import Path
+from typing import Any
+
+from ..course.layout import Course
+from .clean import clean_line
+
+
+def nbgrader_api(course: Course) -> Any:
+    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says."""
+    from nbgrader.apps import NbGraderAPI
+    from nbgrader.coursedir import CourseDirectory
+    from traitlets.config import Config
+    from traitlets.config.loader import PyFileConfigLoader
+
+    here = str(Path(sys.executable).parent)  # nbgrader calls programs that lie beside Python
+    if here not in os.environ["PATH"].split(os.pathsep):
+        os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
+    config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+    settings = Config(config)
+    settings.CourseDirectory.root = str(course.root)
+    settings.Application.log_level = logging.CRITICAL
+    return NbGraderAPI(CourseDirectory(config=settings), config=settings)
+
+
+def reason(result: dict[str, Any]) -> str:
+    """Why nbgrader failed: the last exception in its log, or else the log's last line."""
+    lines = [x for x in f"{result.get('log', '')}\n{result.get('error', '')}".splitlines() if x]
+    errors = [x.strip() for x in lines if re.match(r"\s*[\w.]+(Error|Exception)\b", x)]
+    return clean_line((errors or lines or ["nbgrader gave no reason"])[-1])

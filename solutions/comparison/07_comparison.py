@@ -1,0 +1,409 @@
+# %% [markdown]
+# # 07 · Which controller is better?
+#
+# The report of 2019 put seven ways to move the arm side by side, looked at the plots and wrote that its
+# own controllers "obtained superior performance". On another page it wrote that the built-in way
+# "performs slightly better in most cases". No number stands beside either sentence. This notebook is
+# about earning the right to write such a sentence, or the one that is more often true: *we cannot tell*.
+#
+# | | |
+# |---|---|
+# | **You need** | numpy; what a standard deviation is; complex numbers |
+# | **Given** | recorded runs of every controller, a loop's parts, an interval's recipe |
+# | **You write** | the error of a run, a loop on paper, gains with a margin, differences over seeds, verdicts |
+# | **Time** | about 5 hours · 20 points |
+#
+# Every cell below runs from the start, solved or not: where your part is missing, something given stands
+# in and says so. Only the functions are marked.
+
+# %% setup=true
+from dataclasses import replace
+
+import labkit as lk
+from labkit.course import check, hint, use
+
+lk.ready()
+
+# %% setup=true
+import control
+import matplotlib.pyplot as plt
+import numpy as np
+
+from labkit import metrics
+from labkit import loop, recordings
+
+# %% [markdown]
+# ## One number for a run
+#
+# Here is Baxter's built-in way on the line, as it was recorded: a planner made a path, a time
+# parameterisation put it on a schedule, and the arm's own trajectory server followed.
+
+# %%
+log = recordings.load("baseline_line")
+model = lk.Model("left")
+lk.plotting.tracking(log, model)
+lk.plotting.show(lk.plotting.describe(log, model))
+
+# %% [markdown]
+# The same run as an arm, with the arm that follows perfectly as its ghost, and with the server's other
+# mode, which commands velocities:
+
+# %%
+other_mode = {"velocity mode": recordings.load("baseline_line_velocity")}
+lk.replay.show(
+    lk.replay.motion_of(log, "The built-in way on the line", label="position mode", ghosts=other_mode)
+)
+
+# %% [markdown]
+# At each instant the error of the tip is a vector, target minus actual. The usual number for a whole run
+# is the root of the mean of its squared length. Two slips are common. A mean that runs over the three
+# components as well comes out too small by $\sqrt 3$, and nobody notices, because all controllers profit
+# alike. And a program that asks for *the* pose without saying of which instant compares every row with
+# the last one; that is what the plots of the report show.
+
+# %% question="rms_error"
+def rms_error(log, model):
+    """RMS position error of the tip in a run after poses.
+
+    Args:
+        log: The run: log.q, shape (N, 7) in [rad], and log.target.pose, shape (N, 4, 4).
+        model: Gives the tip's pose (4, 4) at joint angles: model.pose(q).
+
+    Returns:
+        The error in [m].
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison.answers import rms_error as answer
+
+    return answer(log, model)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# The built-in way was recorded on other paths too, and on the line in a second mode. Its targets are
+# joint angles; the tip's target poses follow from them. One number for each run, by your function. (If
+# it is not ready, the largest error stands in.)
+
+# %%
+def largest_error(log, model):
+    return metrics.summary(log, model).max_mm / 1000.0
+
+
+my_rms_error = use("rms_error", rms_error, largest_error)
+
+
+def after_poses(log):
+    """The same run, with the tip's pose, twist and its rate as target."""
+    poses = np.array([model.pose(q) for q in log.target.position])
+    return replace(log, target=lk.PoseSample(poses, *np.zeros((2, len(poses), 6))))
+
+
+for name in recordings.names():
+    error = my_rms_error(after_poses(recordings.load(name)), model)
+    print(f"{name.removeprefix('baseline_'):13} {1e3 * error:5.1f} mm")
+
+# %% [markdown]
+# ## The loop on paper
+#
+# Why is there a best gain at all? Take one joint in velocity mode. Its speed follows the command with a
+# first-order lag; the angle is the integral of the speed; the controller sees an angle that is some
+# milliseconds old. In a row:
+#
+# $$ L(s) = K_p \cdot \frac{1}{\tau s + 1} \cdot \frac1s \cdot e^{-s d} . $$
+#
+# python-control multiplies such things for you. A delay is not a ratio of polynomials, but
+# `control.pade(delay, 4)` gives one that is close enough below the frequencies that matter here.
+
+# %% question="open_loop"
+def open_loop(kp, lag, delay):
+    """The open loop of one velocity-commanded joint under a proportional controller.
+
+    Args:
+        kp: Gain, in [1/s].
+        lag: Time constant of the speed, in [s]; may be 0.
+        delay: Age of what the controller sees, in [s]; may be 0.
+
+    Returns:
+        A control.TransferFunction.
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison.answers import open_loop as answer
+
+    return answer(kp, lag, delay)
+    ### END SOLUTION
+
+
+# %%
+def integrator_alone(kp, lag, delay):
+    """The stand-in: a joint that obeys at once, and is seen at once."""
+    return control.tf([kp], [1.0, 0.0])
+
+
+my_open_loop = use("open_loop", open_loop, integrator_alone)
+
+joint = loop.velocity_joint_of(lk.BAXTER)
+lag, delay = lk.BAXTER.velocity_lag, joint.delay
+print(f"Baxter's joint: lag {1e3 * lag:.0f} ms, delay {1e3 * delay:.1f} ms")
+
+omega = np.logspace(0, 2.3, 300)
+figure, (above, below) = plt.subplots(2, 1, figsize=(8, 5), sharex=True, layout="constrained")
+for kp, style in ((8.0, "-"), (25.0, "--"), (70.0, ":")):
+    L = np.array([my_open_loop(kp, lag, delay)(1j * w) for w in omega])
+    above.loglog(omega, np.abs(L), style, label=f"Kp = {kp:g} 1/s")
+    below.semilogx(omega, np.degrees(np.unwrap(np.angle(L))), style)
+above.axhline(1.0, color="0.6", linewidth=0.8)
+below.axhline(-180.0, color="0.6", linewidth=0.8)
+above.set_ylabel("gain")
+above.legend(frameon=False)
+below.set_ylabel("phase [deg]")
+below.set_xlabel("frequency [rad/s]")
+lk.plotting.show(
+    "Gain and phase of the loop on paper, with the lines where the gain is 1 and where the phase is "
+    "-180 degrees, for Kp = 8, 25 and 70 1/s."
+)
+
+# %% [markdown]
+# The gain moves the upper curve up and down and leaves the lower one alone. Where the gain is 1, what is
+# left of the phase above -180° is the *phase margin*: with none left the loop swings for ever, and with
+# less than none it runs away. So a margin fixes the gain: find the frequency at which the phase is right,
+# then make the gain 1 there.
+
+# %% question="kp_for_margin"
+def kp_for_margin(lag, delay, margin_deg):
+    """The gain that leaves a wanted phase margin, the delay taken exactly.
+
+    Args:
+        lag: Time constant of the speed, in [s].
+        delay: In [s].
+        margin_deg: Phase margin, in [degrees].
+
+    Returns:
+        Kp in [1/s].
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison.answers import kp_for_margin as answer
+
+    return answer(lag, delay, margin_deg)
+    ### END SOLUTION
+
+
+# %%
+def given_kp_for_margin(lag, delay, margin_deg):
+    """Read off a table of margins, to about a tenth."""
+    gains = np.geomspace(2.0, 100.0, 8)
+    joint = loop.VelocityJoint(lag, delay)
+    phases = [loop.PDLoop(joint, kp).margins().phase for kp in gains]
+    return float(np.interp(-margin_deg, -np.array(phases), gains))
+
+
+my_kp_for_margin = use("kp_for_margin", kp_for_margin, given_kp_for_margin)
+for margin in (30, 45, 60, 75):
+    print(f"{margin} degrees of margin: Kp = {my_kp_for_margin(lag, delay, margin):.1f} 1/s")
+
+# %% [markdown]
+# ## The whole map
+#
+# Paper is not the arm. This map was measured: the joint velocity PD along the line on the simulated
+# Baxter, one run for each pair of gains and seed. The error falls with the gain, slower and slower, and
+# then there is a cliff.
+
+# %%
+measured = recordings.error_map("joint_velocity_pd_baxter")
+errors = measured.array()
+figure, ax = plt.subplots(figsize=(8, 3.6), layout="constrained")
+for j, style in ((0, "-"), (4, "--"), (6, ":")):
+    ax.loglog(measured.Kp, errors[:, j], style, marker="o", ms=3, label=f"Kd = {measured.Kd[j]:g}")
+for margin in (30, 60):
+    kp = my_kp_for_margin(lag, delay, margin)
+    ax.axvline(kp, color="0.6", linewidth=0.8)
+    ax.annotate(f"{margin}° on paper", (kp, 38.0), rotation=90, ha="right", va="top", fontsize="small")
+ax.set_xticks([1, 10, 100], ["1", "10", "100"])
+ax.set_yticks([2, 5, 10, 20, 40], ["2", "5", "10", "20", "40"])
+ax.minorticks_off()
+ax.set_xlabel("Kp [1/s]")
+ax.set_ylabel("RMS error [mm]")
+ax.legend(frameon=False)
+lk.plotting.show(measured.describe())
+
+# %% [markdown]
+# ## Gains that survive
+#
+# Choose gains yourself, with at most twenty runs along the line. Each call `runner(Kp, Kd, seed)` stands
+# for one run on the arm, with a start and a noise that the seed draws, and gives its RMS error in
+# millimetres. `Kp` may go from 2 to 100, `Kd` from 0 to 1, and there are the seeds 0 to 4. (The runs were
+# recorded; between the recorded gains the error is interpolated.)
+#
+# Your gains are then used where you could not try them: on another path, at twice the speed, with a
+# kilogram in the hand, with a state that is a few milliseconds older. And not only they, but also 1.3 times
+# your `Kp`: so much margin you should leave at least. Your function is asked twice, with a runner for this
+# arm and with one for an arm that takes about three times as long for everything, its path included. No
+# pair of gains serves both, so let the function look for them.
+
+# %% question="choose_gains"
+def choose_gains(runner):
+    """Gains of the joint velocity PD that also hold where they were not tuned.
+
+    Args:
+        runner: runner(Kp, Kd, seed) gives the RMS error along the line in [mm]; 20 calls.
+
+    Returns:
+        (Kp, Kd).
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison.answers import choose_gains as answer
+
+    return answer(runner)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Try your own strategy here; the runner remembers what it was asked.
+
+# %%
+line_trials = recordings.read_trials(recordings.LINE)
+runner = recordings.Runner(line_trials)
+for kp in (8.0, 30.0, 90.0):
+    row = [runner(kp, 0.0, seed) for seed in range(3)]
+    print(f"Kp = {kp:4g}: " + ", ".join(f"{x:.2f} mm" for x in row) + f"; {runner.left} tries left")
+
+# %% [markdown]
+# Look at the last row: seed 1 alone would have told you that 90 is a fine gain.
+#
+# And here is yours: what it chooses, what that costs on the line, and what the loop on paper says of it.
+# (If it is not ready, a guess stands in.)
+
+# %%
+def a_guess(runner):
+    return 6.0, 0.0
+
+
+my_choose_gains = use("choose_gains", choose_gains, a_guess)
+runner = recordings.Runner(line_trials)
+Kp, Kd = my_choose_gains(runner)
+phase = loop.PDLoop(loop.VelocityJoint(lag, delay), Kp).margins().phase
+print(f"Kp = {Kp:g} 1/s, Kd = {Kd:g}, chosen with {runner.budget - runner.left} tries")
+print(f"on the line, worst of five seeds: {line_trials.worst(Kp, Kd):.2f} mm")
+print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")
+
+# %% [markdown]
+# ## Paired differences
+#
+# Two controllers, five seeds. A seed that draws a bad start is bad for both. If the rows are compared as
+# if they were strangers, that spread hides everything; subtract first, and it drops out. What is left has
+# a mean, and the mean of a few numbers is itself uncertain: by Student's $t$ it lies, with 95 %
+# confidence, within
+#
+# $$ \bar d \pm t_{0.975,\,n-1}\,\frac{\sigma_d}{\sqrt n}, \qquad
+#    \sigma_d^2 = \frac{1}{n-1}\sum_i (d_i - \bar d)^2 . $$
+
+# %% question="paired_difference"
+def paired_difference(errors_a, errors_b):
+    """Mean difference over pairs, and how sure it is.
+
+    Args:
+        errors_a: One number for each seed.
+        errors_b: The same seeds, the other way.
+
+    Returns:
+        (mean, half_width): of a - b, and half of its 95 % interval.
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison.answers import paired_difference as answer
+
+    return answer(errors_a, errors_b)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## Verdicts
+#
+# The campaign of this course let every controller follow every task on the simulated Baxter, five seeds
+# each. Here are its rows; the errors count from the second half of the first second on, when the start's
+# offset should be gone.
+
+# %%
+rows = [row for row in recordings.campaign() if row["plant"] == "baxter"]
+ways = list(dict.fromkeys(row["way"] for row in rows))
+table = {way: [r["late_rms_mm"] for r in rows if r["way"] == way and r["task"] == "circle"] for way in ways}
+figure, ax = plt.subplots(figsize=(8, 3), layout="constrained")
+for k, way in enumerate(ways):
+    ax.plot(table[way], [k] * len(table[way]), "o", mfc="none")
+ax.set_yticks(range(len(ways)), ways)
+ax.set_xscale("log")
+ax.set_xticks([3, 5, 10, 20], ["3", "5", "10", "20"])
+ax.minorticks_off()
+ax.set_xlabel("RMS error on the circle, one ring for each seed [mm]")
+means = ", ".join(f"{way} {np.mean(errors):.1f} mm" for way, errors in table.items())
+lk.plotting.show(f"The errors of each way on the circle; on average {means}.")
+
+# %% [markdown]
+# From rows like these write a verdict on each claim. The claim is always that the *first* error is the
+# larger one. "Undecided" is an answer, and where the interval holds 0 the only honest one.
+
+# %% question="verdicts"
+def verdicts(table):
+    """A verdict on each claim.
+
+    Args:
+        table: For each claim two rows of errors over the same seeds: {claim: (errors_a, errors_b)}.
+
+    Returns:
+        {claim: "holds", "does not hold" or "undecided"}, whether a is larger than b.
+    """
+    ### BEGIN SOLUTION
+    from solutions.comparison.answers import verdicts as answer
+
+    return answer(table)
+    ### END SOLUTION
+
+
+# %%
+def given_verdicts(table):
+    return {claim: "(your verdict)" for claim in table}
+
+
+def half_the_range(errors_a, errors_b):
+    d = np.subtract(errors_a, errors_b)
+    return d.mean(), np.ptp(d) / 2
+
+
+my_verdicts = use("verdicts", verdicts, given_verdicts)
+my_paired_difference = use("paired_difference", paired_difference, half_the_range)
+
+
+def late(way):
+    """The errors of one way on the tasks and seeds, in one order."""
+    mine = [row for row in rows if row["way"] == way]
+    return [row["late_rms_mm"] for row in sorted(mine, key=lambda row: (row["task"], row["seed"]))]
+
+
+claims = {
+    "workspace velocity is worse than joint velocity": ("workspace velocity", "joint velocity"),
+    "workspace impedance is worse than joint impedance": ("workspace impedance", "joint impedance"),
+    "joint impedance is worse than joint torque": ("joint impedance", "joint torque"),
+    "the built-in way is worse than joint velocity": ("baseline", "joint velocity"),
+    "the built-in way is worse than joint torque": ("baseline", "joint torque"),
+}
+found = my_verdicts({claim: (late(a), late(b)) for claim, (a, b) in claims.items()})
+for claim, verdict in found.items():
+    mean, half = my_paired_difference(*map(late, claims[claim]))
+    print(f"{claim}: {verdict} ({mean:+.2f} ± {half:.2f} mm)")
+
+# %% [markdown]
+# With your own verdicts in place: the report's two sentences are both in this table. Its controllers are better than the built-in way, and
+# they are worse: it depends on which one is meant, and each of the two is sure enough. And where it ranks
+# workspace against joint control, the rows do not tell. So name the two, the task and the number, and say
+# how sure you are.
+
+# %% [markdown]
+# ## Hand in
+#
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 07_comparison.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

@@ -1,0 +1,619 @@
+"""What notebook 07 asks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from labkit.course import Choice, Close, Response
+from labkit.course.problem import Problem, Trial, Wrong, call
+
+from . import answers, hidden, mistakes, variants
+
+_RANDOM = np.random.default_rng(7)
+_SEEDS = [3.0, 1.1, 4.9, 2.05, 3.9]
+_TEN_PAIRS = [
+    [4.0, 0.5, 6.0, 5.0, 5.5, 2.0, 7.5, 4.5, 4.0, 2.0],
+    [3.0, 1.0, 4.0, 2.0, 5.0, 3.0, 6.0, 2.0, 4.0, 1.0],
+]
+_345 = np.array([0.003, 0.004, 0.012])
+
+RMS_ERROR = Problem(
+    name="rms_error",
+    points=3,
+    asks="From a log whose target is poses, give the RMS position error of the tip in metres: the "
+    "root of the mean, over the rows, of the squared length of the error.",
+    answer=answers.rms_error,
+    judge=Close(rtol=1e-6, atol=1e-9),
+    trials=(
+        Trial(
+            "an arm at rest, 3, 4 and 12 mm off: 13 mm",
+            (call(hidden.drawn_log(_RANDOM, 4, _345, moving=False), hidden.MODEL),),
+            hidden.still_logs,
+            "other offsets",
+            weight=0.0,
+        ),
+        Trial(
+            "the same error on an arm that moves, with a tilt",
+            (call(hidden.drawn_log(_RANDOM, 5, _345, moving=True), hidden.MODEL),),
+            hidden.moving_logs,
+            "other motions",
+        ),
+        Trial(
+            "errors that change from row to row, of the left arm and of the right",
+            (
+                call(
+                    hidden.drawn_log(_RANDOM, 5, np.outer([1, -2, 0, 3, 1], _345), moving=True),
+                    hidden.MODEL,
+                ),
+                call(
+                    hidden.drawn_log(
+                        _RANDOM, 4, np.outer([2, 1, -1, 1], _345), moving=True, model=hidden.RIGHT
+                    ),
+                    hidden.RIGHT,
+                ),
+            ),
+            hidden.uneven_logs,
+            "uneven errors, either arm",
+            weight=2.0,
+        ),
+    ),
+    withheld=("labkit.metrics",),
+    hints=(
+        "Where is the tip in row k? Ask the model, with that row's joint angles. Where should it be? "
+        "In the target of that row.",
+        "log.q has one row for each instant, log.target.pose one pose. model.pose(q)[:3, 3] is the "
+        "tip. Square the length of the difference, row by row.",
+        "np.sqrt(np.mean(np.sum(e**2, axis=1))) with e of shape (rows, 3).",
+    ),
+    wrong=(
+        Wrong(
+            "the mean goes over the components too",
+            "A mean over rows and components divides by three times too many numbers: the result is "
+            "too small by √3. Sum over the components, then take the mean over the rows.",
+            mistakes.mean_of_components,
+            "An RMS of a vector: sum over components, mean over time.",
+        ),
+        Wrong(
+            "the tip of the last row for all rows",
+            "Every row is compared with where the arm ended. The report's plots did this, and their "
+            "curves of the workspace are constants.",
+            mistakes.last_row_for_all,
+            "A plot that cannot be wrong is not a measurement.",
+        ),
+        Wrong(
+            "the mean length instead of the root of the mean square",
+            "That is the mean error. The root mean square weighs large errors more.",
+            mistakes.mean_of_lengths,
+            "Mean, RMS and maximum are three numbers; say which.",
+        ),
+        Wrong(
+            "the largest error",
+            "That is the largest error of the run, not its root mean square.",
+            mistakes.largest,
+            "Mean, RMS and maximum are three numbers; say which.",
+        ),
+        Wrong(
+            "the root forgotten",
+            "A mean of squares is in square metres: take the root at the end.",
+            mistakes.without_the_root,
+            "Look at the unit of the result.",
+        ),
+        Wrong(
+            "millimetres",
+            "Asked are metres.",
+            mistakes.in_millimetres,
+            "SI inside, millimetres in print.",
+        ),
+        Wrong(
+            "a sum, not a mean",
+            "The root of the sum of all squares grows with the length of the run. Divide by the number "
+            "of rows before you take the root.",
+            mistakes.not_a_mean,
+            "Twice as long a run is not a worse one.",
+        ),
+        Wrong(
+            "the whole poses subtracted",
+            "Sixteen numbers, nine of them a rotation's: a tilt counts as metres. Asked is the position "
+            "alone, [:3, 3].",
+            mistakes.whole_poses,
+            "Metres and radians do not add.",
+        ),
+        Wrong(
+            "one row late",
+            "Each tip is compared with the target of the next row. Both have one row for each instant.",
+            mistakes.one_row_late,
+            "Same instant, same row.",
+        ),
+        Wrong(
+            "the length of the mean error",
+            "Errors to the left and to the right cancel in a mean. Square the length of each row "
+            "first, then take the mean.",
+            mistakes.length_of_the_mean,
+            "A mean of signed numbers hides how large they are.",
+        ),
+        Wrong(
+            "always the left arm",
+            "The log of the right arm is compared with tips of the left one. Ask the `model` that "
+            "you are given.",
+            mistakes.always_the_left_arm,
+            "Use what you are given, not what happens to lie about.",
+        ),
+    ),
+    variants=(variants.rms_vectorised,),
+)
+
+OPEN_LOOP = Problem(
+    name="open_loop",
+    points=4,
+    asks="Give the open loop of one velocity-commanded joint as a transfer function of "
+    "python-control: the gain `kp`, the first-order `lag` of its speed, the integration to an angle, "
+    "and the `delay`.",
+    answer=answers.open_loop,
+    judge=Response(omega=(0.3, 1.0, 3.0, 10.0, 25.0)),
+    trials=(
+        Trial(
+            "no lag and no delay: kp / s",
+            (call(4.0, 0.0, 0.0),),
+            hidden.pure_integrators,
+            weight=0.0,
+        ),
+        Trial("with a lag", (call(4.0, 0.05, 0.0),), hidden.lagging, "other lags"),
+        Trial(
+            "with lag and delay",
+            (call(4.0, 0.03, 0.015), call(12.0, 0.05, 0.03)),
+            hidden.loops,
+            "other gains, lags and delays",
+            weight=2.0,
+        ),
+    ),
+    withheld=("labkit.loop",),
+    hints=(
+        "Three things stand one after another: a speed that follows its command with a lag, an "
+        "integrator from speed to angle, a delay. Transfer functions in a row multiply.",
+        "control.tf([kp], [lag, 1, 0]) holds gain, lag and integrator. The delay is no ratio of "
+        "polynomials; control.pade(delay, 4) gives one that is close.",
+        "control.tf([kp], [lag, 1, 0]) * control.tf(*control.pade(delay, 4)); leave the second factor "
+        "out where the delay is 0.",
+    ),
+    wrong=(
+        Wrong(
+            "no integrator",
+            "That is the loop of a speed. The controller looks at an angle, the integral of the "
+            "speed: one more factor 1/s.",
+            mistakes.no_integrator,
+            "Count the integrators between command and measurement.",
+        ),
+        Wrong(
+            "the closed loop",
+            "Margins are read from the open loop; what feedback makes of it comes after.",
+            mistakes.closed_loop,
+            "Open loop: cut the wire once and multiply what is left.",
+        ),
+        Wrong(
+            "the delay as one more lag",
+            "A lag costs at most 90 degrees and lowers the gain; a delay costs phase without end and "
+            "leaves the gain alone.",
+            mistakes.delay_as_a_lag,
+            "A delay is not a slow lag.",
+        ),
+        Wrong(
+            "no delay, or next to none",
+            "The controller sees an angle of a while ago: control.pade comes close to that. `delay` is "
+            "in seconds.",
+            mistakes.LoopWithout(delay=0.0),
+            "The age of the state is part of the loop.",
+        ),
+        Wrong(
+            "no lag",
+            "The speed follows its command with a time constant: one more factor, 1 / (lag s + 1).",
+            mistakes.LoopWithout(lag=0.0),
+            "Name every part of the loop before you multiply.",
+        ),
+        Wrong(
+            "the gain left out",
+            "kp is a factor of the open loop.",
+            mistakes.LoopWithout(kp=0.0),
+            "Name every part of the loop before you multiply.",
+        ),
+        Wrong(
+            "the delay turned over",
+            "This loop knows the angle before it is there: the delay is divided by, not multiplied "
+            "with.",
+            mistakes.LoopWithout(delay=-1.0),
+            "A delay takes phase away.",
+        ),
+        Wrong(
+            "the delay twice",
+            "Phase is lost as if the state were twice as old.",
+            mistakes.LoopWithout(delay=2.0),
+            "Name every part of the loop before you multiply.",
+        ),
+        Wrong(
+            "a delay of first order",
+            "control.pade(delay, 1) is right for slow signals only. At 25 rad/s and 30 ms its phase is "
+            "2 degrees off; order 4 is not.",
+            mistakes.LoopWithout(order=1),
+            "An approximation has a range; know it.",
+        ),
+    ),
+    variants=(variants.loop_from_s,),
+)
+
+KP_FOR_MARGIN = Problem(
+    name="kp_for_margin",
+    points=3,
+    asks="Give the gain at which that loop has a phase margin of `margin_deg` degrees, with the delay "
+    "taken exactly.",
+    answer=answers.kp_for_margin,
+    judge=Close(rtol=1e-4, atol=1e-6),
+    trials=(
+        Trial(
+            "a lag alone",
+            (call(0.05, 0.0, 45.0),),
+            hidden.no_delay,
+            "other margins",
+            weight=0.0,
+        ),
+        Trial(
+            "lag and delay",
+            (call(0.03, 0.015, 60.0), call(0.05, 0.05, 45.0)),
+            hidden.margins,
+            "other lags, delays and margins",
+        ),
+    ),
+    hints=(
+        "The phase does not depend on kp. Find the frequency at which the phase is what the margin "
+        "wants; then choose kp so that the gain is 1 there.",
+        "The phase at ω is -90° - atan(lag·ω) - delay·ω, the last one in radians. The margin is what "
+        "is left to -180°.",
+        "Solve π/2 - atan(lag·ω) - delay·ω = margin for ω (scipy.optimize.brentq does); then "
+        "kp = ω·√(1 + (lag·ω)²).",
+    ),
+    wrong=(
+        Wrong(
+            "the margin taken for radians",
+            "60 radians are nearly ten turns. Turn the margin into radians before you add it to one.",
+            mistakes.margin_in_radians,
+            "Degrees outside, radians inside.",
+        ),
+        Wrong(
+            "the delay left out",
+            "Without the delay the crossover may lie much higher, and the gain comes out too large "
+            "for the loop that there is.",
+            mistakes.without_the_delay,
+            "The age of the state is part of the loop.",
+        ),
+        Wrong(
+            "the frequency taken for the gain",
+            "At the crossover the gain of the lag is below 1 already; kp has to make up for it.",
+            mistakes.lag_free_gain,
+            "Phase first, then the gain to be 1 there.",
+        ),
+        Wrong(
+            "the loop's gain, not its inverse",
+            "That is the gain that the loop has there without kp. To make it 1, kp is one over that.",
+            mistakes.GainAt(power=-1.0),
+            "kp times the rest is 1.",
+        ),
+        Wrong(
+            "the integrator's gain left out",
+            "At the crossover the integrator has the gain 1/ω too.",
+            mistakes.GainAt(integrator=0.0),
+            "Every factor has a gain and a phase.",
+        ),
+        Wrong(
+            "the lag's gain squared",
+            "The gain of the lag is 1 / √(1 + (lag ω)²): the root is missing.",
+            mistakes.GainAt(lag=2.0),
+            "The length of a complex number has a root in it.",
+        ),
+        Wrong(
+            "radians among degrees",
+            "delay·ω is in radians. Turn it into degrees before you take it off 90.",
+            mistakes.phase_mixed,
+            "Degrees outside, radians inside.",
+        ),
+        Wrong(
+            "divided by 2π",
+            "kp is in 1/s: the frequency in it is in rad/s, as in the loop.",
+            mistakes.in_hertz,
+            "s is iω, and ω is in rad/s.",
+        ),
+    ),
+    variants=(variants.margin_by_search,),
+)
+
+CHOOSE_GAINS = Problem(
+    name="choose_gains",
+    points=4,
+    asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 tries: `runner(Kp, Kd, seed)` "
+    "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
+    f"where you could not try them, and so is {hidden.RESERVE:g} times your Kp, your margin: at most "
+    f"{hidden.UNSEEN_LIMIT:g} mm on the worst seed there. And you are asked twice: the second arm is "
+    "about a third as quick as the first, so other gains are right for it.",
+    answer=answers.choose_gains,
+    trials=(
+        Trial(
+            "on the line, on its worst seed: at most 6 mm; the same on an arm a third as quick",
+            (
+                Choice(hidden.ON_THE_LINE, {"worst_mm": 6.0}),
+                Choice(hidden.stiffer(hidden.ON_THE_LINE, hidden.SLOW), {"worst_mm": 6.0}),
+            ),
+            weight=0.0,
+        ),
+        Trial(
+            f"where it was not tuned, on the worst seed: at most {hidden.UNSEEN_LIMIT:g} mm",
+            (),
+            hidden.unseen_cases,
+            "another path, twice the speed, a payload, an older state",
+        ),
+        Trial(
+            f"the same with {hidden.RESERVE:g} times the chosen Kp",
+            (),
+            hidden.with_reserve,
+            "the same, on an arm that is slower",
+            weight=2.0,
+        ),
+    ),
+    hints=(
+        "The error falls as Kp grows, until the arm is lost; where that happens depends on the seed. "
+        "The best place on the map is close to the edge.",
+        "Raise Kp in steps and look at more than one seed. As soon as the error jumps on one of them, "
+        "you have found the edge.",
+        "Take half of the largest Kp that was safe on the seeds you tried. It costs a few tenths of a "
+        "millimetre and buys a robot that may be loaded, hurried and late.",
+    ),
+    wrong=(
+        Wrong(
+            "the best on the line, at the edge of the cliff",
+            "It has the smallest error where you tried it, and loses the arm when the state comes a "
+            "little later. Step back from the edge.",
+            mistakes.best_on_the_training_path,
+            "The best gain on one path is the most fragile one.",
+        ),
+        Wrong(
+            "as soft as possible",
+            "It never shakes, and it never catches up either.",
+            mistakes.as_soft_as_possible,
+            "A margin is bought with error; buy what you need.",
+        ),
+        Wrong(
+            "the lowest error of all seeds, and no step back",
+            "The lowest point of the curve lies beside the cliff: a little more gain, or a state a little "
+            "older, and the arm is lost. Take half of the largest Kp that was safe.",
+            mistakes.Lowest(),
+            "The best gain on one path is the most fragile one.",
+        ),
+        Wrong(
+            "a tenth off the lowest point",
+            "A tenth is no margin: a state that is a little older takes more. Take half of the largest "
+            "Kp that was safe.",
+            mistakes.Lowest(0.9),
+            "Say how large your margin is, and against what.",
+        ),
+        Wrong(
+            "gains without a try",
+            "The same gains for an arm that is a third as quick: what was typed once cannot be right for "
+            "both. Ask the runner.",
+            mistakes.Typed(20.0, 1.0),
+            "A procedure can be carried to another arm; a number cannot.",
+        ),
+    ),
+    variants=(variants.by_doubling, variants.by_bisection),
+)
+
+PAIRED = Problem(
+    name="paired_difference",
+    points=3,
+    asks="Two controllers were run on the same seeds. Give `(mean, half_width)`: the mean of a - b and "
+    "half the width of its 95 % interval by Student's t.",
+    answer=answers.paired_difference,
+    judge=Close(rtol=1e-6, atol=1e-9, parts=("mean", "half_width")),
+    trials=(
+        Trial(
+            "the same numbers, shifted by one millimetre",
+            (call([4.0, 2.0, 6.0], [5.0, 3.0, 7.0]),),
+            weight=0.0,
+        ),
+        Trial(
+            "five seeds that differ much, a difference that does not",
+            (call([4.0, 2.0, 6.0, 3.0, 5.0], [3.0, 1.1, 4.9, 2.05, 3.9]),),
+            hidden.pairs,
+            "other seeds, other numbers of them",
+        ),
+    ),
+    hints=(
+        "The seeds are the same in both rows, so subtract first: what a hard seed does to both drops "
+        "out.",
+        "d = a - b. Its mean, and the standard error of the mean: the standard deviation over √n, "
+        "with n - 1 in it.",
+        "half_width = scipy.stats.t.ppf(0.975, n - 1) * d.std(ddof=1) / √n.",
+    ),
+    wrong=(
+        Wrong(
+            "unpaired",
+            "Taken as strangers, the rows spread as much as the seeds do, and the difference drowns. "
+            "Subtract pair by pair first.",
+            mistakes.unpaired,
+            "Same seeds: pair them.",
+        ),
+        Wrong(
+            "the spread of one difference",
+            "That says where a single difference may fall. The mean of n of them is surer by √n.",
+            mistakes.deviation_of_one,
+            "Standard deviation and standard error are two things.",
+        ),
+        Wrong(
+            "1.96 for a handful of seeds",
+            "1.96 belongs to very many pairs. For a few, Student's t is wider.",
+            mistakes.normal_quantile,
+            "Five seeds are not many.",
+        ),
+        Wrong(
+            "n in the deviation",
+            "numpy's std divides by n; with a mean from the same numbers n - 1 are left: ddof=1.",
+            mistakes.Interval(given=0),
+            "n or n - 1: who gave you the mean?",
+        ),
+        Wrong(
+            "95 % on one side",
+            "ppf(0.95) leaves 5 % above and another 5 % below. For 95 % in the middle take 0.975.",
+            mistakes.Interval(quantile=0.95),
+            "Two tails of 2.5 % each.",
+        ),
+        Wrong(
+            "n degrees of freedom",
+            "The mean has used one up: n - 1 are left.",
+            mistakes.Interval(freedom=0),
+            "n or n - 1: who gave you the mean?",
+        ),
+        Wrong(
+            "b - a",
+            "Asked is the mean of a - b.",
+            mistakes.Interval(sign=-1.0),
+            "Say what a positive difference means before you compute it.",
+        ),
+        Wrong(
+            "the whole width",
+            "Asked is half of the interval's width.",
+            mistakes.Interval(share=2.0),
+            "Mean ± half width.",
+        ),
+        Wrong(
+            "the ends of the interval",
+            "Asked are its middle and half of its width, not its ends.",
+            mistakes.ends_of_the_interval,
+            "Mean ± half width.",
+        ),
+        Wrong(
+            "the standard error alone",
+            "One standard error holds the truth in two cases of three. For 95 % multiply by Student's t.",
+            mistakes.without_students_t,
+            "Say how sure, then how wide.",
+        ),
+        Wrong(
+            "the standard deviation alone",
+            "That is the spread of the differences. Divide by √n, multiply by Student's t.",
+            mistakes.plain_deviation,
+            "Standard deviation and standard error are two things.",
+        ),
+    ),
+    variants=(variants.paired_by_scipy, variants.paired_by_hand),
+)
+
+VERDICTS = Problem(
+    name="verdicts",
+    points=3,
+    asks="A table gives for each claim two rows of errors over the same seeds. The claim is that the "
+    'first is larger. Give for each claim "holds", "does not hold" or "undecided".',
+    answer=answers.verdicts,
+    trials=(
+        Trial(
+            "one claim that clearly holds, one that clearly does not",
+            (
+                call(
+                    {
+                        "A is worse than B": [[4.0, 5.0, 6.0], [0.0, 1.1, 1.9]],
+                        "C is worse than D": [[0.0, 1.1, 1.9], [4.0, 5.0, 6.0]],
+                    }
+                ),
+            ),
+            weight=0.0,
+        ),
+        Trial(
+            "one that flips with the seed, some near the edge, and three and ten seeds",
+            (
+                call({"A is worse than B": [[4.0, 5.0, 6.0, 2.0], [3.0, 6.2, 5.1, 2.6]]}),
+                call(
+                    {
+                        "C is worse than D": [[3.1, 2.7, 5.2, 3.45, 4.4], _SEEDS],
+                        "E is worse than F": [[3.5, 2.7, 5.7, 3.45, 4.5], _SEEDS],
+                        "G is worse than H": [[3.5, 1.7, 5.3, 2.65, 4.5], _SEEDS],
+                    }
+                ),
+                call({"I is worse than J": [[4.0, 3.5, 5.5], [3.0, 2.0, 5.0]]}),
+                call(
+                    {
+                        "K is worse than L": _TEN_PAIRS,
+                        "M is worse than N": [[3.1, 1.22, 5.0, 2.16, 4.0], _SEEDS],
+                    }
+                ),
+            ),
+            hidden.tables,
+            "claims of every kind",
+        ),
+    ),
+    hints=(
+        "When does a difference say something? When it is larger than what the seeds alone could make.",
+        "Use your paired_difference: the claim holds if mean - half_width > 0, and does not hold if "
+        "mean + half_width < 0.",
+        'Else it is "undecided", which is an honest and often the right answer.',
+    ),
+    wrong=(
+        Wrong(
+            "always decided",
+            "The sign of a mean is always one or the other. If the interval holds 0, another seed "
+            "might turn it: undecided.",
+            mistakes.always_decided,
+            "Undecided is a result.",
+        ),
+        Wrong(
+            "the other way round",
+            "The numbers are errors: the claim is that the first is larger, so a positive difference "
+            "speaks for it.",
+            mistakes.the_other_way_round,
+            "Say what a positive difference means before you compute it.",
+        ),
+        Wrong(
+            "an interval too narrow",
+            "A claim is decided that five seeds do not settle. It takes Student's t for both sides "
+            "(0.975, n - 1) and the deviation with n - 1; 1.96, or five wins of five, is not enough.",
+            mistakes.VerdictsBy(mistakes.normal_quantile),
+            "Five seeds are not many.",
+        ),
+        Wrong(
+            "an interval too wide",
+            "A claim is left undecided that five seeds do settle. The mean of n differences is surer "
+            "than one of them by √n.",
+            mistakes.VerdictsBy(mistakes.deviation_of_one),
+            "Standard deviation and standard error are two things.",
+        ),
+        Wrong(
+            "unpaired",
+            "A claim is left undecided that five seeds do settle: as strangers the rows spread as much "
+            "as the seeds do. Subtract pair by pair first.",
+            mistakes.VerdictsBy(mistakes.unpaired),
+            "Same seeds: pair them.",
+        ),
+        Wrong(
+            "always undecided",
+            "Undecided is right only where the interval holds 0. Where it does not, say which way.",
+            mistakes.never_decided,
+            "Undecided is a result, not a way out.",
+        ),
+        Wrong(
+            "a threshold instead of an interval",
+            "Ten percent more is much where the seeds hardly differ, and nothing where they do. Ask the "
+            "interval of the differences.",
+            mistakes.ten_percent,
+            "How sure is a matter of the spread, not of the size.",
+        ),
+        Wrong(
+            "the rows sorted first",
+            "Sorted, each error has another partner, and the differences shrink to next to nothing. "
+            "The pairs are the seeds: leave them as they are.",
+            mistakes.sorted_first,
+            "Same seeds: pair them.",
+        ),
+        Wrong(
+            "Student's t of five pairs for any number",
+            "2.776 belongs to five pairs. Three pairs need 4.303, ten need 2.262: ask "
+            "scipy.stats.t.ppf(0.975, n - 1).",
+            mistakes.VerdictsBy(mistakes.t_of_five),
+            "A number in a program should say where it comes from.",
+        ),
+    ),
+    variants=(variants.verdicts_by_comprehension,),
+)
+
+PROBLEMS = (RMS_ERROR, OPEN_LOOP, KP_FOR_MARGIN, CHOOSE_GAINS, PAIRED, VERDICTS)

@@ -1,1 +1,0 @@
-"""Makers of the hidden cases, functions of a generator: one module for each notebook."""

@@ -1,0 +1,582 @@
+# %% [markdown]
+# # 05 · Impedance
+#
+# Push a robot arm aside. A stiff one does not notice you, until it hurts. A limp one falls. What you
+# would like is an arm that gives way as a spring does: a little when you push a little, and back when you
+# let go. How it gives way is its *impedance*, and you are going to choose it.
+#
+# | | |
+# |---|---|
+# | **You need** | Newton's law for one mass on a spring; matrices and their inverses |
+# | **Given** | the arm's model, an arm that can be pushed, a wall and a spring to meet |
+# | **You write** | one mass, the inertia at the tip, two impedance laws, a stiffness read from data |
+# | **Time** | about 4 hours · 20 points |
+#
+# The team whose report this lab grew out of wrote two impedance controllers, found them "a bit off", and
+# saw no use in them. They never pushed the arm. Here you will.
+#
+# Every cell below runs from the start, solved or not: where your part is missing, something given stands
+# in and says so. After each stub a check tells you in words what it found. Only the functions are marked,
+# so play with everything else as you like.
+
+# %% setup=true
+from dataclasses import replace
+
+import labkit as lk
+from labkit.course import check, hint, use
+
+lk.ready()
+
+# %% setup=true
+import matplotlib.pyplot as plt
+import numpy as np
+
+# %% [markdown]
+# ## One mass on a spring
+#
+# Everything in this notebook is this: a mass $m$, tied to its *target* $x_d$ by a spring $k$ and a damper
+# $b$, and a hand that pushes it with a force $F$. The target itself may move. As everywhere in this course
+# the error is target minus actual, $e = x_d - x$. If nobody pushes and there is no error, the mass moves
+# just as its target does.
+
+# %% question="msd"
+def msd(state, target, force, *, m, b, k):
+    """The acceleration of a mass tied to its target, while somebody pushes.
+
+    Args:
+        state: (x, dx), where it is and how fast, in [m] and [m/s].
+        target: (x_d, dx_d, ddx_d) of the target, in [m], [m/s] and [m/s^2].
+        force: Of the hand on the mass, in [N].
+        m: Mass, in [kg].
+        b: Damper, in [N s/m].
+        k: Spring, in [N/m].
+
+    Returns:
+        The acceleration of the mass, a number in [m/s^2].
+    """
+    ### BEGIN SOLUTION
+    from solutions.impedance.answers import msd as answer
+
+    return answer(state, target, force, m=m, b=b, k=k)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Push with 10 N for a second, then let go. What decides how far it goes? What decides how it starts, and
+# how it comes back? (Until your function is ready, the mass is nailed to the table.)
+
+# %%
+def nailed_to_the_table(state, target, force, *, m, b, k):
+    return 0.0
+
+
+my_msd = use("msd", msd, nailed_to_the_table)
+
+
+def push_and_release(m, b, k):
+    dt = 0.002
+    t = np.arange(0.0, 2.5, dt)
+    x, dx, way = 0.0, 0.0, []
+    for now in t:
+        way.append(1e3 * x)
+        dx += dt * my_msd((x, dx), (0.0, 0.0, 0.0), 10.0 if now < 1.0 else 0.0, m=m, b=b, k=k)
+        x += dt * dx
+    figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
+    ax.plot(t, way)
+    ax.axvspan(0.0, 1.0, color="0.9")
+    ax.axhline(1e4 / k, color="0.5", linestyle="--", linewidth=1)
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel("displacement [mm]")
+    return figure, (
+        f"m = {m:.1f} kg, b = {b:.0f} N s/m, k = {k:.0f} N/m: under a push of 10 N (grey) the mass goes "
+        f"{max(way):.0f} mm at most and is {way[499]:.0f} mm away after one second; "
+        f"10 N / k would be {1e4 / k:.0f} mm (dashed)."
+    )
+
+
+dials = lk.plotting.dials(push_and_release, m=(0.5, 10.0, 1.0), b=(1.0, 80.0, 20.0), k=(50.0, 1000.0, 300.0))
+
+# %% [markdown]
+# Three numbers, three things to feel: the *stiffness* is what remains while you hold, the *inertia* is
+# what you meet at the very first moment, the *damping* is what stops the swinging.
+#
+# ## How heavy is the tip?
+#
+# The arm's tip has no mass written on it. Its seven joints move when you push it, each with its own
+# inertia and lever, so how heavy it feels depends on the pose and on the direction. Follow a push through
+# the arm: the wrench $F$ at the tip gives joint torques $J^T F$; with the motors off and the arm at rest
+# these give the joint accelerations; and those move the tip. What comes out is
+#
+# $$ F = \Lambda(q)\,\ddot x , $$
+#
+# and $\Lambda$ is called the *operational-space inertia* (Khatib 1987). Here $J$ is the tip Jacobian in
+# world axes, with the six rows (velocity, angular velocity).
+
+# %% question="operational_inertia"
+def operational_inertia(M, J):
+    """The inertia that a hand feels at the tip of an arm.
+
+    Args:
+        M: Mass matrix, shape (n, n) in [kg m^2].
+        J: Jacobian, shape (6, n), or its first three rows, (3, n).
+
+    Returns:
+        Shape (6, 6), or (3, 3).
+    """
+    ### BEGIN SOLUTION
+    from solutions.impedance.answers import operational_inertia as answer
+
+    return answer(M, J)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Ask the arm. It carries its own weight for the moment, its motors do nothing, and somebody taps its tip
+# with 5 N for a hundredth of a second.
+
+# %%
+plant = lk.Plant(name="textbook", armature=0.05, viscous=0.7)
+model = lk.Model("left", plant)
+ready = model.robot.ready
+T_ready = model.pose(ready)
+rate = 200.0
+
+
+def given_inertia(M, J):
+    return model.operational_inertia(ready)
+
+
+my_operational_inertia = use("operational_inertia", operational_inertia, given_inertia)
+
+inertia = my_operational_inertia(model.mass_matrix(ready), model.tip_jacobian(ready))
+felt = 1.0 / np.diag(np.linalg.inv(inertia))
+floating = replace(plant, name="floating", gravity_compensation=True)
+
+
+def no_torque(state, target):
+    return lk.JointTorque(np.zeros(7))
+
+
+print("tapped along   predicted   felt")
+for axis, name in enumerate("xyz"):
+    world = lk.World(things=[lk.Push(5.0 * np.eye(3)[axis])])
+    with lk.Arm("left", floating, q0=ready, world=world) as arm:
+        log = lk.run(arm, lk.Hold(ready, 0.01), no_torque, rate=1000)
+    speed = (model.tip_jacobian(log.q[-1])[:3] @ log.dq[-1])[axis]
+    print(f"      {name}        {felt[axis]:5.2f} kg   {5.0 * log.t[-1] / speed:5.2f} kg")
+
+# %% [markdown]
+# Sideways the tip is a bag of sugar, up and down six of them. And it has not even left its place.
+#
+# ## Springs at the tip
+#
+# Now give the tip the springs of your choice, and leave it the inertia $\Lambda$ that it has. The wanted
+# behaviour is that of the one mass, in six directions at once:
+#
+# $$ \Lambda\,\ddot e + D\,\dot e + K\,e = -F_{ext} . $$
+#
+# $e$ holds the position error and the rotation from the tip to the target, in world axes:
+# `lk.se3.pose_error(target.pose, model.pose(q))`. $F_{ext}$ is the wrench of the hand on the arm. Its rate is $\dot e = V_d - J\dot q$. Put the joints'
+# equation of motion and this one together, and see what the motors have to do. Two things to watch:
+#
+# - The tip's acceleration is $J\ddot q + \dot J\dot q$. The second part comes by itself when the joints
+#   turn evenly; the motors only have to bring up the rest.
+# - A force $F$ at the tip takes the joint torques $J^T F$. No inverse, no pseudo-inverse.
+#
+# There are seven joints and six springs: nothing holds the elbow, and here nothing needs to, for its
+# friction brakes it. On an arm with less of it one adds a damper that the tip does not feel. You may, too:
+# many torques make the tip move alike, and yours is judged by that.
+#
+# No force is measured. This is often told the other way, in the report too ("impedance needs a force
+# sensor"): as long as the arm keeps its own inertia, it does not.
+
+# %% question="workspace_impedance"
+def workspace_impedance(state, target, model, *, stiffness, damping):
+    """Springs and dampers between the tip and its target, with the inertia that the tip has.
+
+    Args:
+        state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
+        target: lk.PoseSample(pose, twist, dtwist): T_wd, shape (4, 4), the twist (v, w) and its
+            rate, shape (6,) each, world axes.
+        model: lk.Model, with pose(q), tip_jacobian(q), tip_jacobian_rate(q, dq),
+            operational_inertia(q), coriolis(q, dq) and gravity(q).
+        stiffness: K of x, y, z and the three rotations, shape (6,), in [N/m] and [N m/rad].
+        damping: D, shape (6,), in [N s/m] and [N m s/rad].
+
+    Returns:
+        lk.JointTorque of shape (7,) in [N m], the arm's weight included.
+    """
+    ### BEGIN SOLUTION
+    from solutions.impedance.answers import workspace_impedance as answer
+
+    return answer(state, target, model, stiffness=stiffness, damping=damping)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## A push
+#
+# Hold the arm still, push its tip to the side with 10 N for two seconds, let go. Beside your law runs
+# Baxter's position mode, as stiff as its motors are strong. For the damping take critical damping of the
+# masses that you just felt, $d_i = 2\sqrt{k_i m_i}$. (If your law is not ready, springs in the *joints*
+# stand in. They give way too, but not as you asked.)
+
+# %%
+JOINT_K = np.array([400.0, 400.0, 200.0, 200.0, 40.0, 40.0, 20.0])
+JOINT_D = np.array([60.0, 60.0, 28.0, 28.0, 6.0, 6.0, 3.0])
+joint_springs = lk.control.springs(JOINT_K, JOINT_D)
+
+
+def springs_in_the_joints(state, target, model, *, stiffness, damping):
+    q_d = model.inverse_kinematics(target.pose, ready)
+    pull = joint_springs(state, lk.Sample(q_d, np.zeros(7), np.zeros(7)))
+    return lk.JointTorque(pull.value + model.gravity(state.q))
+
+
+my_workspace_impedance = use("workspace_impedance", workspace_impedance, springs_in_the_joints)
+
+K = np.array([300.0, 300.0, 300.0, 20.0, 20.0, 20.0])
+
+
+def compliant(K, law=my_workspace_impedance):
+    """A controller for `lk.run`: the law with stiffness K, critically damped."""
+    D = 2.0 * np.sqrt(K * felt)
+
+    def compliant(state, target):
+        return law(state, target, model, stiffness=K, damping=D)
+
+    return compliant
+
+
+def stiff(state, target):
+    """Baxter's position mode."""
+    return lk.JointPosition(model.inverse_kinematics(target.pose, ready))
+
+
+def meet(controller, target, *things, on=plant):
+    """Let a controller meet things in the world; returns the log."""
+    with lk.Arm("left", on, q0=ready, world=lk.World(things=things)) as arm:
+        return lk.run(arm, target, controller, rate)
+
+
+def displacement(log):
+    """Actual minus target position of the tip, shape (N, 3) in [mm]."""
+    return -1e3 * lk.metrics.tip_error(log)[:, :3]
+
+
+stay = lk.Hold(T_ready, 3.5)
+sideways = lk.Push((0.0, 10.0, 0.0), duration=2.0)
+pushed = {"impedance": meet(compliant(K), stay, sideways), "position mode": meet(stiff, stay, sideways)}
+
+plt.figure(figsize=(8, 3), layout="constrained")
+plt.axvspan(0.0, 2.0, color="0.92")
+for (name, log), style in zip(pushed.items(), ("-", "--")):
+    plt.plot(log.t, displacement(log)[:, 1], style, label=name)
+plt.axhline(1e3 * 10.0 / K[1], color="0.5", linestyle=":", label="10 N / K")
+plt.xlabel("time [s]")
+plt.ylabel("displacement along y [mm]")
+plt.legend(frameon=False)
+at_two = {name: np.interp(1.99, log.t, displacement(log)[:, 1]) for name, log in pushed.items()}
+lk.plotting.show(
+    "The tip under a push of 10 N along y (grey). After 2 s it has gone "
+    + ", ".join(f"{x:.1f} mm ({name})" for name, x in at_two.items())
+    + f"; 10 N / K is {1e4 / K[1]:.1f} mm."
+)
+
+# %% [markdown]
+# The same as arms: yours gives way, the ghost stands like a rock.
+
+# %%
+lk.replay.show(
+    lk.replay.motion_of(
+        pushed["impedance"],
+        "A push of 10 N",
+        label="impedance",
+        ghosts={"position mode": pushed["position mode"]},
+    )
+)
+
+# %% [markdown]
+# ## A wall
+#
+# Nobody told the arm that there is a wall, and its target lies 3 cm behind it. The position mode pushes on
+# with all that its motors have. An impedance presses with a force that you can say beforehand: its spring,
+# the wall and the finger's rubber tip are springs in a row,
+#
+# $$ F = \frac{3\,\mathrm{cm}}{1/K + 1/k_{wall}} . $$
+
+# %%
+from labkit.scene import TIP_RADIUS, contact_stiffness
+
+gap, beyond = 0.05, 0.03
+tip = T_ready[:3, 3]
+wall = lk.Wall(tip + [gap + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
+
+
+def forwards(way, duration=2.0):
+    """The tip goes a way along x or y and stays there; a target of poses."""
+    path = lk.PosePath(lk.Line(tip, tip + way), T_ready[:3, :3])
+    there = lk.se3.pose(T_ready[:3, :3], tip + way)
+    return lk.Chain([lk.Trajectory(path, lk.Quintic(duration)), lk.Hold(there, 1.0)])
+
+
+into_the_wall = forwards([gap + beyond, 0.0, 0.0])
+
+
+def pressed(log):
+    """The force of the wall on the arm, as its joints feel it, shape (N,) in [N]."""
+    return -lk.metrics.felt_wrench(log)[:, 0]
+
+
+def press(stiffness):
+    figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
+    log = meet(compliant(np.array([stiffness] * 3 + [20.0] * 3)), into_the_wall, wall)
+    force = beyond / (1.0 / stiffness + 1.0 / contact_stiffness(wall))
+    ax.plot(log.t, pressed(log), label="felt")
+    ax.axhline(force, color="0.5", linestyle="--", label="springs in a row")
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel("force on the wall [N]")
+    ax.legend(frameon=False)
+    last = pressed(log)[-20:].mean()
+    return figure, (
+        f"With K = {stiffness:.0f} N/m the tip presses with {last:.1f} N; "
+        f"expected are {force:.1f} N."
+    )
+
+
+dials = lk.plotting.dials(press, stiffness=(100.0, 1000.0, 300.0))
+
+rammed = meet(stiff, into_the_wall, wall)
+print(f"The position mode presses with {np.max(pressed(rammed)):.0f} N.")
+
+# %% [markdown]
+# ## A spring
+#
+# Tie the tip to its starting place with a rubber band of 200 N/m and send it 10 cm away. Two springs pull
+# at it, and it ends where they agree. Who of the two controllers "tracks better"? Who would you rather
+# have in the gripper's reach?
+
+# %%
+band = lk.Spring(tip, 200.0)
+away = forwards([0.0, 0.10, 0.0])
+print("              gets to      pulls with")
+for name, controller in (("impedance", compliant(K)), ("position mode", stiff)):
+    log = meet(controller, away, band)
+    there = lk.metrics.tip_poses(log)[-1][:3, 3] - tip
+    pull = -lk.metrics.felt_wrench(log)[-20:, 1].mean()
+    print(f"{name:13s} {1e3 * there[1]:6.1f} mm    {pull:5.1f} N")
+print(f"K / (K + 200) of the way would be {1e2 * K[1] / (K[1] + 200.0):.1f} mm.")
+
+# %% [markdown]
+# ## What is the stiffness really?
+#
+# You asked for 300 N/m. Do you get it? Never trust a label: measure. Push the resting tip in ten
+# directions, read each force off a spring balance (good to about 0.2 N), wait, and write down where the
+# tip went. A line through those numbers gives the *apparent* stiffness. It is a matrix: a push along x may
+# well move the tip along y.
+
+# %% question="apparent_stiffness"
+def apparent_stiffness(force, displacement):
+    """The stiffness that explains what was pushed and what gave way.
+
+    Args:
+        force: Of the hand on the arm, one push in each row, shape (N, 3) in [N].
+        displacement: Actual minus target once it rests, shape (N, 3) in [m].
+
+    Returns:
+        K, shape (3, 3) in [N/m], of force = K @ displacement + offset.
+    """
+    ### BEGIN SOLUTION
+    from solutions.impedance.answers import apparent_stiffness as answer
+
+    return answer(force, displacement)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Somebody has left 300 g in the gripper, and the model does not know. So the tip hangs a little before
+# anyone pushes. Besides your law, springs in the *joints* are pushed as well.
+
+# %%
+def ten_pushes(controller, newtons=8.0, seed=5):
+    """Force and displacement at rest, shape (10, 3) each, in [N] and [m]."""
+    random = np.random.default_rng(seed)
+    directions = np.vstack([np.eye(3), -np.eye(3), random.standard_normal((4, 3))])
+    force, gone = [], []
+    shown = lk.plotting.progress("ten pushes", 10)
+    for k, way in enumerate(directions):
+        F = newtons * way / np.linalg.norm(way)
+        log = meet(controller, lk.Hold(T_ready, 1.6), lk.Push(F), on=replace(plant, payload=0.3))
+        force.append(F + 0.2 * random.standard_normal(3))
+        gone.append(displacement(log)[-1] / 1e3)
+        shown(k + 1)
+    return np.array(force), np.array(gone)
+
+
+def same_in_all_directions(force, displacement):
+    """A stand-in: one stiffness, from the lengths of pushes and displacements."""
+    return np.linalg.norm(force) / np.linalg.norm(displacement) * np.eye(3)
+
+
+my_apparent_stiffness = use("apparent_stiffness", apparent_stiffness, same_in_all_directions)
+
+
+def in_the_joints(state, target):
+    return springs_in_the_joints(state, target, model, stiffness=None, damping=None)
+
+
+measured = {
+    "springs at the tip": my_apparent_stiffness(*ten_pushes(compliant(K))),
+    "springs in the joints": my_apparent_stiffness(*ten_pushes(in_the_joints)),
+}
+for name, matrix in measured.items():
+    print(f"{name}, [N/m]")
+    print(np.array2string(matrix, precision=0, suppress_small=True))
+
+# %% [markdown]
+# ## Joint impedance, and an old acquaintance
+#
+# Springs in the joints are an impedance too, one for each joint. Written out with the joints' own inertia,
+# $M_d = M$, the law is
+#
+# $$ \tau = M\,\ddot q_d + C\,\dot q_d + g + D\,\dot e + K\,e , \qquad e = q_d - q , $$
+#
+# and that is, letter by letter, the augmented PD law of torque control (notebook 04). The report counts
+# the two as different controllers and wonders why one is worse than the other. They are one law with two
+# sets of gains: stiff ones when you want to track, soft ones when you want to be pushed.
+#
+# What the tip feels of joint springs follows from the Jacobian: a force at the tip turns the joints by
+# $K_q^{-1}J^T F$, and that moves the tip by $J K_q^{-1} J^T F$. Let us see whether the measured matrix agrees, and
+# how the two kinds of springs differ: each curve below is where pushes of 10 N from all sides, in the
+# upright plane of x and z, would move the tip.
+
+# %%
+J = model.tip_jacobian(ready)[:3]
+predicted = np.linalg.inv(J @ np.diag(1.0 / JOINT_K) @ J.T)
+angle = np.linspace(0.0, 2.0 * np.pi, 200)
+pushes = 10.0 * np.column_stack([np.cos(angle), 0.0 * angle, np.sin(angle)])
+at_tip, in_joints = measured.values()
+curves = (
+    ("springs at the tip: asked for", np.diag(K[:3]), {"color": "0.8", "linewidth": 5}),
+    ("measured", at_tip, {"color": "C0"}),
+    ("springs in the joints: by the Jacobian", predicted, {"color": "0.8", "linewidth": 5}),
+    ("measured", in_joints, {"color": "C1", "linestyle": "--"}),
+)
+plt.figure(figsize=(7.5, 3.6), layout="constrained")
+for name, matrix, look in curves:
+    gone = 1e3 * np.linalg.solve(matrix, pushes.T)
+    plt.plot(gone[0], gone[2], label=name, **look)
+plt.axis("equal")
+plt.xlabel("x [mm]")
+plt.ylabel("z [mm]")
+plt.legend(frameon=False, loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def apart(one, other):
+    """How much two compliances differ, in percent of the largest entry."""
+    one, other = np.linalg.inv(one), np.linalg.inv(other)
+    return 1e2 * np.abs(one - other).max() / np.abs(other).max()
+
+
+lk.plotting.show(
+    "Where pushes of 10 N move the tip: a circle for springs at the tip, a slanted ellipse for "
+    "springs in the joints. What was measured differs from what was expected by "
+    f"{apart(at_tip, np.diag(K[:3])):.0f} % at the "
+    f"tip and by {apart(in_joints, predicted):.0f} % in the joints."
+)
+
+# %% [markdown]
+# Where the arm is soft, and in which direction, is a matter of its pose if the springs sit in the joints.
+# At the tip it is yours to say. That is what workspace impedance is for.
+#
+# ## Another inertia
+#
+# So far the tip kept its inertia $\Lambda$. It can pretend to have another one, $M_d$:
+#
+# $$ M_d\,\ddot e + D\,\dot e + K\,e = -F_{ext} . $$
+#
+# For that the motors must know how hard the hand pushes, for they have to help it, or to resist. Now, and
+# only now, the wrench $F_{ext}$ must be measured. Baxter can: its joints feel their torque, `state.tau_ext`,
+# and `model.tip_wrench(q, tau_ext)` turns it into a wrench at the tip. Remember, when you put the equations
+# together, that the hand does its own share of the work.
+
+# %% question="shaped_impedance"
+def shaped_impedance(state, target, wrench, model, *, inertia, stiffness, damping):
+    """Springs and dampers between the tip and its target, and an inertia of your choice.
+
+    Args:
+        state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
+        target: lk.PoseSample(pose, twist, dtwist), world axes.
+        wrench: Force and moment of the hand on the arm's tip, shape (6,), in [N] and [N m].
+        model: lk.Model, as in workspace_impedance.
+        inertia: M_d, shape (6, 6), in [kg] and [kg m^2].
+        stiffness: K, shape (6,), in [N/m] and [N m/rad].
+        damping: D, shape (6,), in [N s/m] and [N m s/rad].
+
+    Returns:
+        lk.JointTorque of shape (7,) in [N m], the arm's weight included.
+    """
+    ### BEGIN SOLUTION
+    from solutions.impedance.answers import shaped_impedance as answer
+
+    return answer(
+        state, target, wrench, model, inertia=inertia, stiffness=stiffness, damping=damping
+    )
+    ### END SOLUTION
+
+
+# %% [markdown]
+# A push of 10 N again, with the same springs, on a tip that is to feel like 1, 5 and 20 kg. Look at the
+# first tenths of a second. Where it ends is the spring's business. (In 0.1 s a push of 10 N moves 20 kg
+# by 2.5 mm. Yours goes farther: the law hears of the push a tick late, and for these 5 ms the tip has its
+# own kilogram. With `rate = 1000.0` it is 2.6 mm.)
+
+# %%
+def ignores_the_wrench(state, target, wrench, model, *, inertia, stiffness, damping):
+    """A stand-in: joint springs, whatever the inertia."""
+    return springs_in_the_joints(state, target, model, stiffness=stiffness, damping=damping)
+
+
+my_shaped_impedance = use("shaped_impedance", shaped_impedance, ignores_the_wrench)
+
+
+def as_heavy_as(kilograms):
+    inertia = np.diag([kilograms] * 3 + [0.3] * 3)
+    D = 2.0 * np.sqrt(K * np.diag(inertia))
+
+    def controller(state, target):
+        wrench = model.tip_wrench(state.q, state.tau_ext)
+        return my_shaped_impedance(
+            state, target, wrench, model, inertia=inertia, stiffness=K, damping=D
+        )
+
+    return controller
+
+
+plt.figure(figsize=(8, 3), layout="constrained")
+early = {}
+for kilograms, style in ((1.0, "-"), (5.0, "--"), (20.0, "-.")):
+    log = meet(as_heavy_as(kilograms), lk.Hold(T_ready, 2.0), lk.Push((0.0, 10.0, 0.0)))
+    plt.plot(log.t, displacement(log)[:, 1], style, label=f"{kilograms:g} kg")
+    early[kilograms] = np.interp([0.1, 2.0], log.t, displacement(log)[:, 1])
+plt.xlabel("time [s]")
+plt.ylabel("displacement along y [mm]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    "A push of 10 N on a tip that pretends to a mass. Displacement after 0.1 s and after 2 s: "
+    + "; ".join(f"{a:.1f} and {b:.1f} mm with {kg:g} kg" for kg, (a, b) in early.items())
+    + "."
+)
+
+# %% [markdown]
+# ## Hand in
+#
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 05_impedance.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

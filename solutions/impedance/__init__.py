@@ -1,0 +1,1 @@
+"""Notebook 05: impedance at the joints and at the tip."""

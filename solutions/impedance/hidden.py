@@ -1,0 +1,224 @@
+"""Hidden cases of notebook 05."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.course import Call, Loop
+from labkit.course.problem import call
+from labkit.course.question import Case
+
+Random = np.random.Generator
+
+
+def _mass(random: Random, *, push: bool, off: bool, moving: bool) -> Call:
+    x, dx, x_d, dx_d, ddx_d = random.uniform(-1.0, 1.0, 5)
+    m, b, k = random.uniform((0.3, 1.0, 20.0), (5.0, 20.0, 400.0))
+    state = (x if off else x_d, dx if moving else 0.0)
+    target = (x_d, dx_d if moving else 0.0, ddx_d if moving else 0.0)
+    return call(
+        state, target, float(random.uniform(2.0, 20.0)) if push else 0.0, m=m, b=b, k=float(k)
+    )
+
+
+def pushed(random: Random) -> Iterator[Call]:
+    """At rest on its target, pushed."""
+    yield _mass(random, push=True, off=False, moving=False)
+
+
+def let_go(random: Random) -> Iterator[Call]:
+    """Off its target, at rest."""
+    for _ in range(2):
+        yield _mass(random, push=False, off=True, moving=False)
+
+
+def everything_of_one_mass(random: Random) -> Iterator[Call]:
+    """Pushed, off and moving."""
+    for _ in range(4):
+        yield _mass(random, push=True, off=True, moving=True)
+
+
+def _model(random: Random) -> lk.Model:
+    return lk.Model(random.choice(["left", "right"]), lk.Plant(armature=0.05))
+
+
+def _angles(random: Random, model: lk.Model) -> Any:
+    return model.robot.ready + random.uniform(-0.35, 0.35, 7)
+
+
+def six_joints(random: Random) -> Iterator[Call]:
+    """One joint locked."""
+    model = _model(random)
+    q, keep = _angles(random, model), np.delete(np.arange(7), 2)
+    yield call(model.mass_matrix(q)[np.ix_(keep, keep)], model.tip_jacobian(q)[:, keep])
+
+
+def seven_joints(random: Random) -> Iterator[Call]:
+    """Any pose, of both arms."""
+    for _ in range(3):
+        model = _model(random)
+        q = _angles(random, model)
+        yield call(model.mass_matrix(q), model.tip_jacobian(q))
+
+
+def positions_only(random: Random) -> Iterator[Call]:
+    """The three rows of the position alone."""
+    model = _model(random)
+    q = _angles(random, model)
+    yield call(model.mass_matrix(q), model.tip_jacobian(q)[:3])
+
+
+def _tip(
+    random: Random,
+    *,
+    shift: float = 0.0,
+    turn: float = 0.0,
+    speed: float = 0.0,
+    twist: float = 0.0,
+    ddx: float = 0.0,
+) -> tuple[lk.Model, lk.State, lk.PoseSample]:
+    """A state, and a target for its tip, off by so much."""
+    model = _model(random)
+    q, dq = _angles(random, model), speed * random.uniform(-1.0, 1.0, 7)
+    T = model.pose(q)
+    R = lk.se3.rotation(turn * random.choice([-1.0, 1.0], 3) * random.uniform(0.5, 1.0, 3))
+    T_wd = lk.se3.pose(R @ T[:3, :3], T[:3, 3] + shift * random.uniform(-1.0, 1.0, 3))
+    dV = ddx * random.uniform(-1.0, 1.0, 6)
+    V = twist * random.uniform(-1.0, 1.0, 6)
+    return model, lk.State(0.0, q, dq), lk.PoseSample(T_wd, V, dV)
+
+
+def _gains(random: Random) -> dict[str, Any]:
+    K = np.concatenate([random.uniform(50.0, 800.0, 3), random.uniform(5.0, 40.0, 3)])
+    D = np.concatenate([random.uniform(5.0, 80.0, 3), random.uniform(0.5, 5.0, 3)])
+    return {"stiffness": K, "damping": D}
+
+
+def _law(random: Random, **what: float) -> Call:
+    model, state, target = _tip(random, **what)
+    return call(state, target, model, **_gains(random))
+
+
+def off_in_position(random: Random) -> Iterator[Call]:
+    """At rest, off in position."""
+    for _ in range(2):
+        yield _law(random, shift=0.05)
+
+
+def off_in_orientation(random: Random) -> Iterator[Call]:
+    """At rest, turned off its target."""
+    for _ in range(3):
+        yield _law(random, turn=0.3)
+
+
+def moving_tip(random: Random) -> Iterator[Call]:
+    """A moving arm, a target that stands still."""
+    for _ in range(3):
+        yield _law(random, speed=1.0)
+
+
+def leading_target(random: Random) -> Iterator[Call]:
+    """A target that moves and speeds up, the arm still at rest."""
+    for _ in range(3):
+        yield _law(random, twist=0.5, ddx=2.0)
+
+
+def everything_at_the_tip(random: Random) -> Iterator[Call]:
+    """All at once."""
+    for _ in range(4):
+        yield _law(random, shift=0.05, turn=0.3, speed=1.0, twist=0.5, ddx=2.0)
+
+
+def pushed_arms(random: Random) -> Iterator[Case]:
+    """From an offset and under a push, the other arm too."""
+    side: Any = random.choice(["left", "right"])
+    plant = lk.Plant(armature=0.05, viscous=0.7)
+    model = lk.Model(side, plant)
+    force = 8.0 * random.choice([-1.0, 1.0], 3) * random.uniform(0.5, 1.0, 3)
+    yield Loop(
+        lk.Hold(model.pose(model.robot.ready), 2.0),
+        {
+            "model": model,
+            "stiffness": np.array([300.0] * 3 + [20.0] * 3),
+            "damping": np.array([35.0, 35.0, 70.0, 4.0, 4.0, 2.0]),
+        },
+        side,
+        plant,
+        (lk.Push(force),),
+        q0=model.robot.ready + 0.05 * random.choice([-1.0, 1.0], 7),
+        settle=1.2,
+        expected={"max_mm": 1e3 * float(np.linalg.norm(force)) / 300.0 + 10.0},
+    )
+
+
+def _shaped(random: Random, *, times: float, wrench: float, moving: bool) -> Call:
+    """With M_d so many times the arm's own inertia; 0 takes one of its own."""
+    what = {"speed": 1.0, "twist": 0.5, "ddx": 2.0} if moving else {}
+    model, state, target = _tip(random, shift=0.05, turn=0.2, **what)
+    inertia = times * model.operational_inertia(state.q)
+    if not times:
+        inertia = np.diag([*random.uniform(2.0, 8.0, 3), *random.uniform(0.1, 0.4, 3)])
+    F = wrench * random.uniform(-1.0, 1.0, 6)
+    return call(state, target, F, model, inertia=inertia, **_gains(random))
+
+
+def untouched(random: Random) -> Iterator[Call]:
+    """Nobody pushes."""
+    yield _shaped(random, times=0.0, wrench=0.0, moving=False)
+
+
+def as_heavy_as_it_is(random: Random) -> Iterator[Call]:
+    """Its own inertia, pushed."""
+    for _ in range(2):
+        yield _shaped(random, times=1.0, wrench=10.0, moving=False)
+
+
+def twice_as_heavy(random: Random) -> Iterator[Call]:
+    """Heavier and lighter, pushed."""
+    for times in (2.0, 0.5):
+        yield _shaped(random, times=times, wrench=10.0, moving=False)
+
+
+def everything_shaped(random: Random) -> Iterator[Call]:
+    """Any inertia, pushed, off and moving."""
+    for _ in range(4):
+        yield _shaped(random, times=0.0, wrench=10.0, moving=True)
+
+
+def _pushes(random: Random, K: Any, offset: Any, noise: float, rows: int) -> Call:
+    x = random.uniform(-0.04, 0.04, (rows, 3))
+    return call(x @ K.T + offset + noise * random.standard_normal((rows, 3)), x)
+
+
+def _stiffness(random: Random, coupled: float) -> Any:
+    K = np.diag(random.uniform(100.0, 600.0, 3))
+    return K + coupled * random.uniform(-60.0, 60.0, (3, 3))
+
+
+def straight_springs(random: Random) -> Iterator[Call]:
+    """Axes that do not mix."""
+    yield _pushes(random, _stiffness(random, 0.0), np.zeros(3), 0.0, 12)
+
+
+def coupled_springs(random: Random) -> Iterator[Call]:
+    """Axes that mix, not quite symmetric."""
+    for _ in range(2):
+        yield _pushes(random, _stiffness(random, 1.0), np.zeros(3), 0.0, 12)
+
+
+def springs_with_offset(random: Random) -> Iterator[Call]:
+    """A force at rest."""
+    for _ in range(2):
+        offset = random.uniform(-5.0, 5.0, 3)
+        yield _pushes(random, _stiffness(random, 0.0), offset, 0.0, 12)
+
+
+def measured_springs(random: Random) -> Iterator[Call]:
+    """All of it, with noise in the force."""
+    for rows in (8, 20, 60):
+        offset = random.uniform(-5.0, 5.0, 3)
+        yield _pushes(random, _stiffness(random, 1.0), offset, 0.5, rows)

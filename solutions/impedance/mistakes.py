@@ -1,0 +1,511 @@
+"""What people write in notebook 05 instead."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+
+from . import answers as right
+
+
+def spring_pushes_away(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """The spring's sign turned."""
+    return right.msd(state, target, force, m=m, b=b, k=-k)
+
+
+def force_twice(state: Any, target: Any, force: float, *, m: float, b: float, k: float) -> float:
+    """The outside force once with the springs and once more beside them (the report's eq. 19)."""
+    return right.msd(state, target, force, m=m, b=b, k=k) + force
+
+
+def hand_pushed_back(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """Takes the force on the mass for the force by the mass."""
+    return right.msd(state, target, -force, m=m, b=b, k=k)
+
+
+def damps_all_motion(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """The damper tied to the wall instead of to the target."""
+    return right.msd(state, target, force, m=m, b=b, k=k) - b * float(target[1]) / m
+
+
+def forgets_the_targets_acceleration(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """A mass that always comes late."""
+    return right.msd(state, (*target[:2], 0.0), force, m=m, b=b, k=k)
+
+
+def force_not_acceleration(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """Gives a force where an acceleration is asked."""
+    return m * right.msd(state, target, force, m=m, b=b, k=k)
+
+
+def spring_to_the_origin(
+    state: Any, target: Any, force: float, *, m: float, b: float, k: float
+) -> float:
+    """The spring tied to the origin, the damper to the target."""
+    return right.msd(state, (0.0, *target[1:]), force, m=m, b=b, k=k)
+
+
+@dataclass(frozen=True)
+class OneMass:
+    """The mass with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        spring: Of the spring.
+        damper: Of the damper.
+        force: Of the hand's force.
+        feed: Of the target's acceleration.
+        per_mass: Of the target's acceleration, divided by the mass.
+        follows: Of all that is the target's.
+        power: Of the mass that divides.
+        swapped: Whether spring and damper are.
+    """
+
+    spring: float = 1.0
+    damper: float = 1.0
+    force: float = 1.0
+    feed: float = 1.0
+    per_mass: float = 0.0
+    follows: float = 1.0
+    power: float = 1.0
+    swapped: bool = False
+
+    def __call__(
+        self, state: Any, target: Any, force: float, *, m: float, b: float, k: float
+    ) -> float:
+        """The acceleration."""
+        (x, dx), (x_d, dx_d, ddx_d) = state, (self.follows * part for part in target)
+        b, k = (k, b) if self.swapped else (b, k)
+        pull = self.spring * k * (x_d - x) + self.damper * b * (dx_d - dx)
+        total = self.force * force + pull + self.per_mass * ddx_d
+        return float(self.feed * ddx_d + total / m**self.power)
+
+
+def inverse_of_the_wrong(M: Any, J: Any) -> Any:
+    """The inverse of J M J^T."""
+    return np.linalg.inv(J @ M @ J.T)
+
+
+def each_axis_alone(M: Any, J: Any) -> Any:
+    """The right matrix without what is beside its diagonal."""
+    return np.diag(np.diag(right.operational_inertia(M, J)))
+
+
+def numbers_turned_over(M: Any, J: Any) -> Any:
+    """1 divided by each number of the mobility."""
+    return 1.0 / (J @ np.linalg.inv(M) @ J.T)
+
+
+def j_m_jt(M: Any, J: Any) -> Any:
+    """Looks right: six by six, symmetric."""
+    return J @ M @ J.T
+
+
+def pseudo_inverses(M: Any, J: Any) -> Any:
+    """True for six joints; with seven it holds the elbow still."""
+    J_inv = np.linalg.pinv(J)
+    return J_inv.T @ M @ J_inv
+
+
+def mobility(M: Any, J: Any) -> Any:
+    """Stops before the last inverse."""
+    return J @ np.linalg.inv(M) @ J.T
+
+
+def inverse_by_element(M: Any, J: Any) -> Any:
+    """Python's 1 / M, number by number."""
+    return np.linalg.inv(J @ (1.0 / np.asarray(M)) @ J.T)
+
+
+def diagonal_only(M: Any, J: Any) -> Any:
+    """The joints as if none shook the others."""
+    return right.operational_inertia(np.diag(np.diag(M)), J)
+
+
+def plus_in_front(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """The spring with the report's plus (eq. 21): it pushes away."""
+    return right.workspace_impedance(state, target, model, stiffness=-stiffness, damping=damping)
+
+
+def joint_inertia_for_tip(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """M J^T times the target's acceleration, as the report's program had it."""
+    q, dq = state.q, state.dq
+    still = target._replace(dtwist=np.zeros(6))
+    tau = right.workspace_impedance(state, still, model, stiffness=stiffness, damping=damping).value
+    drift = model.operational_inertia(q) @ model.tip_jacobian_rate(q, dq) @ dq
+    feed = model.mass_matrix(q) @ model.tip_jacobian(q).T @ target.dtwist
+    return lk.JointTorque(tau + model.tip_jacobian(q).T @ drift + feed)
+
+
+def no_drift(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """Forgets that the tip speeds up while the joints turn evenly."""
+    q, dq = state.q, state.dq
+    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+    drift = model.operational_inertia(q) @ model.tip_jacobian_rate(q, dq) @ dq
+    return lk.JointTorque(tau.value + model.tip_jacobian(q).T @ drift)
+
+
+def weightless(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """No gravity."""
+    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+    return lk.JointTorque(tau.value - model.gravity(state.q))
+
+
+def body_jacobian(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """A wrench in world axes through the Jacobian of the tool's axes."""
+    q, dq = state.q, state.dq
+    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+    e, de = (
+        lk.se3.pose_error(target.pose, model.pose(q)),
+        target.twist - model.tip_jacobian(q) @ dq,
+    )
+    wrench = damping * de + stiffness * e
+    return lk.JointTorque(
+        tau.value + (model.body_jacobian(q) - model.tip_jacobian(q)).T @ np.asarray(wrench)
+    )
+
+
+def euler_subtraction(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """The orientation error as a difference of roll, pitch and yaw."""
+    T = model.pose(state.q)
+    wrong = _euler(target.pose) - _euler(T)
+    correct = lk.se3.pose_error(target.pose, T)[3:]
+    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+    K = stiffness * np.ones(6)
+    return lk.JointTorque(
+        tau.value + model.tip_jacobian(state.q)[3:].T @ (K[3:] * (wrong - correct))
+    )
+
+
+def _euler(T: Any) -> Any:
+    R = T[:3, :3]
+    return np.array(
+        [
+            np.arctan2(R[2, 1], R[2, 2]),
+            np.arctan2(-R[2, 0], np.hypot(R[2, 1], R[2, 2])),
+            np.arctan2(R[1, 0], R[0, 0]),
+        ]
+    )
+
+
+def springs_inside(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """Computed torque at the tip: the springs multiplied with the inertia."""
+    q, dq = state.q, state.dq
+    J = model.tip_jacobian(q)
+    e, de = lk.se3.pose_error(target.pose, model.pose(q)), target.twist - J @ dq
+    a = target.dtwist - model.tip_jacobian_rate(q, dq) @ dq + damping * de + stiffness * e
+    return lk.JointTorque(
+        J.T @ model.operational_inertia(q) @ a + model.coriolis(q, dq) @ dq + model.gravity(q)
+    )
+
+
+def brakes_the_motion(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
+) -> lk.JointTorque:
+    """The damper tied to the room, not to the target."""
+    tau = right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+    pull = damping * np.asarray(target.twist)
+    return lk.JointTorque(tau.value - model.tip_jacobian(state.q).T @ pull)
+
+
+@dataclass(frozen=True)
+class TipLaw:
+    """The impedance with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the error.
+        turn: Of the error of orientation.
+        de: Of the error of the twist.
+        feed: Of the target's acceleration.
+        drift: Of the acceleration that comes by itself.
+        coriolis: Of C.
+        weight: Of g.
+        power: Of the tip's inertia.
+        swapped: Whether stiffness and damping are.
+        pinv: Whether the pseudo-inverse takes the place of the transpose.
+        body: Whether the Jacobian is the tool's.
+        tool: Whether the error of orientation is in the tool's axes; 2 is that of position too.
+    """
+
+    e: float = 1.0
+    turn: float = 1.0
+    de: float = 1.0
+    feed: float = 1.0
+    drift: float = 1.0
+    coriolis: float = 1.0
+    weight: float = 1.0
+    power: int = 1
+    swapped: bool = False
+    pinv: bool = False
+    body: bool = False
+    tool: int = 0
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        model: lk.Model,
+        *,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq, T_wt = state.q, state.dq, model.pose(state.q)
+        K, D = (damping, stiffness) if self.swapped else (stiffness, damping)
+        J = (model.body_jacobian if self.body else model.tip_jacobian)(q)
+        R_tw, inertia = T_wt[:3, :3].T, model.operational_inertia(q)
+        e = self.e * lk.se3.pose_error(target.pose, T_wt)
+        place = R_tw @ e[:3] if self.tool == 2 else e[:3]
+        e = np.concatenate([place, self.turn * (R_tw @ e[3:] if self.tool else e[3:])])
+        de = self.de * (target.twist - J @ dq)
+        a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq
+        F = np.linalg.matrix_power(inertia, self.power) @ a + D * de + K * e
+        tau = (np.linalg.pinv(J) if self.pinv else J.T) @ F
+        tau = tau + self.coriolis * model.coriolis(q, dq) @ dq + self.weight * model.gravity(q)
+        return lk.JointTorque(tau)
+
+
+@dataclass(frozen=True)
+class ShapedLaw:
+    """The shaped impedance with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the errors of pose and twist.
+        inside: Of the wrench that speeds the tip up.
+        outside: Of the hand's share of the work.
+        feed: Of the target's acceleration.
+        drift: Of the acceleration that comes by itself.
+        coriolis: Of C.
+        weight: Of g.
+        pinv: Whether the pseudo-inverse takes the place of the transpose.
+        for_own: Whether the wanted inertia stands where the arm's own belongs.
+    """
+
+    e: float = 1.0
+    inside: float = 1.0
+    outside: float = 1.0
+    feed: float = 1.0
+    drift: float = 1.0
+    coriolis: float = 1.0
+    weight: float = 1.0
+    pinv: bool = False
+    for_own: bool = False
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        wrench: Any,
+        model: lk.Model,
+        *,
+        inertia: Any,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq = state.q, state.dq
+        J = model.tip_jacobian(q)
+        pull = stiffness * lk.se3.pose_error(target.pose, model.pose(q))
+        pull = self.e * (pull + damping * (target.twist - J @ dq))
+        a = self.feed * target.dtwist - self.drift * model.tip_jacobian_rate(q, dq) @ dq
+        a = a + np.linalg.solve(inertia, pull + self.inside * np.asarray(wrench))
+        own = inertia if self.for_own else model.operational_inertia(q)
+        F = own @ a - self.outside * np.asarray(wrench)
+        tau = (np.linalg.pinv(J) if self.pinv else J.T) @ F
+        return lk.JointTorque(
+            tau + self.coriolis * model.coriolis(q, dq) @ dq + self.weight * model.gravity(q)
+        )
+
+
+def force_added_plainly(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> lk.JointTorque:
+    """The measured wrench added to the law, as if to help the hand."""
+    tau = force_forgotten(
+        state, target, wrench, model, inertia=inertia, stiffness=stiffness, damping=damping
+    )
+    return lk.JointTorque(tau.value + model.tip_jacobian(state.q).T @ wrench)
+
+
+def wrench_of_the_robot(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> lk.JointTorque:
+    """Takes the wrench on the arm for the one by the arm."""
+    return right.shaped_impedance(
+        state,
+        target,
+        -np.asarray(wrench),
+        model,
+        inertia=inertia,
+        stiffness=stiffness,
+        damping=damping,
+    )
+
+
+def force_forgotten(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> lk.JointTorque:
+    """Another inertia without measuring anything."""
+    return right.shaped_impedance(
+        state, target, np.zeros(6), model, inertia=inertia, stiffness=stiffness, damping=damping
+    )
+
+
+def own_inertia(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> lk.JointTorque:
+    """Keeps the arm's own inertia, whatever is asked."""
+    return right.workspace_impedance(state, target, model, stiffness=stiffness, damping=damping)
+
+
+def the_reports_equation(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> lk.JointTorque:
+    """Equation 19: the wrench outside, and inside once more as if it were an acceleration."""
+    tau = force_forgotten(
+        state, target, wrench, model, inertia=inertia, stiffness=stiffness, damping=damping
+    )
+    inside = model.operational_inertia(state.q) @ wrench
+    return lk.JointTorque(tau.value + model.tip_jacobian(state.q).T @ (wrench + inside))
+
+
+def hand_works_twice(
+    state: lk.State,
+    target: lk.PoseSample,
+    wrench: Any,
+    model: lk.Model,
+    *,
+    inertia: Any,
+    stiffness: Any,
+    damping: Any,
+) -> lk.JointTorque:
+    """The motors give all the torque, and the hand its own on top."""
+    tau = right.shaped_impedance(
+        state, target, wrench, model, inertia=inertia, stiffness=stiffness, damping=damping
+    )
+    return lk.JointTorque(tau.value + model.tip_jacobian(state.q).T @ wrench)
+
+
+def element_by_element(force: Any, displacement: Any) -> Any:
+    """Force over displacement in each axis."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.diag(np.nanmean(np.asarray(force) / np.asarray(displacement), axis=0))
+
+
+def through_the_origin(force: Any, displacement: Any) -> Any:
+    """A fit without an offset."""
+    return np.linalg.lstsq(np.asarray(displacement), np.asarray(force), rcond=None)[0].T
+
+
+def compliance(force: Any, displacement: Any) -> Any:
+    """Metres for a newton instead of newtons for a metre."""
+    return np.linalg.inv(right.apparent_stiffness(force, displacement))
+
+
+def transposed(force: Any, displacement: Any) -> Any:
+    """What `lstsq` gives, as it comes: the rows are K's columns."""
+    return right.apparent_stiffness(force, displacement).T
+
+
+def other_regression(force: Any, displacement: Any) -> Any:
+    """Fits the displacement to the force and inverts: the noise is in the force."""
+    return np.linalg.inv(right.apparent_stiffness(displacement, force))
+
+
+def arm_against_hand(force: Any, displacement: Any) -> Any:
+    """The force by the arm: a stiffness below zero."""
+    return -right.apparent_stiffness(force, displacement)
+
+
+def transposed_through_the_origin(force: Any, displacement: Any) -> Any:
+    """What `lstsq` gives without an offset, as it comes."""
+    return through_the_origin(force, displacement).T
+
+
+def regression_of_the_displacement(force: Any, displacement: Any) -> Any:
+    """Fits the displacement to the force: metres for a newton."""
+    return right.apparent_stiffness(displacement, force)
+
+
+def diagonal_of_the_fit(force: Any, displacement: Any) -> Any:
+    """The stiffness along each axis alone."""
+    return np.diag(np.diag(right.apparent_stiffness(force, displacement)))
+
+
+def made_symmetric(force: Any, displacement: Any) -> Any:
+    """The mean of the fit and its transpose: what is measured need not be symmetric."""
+    K = right.apparent_stiffness(force, displacement)
+    return (K + K.T) / 2.0
+
+
+def in_millimetres(force: Any, displacement: Any) -> Any:
+    """Newtons for a millimetre."""
+    return right.apparent_stiffness(force, displacement) / 1e3
+
+
+def axis_by_axis_fit(force: Any, displacement: Any) -> Any:
+    """A line for each axis by itself."""
+    F, x = np.asarray(force), np.asarray(displacement)
+    return np.diag([np.polyfit(x[:, k], F[:, k], 1)[0] for k in range(3)])

@@ -1,0 +1,811 @@
+"""What notebook 05 asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.course import AtTip, Call, Close, Loop, TipTorque
+from labkit.course.problem import Problem, Trial, Wrong, call
+
+from . import answers, hidden, mistakes, variants
+
+PLANT = lk.Plant(name="textbook", armature=0.05, viscous=0.7)
+MODEL = lk.Model("left", PLANT)
+READY = MODEL.robot.ready
+BENT = READY + [0.1, 0.2, -0.1, -0.3, 0.2, 0.1, 0.3]
+T_WT = MODEL.pose(BENT)
+K = np.array([300.0, 300.0, 300.0, 20.0, 20.0, 20.0])
+D = np.array([35.0, 35.0, 70.0, 4.0, 4.0, 2.0])
+SPEED = np.array([0.8, -0.5, 0.4, 1.0, -1.2, 0.9, 1.5])
+TWIST = np.array([0.2, -0.1, 0.3, 0.4, -0.2, 0.5])
+DTWIST = np.array([1.0, -2.0, 1.5, 2.0, 1.0, -1.0])
+PUSH = np.array([8.0, -5.0, 10.0, 0.5, 0.4, -0.3])
+SIX = np.delete(np.arange(7), 2)
+
+
+def _target(shift: object, turn: object, moving: float) -> lk.PoseSample:
+    R = lk.se3.rotation(turn) @ T_WT[:3, :3]
+    return lk.PoseSample(
+        lk.se3.pose(R, T_WT[:3, 3] + np.array(shift)), moving * TWIST, moving * DTWIST
+    )
+
+
+def _law(shift: object, turn: object, *, speed: float = 0.0, moving: float = 0.0) -> Call:
+    state = lk.State(0.0, BENT, speed * SPEED)
+    return call(state, _target(shift, turn, moving), MODEL, stiffness=K, damping=D)
+
+
+def _shaped(inertia: object, wrench: object, *, moving: float = 0.0) -> Call:
+    state = lk.State(0.0, BENT, moving * SPEED)
+    target = _target([0.03, -0.02, 0.04], [0.1, -0.2, 0.1], moving)
+    return call(state, target, wrench, MODEL, inertia=inertia, stiffness=K, damping=D)
+
+
+def _at_tip(answer: Callable[..., lk.JointTorque]) -> Callable[..., TipTorque]:
+    """The torque that an answer gives, with what a torque does to the tip there."""
+
+    def expected(state: lk.State, *args: Any, **gains: Any) -> TipTorque:
+        model: lk.Model = args[-1]
+        M, J = model.mass_matrix(state.q), model.tip_jacobian(state.q)
+        accelerates = np.asarray(np.linalg.solve(M, J.T).T, dtype=np.float64)
+        return TipTorque(answer(state, *args, **gains).value, accelerates)
+
+    return expected
+
+
+NOWHERE = [0.0, 0.0, 0.0]
+ASIDE = [0.03, -0.02, 0.04]
+LAMBDA = MODEL.operational_inertia(BENT)
+M_D = np.diag([5.0, 5.0, 5.0, 0.3, 0.3, 0.3])
+
+MSD = Problem(
+    name="msd",
+    points=2,
+    asks="Give the acceleration of a mass `m` that is tied to its target by a spring `k` and a damper "
+    "`b`, while somebody pushes it with `force`.",
+    answer=answers.msd,
+    judge=Close(rtol=1e-6, atol=1e-9),
+    trials=(
+        Trial(
+            "at rest on its target, pushed",
+            (call((0.0, 0.0), (0.0, 0.0, 0.0), 6.0, m=2.0, b=8.0, k=100.0),),
+            hidden.pushed,
+            weight=0.0,
+        ),
+        Trial(
+            "let go beside its target",
+            (call((0.05, 0.0), (0.0, 0.0, 0.0), 0.0, m=2.0, b=8.0, k=100.0),),
+            hidden.let_go,
+            "other masses and springs",
+        ),
+        Trial(
+            "pushed while it follows a moving target",
+            (call((0.05, 0.1), (0.03, 0.3, 0.5), 6.0, m=2.0, b=8.0, k=100.0),),
+            hidden.everything_of_one_mass,
+            "targets that move and speed up",
+            weight=2.0,
+        ),
+    ),
+    hints=(
+        "Three forces act on the mass: the hand's, the spring's and the damper's. Draw them for a mass "
+        "to the right of its target.",
+        "With e = x_d - x the spring pulls with k e and the damper with b ė. If nobody pushes and there "
+        "is no error, the mass must move just as its target does.",
+        "ddx = ddx_d + (force + b (dx_d - dx) + k (x_d - x)) / m.",
+    ),
+    wrong=(
+        Wrong(
+            "the spring pushes away",
+            "Beside its target the mass is driven farther away. A spring pulls back: k (x_d - x).",
+            mistakes.spring_pushes_away,
+            "The report's equation 21 has this sign.",
+        ),
+        Wrong(
+            "the force counted twice",
+            "The push comes in twice, once divided by m and once as if it were an acceleration. The "
+            "report's equation 19 does this.",
+            mistakes.force_twice,
+            "Check units term by term.",
+        ),
+        Wrong(
+            "the force of the mass on the hand",
+            "`force` is what the hand does to the mass. A push to the right speeds it up to the "
+            "right.",
+            mistakes.hand_pushed_back,
+            "Say always: force of whom, on what.",
+        ),
+        Wrong(
+            "a damper tied to the room",
+            "The damper brakes all motion, so the mass drags behind a moving target. Tie it to the "
+            "target: b (dx_d - dx).",
+            mistakes.damps_all_motion,
+            "What do the two ends of the damper hold?",
+        ),
+        Wrong(
+            "the target's acceleration left out",
+            "Without error and without push the mass must move as its target does, its acceleration "
+            "included.",
+            mistakes.forgets_the_targets_acceleration,
+            "Feed-forward.",
+        ),
+        Wrong(
+            "a force, not an acceleration",
+            "That is the sum of the forces; divide by the mass.",
+            mistakes.force_not_acceleration,
+            "Newton.",
+        ),
+        Wrong(
+            "all springs and dampers turned round",
+            "Beside its target the mass is driven farther away: e is target minus actual, and "
+            "then every gain comes with a plus.",
+            mistakes.OneMass(spring=-1.0, damper=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the damper turned round",
+            "The damper drives the mass where it should brake: b (dx_d - dx).",
+            mistakes.OneMass(damper=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "spring and damper swapped",
+            "k belongs to the place, b to the speed.",
+            mistakes.OneMass(swapped=True),
+            "Units tell: N/m and N s/m.",
+        ),
+        Wrong(
+            "the target left out",
+            "The spring is tied to the target, not to the origin, and the damper too.",
+            mistakes.OneMass(follows=0.0),
+            "Draw the mass to the right of its target.",
+        ),
+        Wrong(
+            "the target's acceleration divided by the mass",
+            "The target's acceleration is an acceleration already: only forces are divided by m.",
+            mistakes.OneMass(feed=0.0, per_mass=1.0),
+            "Units tell: N and m/s².",
+        ),
+        Wrong(
+            "the target's acceleration turned round",
+            "Without error and without push the mass must move as its target does.",
+            mistakes.OneMass(feed=-1.0),
+            "Draw the mass to the right of its target.",
+        ),
+        Wrong(
+            "a spring tied to the origin",
+            "The spring pulls to the target's place, not to x = 0: k (x_d - x).",
+            mistakes.spring_to_the_origin,
+            "What do the two ends of the spring hold?",
+        ),
+        Wrong(
+            "the hand forgotten",
+            "The force of the hand is missing.",
+            mistakes.OneMass(force=0.0),
+            "Count the forces: spring, damper, hand.",
+        ),
+        Wrong(
+            "not divided by the mass",
+            "Forces make an acceleration only when they are divided by m.",
+            mistakes.OneMass(power=0.0),
+            "Units tell: N and m/s².",
+        ),
+    ),
+    variants=(variants.msd_by_error, variants.Mass()),
+)
+
+OPERATIONAL_INERTIA = Problem(
+    name="operational_inertia",
+    points=4,
+    asks="Give the inertia Λ that a hand feels at the tip of an arm with the mass matrix `M`, shape "
+    "(n, n), and the Jacobian `J`, shape (6, n) or (3, n): the matrix with F = Λ · (acceleration of the "
+    "tip), when the arm is at rest and its motors are off.",
+    answer=answers.operational_inertia,
+    judge=Close(rtol=1e-5, atol=1e-9),
+    trials=(
+        Trial(
+            "six joints (the third is locked)",
+            (call(MODEL.mass_matrix(BENT)[np.ix_(SIX, SIX)], MODEL.tip_jacobian(BENT)[:, SIX]),),
+            hidden.six_joints,
+            "other poses",
+            weight=0.0,
+        ),
+        Trial(
+            "all seven joints",
+            (
+                call(MODEL.mass_matrix(BENT), MODEL.tip_jacobian(BENT)),
+                call(MODEL.mass_matrix(READY), MODEL.tip_jacobian(READY)),
+            ),
+            hidden.seven_joints,
+            "both arms",
+            weight=3.0,
+        ),
+        Trial(
+            "the position of the tip alone",
+            (call(MODEL.mass_matrix(BENT), MODEL.tip_jacobian(BENT)[:3]),),
+            hidden.positions_only,
+        ),
+    ),
+    withheld=("labkit.Model.operational_inertia",),
+    hints=(
+        "Follow a push through the arm. A wrench F at the tip gives the joint torques Jᵀ F. What joint "
+        "acceleration do they make, and what acceleration of the tip is that?",
+        "q̈ = M⁻¹ Jᵀ F, and the tip's acceleration is J q̈ (at rest). So acceleration = (J M⁻¹ Jᵀ) F. "
+        "You want it the other way round.",
+        "np.linalg.inv(J @ np.linalg.solve(M, J.T)).",
+    ),
+    wrong=(
+        Wrong(
+            "J M Jᵀ",
+            "That has the right shape and the wrong unit: with J in m/rad, J M Jᵀ grows with the lever, "
+            "while the mass felt at the end of a longer lever gets smaller.",
+            mistakes.j_m_jt,
+            "Follow a push through the arm instead of guessing a product that fits.",
+        ),
+        Wrong(
+            "pseudo-inverses of J on both sides",
+            "With six joints this is right. With seven it forces the elbow to stay out of the motion, "
+            "and the arm seems heavier than it is: the elbow is free to give way.",
+            mistakes.pseudo_inverses,
+            "pinv(J) chooses the shortest motion of the joints, the arm the one with the least "
+            "energy.",
+        ),
+        Wrong(
+            "the last inverse is missing",
+            "J M⁻¹ Jᵀ tells how easily the tip moves. How heavy it feels is the inverse of that.",
+            mistakes.mobility,
+            "Mobility and inertia.",
+        ),
+        Wrong(
+            "1 / M, number by number",
+            "1 / M divides each number; the inverse of a matrix is np.linalg.inv, or better a "
+            "solve.",
+            mistakes.inverse_by_element,
+            "numpy does what it is told.",
+        ),
+        Wrong(
+            "only the diagonal of M",
+            "The joints shake each other: the numbers beside the diagonal matter.",
+            mistakes.diagonal_only,
+            "Coupling.",
+        ),
+        Wrong(
+            "the inverse of J M Jᵀ",
+            "Follow the push: Jᵀ F, then M⁻¹, then J. It is M that is inverted first.",
+            mistakes.inverse_of_the_wrong,
+            "Units tell: kg at the end.",
+        ),
+        Wrong(
+            "each axis alone",
+            "A push along x may move the tip along y: the numbers beside the diagonal belong to Λ.",
+            mistakes.each_axis_alone,
+            "Λ is a matrix.",
+        ),
+        Wrong(
+            "1 over each number",
+            "1 / A divides each number; the inverse of a matrix is np.linalg.inv.",
+            mistakes.numbers_turned_over,
+            "1 / A is not A⁻¹.",
+        ),
+    ),
+    variants=(variants.inertia_by_inverse, variants.inertia_by_root),
+)
+
+WORKSPACE_IMPEDANCE = Problem(
+    name="workspace_impedance",
+    points=6,
+    asks="Give the `lk.JointTorque` that makes the tip answer a push as if it were tied to its target "
+    "by springs `stiffness` and dampers `damping`, one for each of x, y, z and the three rotations, in "
+    "world axes, with the inertia Λ that the tip has anyway. The arm does not carry its own weight: add "
+    "g(q). What the tip does not feel of a torque is left to you.",
+    answer=answers.workspace_impedance,
+    expected=_at_tip(answers.workspace_impedance),
+    judge=AtTip(),
+    trials=(
+        Trial(
+            "at rest, off in position",
+            (_law(ASIDE, NOWHERE),),
+            hidden.off_in_position,
+            "both arms, any pose",
+            weight=0.0,
+        ),
+        Trial(
+            "turned off its target, about each axis",
+            tuple(_law(NOWHERE, turn) for turn in (0.2 * np.eye(3)).tolist()),
+            hidden.off_in_orientation,
+        ),
+        Trial(
+            "a moving arm",
+            (_law(NOWHERE, NOWHERE, speed=1.0),),
+            hidden.moving_tip,
+        ),
+        Trial(
+            "a target that moves off and speeds up",
+            (_law(NOWHERE, NOWHERE, moving=1.0),),
+            hidden.leading_target,
+        ),
+        Trial(
+            "everything at once",
+            (_law(ASIDE, [0.1, -0.2, 0.1], speed=1.0, moving=1.0),),
+            hidden.everything_at_the_tip,
+            "everything at once",
+            weight=3.0,
+        ),
+        Trial(
+            "a run: from an offset, then pushed",
+            (
+                Loop(
+                    lk.Hold(MODEL.pose(READY), 2.0),
+                    {"model": MODEL, "stiffness": K, "damping": D},
+                    plant=PLANT,
+                    things=(lk.Push((0.0, 9.0, 0.0), start=0.5),),
+                    q0=READY + 0.05,
+                    settle=1.2,
+                    expected={"max_mm": 40.0, "max_deg": 5.0},
+                ),
+            ),
+            hidden.pushed_arms,
+            "pushes in any direction",
+        ),
+    ),
+    hints=(
+        "Say what force the tip should feel (spring, damper, and what the target's motion takes), then "
+        "turn it into joint torques with Jᵀ. Weight and Coriolis torques are added at the joints.",
+        "e = lk.se3.pose_error(target.pose, model.pose(q)), ė = target.twist - J q̇. The motion takes "
+        "Λ times the acceleration that the *joints* have to bring up: target.dtwist minus J̇ q̇, which "
+        "comes by itself.",
+        "F = Λ (target.dtwist - J̇ q̇) + damping ė + stiffness e; tau = Jᵀ F + C q̇ + g, with "
+        "model.tip_jacobian, model.tip_jacobian_rate, model.operational_inertia.",
+    ),
+    wrong=(
+        Wrong(
+            "a plus too many",
+            "The spring drives the tip away from its target: within a second the arm leaves its "
+            "workspace. The report's equation 21 has this sign; its program does not.",
+            mistakes.plus_in_front,
+            "One convention: e = target - actual, and every gain with a plus.",
+        ),
+        Wrong(
+            "M Jᵀ for the acceleration of the tip",
+            "M Jᵀ ẍ is not even a torque. The tip's inertia is Λ, and its force comes to the joints by "
+            "Jᵀ: Jᵀ Λ ẍ. While the target stands still nobody notices.",
+            mistakes.joint_inertia_for_tip,
+            "The report's program has this; units would have told.",
+        ),
+        Wrong(
+            "J̇ q̇ left out",
+            "The tip speeds up even if the joints turn evenly (think of a circle). That part comes by "
+            "itself: take it off before you multiply with Λ.",
+            mistakes.no_drift,
+            "ẍ = J q̈ + J̇ q̇: two terms.",
+        ),
+        Wrong(
+            "nobody carries the weight",
+            "Here the arm does not carry itself: g(q) belongs to the torque.",
+            mistakes.weightless,
+            "A spring holds a weight only where it is stretched.",
+        ),
+        Wrong(
+            "the body Jacobian",
+            "The errors are in world axes, the body Jacobian is in the tool's. With the gripper down, two "
+            "of the three axes come out the other way round. Use tip_jacobian.",
+            mistakes.body_jacobian,
+            "Name the Jacobian, always.",
+        ),
+        Wrong(
+            "Euler angles subtracted",
+            "The difference of roll, pitch and yaw is no rotation vector; with the gripper down it even "
+            "has the wrong signs. lk.se3.pose_error takes the logarithm.",
+            mistakes.euler_subtraction,
+            "Position errors alone never show it.",
+        ),
+        Wrong(
+            "the springs inside Λ",
+            "This multiplies the springs by the inertia: then a stiffness in N/m means nothing any more. "
+            "It is computed torque at the tip, a good tracking law, but no spring.",
+            mistakes.springs_inside,
+            "Impedance: gains in N/m, outside the inertia.",
+        ),
+        Wrong(
+            "a damper tied to the room",
+            "The damper brakes all motion, so the tip drags behind a moving target. Damp "
+            "target.twist - J q̇.",
+            mistakes.brakes_the_motion,
+            "What do the two ends of the damper hold?",
+        ),
+        Wrong(
+            "springs and dampers turned round",
+            "e and ė are target minus actual, and then every gain comes with a plus.",
+            mistakes.TipLaw(e=-1.0, de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the dampers turned round",
+            "ė is the target's twist minus J q̇: as it is, the dampers drive.",
+            mistakes.TipLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the target's acceleration left out",
+            "Λ times target.dtwist is missing: the tip drags behind a target that speeds up.",
+            mistakes.TipLaw(feed=0.0),
+            "What does the motion itself take?",
+        ),
+        Wrong(
+            "J̇ q̇ with the other sign",
+            "That part of the acceleration comes by itself: it is taken off what the joints have "
+            "to bring up.",
+            mistakes.TipLaw(drift=-1.0),
+            "ẍ = J q̈ + J̇ q̇: solve for J q̈.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C q̇ belongs to the equation of motion. At low speed nobody notices.",
+            mistakes.TipLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "the weight taken off",
+            "g(q) is what the motors must give to hold the arm: it comes with a plus.",
+            mistakes.TipLaw(weight=-1.0),
+            "g is on the left of the equation, with the motors on the right.",
+        ),
+        Wrong(
+            "no inertia at the tip",
+            "The acceleration must go through Λ to become a force.",
+            mistakes.TipLaw(power=0),
+            "Units tell: N and m/s².",
+        ),
+        Wrong(
+            "the inverse of Λ",
+            "Λ turns an acceleration into a force; its inverse does the opposite.",
+            mistakes.TipLaw(power=-1),
+            "Units tell: N and m/s².",
+        ),
+        Wrong(
+            "a pseudo-inverse for Jᵀ",
+            "A force at the tip takes the joint torques Jᵀ F, exactly. The pseudo-inverse belongs "
+            "to speeds.",
+            mistakes.TipLaw(pinv=True),
+            "Jᵀ maps forces, J⁺ maps speeds.",
+        ),
+        Wrong(
+            "the body Jacobian everywhere",
+            "Twists and wrenches are in world axes, this Jacobian is in the tool's. Use "
+            "tip_jacobian.",
+            mistakes.TipLaw(body=True),
+            "Name the Jacobian, always.",
+        ),
+        Wrong(
+            "stiffness and damping swapped",
+            "stiffness belongs to the error, damping to its rate.",
+            mistakes.TipLaw(swapped=True),
+            "Units tell: N/m and N s/m.",
+        ),
+        Wrong(
+            "the turn in the tool's axes",
+            "The rotation from tip to target must be in world axes, as the Jacobian is: "
+            "lk.se3.pose_error gives it.",
+            mistakes.TipLaw(tool=1),
+            "Error and Jacobian must speak of the same axes.",
+        ),
+        Wrong(
+            "the error in the tool's axes",
+            "Both parts of the error are in the tool's axes, and the Jacobian in the world's: "
+            "lk.se3.pose_error gives both in the world's.",
+            mistakes.TipLaw(tool=2),
+            "Error and Jacobian must speak of the same axes.",
+        ),
+        Wrong(
+            "no springs for the turn",
+            "The last three numbers of the error are missing, so the hand keeps any tilt.",
+            mistakes.TipLaw(turn=0.0),
+            "A gain of zero hides a wrong sign.",
+        ),
+    ),
+    variants=(
+        variants.impedance_by_terms,
+        variants.impedance_by_parts,
+        variants.impedance_by_khatib,
+        variants.impedance_by_pseudo_inverse,
+        variants.impedance_with_braked_elbow,
+    ),
+)
+
+SHAPED_IMPEDANCE = Problem(
+    name="shaped_impedance",
+    points=4,
+    asks="As `workspace_impedance`, but the tip is to feel as heavy as `inertia`, M_d of shape (6, 6). "
+    "For that the law is told the measured `wrench` of the hand on the arm, shape (6,), world "
+    "axes.",
+    answer=answers.shaped_impedance,
+    expected=_at_tip(answers.shaped_impedance),
+    judge=AtTip(),
+    trials=(
+        Trial(
+            "nobody pushes",
+            (_shaped(M_D, np.zeros(6)),),
+            hidden.untouched,
+            "other inertias",
+            weight=0.0,
+        ),
+        Trial(
+            "M_d = Λ: the measured wrench must not matter",
+            (_shaped(LAMBDA, PUSH),),
+            hidden.as_heavy_as_it_is,
+        ),
+        Trial(
+            "M_d = 2 Λ: now it must",
+            (_shaped(2.0 * LAMBDA, PUSH),),
+            hidden.twice_as_heavy,
+            "lighter than it is",
+        ),
+        Trial(
+            "everything at once",
+            (_shaped(M_D, PUSH, moving=1.0),),
+            hidden.everything_shaped,
+            weight=3.0,
+        ),
+    ),
+    hints=(
+        "Ask first for an acceleration: the one that a body M_d would have under spring, damper and "
+        "hand. Then ask which force of the *motors* makes the real tip, with its own Λ, move like "
+        "that.",
+        "M_d (a - dV_d) = D ė + K e + F. And Λ (a - J̇ q̇) = F_motors + F: the hand does its share.",
+        "a = dV_d + M_d⁻¹ (D ė + K e + F); tau = Jᵀ (Λ (a - J̇ q̇) - F) + C q̇ + g.",
+    ),
+    wrong=(
+        Wrong(
+            "the wrench added plainly",
+            "The wrench comes in with the factor Λ M_d⁻¹ - 1: nought if M_d = Λ. Added plainly, the "
+            "motors always help the hand as much as it pushes.",
+            mistakes.force_added_plainly,
+            "Test the special case M_d = Λ.",
+        ),
+        Wrong(
+            "the wrench of the robot on the hand",
+            "`wrench` is what the hand does to the arm. Turned round, a heavy arm feels light and a "
+            "light one heavy.",
+            mistakes.wrench_of_the_robot,
+            "Say always: force of whom, on what.",
+        ),
+        Wrong(
+            "the wrench forgotten",
+            "Without the measured wrench the arm cannot pretend to another inertia: the hand's push "
+            "still meets the arm's own.",
+            mistakes.force_forgotten,
+            "That is why shaping needs a sensor, and plain impedance does not.",
+        ),
+        Wrong(
+            "the inertia ignored",
+            "This is the law with the arm's own inertia. Divide springs, dampers and wrench by M_d, then "
+            "multiply by Λ.",
+            mistakes.own_inertia,
+            "With M_d = Λ the two laws agree.",
+        ),
+        Wrong(
+            "the report's equation 19",
+            "The wrench stands outside the braces as a force and inside as an acceleration. The report "
+            "says that M_d = M removes it; from this equation it does not.",
+            mistakes.the_reports_equation,
+            "Units, and the special case M_d = Λ.",
+        ),
+        Wrong(
+            "the hand's work done twice",
+            "The motors bring up all the force that the motion takes, and the hand pushes on top. Take "
+            "its wrench off again.",
+            mistakes.hand_works_twice,
+            "Λ a = F_motors + F_hand.",
+        ),
+        Wrong(
+            "the wrench inside turned round",
+            "The hand pushes the tip where it pushes: in M_d⁻¹ (D ė + K e + F) the wrench has a "
+            "plus.",
+            mistakes.ShapedLaw(inside=-1.0),
+            "Follow one push through the law, sign by sign.",
+        ),
+        Wrong(
+            "the hand's share added",
+            "The hand does its share of the work, so the motors do less: take the wrench off.",
+            mistakes.ShapedLaw(outside=-1.0),
+            "Who does which share of the work?",
+        ),
+        Wrong(
+            "the wrench outside alone",
+            "The wrench must also speed the tip up, by M_d⁻¹ F.",
+            mistakes.ShapedLaw(inside=0.0),
+            "Follow one push through the law, sign by sign.",
+        ),
+        Wrong(
+            "M_d where Λ belongs",
+            "The acceleration wanted is put through the arm's own inertia Λ: that is what the "
+            "motors have to move. M_d only says which acceleration is wanted.",
+            mistakes.ShapedLaw(for_own=True),
+            "First the wanted acceleration, then what it takes.",
+        ),
+        Wrong(
+            "J̇ q̇ left out",
+            "The tip speeds up even if the joints turn evenly: take that off before you multiply "
+            "with Λ.",
+            mistakes.ShapedLaw(drift=0.0),
+            "ẍ = J q̈ + J̇ q̇: two terms.",
+        ),
+        Wrong(
+            "nobody carries the weight",
+            "Here the arm does not carry itself: g(q) belongs to the torque.",
+            mistakes.ShapedLaw(weight=0.0),
+            "A spring holds a weight only where it is stretched.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C q̇ belongs to the equation of motion. At low speed nobody notices.",
+            mistakes.ShapedLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "springs and dampers turned round",
+            "e and ė are target minus actual, and then every gain comes with a plus.",
+            mistakes.ShapedLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the target's acceleration left out",
+            "target.dtwist is missing: the tip drags behind a target that speeds up.",
+            mistakes.ShapedLaw(feed=0.0),
+            "What does the motion itself take?",
+        ),
+        Wrong(
+            "a pseudo-inverse for Jᵀ",
+            "A force at the tip takes the joint torques Jᵀ F, exactly. The pseudo-inverse belongs "
+            "to speeds.",
+            mistakes.ShapedLaw(pinv=True),
+            "Jᵀ maps forces, J⁺ maps speeds.",
+        ),
+    ),
+    variants=(variants.shaped_by_factor, variants.shaped_by_pseudo_inverse),
+)
+
+_random = np.random.default_rng(5)
+_x = _random.uniform(-0.04, 0.04, (12, 3))
+_straight = np.diag([300.0, 150.0, 450.0])
+_coupled = np.array([[300.0, 60.0, -20.0], [50.0, 150.0, 10.0], [-30.0, 0.0, 450.0]])
+_offset = np.array([2.0, -1.0, 4.0])
+
+APPARENT_STIFFNESS = Problem(
+    name="apparent_stiffness",
+    points=4,
+    asks="Somebody pushed the arm N times and waited until it rested. Fit `force` = K · `displacement` "
+    "+ offset by least squares of the force (its sensor has the noise, displacements are exact), and "
+    "give K of shape (3, 3). Row i of `force` and `displacement`, both of shape (N, 3), belongs to push "
+    "i.",
+    answer=answers.apparent_stiffness,
+    judge=Close(rtol=1e-5, atol=1e-6),
+    trials=(
+        Trial(
+            "springs along the axes",
+            (call(_x @ _straight.T, _x),),
+            hidden.straight_springs,
+            "other stiffnesses",
+            weight=0.0,
+        ),
+        Trial(
+            "a push along x that also moves the tip along y",
+            (call(_x @ _coupled.T, _x),),
+            hidden.coupled_springs,
+            "matrices that are not quite symmetric",
+        ),
+        Trial(
+            "a force that is there at rest",
+            (call(_x @ _straight.T + _offset, _x),),
+            hidden.springs_with_offset,
+        ),
+        Trial(
+            "measured data",
+            (call(_x @ _coupled.T + _offset + 0.5 * _random.standard_normal((12, 3)), _x),),
+            hidden.measured_springs,
+            "more and fewer pushes",
+            weight=3.0,
+        ),
+    ),
+    hints=(
+        "Nine numbers of K and three of the offset are unknown, and each push gives three equations. "
+        "All of them are linear.",
+        "np.linalg.lstsq solves A X = B for X. With one row for each push, A holds the displacement and "
+        "a 1, B the force. What stands where in X?",
+        "A = np.column_stack([displacement, np.ones(len(displacement))]); "
+        "X = np.linalg.lstsq(A, force, rcond=None)[0]; K is X[:3], transposed.",
+    ),
+    wrong=(
+        Wrong(
+            "force over displacement, axis by axis",
+            "A push along x may move the tip along y, and where a displacement is nearly zero the ratio "
+            "says anything. Fit all nine numbers together.",
+            mistakes.element_by_element,
+            "A stiffness is a matrix.",
+        ),
+        Wrong(
+            "a fit through the origin",
+            "The force at rest is not zero (a tool's weight, a sensor's offset), and without a term for "
+            "it the stiffness has to explain it.",
+            mistakes.through_the_origin,
+            "Fit the offset, or it fits you.",
+        ),
+        Wrong(
+            "the compliance",
+            "That is metres for a newton. The stiffness is newtons for a metre, its inverse.",
+            mistakes.compliance,
+            "Units.",
+        ),
+        Wrong(
+            "K transposed",
+            "lstsq works with rows: what it gives is K turned on its side. As long as K is symmetric "
+            "nobody notices.",
+            mistakes.transposed,
+            "Rows of data: F = x Kᵀ.",
+        ),
+        Wrong(
+            "the regression the other way round, or of both",
+            "This puts the noise into the displacement, by a fit of the displacement to the force or by "
+            "total least squares. It is in the force, so the force stands on the left, alone.",
+            mistakes.other_regression,
+            "Least squares is not symmetric: errors belong to the left side.",
+        ),
+        Wrong(
+            "a stiffness below zero",
+            "`force` is that of the hand on the arm, so it points where the arm goes.",
+            mistakes.arm_against_hand,
+            "Say always: force of whom, on what.",
+        ),
+        Wrong(
+            "no offset, and on its side",
+            "lstsq works with rows, so K comes out transposed; and the force at rest is not zero, "
+            "so the fit needs an offset.",
+            mistakes.transposed_through_the_origin,
+            "Try a fit on numbers whose answer you know.",
+        ),
+        Wrong(
+            "a fit of the displacement",
+            "That is metres for a newton. Asked are newtons for a metre, with the noise in the "
+            "force.",
+            mistakes.regression_of_the_displacement,
+            "Look at the unit of the result.",
+        ),
+        Wrong(
+            "the diagonal alone",
+            "A push along x may move the tip along y: the numbers beside the diagonal are asked "
+            "too.",
+            mistakes.diagonal_of_the_fit,
+            "K is a matrix.",
+        ),
+        Wrong(
+            "made symmetric",
+            "What is measured need not be symmetric, and a fit should not make it so.",
+            mistakes.made_symmetric,
+            "Do not assume what you want to see.",
+        ),
+        Wrong(
+            "newtons for a millimetre",
+            "Asked are N/m.",
+            mistakes.in_millimetres,
+            "SI inside, millimetres in print.",
+        ),
+        Wrong(
+            "a line for each axis",
+            "Three fits, each of one axis by itself, miss what a push along x does along y.",
+            mistakes.axis_by_axis_fit,
+            "K is a matrix: one fit for all.",
+        ),
+    ),
+    variants=(variants.stiffness_with_ones, variants.stiffness_by_covariances),
+)
+
+PROBLEMS = (
+    MSD,
+    OPERATIONAL_INERTIA,
+    WORKSPACE_IMPEDANCE,
+    SHAPED_IMPEDANCE,
+    APPARENT_STIFFNESS,
+)

@@ -1,1 +1,0 @@
-"""Wrong answers that people really write: one module for each notebook."""

@@ -1,0 +1,375 @@
+"""What notebook 02 asks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from labkit.course import Close
+from labkit.course.problem import Problem, Trial, Wrong, call
+
+from . import answers, hidden, mistakes, variants
+from .hidden import MODEL, ROUGH_MODEL, bodies, joints, lift, weights
+
+READY = MODEL.robot.ready
+BENT = np.array([0.4, -0.6, 0.5, 1.3, -0.7, 0.9, 0.3])
+REACHING = np.array([-0.2, 0.3, -1.0, 0.4, 1.2, -0.6, -1.0])
+
+JACOBIAN = Problem(
+    name="jacobian",
+    points=4,
+    asks="Give the Jacobian of the tip in world axes, of shape (6, 7): column k holds the velocity "
+    "of the tip (3 numbers, first) and the angular velocity (3 numbers) while joint k alone turns "
+    "at 1 rad/s.",
+    answer=answers.jacobian,
+    judge=Close(rtol=1e-8, atol=1e-9),
+    trials=(
+        Trial(
+            "the ready pose: six rows, seven columns, the angular rows below",
+            (call(*joints(READY)),),
+            hidden.jacobians,
+            weight=0.0,
+        ),
+        Trial(
+            "two bent poses",
+            (call(*joints(BENT)), call(*joints(REACHING))),
+            hidden.jacobians,
+        ),
+        Trial("any pose", (call(*joints(np.zeros(7))),), hidden.jacobians, "any poses"),
+    ),
+    withheld=(
+        "labkit.Model.tip_jacobian",
+        "labkit.Model.body_jacobian",
+        "labkit.Model.spatial_jacobian",
+        "pinocchio",
+    ),
+    hints=(
+        "Freeze six joints and turn one. The whole hand then turns about that joint's axis like a "
+        "door on its hinge. Which way, and how fast, does the tip go?",
+        "A point at the arm r from the axis z moves with z × r. The arm goes from the axis to the "
+        "tip: r = tip - origins[k]. The angular velocity of the hand is z itself.",
+        "Column k is np.concatenate([np.cross(axes[k], tip - origins[k]), axes[k]]); put the seven "
+        "side by side with np.column_stack.",
+    ),
+    wrong=(
+        Wrong(
+            "the moment arm from the world's origin",
+            "The linear rows are the velocity of a point of the hand that is passing the world's "
+            "origin: that is the spatial Jacobian. Measure the arm from the joint to the tip.",
+            mistakes.arm_from_the_base,
+            "Three Jacobians exist; say which.",
+        ),
+        Wrong(
+            "the cross product reversed",
+            "The linear rows have the other sign: z × r, not r × z, with r from the joint to the tip.",
+            mistakes.product_reversed,
+            "A cross product changes its sign with the order.",
+        ),
+        Wrong(
+            "rows (w, v)",
+            "The angular rows come first. In this course a twist is (v, w), linear part first; books "
+            "differ, so say it aloud.",
+            mistakes.turns_first,
+            "Twist order is a convention: settle it once.",
+        ),
+        Wrong(
+            "columns of sliding joints",
+            "A joint that slides moves the tip along its axis; these joints turn.",
+            mistakes.axis_for_velocity,
+            "A revolute joint's linear part is z × r.",
+        ),
+        Wrong(
+            "every axis through the origin",
+            "The arm r goes from the joint's axis to the tip, so it is tip minus the joint's "
+            "origin, not the tip alone.",
+            mistakes.arm_of_the_tip,
+            "A moment arm begins at the axis.",
+        ),
+    ),
+    variants=(variants.jacobian_by_rows, variants.jacobian_by_hat),
+)
+
+MASS_MATRIX = Problem(
+    name="mass_matrix",
+    points=4,
+    asks="Give the mass matrix M of the arm, of shape (7, 7): the matrix with kinetic energy "
+    "½ dqᵀ M dq, summed over the seven links, each of which moves and turns.",
+    answer=answers.mass_matrix,
+    judge=Close(rtol=1e-8, atol=1e-9),
+    trials=(
+        Trial(
+            "links that are points: no inertia of their own",
+            (call(*(0.0 * x if k == 1 else x for k, x in enumerate(bodies(READY)))),),
+            hidden.points_of_mass,
+            weight=0.0,
+        ),
+        Trial("a bent elbow", (call(*bodies(BENT)),), hidden.mass_matrices),
+        Trial(
+            "any pose",
+            (call(*bodies(READY)), call(*bodies(REACHING))),
+            hidden.mass_matrices,
+            "any poses",
+            weight=2.0,
+        ),
+    ),
+    withheld=("labkit.Model.mass_matrix", "labkit.Model.kinetic_energy", "pinocchio"),
+    hints=(
+        "A link's kinetic energy is ½ m |v|² of its centre of mass plus ½ wᵀ I w of its turning. "
+        "Both v and w are a Jacobian times dq. Put that in, and read off what stands between dqᵀ "
+        "and dq.",
+        "With J the Jacobian of the centre, v = J[:3] dq and w = J[3:] dq. So the link adds "
+        "m J[:3]ᵀ J[:3] + J[3:]ᵀ I J[3:], with I and w in the same axes.",
+        "The inertia is given in the link's axes, w in the world's: use R @ inertia @ R.T with the "
+        "link's rotation R. Sum over the links.",
+    ),
+    wrong=(
+        Wrong(
+            "the inertia left in the link's axes",
+            "w is in world axes and the inertia in the link's: turn it with R I Rᵀ first.",
+            mistakes.inertia_not_turned,
+            "A product needs both factors in the same axes.",
+        ),
+        Wrong(
+            "the inertia turned the wrong way",
+            "Rᵀ I R takes an inertia from the world into the link; here it goes the other way.",
+            mistakes.inertia_turned_back,
+            "R_wl takes vectors from the link to the world, so I_w = R I_l Rᵀ.",
+        ),
+        Wrong(
+            "links as points",
+            "The links' own turning is left out. The shoulder hardly notices, but the last joint "
+            "turns the hand about itself, and comes out with next to no inertia.",
+            mistakes.points_only,
+            "The smallest eigenvalue of M tells: it is close to zero.",
+        ),
+        Wrong(
+            "half of it",
+            "The one half belongs to the energy, not to the matrix.",
+            mistakes.half_of_it,
+            "T = ½ dqᵀ M dq.",
+        ),
+        Wrong(
+            "the rows swapped",
+            "Rows 0 to 2 of each Jacobian belong to the velocity and go with the mass; rows 3 "
+            "to 5 to the turning, with the inertia.",
+            mistakes.rows_swapped,
+            "A twist is (v, w), linear part first.",
+        ),
+    ),
+    variants=(variants.mass_matrix_vectorised, variants.MassMatrix()),
+)
+
+GRAVITY = Problem(
+    name="gravity",
+    points=4,
+    asks="Give the torques, of shape (7,) and in N m, that hold the arm still against its weight: the "
+    "slope of the potential energy along each joint. The world's z axis points up; take 9.81 m/s².",
+    answer=answers.gravity,
+    judge=Close(rtol=1e-8, atol=1e-9),
+    trials=(
+        Trial("the ready pose", (call(*weights(READY)),), weight=0.0),
+        Trial(
+            "two bent poses, and any other",
+            (call(*weights(BENT)), call(*weights(REACHING))),
+            hidden.gravities,
+            "any poses",
+        ),
+    ),
+    withheld=("labkit.Model.gravity", "labkit.Model.bias", "pinocchio"),
+    hints=(
+        "The potential energy is the sum of m·9.81·height over the links. How does the height of one "
+        "centre of mass change when joint k turns a little?",
+        "The slope of the height of a centre along the joints is a row of its Jacobian: the third, "
+        "that of z.",
+        "g is the sum over the links of 9.81 * masses[l] * com_jacobians[l][2].",
+    ),
+    wrong=(
+        Wrong(
+            "the other sign",
+            "This is what gravity does. Asked is what holds against it: positive where raising the "
+            "arm takes work.",
+            mistakes.falls_faster,
+            "g(q) = +∂V/∂q stands on the side of the motors' torque.",
+        ),
+        Wrong(
+            "all the weight at the hand",
+            "Every link has its own centre of mass, and its own Jacobian. With all of it at the hand "
+            "the arm seems heavier than it is.",
+            mistakes.all_at_the_hand,
+            "Each link pulls where it is.",
+        ),
+        Wrong(
+            "only the hand has weight",
+            "The formula of the report lets gravity pull at the tip alone. Most of the weight is in "
+            "the upper arm.",
+            mistakes.only_the_hand,
+            "Sum over all links.",
+        ),
+        Wrong(
+            "a tenth of it",
+            "Ten times too small: the report has 0.981 where 9.81 belongs.",
+            mistakes.a_tenth,
+            "Print a number with its unit, and ask whether you believe it.",
+        ),
+        Wrong(
+            "masses for weights",
+            "These are kg m, not N m: the weight of a mass is 9.81 m/s² times it.",
+            mistakes.without_g,
+            "Write the unit of every factor.",
+        ),
+    ),
+    variants=(variants.gravity_as_forces, variants.gravity_by_dot),
+)
+
+SPIN = np.array([0.5, -0.4, 0.3, 0.6, -0.8, 0.7, 1.0])
+
+CORIOLIS = Problem(
+    name="coriolis",
+    points=5,
+    asks="Give the Coriolis matrix C of shape (7, 7), made of Christoffel's symbols, at the angles "
+    "`q` and speeds `dq`, from a function `mass_matrix(q)`; take its slopes by central differences.",
+    answer=answers.coriolis,
+    judge=Close(rtol=1e-4, atol=2e-5),
+    trials=(
+        Trial(
+            "one joint turns: the shoulder",
+            (call(MODEL.mass_matrix, BENT, 0.5 * np.eye(7)[0]),),
+            weight=0.0,
+        ),
+        Trial(
+            "all joints turn",
+            (call(MODEL.mass_matrix, BENT, SPIN), call(MODEL.mass_matrix, REACHING, SPIN)),
+            hidden.coriolis_any,
+            "any states",
+        ),
+    ),
+    withheld=("labkit.Model.coriolis", "labkit.Model.bias", "pinocchio"),
+    hints=(
+        "First make the table of slopes dM[i, j, k] = ∂M_ij/∂q_k: shift one joint at a time by a "
+        "small h, both ways. Then it is bookkeeping.",
+        "C_ij = ½ Σ_k (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i) dq_k. Three loops will do; h = 1e-5 rad "
+        "is a good step.",
+        "With dM stacked so that dM[i, j, k] is the slope of M_ij along q_k: "
+        "0.5 * (dM + dM.transpose(0, 2, 1) - dM.transpose(2, 1, 0)) @ dq.",
+    ),
+    wrong=(
+        Wrong(
+            "half the rate of M",
+            "C = Ṁ/2 passes the skew test, for Ṁ - 2C is then zero, and zero is skew. But C dq is not "
+            "the torque. Both tests are needed.",
+            mistakes.half_the_rate,
+            "A test that zero passes says little.",
+        ),
+        Wrong(
+            "right torque, not skew",
+            "C dq is right, straight from Lagrange's equation. But there are many such matrices, and "
+            "for this one Ṁ - 2C is not skew, which the proofs of notebook 04 rely on.",
+            mistakes.not_skew,
+            "C dq does not fix C; Christoffel's choice does.",
+        ),
+        Wrong(
+            "twice too large",
+            "Either Christoffel's one half is missing, or a difference between q + h and q - h was "
+            "divided by h: it spans 2h.",
+            mistakes.without_the_half,
+            "The half comes from the kinetic energy; the 2h from a difference taken both ways.",
+        ),
+        Wrong(
+            "the minus at the wrong term",
+            "This is the transpose. The minus goes to the slope along the row's own joint, ∂M_jk/∂q_i.",
+            mistakes.signs_mixed,
+            "The minus is the slope of the kinetic energy along q_i.",
+        ),
+        Wrong(
+            "all three slopes added",
+            "The third one, ∂M_jk/∂q_i, is taken off: it is the slope of the kinetic energy, on "
+            "the other side of Lagrange's equation.",
+            mistakes.all_signs_plus,
+            "The signs are +, +, -.",
+        ),
+    ),
+    variants=(variants.coriolis_in_loops,),
+)
+
+POWER_BALANCE = Problem(
+    name="power_balance",
+    points=3,
+    asks="Give, at each tick of a run, the growth of the arm's whole energy less the power of its "
+    "motors, in W and of shape (N,): what is left came from elsewhere. `np.gradient(x, log.t)` takes "
+    "slopes.",
+    answer=answers.power_balance,
+    judge=Close(rtol=0.0, atol=1.5),
+    trials=(
+        Trial(
+            "a slow lift with friction, and a hand that helps",
+            (call(lift(0.35, 0.8, 400.0, 10.0), ROUGH_MODEL),),
+            hidden.gentle_lifts,
+            "other lifts, helped or hindered",
+            weight=0.0,
+        ),
+        Trial(
+            "a quick lift, cut by the torque limits",
+            (call(lift(0.55, 0.42, 400.0), ROUGH_MODEL),),
+            hidden.lifts,
+            "quick lifts",
+        ),
+    ),
+    hints=(
+        "Energy comes in two kinds. What the motors do per second is torque times speed, summed over "
+        "the joints. Which torque does the log hold, and which is only wished for?",
+        "At each row: model.kinetic_energy(q, dq) + model.potential_energy(q). Its slope over time is "
+        "np.gradient(energy, log.t).",
+        "np.gradient(energy, log.t) - np.sum(log.tau * log.dq, axis=1).",
+    ),
+    wrong=(
+        Wrong(
+            "kinetic energy only",
+            "A lift stores energy in height. Without the potential energy, the balance shows the "
+            "power that gravity takes.",
+            mistakes.kinetic_only,
+            "Energy is T + V.",
+        ),
+        Wrong(
+            "the torque that was commanded",
+            "`log.command` is what was asked for. Where a limit cut it, the motors gave less: that is "
+            "`log.tau`.",
+            mistakes.commanded_torque,
+            "What was commanded is not what was done.",
+        ),
+        Wrong(
+            "the other way round",
+            "The sign: growth of the energy minus what the motors put in. Friction then shows as a "
+            "loss, below zero, and a helping hand above it.",
+            mistakes.motors_minus_energy,
+            "Say in words what a positive number means.",
+        ),
+        Wrong(
+            "per row, not per second",
+            "The slope is taken per row of the log. Give np.gradient the times as well.",
+            mistakes.steps_not_seconds,
+            "J and W differ by seconds.",
+        ),
+        Wrong(
+            "without its sign",
+            "An absolute value hides whether energy came or went: friction is a loss, below zero, a "
+            "helping hand lies above it.",
+            mistakes.absolute,
+            "Say in words what a positive number means.",
+        ),
+        Wrong(
+            "what friction takes",
+            "That is the power of the plant's friction, not what the energies and the motors leave. "
+            "A hand that helps is missing in it.",
+            mistakes.friction_alone,
+            "A balance finds what nobody told you of.",
+        ),
+        Wrong(
+            "the power of some joints",
+            "The wrist turns too, and its motor works: sum torque times speed over all seven joints.",
+            mistakes.without_the_last_joint,
+            "Count the motors.",
+        ),
+    ),
+    variants=(variants.balance_in_loops, variants.balance_from_theory),
+)
+
+PROBLEMS = (JACOBIAN, MASS_MATRIX, GRAVITY, CORIOLIS, POWER_BALANCE)

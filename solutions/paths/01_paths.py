@@ -1,0 +1,387 @@
+# %% [markdown]
+# # 01 · Paths and time
+#
+# The arm is to draw a line, then a circle, then to go round several corners. Before any controller
+# can help it, somebody has to say *where the tip should be at every moment*, and how fast, and how
+# quickly that changes. That is this notebook.
+#
+# | | |
+# |---|---|
+# | **You need** | numpy; the derivative of a product and of a function of a function |
+# | **Given** | the simulated arm, a controller that follows (you write your own in notebook 03), figures |
+# | **You write** | two time scalings, a circle, the composition of path and schedule, segments in a row |
+# | **Time** | about 4 hours · 20 points |
+#
+# A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling*
+# is the schedule `s(t)`. Together they are a *trajectory*. Kept apart, any path goes with any schedule.
+#
+# Every cell below runs from the start, solved or not: where your part is missing, a stand-in takes its
+# place and says so. After each stub a check tells you in words what it found. Only the functions are
+# marked, so play with everything else as you like.
+
+# %% setup=true
+import labkit as lk
+from labkit.course import check, hint, use
+
+lk.ready()
+
+# %% setup=true
+import matplotlib.pyplot as plt
+import numpy as np
+
+# %% [markdown]
+# ## The schedule: when to be where
+#
+# Ask for too much at the start and the motors cannot follow; the arm lags and then overshoots. So a
+# schedule must start and end at rest and keep speed and acceleration within what the arm can do. The
+# simplest one that does is *bang-bang*: full acceleration for half of the time, full braking for the
+# other half. The report that this lab grew out of moved Baxter like this.
+#
+# Call the duration $T$. With constant acceleration $a$ the first half is
+#
+# $$ \ddot s = a, \qquad \dot s = a\,t, \qquad s = \tfrac12 a t^2 . $$
+#
+# Half of the way must be done at $T/2$; that fixes $a$. The second half is the first, run backwards
+# from the end. The schedule may be asked at any time, also before the start and after the end.
+
+# %% question="bang_bang"
+def bang_bang(t, duration):
+    """Bang-bang time scaling.
+
+    Args:
+        t: Time since the start, in [s]; any real number.
+        duration: How long the motion lasts, in [s].
+
+    Returns:
+        (s, ds, dds): s from 0 to 1, its speed in [1/s] and its acceleration in [1/s^2]. At rest,
+        all derivatives 0, before the start and from the end of the motion on.
+    """
+    ### BEGIN SOLUTION
+    from solutions.paths.answers import bang_bang as answer
+
+    return answer(t, duration)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Here it is as a picture. Look at the lowest curve: where it jumps, the arm gets a jerk.
+
+# %%
+def given_bang_bang(t, duration):
+    return lk.BangBang(duration)(t)
+
+
+my_bang_bang = use("bang_bang", bang_bang, given_bang_bang)
+
+
+class Schedule:
+    """A function (t, ...) -> (s, ds, dds) with its numbers filled in, and its duration."""
+
+    def __init__(self, function, duration, *numbers):
+        self.function, self.duration, self.numbers = function, duration, numbers
+
+    def __call__(self, t):
+        return self.function(t, *self.numbers)
+
+
+bang = Schedule(my_bang_bang, 3.0, 3.0)
+lk.plotting.scaling(("bang-bang", bang), ("cubic", lk.Cubic(3.0)), ("quintic", lk.Quintic(3.0)))
+lk.plotting.show(
+    "s, its speed and its acceleration over 3 s: bang-bang jumps in acceleration at the ends and in the "
+    "middle, the cubic at the ends, the quintic nowhere."
+)
+
+# %% [markdown]
+# ## Limits are in metres
+#
+# A longer way at the same duration needs more speed. Usually it is the other way round: the arm has a
+# top speed $v_{max}$ and a top acceleration $a_{max}$, in m/s and m/s², and the duration follows from
+# the length of the way. Speed up at $a_{max}$, cruise at $v_{max}$, brake at $a_{max}$: the speed draws
+# a *trapezoid*.
+#
+# Two traps lie here. On a short way the arm never reaches $v_{max}$, and the trapezoid is a triangle.
+# And $s$ has no unit: a limit in metres does not bound $\dot s$ but $d\,\dot s$, where $d$ is the
+# length of the way.
+
+# %% question="trapezoid"
+def trapezoid(t, distance, v_max, a_max):
+    """Trapezoidal time scaling of a way of given length.
+
+    Args:
+        t: Time since the start, in [s]; any real number.
+        distance: Length of the way, in [m], greater than 0.
+        v_max: Top speed, in [m/s].
+        a_max: Top acceleration, in [m/s^2].
+
+    Returns:
+        (s, ds, dds): s from 0 to 1, its speed in [1/s] and its acceleration in [1/s^2]. At rest,
+        all derivatives 0, before the start and from the end of the motion on.
+    """
+    ### BEGIN SOLUTION
+    from solutions.paths.answers import trapezoid as answer
+
+    return answer(t, distance, v_max, a_max)
+    ### END SOLUTION
+
+
+# %%
+def given_trapezoid(t, distance, v_max, a_max):
+    return lk.Trapezoid(distance, v_max, a_max)(t)
+
+
+my_trapezoid = use("trapezoid", trapezoid, given_trapezoid)
+
+
+def within_limits(distance, v_max=0.2, a_max=0.4):
+    """Your schedule for a way of this length."""
+    duration = lk.Trapezoid(distance, v_max, a_max).duration
+    return Schedule(my_trapezoid, duration, distance, v_max, a_max)
+
+
+long, short = within_limits(0.30), within_limits(0.05)
+lk.plotting.scaling(("0.30 m: a trapezoid", long), ("0.05 m: a triangle", short))
+lk.plotting.show(
+    f"Two ways within the same limits: 0.30 m takes {long.duration:.2f} s and cruises, 0.05 m takes "
+    f"{short.duration:.2f} s and never reaches the top speed."
+)
+
+# %% [markdown]
+# ## The path: where
+#
+# A straight line from $p_0$ to $p_1$ is $p(s) = p_0 + s\,(p_1 - p_0)$: its derivative with respect to
+# $s$ is $p_1 - p_0$ everywhere, and the second one is zero. `lk.Line` is just that. It answers with an
+# `lk.Sample`, three arrays with names:
+
+# %%
+lk.Line([0.6, 0.3, 0.1], [0.8, 0.1, 0.1])(0.5)
+
+# %% [markdown]
+# A circle takes a little more. It lies level, begins and ends at a start point and goes round the
+# vertical axis through a centre, which in the report was an AR tag on the table, below the gripper. Its
+# equations there measured the radius in space, from the gripper down to the tag, and forgot the angle
+# of the start in one place of two. Write it right.
+
+# %% question="circle"
+def circle(s, start, centre):
+    """A level circle through `start` about the vertical axis through `centre`.
+
+    Args:
+        s: Where on the circle, from 0 to 1.
+        start: Where it begins and ends, shape (3,) in [m].
+        centre: A point on its axis, shape (3,) in [m], at any height.
+
+    Returns:
+        lk.Sample(position, velocity, acceleration): the point and its first and second derivative
+        with respect to s, each of shape (3,).
+    """
+    ### BEGIN SOLUTION
+    from solutions.paths.answers import circle as answer
+
+    return answer(s, start, centre)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## Path and schedule make a trajectory
+#
+# The tip is at $p(s(t))$. Differentiate with the chain rule once, and the result with the product rule
+# again. One of the two terms of the acceleration vanishes on a line, the other one at constant speed,
+# so neither a line nor a constant speed alone can tell whether you have both.
+
+# %% question="compose"
+def compose(path, scaling, t):
+    """The motion of a path on a schedule.
+
+    Args:
+        path: A function of s that gives an lk.Sample of three arrays of shape (3,): the point in
+            [m] and its derivatives with respect to s.
+        scaling: A function of t that gives (s, ds, dds), three numbers.
+        t: Time since the start, in [s].
+
+    Returns:
+        lk.Sample(position, velocity, acceleration) at time t, each of shape (3,), in [m], [m/s] and
+        [m/s^2].
+    """
+    ### BEGIN SOLUTION
+    from solutions.paths.answers import compose as answer
+
+    return answer(path, scaling, t)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## Let the arm draw
+#
+# `lk.run` asks your trajectory two hundred times a second and lets the simulated arm follow. The model
+# turns points of the tip into joint angles once, beforehand; then a velocity controller that simply
+# passes on the wanted speeds does the rest (a better one is notebook 03).
+
+# %%
+def given_circle(s, start, centre):
+    return lk.Circle(start, centre)(s)
+
+
+def given_compose(path, scaling, t):
+    return lk.Trajectory(path, scaling)(t)
+
+
+my_circle = use("circle", circle, given_circle)
+my_compose = use("compose", compose, given_compose)
+
+arm = lk.Arm("left")
+model, q0 = arm.model, arm.robot.ready
+start = model.pose(q0)[:3, 3]
+
+
+def passes_on(state, target):
+    """Feed-forward: turn the joints at the wanted speeds."""
+    return lk.JointVelocity(target.velocity)
+
+
+def follow(path, schedule):
+    """Let the arm follow a path on a schedule; returns the log."""
+    arm.reset(q0)
+    return lk.run(arm, model.joint_trajectory(lk.Trajectory(path, schedule), q0), passes_on)
+
+
+goal = start + [0.1, -0.15, 0.1]
+line = lk.Line(start, goal)
+log = follow(line, within_limits(line.length))
+lk.plotting.tracking(log)
+lk.plotting.show(lk.plotting.describe(log))
+
+# %% [markdown]
+# And the circle, your own, about an axis 15 cm to the side. If your `compose` is right, the arm's speed
+# is the one that your trajectory promises.
+
+# %%
+centre = start + [0.0, -0.15, -0.2]
+ring = lambda s: my_circle(s, start, centre)
+log = follow(ring, lk.Quintic(6.0))
+lk.plotting.tracking(log)
+lk.plotting.show(lk.plotting.describe(log))
+
+speed = [np.linalg.norm(my_compose(ring, lk.Quintic(6.0), t).velocity) for t in log.t]
+plt.figure(figsize=(8, 2.5), layout="constrained")
+plt.plot(log.t, speed, label="promised by compose")
+actual = [np.linalg.norm(model.tip_jacobian(q)[:3] @ dq) for q, dq in zip(log.q, log.dq)]
+plt.plot(log.t, actual, "--", label="of the arm")
+plt.xlabel("time [s]")
+plt.ylabel("speed [m/s]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    f"Speed of the tip on the circle: at most {max(speed):.2f} m/s as promised, {max(actual):.2f} m/s by "
+    "the arm."
+)
+
+# %% [markdown]
+# ## Several segments
+#
+# A square is four lines in a row, each with its own schedule. Somebody must say which of them is on, and
+# for how long. It sounds too easy to go wrong; the report's program sent the arm to the last corner
+# first, because Python takes index -1 for an answer.
+
+# %% question="segment_at"
+def segment_at(durations, t):
+    """Which of several segments is on.
+
+    Args:
+        durations: How long each lasts, a list of numbers in [s].
+        t: Time since the start of the first, in [s]; any real number.
+
+    Returns:
+        (index, local_time): its number, counted from 0, and the time since it began, in [s]: below
+        0 before the first begins, and longer than it lasts after the end of the last.
+    """
+    ### BEGIN SOLUTION
+    from solutions.paths.answers import segment_at as answer
+
+    return answer(durations, t)
+    ### END SOLUTION
+
+
+# %%
+def given_segment_at(durations, t):
+    parts = lk.Chain([lk.Hold([0.0], duration) for duration in durations])
+    index = sum(begun <= t for begun in parts.starts) - 1
+    return max(index, 0), t - parts.starts[max(index, 0)]
+
+
+my_segment_at = use("segment_at", segment_at, given_segment_at)
+
+corners = start + np.array([[0, 0, 0], [0.12, 0, 0], [0.12, -0.12, 0], [0, -0.12, 0], [0, 0, 0]])
+sides = [lk.Line(a, b) for a, b in zip(corners[:-1], corners[1:])]
+schedules = [within_limits(side.length) for side in sides]
+durations = [schedule.duration for schedule in schedules]
+
+
+def square(t):
+    k, local = my_segment_at(durations, t)
+    return my_compose(sides[k], schedules[k], local)
+
+
+t = np.linspace(0.0, sum(durations), 400)
+points = np.array([square(x).position for x in t])
+plt.figure(figsize=(4, 4), layout="constrained")
+plt.plot(points[:, 0], points[:, 1], label="the tip's path")
+plt.plot(*corners[:, :2].T, "o", mfc="none", label="corners")
+plt.axis("equal")
+plt.xlabel("x [m]")
+plt.ylabel("y [m]")
+plt.legend(frameon=False)
+lk.plotting.show(f"The square from above: four sides of 12 cm, gone round in {t[-1]:.1f} s.")
+
+# %% [markdown]
+# Let the arm go round it. Its target is made of labkit's own parts, in the same order; the see-through
+# arm is your circle from above, for comparison. Drag to look around, move the slider to go back and
+# forth in time.
+
+# %%
+arm.reset(q0)
+tour = lk.Chain([lk.Trajectory(side, lk.Trapezoid(side.length, 0.2, 0.4)) for side in sides])
+log_square = lk.run(arm, model.joint_trajectory(tour, q0), passes_on)
+lk.replay.show(lk.replay.motion_of(log_square, "Round four corners", ghosts={"the circle": log}))
+
+# %% [markdown]
+# ## A witness
+#
+# For the angle on the circle, once round on a bang-bang schedule of duration $\tau$, the report's
+# equation 8 prints
+#
+# $$ \theta(t) = \begin{cases} \tfrac12\,\alpha\,t^2 + \theta_0 & t \le \tfrac\tau2 \\
+# \theta(\tfrac\tau2) + \tfrac12\,\alpha\,(t - \tfrac\tau2)^2 + \omega(\tfrac\tau2)\,(t - \tfrac\tau2)
+# + \theta_0 & t > \tfrac\tau2 \end{cases} $$
+#
+# where $\alpha$ changes its sign at $\tau/2$ and $\theta_0$ is the angle of the start. To show that a
+# formula is wrong, one witness is enough: a time at which no arm could do what it says.
+
+# %% question="witness"
+def witness(theta, duration):
+    """A time that shows the printed equation to be wrong.
+
+    Args:
+        theta: The start angle, in [rad], not 0.
+        duration: How long the motion lasts, in [s].
+
+    Returns:
+        A time in [s].
+    """
+    ### BEGIN SOLUTION
+    from solutions.paths.answers import witness as answer
+
+    return answer(theta, duration)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## Hand in
+#
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 01_paths.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

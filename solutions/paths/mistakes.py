@@ -1,0 +1,238 @@
+"""What people write in notebook 01 instead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import atan2, cos, pi, sin, sqrt
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+
+from .answers import Path, Scaling, circle
+
+
+def accelerates_on(t: float, duration: float) -> tuple[float, float, float]:
+    """The second half starts from the speed formula of the first."""
+    if t < 0.0:
+        return 0.0, 0.0, 0.0
+    if t >= duration:
+        return 1.0, 0.0, 0.0
+    a = 4.0 / duration**2
+    if t < duration / 2.0:
+        return a * t**2 / 2.0, a * t, a
+    left = duration - t
+    return 1.0 - a * left**2 / 2.0, a * t, -a
+
+
+def runs_past_the_ends(t: float, duration: float) -> tuple[float, float, float]:
+    """No hold before the start and after the end."""
+    a = 4.0 / duration**2
+    if t < duration / 2.0:
+        return a * t**2 / 2.0, a * t, a
+    left = duration - t
+    return 1.0 - a * left**2 / 2.0, a * left, -a
+
+
+def twice_too_slow(t: float, duration: float) -> tuple[float, float, float]:
+    """Forgets that only half of the time is there to speed up: a = 2 / T^2."""
+    if t < 0.0:
+        return 0.0, 0.0, 0.0
+    if t >= duration:
+        return 1.0, 0.0, 0.0
+    a = 2.0 / duration**2
+    if t < duration / 2.0:
+        return a * t**2 / 2.0, a * t, a
+    left = duration - t
+    return 1.0 - a * left**2 / 2.0, a * left, -a
+
+
+def always_cruises(
+    t: float, distance: float, v_max: float, a_max: float
+) -> tuple[float, float, float]:
+    """No triangular case: a short way still has the ramps of a long one."""
+    return _ramps(t, distance, v_max, a_max)
+
+
+def speeds_up_all_the_way(
+    t: float, distance: float, v_max: float, a_max: float
+) -> tuple[float, float, float]:
+    """On a short way the speed that it would have if it never braked."""
+    return _ramps(t, distance, min(v_max, sqrt(2.0 * distance * a_max)), a_max)
+
+
+def _ramps(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
+    """The trapezoid whose speed is v_max, whether its ramps have room or not."""
+    ramp = v_max / a_max
+    duration = distance / v_max + ramp
+    if t < 0.0:
+        return 0.0, 0.0, 0.0
+    if t >= duration:
+        return 1.0, 0.0, 0.0
+    if t < ramp:
+        way, speed, a = a_max * t**2 / 2.0, a_max * t, a_max
+    elif t < duration - ramp:
+        way, speed, a = v_max * (t - ramp / 2.0), v_max, 0.0
+    else:
+        left = duration - t
+        way, speed, a = distance - a_max * left**2 / 2.0, a_max * left, -a_max
+    return way / distance, speed / distance, a / distance
+
+
+def limits_on_s(
+    t: float, distance: float, v_max: float, a_max: float
+) -> tuple[float, float, float]:
+    """Takes the limits for limits of s, so the way's length does not matter."""
+    from .answers import trapezoid
+
+    return trapezoid(t, 1.0, v_max, a_max)
+
+
+def radius_in_space(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The radius from the distance in space, as the report's equation 12 has it."""
+    p, c = np.array(start, dtype=float), np.array(centre, dtype=float)
+    r, yaw, w = float(np.linalg.norm(p - c)), atan2(p[1] - c[1], p[0] - c[0]), 2.0 * pi
+    out = r * np.array([cos(w * s + yaw), sin(w * s + yaw), 0.0])
+    on = np.array([-out[1], out[0], 0.0])
+    return lk.Sample(np.array([c[0], c[1], p[2]]) + out, w * on, -w * w * out)
+
+
+def height_of_the_centre(s: float, start: Any, centre: Any) -> lk.Sample:
+    """Drops, or climbs, to the height of the centre at once."""
+    x, dx, ddx = circle(s, start, centre)
+    return lk.Sample(np.array([x[0], x[1], centre[2]]), dx, ddx)
+
+
+def starts_at_angle_zero(s: float, start: Any, centre: Any) -> lk.Sample:
+    """Forgets the angle at which the start stands."""
+    p, c = np.array(start, dtype=float), np.array(centre, dtype=float)
+    r, w = float(np.hypot(*(p - c)[:2])), 2.0 * pi
+    out = r * np.array([cos(w * s), sin(w * s), 0.0])
+    on = np.array([-out[1], out[0], 0.0])
+    return lk.Sample(np.array([c[0], c[1], p[2]]) + out, w * on, -w * w * out)
+
+
+def rates_without_two_pi(s: float, start: Any, centre: Any) -> lk.Sample:
+    """Derivatives by the angle, not by s: the inner derivative is missing."""
+    x, dx, ddx = circle(s, start, centre)
+    return lk.Sample(x, dx / (2.0 * pi), ddx / (4.0 * pi**2))
+
+
+def drops_the_ramp(path: Path, scaling: Scaling, t: float) -> lk.Sample:
+    """The acceleration without the term dx dds: half of the product rule."""
+    s, ds, _ = scaling(t)
+    x, dx, ddx = path(s)
+    return lk.Sample(x, dx * ds, ddx * ds**2)
+
+
+def forgets_the_square(path: Path, scaling: Scaling, t: float) -> lk.Sample:
+    """The acceleration with ddx ds where ddx ds^2 belongs."""
+    s, ds, dds = scaling(t)
+    x, dx, ddx = path(s)
+    return lk.Sample(x, dx * ds, ddx * ds + dx * dds)
+
+
+def time_for_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
+    """Asks the path at t instead of at s(t)."""
+    _, ds, dds = scaling(t)
+    x, dx, ddx = path(t)
+    return lk.Sample(x, dx * ds, ddx * ds**2 + dx * dds)
+
+
+def sums_through_the_segment(durations: Sequence[float], t: float) -> tuple[int, float]:
+    """Takes off the segment's own duration too (the report's equation 15)."""
+    index, total = 0, durations[0]
+    while index < len(durations) - 1 and t >= total:
+        index += 1
+        total += durations[index]
+    return index, t - total
+
+
+def one_segment_early(durations: Sequence[float], t: float) -> tuple[int, float]:
+    """Counts the segments that are over, from -1: the arm starts at the last corner."""
+    index, begun = -1, 0.0
+    for k, duration in enumerate(durations):
+        if t > begun:
+            index = k
+            start = begun
+        begun += duration
+    if index < 0:
+        return -1, t
+    return index, t - start
+
+
+def runs_out_of_segments(durations: Sequence[float], t: float) -> tuple[int, float]:
+    """Looks for the segment that t falls in, and finds none at the end."""
+    index = 0
+    while t >= durations[index]:
+        t -= durations[index]
+        index += 1
+    return index, t
+
+
+def an_end_point(theta: float, duration: float) -> float:
+    """The end of the motion, where the printed formula is right."""
+    return duration
+
+
+def a_late_time(theta: float, duration: float) -> float:
+    """A time in the second half: the value is shifted there, but nothing breaks."""
+    return 0.75 * duration
+
+
+def still_but_accelerated(t: float, duration: float) -> tuple[float, float, float]:
+    """Holds t at the ends, and asks the formulas there: the acceleration stays on."""
+    a = 4.0 / duration**2
+    t = min(max(t, 0.0), duration)
+    if t < duration / 2.0:
+        return a * t**2 / 2.0, a * t, a
+    left = duration - t
+    return 1.0 - a * left**2 / 2.0, a * left, -a
+
+
+def way_for_s(t: float, distance: float, v_max: float, a_max: float) -> tuple[float, float, float]:
+    """The way in metres, never divided by its length."""
+    from .answers import trapezoid
+
+    s, ds, dds = trapezoid(t, distance, v_max, a_max)
+    return s * distance, ds * distance, dds * distance
+
+
+def clockwise(s: float, start: Any, centre: Any) -> lk.Sample:
+    """Goes round the other way."""
+    x, dx, ddx = circle(-s, start, centre)
+    return lk.Sample(x, -dx, ddx)
+
+
+def accelerates_outwards(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The second derivative with the other sign."""
+    x, dx, ddx = circle(s, start, centre)
+    return lk.Sample(x, dx, -ddx)
+
+
+def half_an_arctangent(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The arctangent of y / x, which takes a start behind the centre for one before it."""
+    out = np.array(start, dtype=float) - centre
+    return circle(s, [*(centre[:2] + (out if out[0] > 0.0 else -out)[:2]), start[2]], centre)
+
+
+def still_by_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
+    """The path at s(t), its derivatives still those by s."""
+    return path(scaling(t)[0])
+
+
+def schedule_twice(path: Path, scaling: Scaling, t: float) -> lk.Sample:
+    """Pairs derivatives of the same order: ddx dds."""
+    s, ds, dds = scaling(t)
+    x, dx, ddx = path(s)
+    return lk.Sample(x, dx * ds, ddx * dds)
+
+
+def starts_anew_after_the_end(durations: Sequence[float], t: float) -> tuple[int, float]:
+    """Takes every duration off, so that after the end the last segment begins again."""
+    for index, duration in enumerate(durations):
+        if t < duration:
+            return index, t
+        t -= duration
+    return len(durations) - 1, t

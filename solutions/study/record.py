@@ -1,0 +1,155 @@
+"""Make everything that is recorded again, and say what that changes: ``make record``.
+
+After a change of physics, the recorded runs, maps, trials and campaign, the students' notebooks and
+the verdicts on all known answers are no longer what the code gives.  This makes them in order, says
+how far the numbers moved, and names each verdict that changed with its reason.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from labkit.course.layout import PUBLIC_SEED, Course
+from labkit.course.marking import mark
+from labkit.course.problem import Problem
+from labkit.course.verdict import Verdict
+from labkit.recordings import DATA
+
+ROOT = Path(__file__).parents[2]
+VERDICTS = Path(__file__).with_name("verdicts.json")
+"""What each known answer earns, and why; with the public seed."""
+MAKERS = (
+    ("solutions.study.baseline",),
+    ("solutions.study.maps",),
+    ("solutions.study.trials",),
+    ("solutions.study.campaign", "--seeds", "5", "--no-pictures", "--keep"),
+)
+"""Modules that record runs; ``labkit release`` comes after them."""
+
+Answer = Callable[..., Any]
+Told = Mapping[str, Mapping[str, Any]]
+"""By "assignment/question/answer": what it earned, each test's outcome, and the mistake's name."""
+
+
+def answers(problem: Problem) -> Iterator[tuple[str, Answer]]:
+    """Every known answer to a problem, with what it is called."""
+    yield "the answer", problem.answer
+    for number, variant in enumerate(problem.variants):
+        yield f"right {number}: {getattr(variant, '__name__', type(variant).__name__)}", variant
+    for wrong in problem.wrong:
+        yield wrong.name, wrong.function
+
+
+def verdicts(course: Course, names: tuple[str, ...]) -> Told:
+    """The verdict on each known answer of some assignments."""
+    found = {}
+    for name in names:
+        for problem in course.problems(name):
+            question = problem.question(PUBLIC_SEED)
+            for label, function in answers(problem):
+                found[f"{name}/{problem.name}/{label}"] = told(mark(question, function))
+    return found
+
+
+def told(verdict: Verdict) -> Mapping[str, Any]:
+    """What of a verdict is kept, as JSON data."""
+    return {
+        "earned": verdict.earned,
+        "tests": [[test.name, test.outcome.value] for test in verdict.tests],
+        "mistake": verdict.mistake.name if verdict.mistake else None,
+    }
+
+
+def changes(before: Told, after: Told) -> Iterator[str]:
+    """Each verdict that is another one now, in a sentence."""
+    for key in sorted({*before, *after}):
+        old, new = before.get(key), after.get(key)
+        if old is None or new is None:
+            yield f"{key}: {'no longer asked' if new is None else 'asked for the first time'}"
+        elif old != new:
+            moved = [
+                f"{name}: {was} before, {now} now"
+                for (name, was), (_, now) in zip(old["tests"], new["tests"], strict=False)
+                if was != now
+            ]
+            if old["mistake"] != new["mistake"]:
+                moved.append(f"taken for {old['mistake']} before, for {new['mistake']} now")
+            yield f"{key}: {old['earned']:g} points before, {new['earned']:g} now; {moved}"
+
+
+def distances(before: Mapping[str, Any], after: Mapping[str, Any]) -> Iterator[str]:
+    """How far the numbers of each recorded file moved, relative to the largest of them."""
+    for name in sorted({*before, *after}):
+        old, new = before.get(name), after.get(name)
+        if old is None or new is None or old.shape != new.shape:
+            yield f"{name}: other rows than before"
+        else:
+            scale = np.nanmax(np.abs(old), initial=1e-300)
+            yield f"{name}: {np.nanmax(np.abs(new - old), initial=0.0) / scale:.2g} at most"
+
+
+def recorded() -> Mapping[str, Any]:
+    """The numbers in each file of recorded data."""
+    files = [*DATA.glob("*.json"), *DATA.glob("maps/*.json"), *DATA.glob("recorded/*.npz")]
+    found = {}
+    for path in files:
+        if path.suffix == ".npz":
+            with np.load(path) as data:
+                values = [data[key].ravel() for key in sorted(data) if data[key].dtype.kind == "f"]
+                found[path.name] = np.concatenate(values)
+        elif path.name.startswith(("campaign", "trials")) or path.parent.name == "maps":
+            found[path.name] = np.array([*_numbers(json.loads(path.read_text()))])
+    return found
+
+
+def _numbers(data: Any) -> Iterator[float]:
+    """Every number in JSON data, in order; what is missing is not a number."""
+    match data:
+        case list() | dict():
+            for part in data.values() if isinstance(data, dict) else data:
+                yield from _numbers(part)
+        case None:
+            yield float("nan")
+        case int() | float():
+            yield float(data)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Record, release, mark, and say what changed."""
+    parser = argparse.ArgumentParser(prog="python -m solutions.study.record", description=__doc__)
+    parser.add_argument("--verdicts", action="store_true", help="mark known answers alone")
+    parser.add_argument("--check", action="store_true", help="write nothing; exit 1 at a change")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="assignments; all by default")
+    options = parser.parse_args(arguments)
+    course = Course(ROOT)
+    if not (options.verdicts or options.check):
+        before = recorded()
+        for maker in MAKERS:
+            subprocess.run([sys.executable, "-m", *maker], cwd=ROOT, check=True)
+        subprocess.run([sys.executable, "-m", "labkit", "release"], cwd=ROOT, check=True)
+        print("Recorded numbers, relative to the largest in their file:")
+        print(*distances(before, recorded()), sep="\n")
+    names = tuple(options.names) or course.names()
+    old = json.loads(VERDICTS.read_text()) if VERDICTS.exists() else {}
+    asked = {key: row for key, row in old.items() if key.partition("/")[0] in names}
+    new = verdicts(course, names)
+    found = [*changes(asked, new)]
+    print(f"{len(new)} known answers marked, {len(found)} verdicts changed.", *found, sep="\n")
+    if options.check:
+        return bool(found)
+    rows = sorted({**old, **new}.items()) if options.names else sorted(new.items())
+    lines = ",\n".join(f"{json.dumps(key)}: {json.dumps(row)}" for key, row in rows)
+    VERDICTS.write_text(f"{{\n{lines}\n}}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,403 @@
+"""What people write in notebook 06 instead."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import cv2
+import numpy as np
+
+from labkit import Sample, se3
+from labkit.shapes import Array
+
+from .answers import sensor_quality, tag_corners, tag_pose
+from .following import blend, predict
+
+BORDER = 1.25  # an AprilTag 36h11 with its white border is ten cells wide, eight without
+
+
+def counter_clockwise(size: float) -> Array:
+    """The other way round: the tag comes out mirrored, seen from behind."""
+    corners: Array = tag_corners(size)[[1, 0, 3, 2]]
+    return corners
+
+
+def border_counted(size: float) -> Array:
+    """Takes the white border into the size."""
+    return tag_corners(BORDER * size)
+
+
+def from_a_corner(size: float) -> Array:
+    """Puts the origin into a corner instead of the middle."""
+    return np.add(tag_corners(size), [size / 2.0, -size / 2.0, 0.0])
+
+
+@dataclass(frozen=True)
+class Reordered:
+    """The right corners, moved or in another order.
+
+    Attributes:
+        order: Which corner comes when; (0, 1, 2, 3) is right.
+        scale: Factors of x, y and z.
+    """
+
+    order: tuple[int, ...] = (0, 1, 2, 3)
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    def __call__(self, size: float) -> Array:
+        """The corners."""
+        return np.asarray(tag_corners(size)[list(self.order)] * np.array(self.scale))
+
+
+@dataclass(frozen=True)
+class PoseOf:
+    """OpenCV with corners of another kind.
+
+    Attributes:
+        corners: Gives them; the size is that of the square.
+        scale: Of the size.
+    """
+
+    corners: Reordered = Reordered()
+    scale: float = 1.0
+
+    def __call__(self, pixels: Any, K: Any, size: float) -> Array:
+        """The pose that fits them best."""
+        _, turns, places, errors = cv2.solvePnPGeneric(
+            self.corners(self.scale * size),
+            np.asarray(pixels, dtype=float),
+            np.array(K),
+            None,
+            flags=cv2.SOLVEPNP_IPPE,
+        )
+        best = int(np.argmin(np.ravel(errors)))
+        return se3.pose(cv2.Rodrigues(turns[best])[0], np.ravel(places[best]))
+
+
+def rotation_transposed(pixels: Any, K: Any, size: float) -> Array:
+    """The rotation turned round, the translation left."""
+    T = tag_pose(pixels, K, size)
+    return se3.pose(T[:3, :3].T, T[:3, 3])
+
+
+def camera_in_the_tag(pixels: Any, K: Any, size: float) -> Array:
+    """The inverse: where the camera is in the tag's frame."""
+    return se3.inverse(tag_pose(pixels, K, size))
+
+
+def border_in_the_pose(pixels: Any, K: Any, size: float) -> Array:
+    """The size with the border: everything 1.25 times too far away."""
+    return tag_pose(pixels, K, BORDER * size)
+
+
+def vector_as_euler_angles(pixels: Any, K: Any, size: float) -> Array:
+    """Reads the rotation vector as roll, pitch and yaw."""
+    T = np.array(tag_pose(pixels, K, size))
+    x, y, z = se3.rotation_log(T[:3, :3])
+    turns = ([0.0, 0.0, z], [0.0, y, 0.0], [x, 0.0, 0.0])
+    Rz, Ry, Rx = (se3.rotation(np.array(turn)) for turn in turns)
+    T[:3, :3] = Rz @ Ry @ Rx
+    return T
+
+
+def the_worse_answer(pixels: Any, K: Any, size: float) -> Array:
+    """The other of the two poses."""
+    _, turns, places, errors = cv2.solvePnPGeneric(
+        tag_corners(size),
+        np.asarray(pixels, dtype=float),
+        np.array(K),
+        None,
+        flags=cv2.SOLVEPNP_IPPE_SQUARE,
+    )
+    worse = int(np.argmax(np.ravel(errors)))
+    return se3.pose(cv2.Rodrigues(turns[worse])[0], np.ravel(places[worse]))
+
+
+def spread_about_zero(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """The covariance about zero: a constant offset counts as spread."""
+    bias, covariance = sensor_quality(estimates, truth)
+    n = len(estimates)
+    return bias, (covariance * (n - 1) + n * np.outer(bias, bias)) / n
+
+
+def the_other_sign(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """Estimate minus truth."""
+    bias, covariance = sensor_quality(estimates, truth)
+    return -bias, covariance
+
+
+def _quality(estimates: Any, truth: Any, error: Any) -> tuple[Array, Array]:
+    errors = np.array([error(truth, T) for T in estimates])
+    return errors.mean(axis=0), np.cov(errors.T)
+
+
+def n_in_the_denominator(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """The covariance with n, numpy's habit in np.var."""
+    bias, covariance = sensor_quality(estimates, truth)
+    n = len(estimates)
+    return bias, covariance * (n - 1) / n
+
+
+def of_the_mean(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """The covariance of the mean, n times smaller."""
+    bias, covariance = sensor_quality(estimates, truth)
+    return bias, covariance / len(estimates)
+
+
+def diagonal_only(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """The variances alone."""
+    bias, covariance = sensor_quality(estimates, truth)
+    return bias, np.diag(np.diag(covariance))
+
+
+def turn_in_tag_axes(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """R_estimate^T R_truth: the turn in the tag's axes."""
+
+    def error(T_cm: Array, T: Array) -> Array:
+        turn = se3.rotation_log(T[:3, :3].T @ T_cm[:3, :3])
+        return np.concatenate([T_cm[:3, 3] - T[:3, 3], turn])
+
+    return _quality(estimates, truth, error)
+
+
+def turn_backwards(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """R_estimate R_truth^T: from the truth to the estimate."""
+
+    def error(T_cm: Array, T: Array) -> Array:
+        turn = se3.rotation_log(T[:3, :3] @ T_cm[:3, :3].T)
+        return np.concatenate([T_cm[:3, 3] - T[:3, 3], turn])
+
+    return _quality(estimates, truth, error)
+
+
+def logarithms_subtracted(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """The difference of two rotation vectors."""
+
+    def error(T_cm: Array, T: Array) -> Array:
+        turn = se3.rotation_log(T_cm[:3, :3]) - se3.rotation_log(T[:3, :3])
+        return np.concatenate([T_cm[:3, 3] - T[:3, 3], turn])
+
+    return _quality(estimates, truth, error)
+
+
+def turn_first(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """Turn, then position."""
+    return _quality(estimates, truth, lambda a, b: np.roll(se3.pose_error(a, b), 3))
+
+
+def everything_in_the_tag(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """The pose of the truth in the estimate's frame: all six numbers in the tag's axes."""
+
+    def error(T_cm: Array, T: Array) -> Array:
+        E = se3.inverse(T) @ T_cm
+        return np.concatenate([E[:3, 3], se3.rotation_log(E[:3, :3])])
+
+    return _quality(estimates, truth, error)
+
+
+def _euler(R: Array) -> Array:
+    return np.array(
+        [
+            np.arctan2(R[2, 1], R[2, 2]),
+            np.arctan2(-R[2, 0], np.hypot(R[2, 1], R[2, 2])),
+            np.arctan2(R[1, 0], R[0, 0]),
+        ]
+    )
+
+
+def euler_subtracted(estimates: Any, truth: Any) -> tuple[Array, Array]:
+    """Subtracts Euler angles: a tag that faces the camera stands at their branch cut."""
+    errors = np.array(
+        [
+            np.concatenate([truth[:3, 3] - T[:3, 3], _euler(truth[:3, :3]) - _euler(T[:3, :3])])
+            for T in estimates
+        ]
+    )
+    return errors.mean(axis=0), np.cov(errors.T)
+
+
+def restarts_at_rest(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """Begins every blend at rest, as the report's algorithm does: the velocity jumps."""
+    still = np.zeros_like(reference.velocity)
+    return blend(t, Sample(reference.position, still, still), goal, duration)
+
+
+@dataclass(frozen=True)
+class Blended:
+    """A blend in which ends are partly forgotten.
+
+    Attributes:
+        start: Weights of the reference's velocity and acceleration.
+        end: Weights of the goal's.
+    """
+
+    start: tuple[float, float] = (1.0, 1.0)
+    end: tuple[float, float] = (1.0, 1.0)
+
+    def __call__(self, t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+        """The reference at time t."""
+        if t > duration:
+            return blend(t, reference, goal, duration)
+        (p0, v0, a0), (p1, v1, a1) = reference, goal
+        a = Sample(p0, self.start[0] * v0, self.start[1] * a0)
+        b = Sample(p1, self.end[0] * v1, self.end[1] * a1)
+        return blend(t, a, b, duration)
+
+
+def never_ends(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """The polynomial goes on after its end."""
+    T = duration
+    (p0, v0, a0), (p1, v1, a1) = reference, goal
+    rows = [[T**3, T**4, T**5], [3 * T**2, 4 * T**3, 5 * T**4], [6 * T, 12 * T**2, 20 * T**3]]
+    c3, c4, c5 = np.linalg.solve(
+        rows, [p1 - p0 - v0 * T - a0 * T**2 / 2, v1 - v0 - a0 * T, a1 - a0]
+    )
+    return Sample(
+        p0 + v0 * t + a0 * t**2 / 2 + c3 * t**3 + c4 * t**4 + c5 * t**5,
+        v0 + a0 * t + 3 * c3 * t**2 + 4 * c4 * t**3 + 5 * c5 * t**4,
+        a0 + 6 * c3 * t + 12 * c4 * t**2 + 20 * c5 * t**3,
+    )
+
+
+def waits_at_the_goal(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """After the end the goal's place stands still, while its speed is still told."""
+    x = blend(t, reference, goal, duration)
+    return Sample(goal.position, x.velocity, x.acceleration) if t > duration else x
+
+
+def speeds_up_for_ever(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """After the end the goal's acceleration goes on."""
+    x, late = blend(t, reference, goal, duration), t - duration
+    if late <= 0.0:
+        return x
+    a = goal.acceleration
+    return Sample(x.position + a * late**2 / 2, x.velocity + a * late, a)
+
+
+def acceleration_kept(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """After the end the velocity is constant, and an acceleration is told all the same."""
+    x = blend(t, reference, goal, duration)
+    return Sample(x.position, x.velocity, goal.acceleration) if t > duration else x
+
+
+def derivatives_by_share(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """Derivatives by x = t/T given as if they were by t."""
+    x, T = blend(t, reference, goal, duration), duration
+    return x if t > T else Sample(x.position, x.velocity * T, x.acceleration * T**2)
+
+
+def the_ends_mixed(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """Reference and goal mixed in proportion to time, each of the three for itself."""
+    s = min(t / duration, 1.0)
+    return Sample(*((1.0 - s) * a + s * b for a, b in zip(reference, goal, strict=True)))
+
+
+def three_alone(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """The first three coordinates, as if every reference were a point."""
+    return blend(t, Sample(*(x[:3] for x in reference)), Sample(*(x[:3] for x in goal)), duration)
+
+
+def rates_not_scaled(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """Solves in x = t/T with the rates of t: they come out T times too small, or too large."""
+    T = duration
+    a = Sample(reference.position, reference.velocity / T, reference.acceleration / T**2)
+    b = Sample(goal.position, goal.velocity / T, goal.acceleration / T**2)
+    return blend(t, a, b, T) if t < T else blend(t, reference, goal, T)
+
+
+def stops_at_the_goal(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """Arrives at rest, although the goal moves on."""
+    still = np.zeros_like(goal.velocity)
+    return blend(t, reference, Sample(goal.position, still, still), duration)
+
+
+def without_the_bend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+    """A cubic: position and velocity fit, the acceleration jumps."""
+    T = duration
+    if t >= T:
+        return blend(t, reference, goal, T)
+    p0, v0, p1, v1 = reference.position, reference.velocity, goal.position, goal.velocity
+    c2 = (3 * (p1 - p0) - (2 * v0 + v1) * T) / T**2
+    c3 = (2 * (p0 - p1) + (v0 + v1) * T) / T**3
+    return Sample(
+        p0 + v0 * t + c2 * t**2 + c3 * t**3, v0 + 2 * c2 * t + 3 * c3 * t**2, 2 * c2 + 6 * c3 * t
+    )
+
+
+def ignores_the_age(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
+    """Takes the old picture for now."""
+    return np.array(mean), np.array(covariance)
+
+
+def noise_without_time(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
+    """Adds the same noise whatever the time step: two half steps are not one step."""
+    F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
+    return F @ mean, F @ covariance @ F.T + accel_noise * np.eye(6)
+
+
+def certain_for_ever(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
+    """Moves the mean and leaves the covariance."""
+    return predict(mean, covariance, age, accel_noise)[0], np.array(covariance)
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """F m and F P F^T + Q with another Q.
+
+    Attributes:
+        Q: Powers of the age and factors in the three corners of Q: place, both, velocity.
+        power: Of the noise.
+    """
+
+    Q: tuple[tuple[float, float], ...]
+    power: float = 1.0
+
+    def __call__(
+        self, mean: Any, covariance: Any, age: float, accel_noise: float
+    ) -> tuple[Array, Array]:
+        """The belief then."""
+        place, both, velocity = (factor * age**power for power, factor in self.Q)
+        F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
+        Q = accel_noise**self.power * np.kron([[place, both], [both, velocity]], np.eye(3))
+        return F @ mean, F @ covariance @ F.T + Q
+
+
+def half_the_product(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
+    """F P, without F^T: not even symmetric."""
+    m, P = predict(mean, covariance, age, accel_noise)
+    F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
+    return m, P - F @ covariance @ F.T + F @ covariance
+
+
+def product_turned_round(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
+    """F^T P F."""
+    m, P = predict(mean, covariance, age, accel_noise)
+    F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
+    return m, P - F @ covariance @ F.T + F.T @ covariance @ F
+
+
+def back_in_time(mean: Any, covariance: Any, age: float, accel_noise: float) -> tuple[Array, Array]:
+    """To when the picture was taken, not from there to now."""
+    F = np.kron([[1.0, -age], [0.0, 1.0]], np.eye(3))
+    Q = predict(mean, np.zeros((6, 6)), age, accel_noise)[1]
+    return F @ mean, F @ covariance @ F.T + Q
+
+
+def noise_on_the_diagonal(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
+    """Forgets that a push changes position and velocity together."""
+    F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
+    Q = accel_noise * np.kron(np.diag([age**3 / 3.0, age]), np.eye(3))
+    return F @ mean, F @ covariance @ F.T + Q

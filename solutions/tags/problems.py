@@ -1,0 +1,535 @@
+"""What notebook 06 asks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from labkit import Sample
+from labkit.course import Close
+from labkit.course.problem import Problem, Trial, Wrong, call
+
+from . import answers, following, hidden, mistakes, variants
+
+_RANDOM = np.random.default_rng(6)
+_ZERO = np.zeros(3)
+_STILL = Sample(np.array([0.1, 0.2, 0.3]), _ZERO, _ZERO)
+_THERE = Sample(np.array([0.4, 0.1, 0.3]), _ZERO, _ZERO)
+_MOVING = Sample(np.array([0.1, 0.2, 0.3]), np.array([0.1, 0.0, -0.05]), np.array([0.2, -0.1, 0.0]))
+_GOING = Sample(np.array([0.3, 0.25, 0.2]), np.array([0.0, 0.1, 0.02]), _ZERO)
+_TURNING = _GOING._replace(acceleration=np.array([0.1, 0.0, -0.3]))
+_SEVEN = np.random.default_rng(7).uniform(-0.4, 0.4, (2, 3, 7)).round(2)
+_JOINTS, _THEIR_GOAL = Sample(*_SEVEN[0]), Sample(*_SEVEN[1])
+_BELIEF = hidden.believed(_RANDOM)
+
+TAG_CORNERS = Problem(
+    name="tag_corners",
+    points=2,
+    asks="Give the four corners of the black square in the tag's own frame: origin in the middle, x to "
+    "the right, y up, z out of the paper; clockwise as one looks at it, from the upper left; shape (4, 3).",
+    answer=answers.tag_corners,
+    trials=(Trial("a tag of 10 cm", (call(0.1), call(0.16)), hidden.sizes, "other sizes"),),
+    withheld=("labkit.tags.tag.tag_corners",),
+    hints=(
+        "Draw the square, mark the middle, and write the coordinates of the upper left corner first.",
+        "Half a side to the left is -size/2 in x, half a side up is +size/2 in y. All of it lies in z = 0.",
+        "Upper left (-h, h, 0), upper right (h, h, 0), lower right (h, -h, 0), lower left (-h, -h, 0).",
+    ),
+    wrong=(
+        Wrong(
+            "counter-clockwise",
+            "With the corners the other way round the tag is seen from behind, and its pose comes out "
+            "mirrored: z points into the paper.",
+            mistakes.counter_clockwise,
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "the white border counted in",
+            "The size is that of the black square. With the border everything seems a quarter too far away.",
+            mistakes.border_counted,
+            "Measure the black square, not the paper.",
+        ),
+        Wrong(
+            "origin in a corner",
+            "The frame sits in the middle of the tag, so coordinates have both signs.",
+            mistakes.from_a_corner,
+            "Say where a frame sits before using it.",
+        ),
+        Wrong(
+            "counter-clockwise from the upper left",
+            "Upper left is right, but then it goes down. Clockwise as one looks at it: to the upper "
+            "right.",
+            mistakes.Reordered((0, 3, 2, 1)),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "y down",
+            "In the picture y goes down; in the tag's frame it goes up.",
+            mistakes.Reordered(scale=(1.0, -1.0, 1.0)),
+            "Picture and tag have axes of their own.",
+        ),
+        Wrong(
+            "from the lower left",
+            "The order runs the right way round but begins at the wrong corner: the tag comes out "
+            "turned by a quarter.",
+            mistakes.Reordered((3, 0, 1, 2)),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "from the upper right",
+            "The order runs the right way round but begins at the wrong corner: the tag comes out "
+            "turned by a quarter.",
+            mistakes.Reordered((1, 2, 3, 0)),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "twice the square",
+            "The corners lie half a side from the middle, not a whole one.",
+            mistakes.Reordered(scale=(2.0, 2.0, 1.0)),
+            "Side or half a side: draw it.",
+        ),
+    ),
+    variants=(variants.corners_list,),
+)
+
+
+def _seen(
+    tilt: float, azimuth: float, distance: float = 0.7, size: float = 0.1
+) -> tuple[object, ...]:
+    T = hidden.seen(distance, tilt, azimuth, 0.3, x=0.05)
+    return hidden.pixels_of(T, size), hidden.K, size
+
+
+TAG_POSE = Problem(
+    name="tag_pose",
+    points=5,
+    asks="From the four corners in the picture give the pose of the tag in the camera's frame, `T_cm`, "
+    "shape (4, 4). `K` is the camera's matrix. OpenCV is allowed: `cv2.solvePnPGeneric` with "
+    "`cv2.SOLVEPNP_IPPE_SQUARE` gives two candidates and how badly each fits.",
+    answer=answers.tag_pose,
+    judge=Close(rtol=0.0, atol=2e-4),
+    trials=(
+        Trial("a tag seen at 45 degrees", (call(*_seen(0.8, 0.4)),), weight=0.0),
+        Trial(
+            "tags seen from aside",
+            (call(*_seen(0.6, 2.0, 0.5)), call(*_seen(0.9, -1.5, 1.1, 0.16))),
+            hidden.oblique,
+            "near and far, other sizes",
+            weight=2.0,
+        ),
+        Trial(
+            "a tag that nearly faces the camera",
+            (call(*_seen(0.25, -0.7, 0.6)),),
+            hidden.nearly_frontal,
+            "other ways of facing it",
+        ),
+    ),
+    withheld=("labkit.tags.detection", "labkit.detect_tags"),
+    hints=(
+        "solvePnPGeneric wants the corners in the tag's frame, in the order of the pixels, the pixels, "
+        "the camera's matrix and None for the distortion.",
+        "It returns (count, rotation vectors, translations, errors). Take the candidate with the smallest "
+        "error; cv2.Rodrigues turns a rotation vector into a matrix.",
+        "T = np.eye(4); T[:3, :3] = cv2.Rodrigues(turns[best])[0]; T[:3, 3] = places[best].ravel().",
+    ),
+    wrong=(
+        Wrong(
+            "the camera in the tag's frame",
+            "That is T_mc, the inverse: its translation does not point along the camera's view.",
+            mistakes.camera_in_the_tag,
+            "T_cm takes points of the tag to the camera: the subscripts say so.",
+        ),
+        Wrong(
+            "the size of the paper",
+            "With the white border in the size everything is 1.25 times too far away.",
+            mistakes.border_in_the_pose,
+            "Measure the black square, not the paper.",
+        ),
+        Wrong(
+            "a rotation vector read as Euler angles",
+            "The three numbers are an axis times an angle. cv2.Rodrigues turns them into a matrix.",
+            mistakes.vector_as_euler_angles,
+            "Three numbers for a rotation: always ask which three.",
+        ),
+        Wrong(
+            "the candidate that fits worse",
+            "A flat square looks nearly alike tilted one way or the other. The error tells them apart.",
+            mistakes.the_worse_answer,
+            "A flat tag has two poses; look at the error.",
+        ),
+        Wrong(
+            "corners the other way round",
+            "The corners run counter-clockwise, so a tag from behind is fitted to the picture.",
+            mistakes.PoseOf(mistakes.Reordered((0, 3, 2, 1))),
+            "The order of the corners is part of the measurement.",
+        ),
+        Wrong(
+            "twice the size",
+            "Everything is twice as far away: the corners lie half a side from the middle.",
+            mistakes.PoseOf(scale=2.0),
+            "Side or half a side: draw it.",
+        ),
+        Wrong(
+            "half the size",
+            "Everything is half as far away: `size` is the whole side.",
+            mistakes.PoseOf(scale=0.5),
+            "Side or half a side: draw it.",
+        ),
+        Wrong(
+            "the rotation transposed",
+            "The translation is right, the rotation is that of the camera in the tag.",
+            mistakes.rotation_transposed,
+            "R_cm takes directions of the tag to the camera.",
+        ),
+    ),
+    variants=(variants.pose_by_iteration,),
+)
+
+QUALITY = Problem(
+    name="sensor_quality",
+    points=3,
+    asks="From many estimates `T_cm` of one tag and the truth give `(bias, covariance)` of the error, "
+    "truth minus estimate: three numbers of position and the rotation vector of R_truth R_estimate^T, "
+    "together shape (6,) and (6, 6).",
+    answer=answers.sensor_quality,
+    judge=Close(rtol=1e-6, atol=1e-10, parts=("bias", "covariance")),
+    trials=(
+        Trial(
+            "an offset and a little noise",
+            (call(*hidden.scattered(_RANDOM, 6, [0.002, 0, 0.004, 0, 0.01, 0], 1e-4)),),
+            hidden.offsets,
+            "other offsets",
+            weight=0.0,
+        ),
+        Trial(
+            "noise",
+            (call(*hidden.scattered(_RANDOM, 8, np.zeros(6), 0.003)),),
+            hidden.noises,
+            "noise and offset together",
+        ),
+    ),
+    hints=(
+        "First one error vector of six numbers for each estimate. Then their mean and their covariance.",
+        "se3.rotation_log(R_truth @ R_estimate.T) is the turn from the estimate to the truth.",
+        "np.mean(errors, axis=0) and np.cov(np.array(errors).T), which divides by n - 1.",
+    ),
+    wrong=(
+        Wrong(
+            "spread about zero",
+            "The covariance is taken about zero, so a constant offset counts as spread. Averaging cures "
+            "spread and never an offset; keep them apart.",
+            mistakes.spread_about_zero,
+            "Bias and spread need different cures.",
+        ),
+        Wrong(
+            "estimate minus truth",
+            "In this course an error is always target minus actual, here truth minus estimate.",
+            mistakes.the_other_sign,
+            "One sign of the error, said loudly.",
+        ),
+        Wrong(
+            "Euler angles subtracted",
+            "A tag that faces the camera is turned by half a turn: just where Euler angles jump.",
+            mistakes.euler_subtracted,
+            "Never subtract Euler angles.",
+        ),
+        Wrong(
+            "n in the denominator",
+            "The mean was taken from the same numbers, so n - 1 are left.",
+            mistakes.n_in_the_denominator,
+            "n or n - 1: who gave you the mean?",
+        ),
+        Wrong(
+            "the covariance of the mean",
+            "That is how sure the mean is. Asked is how far a single picture may be off.",
+            mistakes.of_the_mean,
+            "Standard deviation and standard error are two things.",
+        ),
+        Wrong(
+            "the variances alone",
+            "The errors go together: a tag that seems tilted also seems moved. np.cov gives the whole.",
+            mistakes.diagonal_only,
+            "What is beside the diagonal says what goes together.",
+        ),
+        Wrong(
+            "the turn in the tag's axes",
+            "R_estimateᵀ R_truth speaks of the tag's axes. Position and turn should speak of the "
+            "camera's: R_truth R_estimateᵀ.",
+            mistakes.turn_in_tag_axes,
+            "Which axes does a rotation vector speak of?",
+        ),
+        Wrong(
+            "the turn backwards",
+            "This turns from the truth to the estimate: the truth stands on the left of the product.",
+            mistakes.turn_backwards,
+            "One sign of the error, said loudly.",
+        ),
+        Wrong(
+            "logarithms subtracted",
+            "The difference of two rotation vectors is no turn, least of all near half a turn, where "
+            "they jump.",
+            mistakes.logarithms_subtracted,
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "the turn first",
+            "The order is position, then turn.",
+            mistakes.turn_first,
+            "(v, w), in this course.",
+        ),
+        Wrong(
+            "everything in the tag's axes",
+            "The inverse of the estimate times the truth has all six numbers in the tag's axes.",
+            mistakes.everything_in_the_tag,
+            "Which axes does an error speak of?",
+        ),
+    ),
+    variants=(variants.quality_by_loops,),
+)
+
+BLEND = Problem(
+    name="blend",
+    points=5,
+    asks="Lead a reference over to a goal by a polynomial of fifth order: at `t` = 0 it has the "
+    "reference's position, velocity and acceleration, at `t` = `duration` the goal's. After that it goes "
+    "on with the goal's velocity, without acceleration. Give an `lk.Sample`.",
+    answer=following.blend,
+    judge=Close(rtol=1e-6, atol=1e-8, parts=("position", "velocity", "acceleration")),
+    trials=(
+        Trial(
+            "from rest to rest in one second",
+            tuple(call(t, _STILL, _THERE, 1.0) for t in (0.3, 0.7)),
+            hidden.blends_from_rest,
+            "other places",
+            weight=0.0,
+        ),
+        Trial(
+            "from motion to motion, of a point and of seven joints",
+            (
+                *(call(t, _MOVING, _GOING, 1.6) for t in (0.0, 0.5, 1.1, 1.6, 2.2)),
+                *(call(t, _MOVING, _TURNING, 1.6) for t in (1.1, 2.2)),  # at 1.6 both are right
+                *(call(t, _JOINTS, _THEIR_GOAL, 1.6) for t in (0.5, 2.2)),
+            ),
+            hidden.blends_in_motion,
+            "other durations, after the end, seven joints and a single number",
+        ),
+    ),
+    hints=(
+        "Six conditions fix six coefficients. Write position, velocity and acceleration of "
+        "c0 + c1 t + ... + c5 t^5 at both ends.",
+        "c0, c1 and c2 come from the start at once: p, v and a/2. The other three solve a 3 x 3 system "
+        "with the rows [T³, T⁴, T⁵], [3T², 4T³, 5T⁴], [6T, 12T², 20T³].",
+        "The right side of that system is the goal's position, velocity and acceleration minus what "
+        "c0 + c1 t + c2 t² makes of them at T. np.linalg.solve does all axes at once.",
+    ),
+    wrong=(
+        Wrong(
+            "restarts at rest",
+            "Every new goal stops the reference dead, and the arm with it: the report's Algorithm 1. Take "
+            "over the velocity that it has.",
+            mistakes.restarts_at_rest,
+            "A reference that jumps makes an arm jerk.",
+        ),
+        Wrong(
+            "rates of t used for x = t/T",
+            "In x = t/T a velocity is T times, an acceleration T² times as large. At T = 1 nobody sees it.",
+            mistakes.rates_not_scaled,
+            "Scale derivatives when you scale time.",
+        ),
+        Wrong(
+            "stops at the goal",
+            "The goal moves on, and the reference arrives at rest: it will always lag behind.",
+            mistakes.stops_at_the_goal,
+            "Meet a moving goal with its velocity.",
+        ),
+        Wrong(
+            "a cubic",
+            "A cubic meets position and velocity; the acceleration jumps at every new goal, and the "
+            "torque with it.",
+            mistakes.without_the_bend,
+            "Count conditions, then coefficients.",
+        ),
+        Wrong(
+            "the start's velocity left out",
+            "The reference moves when the blend begins; at t = 0 it must move just so.",
+            mistakes.Blended(start=(0.0, 1.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "the start's acceleration left out",
+            "At t = 0 the acceleration must be the reference's: the coefficient of t² is half of it.",
+            mistakes.Blended(start=(1.0, 0.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "the goal's velocity left out",
+            "The goal moves on; at t = duration the blend must move just so.",
+            mistakes.Blended(end=(0.0, 1.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "the goal's acceleration left out",
+            "Towards t = duration the acceleration must come to the goal's, which is not always nought.",
+            mistakes.Blended(end=(1.0, 0.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "from rest to rest",
+            "Neither start nor goal need be at rest.",
+            mistakes.Blended(start=(0.0, 0.0), end=(0.0, 0.0)),
+            "Check both ends, all three derivatives.",
+        ),
+        Wrong(
+            "a polynomial without end",
+            "After `duration` it goes on with the goal's velocity; a polynomial runs away.",
+            mistakes.never_ends,
+            "A polynomial is good between its ends only.",
+        ),
+        Wrong(
+            "waits at the goal",
+            "After the end the place must go on with the velocity that is told.",
+            mistakes.waits_at_the_goal,
+            "Velocity is the slope of position, or somebody lies.",
+        ),
+        Wrong(
+            "speeds up for ever",
+            "After the end there is no acceleration, whatever the goal's was.",
+            mistakes.speeds_up_for_ever,
+            "Read the sentence about the end.",
+        ),
+        Wrong(
+            "an acceleration without effect",
+            "After the end the velocity is constant, so the acceleration is nought.",
+            mistakes.acceleration_kept,
+            "Acceleration is the slope of velocity, or somebody lies.",
+        ),
+        Wrong(
+            "derivatives by t/T",
+            "These are the derivatives by t/T. Divide the first by T and the second by T².",
+            mistakes.derivatives_by_share,
+            "Scale derivatives when you scale time.",
+        ),
+        Wrong(
+            "start and goal mixed",
+            "Mixed in proportion to time, place and velocity no longer belong together.",
+            mistakes.the_ends_mixed,
+            "Velocity is the slope of position, or somebody lies.",
+        ),
+        Wrong(
+            "three coordinates, however many there are",
+            "A sample may hold a point, seven joint angles or a single number: shape (n,). Take as many "
+            "as come.",
+            mistakes.three_alone,
+            "Read the shape in the docstring; then try another n.",
+        ),
+    ),
+    variants=(variants.blend_by_bernstein,),
+)
+
+PREDICT = Problem(
+    name="predict",
+    points=5,
+    asks="A tag is believed at `mean` (position and velocity) with `covariance`. Give both `age` seconds "
+    "later, for constant velocity under continuous white acceleration of power `accel_noise`.",
+    answer=following.predict,
+    judge=Close(rtol=1e-6, atol=1e-12, parts=("mean", "covariance")),
+    trials=(
+        Trial(
+            "no time at all changes nothing",
+            (call(*_BELIEF, 0.0, 0.01),),
+            hidden.no_age,
+            weight=0.0,
+        ),
+        Trial(
+            "a picture that is 100 ms old",
+            (call(*_BELIEF, 0.1, 0.01), call(*_BELIEF, 0.4, 0.05)),
+            hidden.ages,
+            "other ages and noises",
+        ),
+    ),
+    hints=(
+        "Position grows by age times velocity, velocity stays: a matrix F. How does a covariance go "
+        "through a matrix?",
+        "mean' = F mean and covariance' = F P F^T + Q. Q is what the pushes add, and it must vanish with "
+        "age: two half steps have to make one whole.",
+        "Q = accel_noise · [[age³/3, age²/2], [age²/2, age]] for each axis; np.kron(that, np.eye(3)) for "
+        "all three.",
+    ),
+    wrong=(
+        Wrong(
+            "the age of the picture ignored",
+            "At 0.1 m/s a picture that is 100 ms old is 10 mm wrong. Carry the mean forward.",
+            mistakes.ignores_the_age,
+            "A measurement is of when it was taken.",
+        ),
+        Wrong(
+            "noise that does not know of time",
+            "The same noise whatever the step: ask ten times as often and the tag is ten times as unsure.",
+            mistakes.noise_without_time,
+            "Two half steps must make one step.",
+        ),
+        Wrong(
+            "certain for ever",
+            "The mean moves on and the covariance does not: the filter will soon believe only itself.",
+            mistakes.certain_for_ever,
+            "What is not seen becomes less sure.",
+        ),
+        Wrong(
+            "no cross terms",
+            "A push changes the velocity and, through it, the position: the two errors go together.",
+            mistakes.noise_on_the_diagonal,
+            "Derive Q, do not guess its diagonal.",
+        ),
+        Wrong(
+            "one push in each step",
+            "age⁴/4, age³/2, age² belong to a single push that is held for the whole step: two half "
+            "steps then do not make one. White noise gives age³/3, age²/2, age.",
+            mistakes.Predicted(((4, 0.25), (3, 0.5), (2, 1.0))),
+            "Held noise and white noise have other powers of the step.",
+        ),
+        Wrong(
+            "no pushes",
+            "Q is missing: the belief gets no less sure of its velocity, and soon heeds no picture.",
+            mistakes.Predicted(((0, 0.0), (0, 0.0), (0, 0.0))),
+            "What is not seen becomes less sure.",
+        ),
+        Wrong(
+            "pushes on the velocity alone",
+            "A push at the beginning of the step has moved the place by its end: integrate F(s) too.",
+            mistakes.Predicted(((0, 0.0), (0, 0.0), (1, 1.0))),
+            "Derive Q, do not guess its diagonal.",
+        ),
+        Wrong(
+            "the same on place and velocity",
+            "accel_noise · age on all six has the wrong unit in the place: integrate F(s) diag(0, q) F(s)ᵀ.",
+            mistakes.Predicted(((1, 1.0), (0, 0.0), (1, 1.0))),
+            "Units tell: m² for the place.",
+        ),
+        Wrong(
+            "the noise squared",
+            "accel_noise is a power already, in m²/s³.",
+            mistakes.Predicted(((3, 1 / 3), (2, 0.5), (1, 1.0)), power=2.0),
+            "Variance or deviation? Look at the unit.",
+        ),
+        Wrong(
+            "F P without Fᵀ",
+            "A covariance goes through a matrix from both sides: F P Fᵀ.",
+            mistakes.half_the_product,
+            "A covariance is symmetric: look whether yours is.",
+        ),
+        Wrong(
+            "Fᵀ P F",
+            "The other way round: F P Fᵀ.",
+            mistakes.product_turned_round,
+            "y = F x has the covariance F P Fᵀ.",
+        ),
+        Wrong(
+            "back in time",
+            "The age carries forward, from the picture to now.",
+            mistakes.back_in_time,
+            "Say when each number is of.",
+        ),
+    ),
+    variants=(variants.predict_by_exponential,),
+)
+
+PROBLEMS = (TAG_CORNERS, TAG_POSE, QUALITY, BLEND, PREDICT)

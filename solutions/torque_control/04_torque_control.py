@@ -1,0 +1,643 @@
+# %% [markdown]
+# # 04 · Torque control
+#
+# Until now the motors were told how fast to turn, and they found the torque themselves. In torque
+# control you are the one who finds it. That is more work, and it buys something: you decide how the
+# arm answers, joint by joint, when it is off its target.
+#
+# | | |
+# |---|---|
+# | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0; what an eigenvalue is |
+# | **Given** | the arm's model: M, C and g (notebook 02 builds them, here you only use them) |
+# | **You write** | two torque laws, gains from frequency and damping, a sampled joint, the factor of gravity, gains that serve |
+# | **Time** | about 5 hours · 20 points |
+#
+# Every cell below runs from the start, solved or not: where your part is missing, something given
+# stands in and says so. After each stub a check tells you in words what it found. Only the functions
+# are marked, so play with everything else as you like.
+
+# %% setup=true
+from dataclasses import replace
+
+import labkit as lk
+from labkit.course import check, hint, use
+
+lk.ready()
+
+# %% setup=true
+import matplotlib.pyplot as plt
+import numpy as np
+
+# %% [markdown]
+# ## The equation behind it all
+#
+# For the arm's seven joint angles $q$ Newton's law reads
+#
+# $$ M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau . $$
+#
+# $M$ is the inertia: a matrix, because turning one joint shakes the others, and a function of $q$,
+# because a stretched arm is harder to turn than a folded one. $C\,\dot q$ are the Coriolis and
+# centrifugal torques, and $g$ is what the motors must give to hold the arm still. `lk.Model` knows all
+# three. Here they are at the pose where the exercises start:
+
+# %%
+model = lk.Model("left", lk.BAXTER)
+ready = model.robot.ready
+names = [name.removeprefix("left_") for name in model.robot.joint_names]
+
+print("joint              ", "  ".join(f"{name:>6}" for name in names))
+print("inertia, [kg m²]   ", "  ".join(f"{x:6.3f}" for x in np.diag(model.mass_matrix(ready))))
+print("weight, [N m]      ", "  ".join(f"{x:6.2f}" for x in model.gravity(ready) + 0.0))
+print("torque limit, [N m]", "  ".join(f"{x:6.0f}" for x in model.robot.effort))
+
+# %% [markdown]
+# Two things to keep in mind. The shoulder's `s1` needs 36 of its 100 N m only to hold the arm up. And a
+# wrist joint has a fortieth of the shoulder's inertia: the same torque is a nudge here and a kick there.
+#
+# ## Who carries the weight?
+#
+# On the textbook's arm you do. Baxter carries itself: a channel of its own adds $g(q)$ to whatever you
+# command, in every mode, all the time. The simulated arm has this as a switch of its *plant*. Let both
+# arms loose, with no torque at all, and see.
+
+# %%
+textbook = lk.Plant(name="textbook", armature=0.05)
+carries_itself = replace(textbook, name="self-carrying", gravity_compensation=True)
+
+
+def no_torque(state, target):
+    return lk.JointTorque(np.zeros(7))
+
+
+def stay(plant, controller, duration=1.5, q0=ready, rate=200.0):
+    """Let a controller hold the ready pose; returns the log."""
+    with lk.Arm("left", plant, q0=q0) as arm:
+        return lk.run(arm, lk.Hold(ready, duration), controller, rate)
+
+
+loose = {plant.name: stay(plant, no_torque, 0.6) for plant in (textbook, carries_itself)}
+for name, log in loose.items():
+    z = 1e3 * lk.metrics.tip_poses(log)[:, 2, 3]
+    print(f"{name}: the tip drops {z[0] - min(z):.0f} mm in {log.t[-1]:.1f} s")
+
+# %% [markdown]
+# So a torque law must know on which arm it runs. In your functions this is the argument
+# `arm_compensates`. If it is true, the arm carries its own weight, and the law adds none.
+#
+# ## Springs and dampers, and what the motion takes
+#
+# Throughout this course the error is *target minus actual*:
+#
+# $$ e = q_d - q, \qquad \dot e = \dot q_d - \dot q . $$
+#
+# Fasten a spring $K_p$ and a damper $K_d$ between each joint and its target, and add the torque which
+# the target's own motion takes:
+#
+# $$ \tau = M(q)\,\ddot q_d + C(q, \dot q)\,\dot q_d + g(q) + K_d\,\dot e + K_p\,e . $$
+#
+# This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
+# Note whose speed stands behind $C$: with the target's, the energy in springs and error can only fall,
+# and that is a proof that the arm arrives. The report that this lab grew out of printed the arm's own
+# speed there, and no theorem covers that.
+
+# %% question="augmented_pd"
+def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
+    """Augmented PD: the torque that the motion takes, a spring and a damper at each joint.
+
+    Args:
+        state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
+        target: lk.Sample(position, velocity, acceleration) of the joints, shape (7,) each.
+        model: lk.Model, with mass_matrix(q), coriolis(q, dq) and gravity(q).
+        kp: Springs, shape (7,) or one number, in [N m/rad].
+        kd: Dampers, shape (7,) or one number, in [N m s/rad].
+        arm_compensates: Whether the arm carries its own weight.
+
+    Returns:
+        lk.JointTorque of shape (7,) in [N m].
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import augmented_pd as answer
+
+    return answer(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Let your law hold the arm, on both arms and with the switch both ways. Two of the four agree with the
+# arm they run on. What do the other two do? (If your law is not ready, Baxter's position mode stands in:
+# it holds the place whatever happens, so all four will look alike.)
+
+# %%
+def position_mode(state, target, model, *, kp, kd, arm_compensates):
+    return lk.JointPosition(target.position)
+
+
+my_augmented_pd = use("augmented_pd", augmented_pd, position_mode)
+
+KP, KD = 80.0, 12.0  # the same in every joint: enough to see what a law does, and no more
+
+
+def with_gains(law, plant, kp, kd, arm_compensates):
+    """A controller for `lk.run`: the law with its numbers filled in."""
+    known = lk.Model("left", plant)
+
+    def controller(state, target):
+        return law(state, target, known, kp=kp, kd=kd, arm_compensates=arm_compensates)
+
+    controller.__name__ = law.__name__
+    return controller
+
+
+logs = {}
+for plant in (textbook, carries_itself):
+    for flag in (False, True):
+        law = with_gains(my_augmented_pd, plant, KP, KD, flag)
+        logs[f"{plant.name}, arm_compensates={flag}"] = stay(plant, law)
+
+plt.figure(figsize=(8, 3.4), layout="constrained")
+heights = {}
+for (name, log), style in zip(logs.items(), ("-", "--", "-.", ":")):
+    z = 1e3 * lk.metrics.tip_poses(log)[:, 2, 3]
+    z = (z - z[0]).round(3) + 0.0
+    heights[name] = z[-1]
+    plt.plot(log.t, z, style, label=name)
+plt.xlabel("time [s]")
+plt.ylabel("height of the tip [mm]")
+plt.gcf().legend(loc="outside lower center", ncols=2, frameon=False)
+lk.plotting.show(
+    "The tip's height after 1.5 s: "
+    + "; ".join(f"{name}: {z:+.0f} mm" for name, z in heights.items())
+    + "."
+)
+
+# %% [markdown]
+# Here they are as arms. Drag the time, turn the view.
+
+# %%
+right, *others = logs.items()
+lk.replay.show(
+    lk.replay.motion_of(
+        right[1],
+        "Who carries the weight?",
+        label=right[0],
+        ghosts=dict(others[:2]),
+        reference=False,
+    )
+)
+
+# %% [markdown]
+# ## Every joint the same
+#
+# Springs at the joints leave each joint with its own frequency, and they shake each other through $M$.
+# *Computed torque* asks first which acceleration would be good. If the joints had
+#
+# $$ \ddot q = \ddot q_d + K_d\,\dot e + K_p\,e , $$
+#
+# then the error would obey $\ddot e + K_d\,\dot e + K_p\,e = 0$: a damped spring in each joint, free of all
+# the others, whatever the pose. So that is the acceleration to ask for, and the equation of motion tells
+# the torque. The gains now stand inside $M$; their units are 1/s² and 1/s.
+
+# %% question="computed_torque"
+def computed_torque(state, target, model, *, kp, kd, arm_compensates):
+    """Computed torque: every joint's error dies out as that of a damped spring.
+
+    Args:
+        state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
+        target: lk.Sample(position, velocity, acceleration) of the joints, shape (7,) each.
+        model: lk.Model, with mass_matrix(q), coriolis(q, dq), gravity(q) and
+            inverse_dynamics(q, dq, ddq) = M ddq + C dq + g.
+        kp: Gains, shape (7,) or one number, in [1/s^2].
+        kd: Gains, shape (7,) or one number, in [1/s].
+        arm_compensates: Whether the arm carries its own weight.
+
+    Returns:
+        lk.JointTorque of shape (7,) in [N m].
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import computed_torque as answer
+
+    return answer(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Start both laws 0.1 rad off in every joint and look at what is left of the error in each of them.
+
+# %%
+my_computed_torque = use("computed_torque", computed_torque, position_mode)
+
+off = 0.1 * np.array([1, -1, 1, 1, -1, 1, -1])
+contest = (
+    ("augmented PD", with_gains(my_augmented_pd, textbook, KP, KD, False)),
+    ("computed torque", with_gains(my_computed_torque, textbook, 40.0, 2 * 40.0**0.5, False)),
+)
+_, axes = plt.subplots(1, 2, figsize=(9, 3), sharey=True, layout="constrained")
+spread = []
+for ax, (name, law) in zip(axes, contest):
+    log = stay(textbook, law, 1.2, q0=ready - off, rate=500.0)
+    share = lk.metrics.joint_error(log) / off
+    for k, column in enumerate(share.T):
+        ax.plot(log.t, column, ("-", "--", "-.", ":")[k % 4], label=names[k])
+    spread.append(np.ptp(share[len(share) // 4]))
+    ax.set_title(name, loc="left", fontsize="medium")
+    ax.set_xlabel("time [s]")
+axes[0].set_ylabel("share of the error left")
+axes[1].legend(frameon=False, ncols=2)
+lk.plotting.show(
+    "What is left of a start error in each joint. After 0.3 s the joints differ by "
+    f"{spread[0]:.2f} of it under augmented PD and by {spread[1]:.3f} under computed torque."
+)
+
+# %% [markdown]
+# Seven curves on top of one another: that is what the model buys. It is also a promise that hangs on the
+# model. On an arm with friction, or with something in its gripper, they come apart again.
+#
+# ## Gains with a meaning
+#
+# Nobody knows what "kp = 40" feels like. A frequency and a damping ratio do have a feel: how often the
+# error would swing in a second, and how much of the swing is damped away. 1 is *critical* damping, the
+# quickest way without overshoot. Compare with the standard form of a damped spring,
+#
+# $$ \ddot e + 2\,\zeta\,\omega\,\dot e + \omega^2\,e = 0 . $$
+
+# %% question="gains_for"
+def gains_for(frequency, damping_ratio):
+    """Gains of computed torque for a frequency and a damping ratio.
+
+    Args:
+        frequency: Natural frequency of the error, in [Hz]; a number or an array.
+        damping_ratio: 1 is critically damped; a number or an array.
+
+    Returns:
+        (kp, kd), in [1/s^2] and [1/s].
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import gains_for as answer
+
+    return answer(frequency, damping_ratio)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Turn the dials: this is the error of one joint, started at 1, with your gains. Where does it settle
+# soonest? (If your function is not ready, the gains of a 2 Hz critically damped joint stand in, whatever
+# the dials say.)
+
+# %%
+def two_hertz(frequency, damping_ratio):
+    return 157.9, 25.13
+
+
+my_gains_for = use("gains_for", gains_for, two_hertz)
+
+
+def error_of_one_joint(frequency, damping):
+    kp, kd = my_gains_for(frequency, damping)
+    t = np.linspace(0.0, 2.0, 401)
+    fast, slow = np.roots([1.0, kd, kp]) + [0.0, 1e-9]  # apart, so that one formula serves
+    e = np.real((fast * np.exp(slow * t) - slow * np.exp(fast * t)) / (fast - slow))
+    outside = np.flatnonzero(np.abs(e) > 0.02)
+    figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
+    ax.plot(t, e)
+    ax.axhspan(-0.02, 0.02, color="0.85")
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel("error left")
+    return figure, (
+        f"kp = {kp:.1f} 1/s², kd = {kd:.2f} 1/s: the error stays within 2 % after "
+        f"{t[outside[-1]]:.2f} s and overshoots by {100 * max(0.0, -e.min()):.0f} %."
+    )
+
+
+dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping=(0.1, 2.0, 0.7))
+
+# %% [markdown]
+# ## The torque stands still between two ticks
+#
+# A computer looks, computes a torque, and then the motor keeps that torque until the next look: 5 ms at
+# 200 Hz. For a heavy joint that is no time at all. For a light one it can be too long: the torque that
+# was to stop it drives it past and on. Whether it swings in or blows up, the *eigenvalues* of the step
+# from one sample to the next tell. If all lie inside the unit circle, the error shrinks with each step.
+#
+# During one step the torque is constant. So is, then, the acceleration of a joint on its own, and you
+# can say exactly where it will be. Take the target as zero:
+#
+# $$ \begin{pmatrix} q \\ \dot q \end{pmatrix}_{k+1} = A \begin{pmatrix} q \\ \dot q \end{pmatrix}_{k},
+# \qquad \tau_k = -k_p\,q_k - k_d\,\dot q_k . $$
+
+# %% question="sampled_joint"
+def sampled_joint(inertia, kp, kd, dt):
+    """One sampling period of a joint under a torque that is held meanwhile.
+
+    Args:
+        inertia: Of the joint, in [kg m^2].
+        kp: Spring, in [N m/rad].
+        kd: Damper, in [N m s/rad].
+        dt: Sampling period, in [s].
+
+    Returns:
+        The matrix that takes (angle, speed) from one sample to the next, shape (2, 2).
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import sampled_joint as answer
+
+    return answer(inertia, kp, kd, dt)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# The report's team had 8 N m/rad and 1.5 N m s/rad at the last wrist joint `w2`. Baxter's published data
+# give this joint 0.001 kg m²: a little disc, because the motor's rotor is left out. Behind its gears the
+# rotor turns many times faster than the joint, so to the joint it feels far heavier than it is (people
+# call this the *armature*). Nobody has published it; here it counts 0.05 kg m². Which of the two could the
+# team have had in its hands?
+
+# %%
+def never_sampled(inertia, kp, kd, dt):
+    """A stand-in: the loop as if the torque changed all the time."""
+    values, axes = np.linalg.eig(np.array([[0.0, 1.0], [-kp / inertia, -kd / inertia]]))
+    return np.real(axes @ np.diag(np.exp(values * dt)) @ np.linalg.inv(axes))
+
+
+my_sampled_joint = use("sampled_joint", sampled_joint, never_sampled)
+
+bare = lk.Model("left", lk.IDEAL).mass_matrix(ready)[6, 6]
+with_rotor = model.mass_matrix(ready)[6, 6]
+rates = np.geomspace(50.0, 2000.0, 200)
+plt.figure(figsize=(8, 3), layout="constrained")
+radius = {}
+discs = ("the disc alone", bare, "-"), ("with its rotor", with_rotor, "--")
+for name, inertia, style in discs:
+    largest = [np.abs(np.linalg.eigvals(my_sampled_joint(inertia, 8.0, 1.5, 1 / r))).max() for r in rates]
+    plt.loglog(rates, largest, style, label=f"{name}, {inertia:.3f} kg m²")
+    radius[name] = np.interp(200.0, rates, largest)
+plt.axhline(1.0, color="0.5", linewidth=1)
+plt.axvline(200.0, color="0.5", linewidth=1, linestyle=":")
+plt.xlabel("how often the torque is computed [Hz]")
+plt.ylabel("largest |eigenvalue|")
+plt.legend(frameon=False)
+lk.plotting.show(
+    "Joint w2 with a spring of 8 N m/rad and a damper of 1.5 N m s/rad; above 1 it blows up. At 200 Hz: "
+    + ", ".join(f"{name} {x:.2f}" for name, x in radius.items())
+    + "."
+)
+
+# %% [markdown]
+# Does the arm agree? Springs and dampers at every joint, at 200 Hz, on the arm without rotors and on the
+# one with them. `lk.run` notices when an arm runs away and says where it began.
+
+# %%
+kp_report = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
+springs = lk.control.springs(kp_report, [10.0, 10.0, 5.0, 5.0, 4.0, 1.5, 1.5])
+for armature in (0.0, 0.05):
+    plant = replace(carries_itself, name=f"armature {armature:g}", armature=armature)
+    try:
+        log = stay(plant, springs, 1.0, q0=ready + 0.02)
+        print(f"{plant.name}: it holds,\n  {lk.metrics.summary(log)}")
+    except lk.errors.Diverged as error:
+        print(f"{plant.name}: {error}".replace("; ", ";\n  "))
+
+# %% [markdown]
+# This is why every simulated Baxter that is driven by torques needs rotors in its data, though the data
+# sheet has none.
+#
+# ## Gravity on the real robot, and why nobody could tell
+#
+# For years teams of this lab fought with gravity. One wrote a formula that came to 3 % of the true
+# weight, one to minus 10 %, a third to minus 96 %. The staff scaled the model's by 0.075, another year by
+# 0.01, "because it seems quite wrong". How could so different answers pass?
+#
+# Measure it. Hold the arm in rest poses with springs and dampers and write down the torques that *you*
+# command, once it rests. If you have to carry the weight, they are $g(q)$, and the factor between the two
+# is 1.
+
+# %% question="gravity_factor"
+def gravity_factor(tau_hold, gravity_model):
+    """The factor by which the model's gravity explains the torques that hold the arm.
+
+    Args:
+        tau_hold: Torques commanded at rest in N poses, shape (N, 7) in [N m].
+        gravity_model: The model's gravity in the same poses, shape (N, 7) in [N m].
+
+    Returns:
+        The factor, a number, by least squares.
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import gravity_factor as answer
+
+    return answer(tau_hold, gravity_model)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Twice the same eight poses: once with the arm's own compensation suppressed, as Rethink's manual
+# explains, and once as Baxter comes out of the box. Both have its friction and its noise.
+
+# %%
+def look_at_one_joint(tau_hold, gravity_model):
+    """A stand-in: the slope in joint s1 alone, between the lightest and the heaviest pose."""
+    g, tau = np.asarray(gravity_model)[:, 1], np.asarray(tau_hold)[:, 1]
+    return float((tau[g.argmax()] - tau[g.argmin()]) / (g.max() - g.min()))
+
+
+my_gravity_factor = use("gravity_factor", gravity_factor, look_at_one_joint)
+
+holding = np.diag(model.mass_matrix(ready))
+holding = lk.control.springs(50.0 * holding, 14.0 * holding)
+
+
+def rest_torques(plant, poses=8, seed=1):
+    """What the springs command at rest, and the model's gravity there, shape (poses, 7) each."""
+    random = np.random.default_rng(seed)
+    tau, g = [], []
+    shown = lk.plotting.progress(f"holding {poses} poses, plant {plant.name}", poses)
+    with lk.Arm("left", plant, seed) as arm:
+        for k, q in enumerate(ready + random.uniform(-0.4, 0.4, (poses, 7))):
+            arm.reset(q)
+            log = lk.run(arm, lk.Hold(q, 1.2), holding)
+            tau.append(log.command[-20:].mean(axis=0))
+            g.append(model.gravity(log.q[-1]))
+            shown(k + 1)
+    return np.array(tau), np.array(g)
+
+
+suppressed = replace(lk.BAXTER, name="suppressed", gravity_compensation=False)
+plt.figure(figsize=(5, 3.6), layout="constrained")
+factors = {}
+for plant, mark in ((suppressed, "o"), (lk.BAXTER, "x")):
+    tau, g = rest_torques(plant)
+    factors[plant.name] = my_gravity_factor(tau, g)
+    label = f"{plant.name}: factor {factors[plant.name]:+.3f}"
+    plt.plot(g.ravel(), tau.ravel(), mark, mfc="none", label=label)
+plt.xlabel("the model's gravity [N m]")
+plt.ylabel("torque commanded at rest [N m]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    "Torques commanded at rest over the model's gravity, seven joints in eight poses. The factor is "
+    + " and ".join(f"{x:+.3f} ({name})" for name, x in factors.items())
+    + "."
+)
+
+# %% [markdown]
+# The right factor on Baxter is nought. Not 0.075, not 0.01, and not 1: the arm does it already. Now try
+# the factors that people used, on a circle, on an arm with Baxter's friction.
+
+# %%
+tip = model.pose(ready)[:3, 3]
+sixteen_centimetres = lk.Circle(tip, tip + [0.0, -0.08, -0.2])
+circle = model.joint_trajectory(lk.Trajectory(sixteen_centimetres, lk.Quintic(4.0)), ready)
+
+
+def drive(plant, controller, target=circle, seed=1):
+    with lk.Arm("left", plant, seed, q0=ready) as arm:
+        return lk.run(arm, target, controller)
+
+
+def adds_gravity(factor):
+    def controller(state, target):
+        return lk.JointTorque(holding(state, target).value + factor * model.gravity(state.q))
+
+    return controller
+
+
+print("factor   RMS error of the tip")
+for factor in (-0.03, 0.0, 0.01, 0.03, 0.075, 0.3, 1.0):
+    log = drive(lk.BAXTER, adds_gravity(factor))
+    print(f"{factor:6.3f}   {lk.metrics.summary(log).rms_mm:6.1f} mm")
+
+# %% [markdown]
+# From -0.03 to 0.03 little changes: a newton metre more or less at the shoulder drowns in a
+# newton metre of friction. Nobody plotted a torque against a model, so wrong and right looked alike, and
+# the one factor that could not be overlooked, the true one, looked worst of all.
+#
+# ## Gains that serve
+#
+# Time to choose gains for a real arm. This one publishes its state 100 times a second, up to 14 ms late,
+# with noise; it has friction; and somebody may have put something into its gripper. It carries its own
+# weight, but not that of the load.
+#
+# Play first. Here both gains are the same for all seven joints, on a slow line. Can you find any pair
+# that follows well and does not buzz? Watch the error of the *speed*, that is where buzzing shows.
+
+# %%
+slow_line = model.joint_trajectory(
+    lk.Trajectory(lk.Line(tip, tip + [0.08, -0.12, 0.08]), lk.Quintic(3.0)), ready
+)
+
+
+def same_gains_everywhere(kp, kd):
+    figure, ax = plt.subplots(figsize=(7, 2.6), layout="constrained")
+    try:
+        log = drive(lk.BAXTER, lk.control.springs(kp, kd), slow_line)
+    except lk.errors.Diverged as error:
+        log = error.log
+    error = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
+    ax.plot(log.t, error)
+    ax.set_xlabel("time [s]")
+    ax.set_ylabel("error [mm]")
+    return figure, f"kp = {kp:g} N m/rad, kd = {kd:g} N m s/rad everywhere: {lk.metrics.summary(log)}."
+
+
+dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0, 40.0, 8.0))
+
+# %% [markdown]
+# The shoulder wants more, the wrist cannot bear it. Your gains may differ from joint to joint, and the
+# model can tell you how. The rest is a frequency, and that is for you to find: too low, and friction and
+# load win; too high, and the arm acts on old news.
+#
+# The law is the simplest there is, `lk.control.springs(kp, kd)`: springs and dampers, no model. The
+# point is the gains. They are tried on the slow line, then on quicker tours, with a load, and on an arm
+# that is let go a tenth of a radian off in every joint: it must come to rest.
+
+# %% question="choose_gains"
+def choose_gains(model):
+    """Springs and dampers that serve on any tour, at any speed, with up to 1 kg in the gripper.
+
+    Args:
+        model: lk.Model of a Baxter arm, left or right, with an empty gripper.
+
+    Returns:
+        (kp, kd), each shape (7,) or one number, in [N m/rad] and [N m s/rad].
+    """
+    ### BEGIN SOLUTION
+    from solutions.torque_control.answers import choose_gains as answer
+
+    return answer(model)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Where do you stand? Your gains, made softer and stiffer by a factor, on the three occasions. The factor
+# scales the frequency: springs go with its square, dampers with the factor itself. (If your gains are not
+# ready, those of Rethink's own example stand in; they were made to be soft.)
+
+# %%
+def rethinks_example(model):
+    """The joint springs of Rethink's own example."""
+    return np.array([10.0, 15.0, 5.0, 5.0, 3.0, 2.0, 1.5]), 0.1 * np.ones(7)
+
+
+my_choose_gains = use("choose_gains", choose_gains, rethinks_example)
+
+loaded = replace(lk.BAXTER, name="with 1 kg", payload=1.0)
+occasions = (
+    ("slow line", lk.BAXTER, slow_line),
+    ("circle", lk.BAXTER, circle),
+    ("circle, 1 kg", loaded, circle),
+)
+steps = np.array([0.5, 0.75, 1.0, 1.25, 1.6, 2.0])
+kp, kd = (np.asarray(gain) for gain in my_choose_gains(model))
+plt.figure(figsize=(7, 3.2), layout="constrained")
+yours = []
+shown = lk.plotting.progress("eighteen runs", len(occasions) * len(steps))
+for (name, plant, target), style in zip(occasions, ("-", "--", "-.")):
+    errors = []
+    for x in steps:
+        try:
+            log = drive(plant, lk.control.springs(x**2 * kp, x * kd), target)
+        except lk.errors.Diverged as error:
+            log = error.log
+        errors.append(lk.metrics.summary(log).rms_mm)
+        shown(len(yours) * len(steps) + len(errors))
+    plt.plot(steps, errors, style, marker="o", mfc="none", label=name)
+    yours.append(f"{name} {errors[2]:.1f} mm")
+plt.axvline(1.0, color="0.5", linewidth=1)
+plt.yscale("log")
+plt.yticks([3, 5, 10, 20, 50, 100], ["3", "5", "10", "20", "50", "100"])
+plt.minorticks_off()
+plt.xlabel("frequency, as a share of yours")
+plt.ylabel("RMS error [mm]")
+plt.legend(frameon=False)
+lk.plotting.show(f"The error over the stiffness of your gains. Yours, in the middle: {', '.join(yours)}.")
+
+# %% [markdown]
+# Left of the lowest point friction and load win, right of it the old state. The lowest point is not the
+# best place to be: it lies beside an edge, and on a quicker tour, or with more noise, the edge comes
+# sooner. The tours on which your gains are marked are such. Stay a good step to its left.
+#
+# A last look at it moving: your springs with a kilogram in the gripper, and beside them computed torque,
+# which knows nothing of that kilogram either.
+
+# %%
+sprung = drive(loaded, lk.control.springs(kp, kd))
+ct = with_gains(my_computed_torque, lk.BAXTER, 120.0, 22.0, True)
+computed = drive(loaded, ct)
+print(f"springs: {lk.metrics.summary(sprung)}")
+print(f"computed torque: {lk.metrics.summary(computed)}")
+lk.replay.show(
+    lk.replay.motion_of(
+        sprung, "A circle with 1 kg in the gripper", label="springs", ghosts={"computed torque": computed}
+    )
+)
+
+# %% [markdown]
+# ## Hand in
+#
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 04_torque_control.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

@@ -1,0 +1,1 @@
+"""Notebook 04: controllers that command torques."""

@@ -1,0 +1,205 @@
+"""Hidden cases of notebook 04."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.course import Call, Loop, Tuned
+from labkit.course.problem import call
+from labkit.course.question import Case
+
+from .answers import choose_gains
+
+Random = np.random.Generator
+
+
+def _angles(random: Random, model: lk.Model) -> Any:
+    robot = model.robot
+    spread = 0.3 * np.minimum(robot.ready - robot.lower, robot.upper - robot.ready)
+    return robot.ready + random.uniform(-1.0, 1.0, 7) * spread
+
+
+def _model(random: Random) -> lk.Model:
+    return lk.Model(random.choice(["left", "right"]), lk.BAXTER)
+
+
+def _law(
+    random: Random, *, ddq: float, speed: float, wanted: float, compensates: bool | None
+) -> Call:
+    """A state and a target near it, as quick as is said, in [rad/s^2] and [rad/s]."""
+    model = _model(random)
+    q = _angles(random, model)
+    e = random.uniform(0.03, 0.15, 7) * random.choice([-1.0, 1.0], 7)
+    state = lk.State(float(random.uniform(0.0, 5.0)), q, speed * random.uniform(-1.0, 1.0, 7))
+    target = lk.Sample(
+        q + e, wanted * random.uniform(-1.0, 1.0, 7), ddq * random.uniform(-1.0, 1.0, 7)
+    )
+    kp, kd = random.uniform(5.0, 200.0, 7), random.uniform(1.0, 40.0, 7)
+    flag = bool(random.integers(2)) if compensates is None else compensates
+    return call(state, target, model, kp=kp, kd=kd, arm_compensates=flag)
+
+
+def at_rest(random: Random) -> Iterator[Call]:
+    """At rest, off the target, the arm carrying itself."""
+    for _ in range(2):
+        yield _law(random, ddq=0.0, speed=0.0, wanted=0.0, compensates=True)
+
+
+def weight(random: Random) -> Iterator[Call]:
+    """At rest, with the switch both ways."""
+    for flag in (False, True, False):
+        yield _law(random, ddq=0.0, speed=0.0, wanted=0.0, compensates=flag)
+
+
+def speeding_up(random: Random) -> Iterator[Call]:
+    """A target that begins to move."""
+    for _ in range(3):
+        yield _law(random, ddq=3.0, speed=0.0, wanted=0.0, compensates=True)
+
+
+def moving(random: Random) -> Iterator[Call]:
+    """An arm and a target, each at a speed of its own."""
+    for _ in range(3):
+        yield _law(random, ddq=0.0, speed=1.5, wanted=1.5, compensates=True)
+
+
+def all_at_once(random: Random) -> Iterator[Call]:
+    """Everything."""
+    for _ in range(5):
+        yield _law(random, ddq=3.0, speed=1.5, wanted=1.5, compensates=None)
+
+
+def _tour(random: Random, side: Any) -> tuple[lk.Model, Any]:
+    """A circle of the tip in some place, as joint angles."""
+    model = lk.Model(side, lk.BAXTER)
+    q0 = model.robot.ready
+    p = model.pose(q0)[:3, 3]
+    inwards = -1.0 if side == "left" else 1.0
+    centre = p + [random.uniform(-0.03, 0.03), inwards * random.uniform(0.08, 0.11), -0.2]
+    schedule = lk.Quintic(random.uniform(3.6, 4.4))
+    return model, model.joint_trajectory(
+        lk.Trajectory(lk.Circle(p, centre), schedule), q0, samples=33
+    )
+
+
+def _off(random: Random, q: Any, most: float) -> Any:
+    return q + most * random.choice([-1.0, 1.0], 7)
+
+
+def augmented_runs(random: Random) -> Iterator[Case]:
+    """From an offset, the other arm too."""
+    side: Any = random.choice(["left", "right"])
+    model = lk.Model(side, lk.Plant(armature=0.05))
+    _, tour = _tour(random, side)
+    given = {"model": model, "kp": 60.0, "kd": 15.0, "arm_compensates": False}
+    q0 = _off(random, model.robot.ready, 0.06)
+    yield Loop(tour, given, side, model.plant, q0=q0, settle=2.0, expected={"rms_mm": 5.0})
+
+
+def computed_runs(random: Random) -> Iterator[Case]:
+    """From an offset, the other arm too."""
+    side: Any = random.choice(["left", "right"])
+    model = lk.Model(side, lk.Plant(armature=0.05))
+    _, tour = _tour(random, side)
+    given = {"model": model, "kp": 100.0, "kd": 20.0, "arm_compensates": False}
+    q0 = _off(random, model.robot.ready, 0.06)
+    yield Loop(tour, given, side, model.plant, q0=q0, settle=1.0, expected={"rms_mm": 0.3})
+
+
+def gains(random: Random) -> Iterator[Call]:
+    """Other frequencies and ratios."""
+    for _ in range(4):
+        yield call(random.uniform(0.2, 8.0), random.uniform(0.2, 2.0))
+
+
+def gains_by_joint(random: Random) -> Iterator[Call]:
+    """A frequency for each joint."""
+    yield call(random.uniform(0.2, 8.0, 7), random.uniform(0.2, 2.0))
+    yield call(random.uniform(0.2, 8.0, 7), random.uniform(0.2, 2.0, 7))
+
+
+def joints(random: Random) -> Iterator[Call]:
+    """Other joints, heavy and light."""
+    for _ in range(4):
+        m, w = 10.0 ** random.uniform(-3.0, 0.5), random.uniform(3.0, 40.0)
+        yield call(m, m * w * w, m * 2.0 * w * random.uniform(0.3, 1.5), 0.005)
+
+
+def slow_samples(random: Random) -> Iterator[Call]:
+    """Rates at which a joint is barely stable, or no longer."""
+    for _ in range(4):
+        m, w = 10.0 ** random.uniform(-3.0, 0.5), random.uniform(20.0, 80.0)
+        yield call(m, m * w * w, m * 2.0 * w, random.uniform(0.01, 0.04))
+
+
+def _held(random: Random, factor: float, noise: float, poses: int) -> Call:
+    model = lk.Model("left", lk.BAXTER)
+    g = np.array([model.gravity(_angles(random, model)) for _ in range(poses)])
+    return call(factor * g + noise * random.standard_normal(g.shape), g)
+
+
+def clean_poses(random: Random) -> Iterator[Call]:
+    """Torques without noise."""
+    yield _held(random, random.uniform(0.2, 1.5), 0.0, 12)
+
+
+def noisy_poses(random: Random) -> Iterator[Call]:
+    """Torques with noise, more and fewer poses."""
+    for poses in (6, 12, 30):
+        yield _held(random, random.uniform(0.3, 1.5), 1.0, poses)
+
+
+def no_weight_poses(random: Random) -> Iterator[Call]:
+    """Torques that have nothing to do with gravity, or the sign turned."""
+    for factor in (0.0, random.uniform(-1.0, -0.5)):
+        yield _held(random, factor, 0.6, 12)
+
+
+def tuned(random: Random, side: Any, payload: float) -> Tuned:
+    """A tour whose limits are twice what the answer's gains leave, three times for the speed."""
+    model, tour = _tour(random, side)
+    loop = Loop(
+        tour, side=side, plant=replace(lk.BAXTER, payload=payload), seed=int(random.integers(1000))
+    )
+    left = loop.measured(Tuned((model,), loop).ask(choose_gains))
+    limits = {
+        "rms_mm": round(2.0 * left["rms_mm"], 1),
+        "rms_velocity_mm_s": round(2.8 * left["rms_velocity_mm_s"]),
+    }
+    return Tuned((model,), loop, limits)
+
+
+AT_REST = {"max_mm": 20.0, "rms_velocity_mm_s": 15.0}
+"""Of an arm that was let go 0.1 rad off in every joint, 0.8 s later and from then on."""
+
+
+def back(model: lk.Model, off: Any) -> Loop:
+    """Back to a place from ``off``, (7,) in [rad]."""
+    q = model.robot.ready
+    return Loop(
+        lk.Hold(q, 2.0), side=model.robot.side, plant=lk.BAXTER, q0=q + off, settle=0.8, seed=1
+    )
+
+
+def returns(random: Random) -> Iterator[Case]:
+    """From another side, of either arm."""
+    model = _model(random)
+    q = model.robot.ready + random.uniform(-0.15, 0.15, 7)
+    off = 0.1 * random.choice([-1.0, 1.0], 7)
+    loop = replace(back(model, off), target=lk.Hold(q, 2.0), q0=q + off)
+    yield Tuned((model,), loop, AT_REST)
+
+
+def quick_tours(random: Random) -> Iterator[Case]:
+    """A quicker tour of one arm or the other."""
+    yield tuned(random, random.choice(["left", "right"]), 0.0)
+
+
+def loaded_tours(random: Random) -> Iterator[Case]:
+    """With something in the gripper."""
+    yield tuned(random, random.choice(["left", "right"]), random.uniform(0.7, 1.0))

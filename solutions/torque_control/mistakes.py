@@ -1,0 +1,448 @@
+"""What people write in notebook 04 instead."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+
+from . import answers as right
+
+
+def actual_minus_target(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """The textbook's error, actual minus target, with the other textbook's plus in front."""
+    return right.augmented_pd(state, target, model, kp=-kp, kd=-kd, arm_compensates=arm_compensates)
+
+
+def always_carries(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """Adds the weight although the arm carries it already."""
+    return right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=False)
+
+
+def never_carries(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """Leaves the weight out although nobody carries it."""
+    return right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=True)
+
+
+def own_speed_in_coriolis(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """C times the arm's own speed, as the report's equation 18 has it."""
+    q, dq = state.q, state.dq
+    tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+    return lk.JointTorque(tau.value + model.coriolis(q, dq) @ (dq - target.velocity))
+
+
+def no_motion_terms(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """Springs and dampers alone."""
+    tau = kp * (target.position - state.q) + kd * (target.velocity - state.dq)
+    return lk.JointTorque(tau if arm_compensates else tau + model.gravity(state.q))
+
+
+def damps_the_motion(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """Brakes the arm's own speed, not the difference to the wanted one."""
+    tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+    return lk.JointTorque(tau.value - kd * target.velocity)
+
+
+def model_at_the_target(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """M, C and g where the arm should be, not where it is."""
+    there = lk.State(state.t, target.position, state.dq)
+    at_rest = target._replace(position=target.position)
+    tau = right.augmented_pd(there, at_rest, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+    return lk.JointTorque(tau.value + kp * (target.position - state.q))
+
+
+def the_reports_gravity(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """M J^T (0, 0, 0.981, 0, 0, 0): the report's gravity, which is no torque."""
+    q = state.q
+    tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=True).value
+    if not arm_compensates:
+        tau = tau + model.mass_matrix(q) @ model.tip_jacobian(q)[2] * 0.981
+    return lk.JointTorque(tau)
+
+
+@dataclass(frozen=True)
+class AugmentedLaw:
+    """The augmented law with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the error of the angles.
+        de: Of the error of the speeds.
+        coriolis: Of C.
+        weight: Of g.
+        beside: Of what stands beside the diagonal of M.
+        diagonal: Of the diagonal of M.
+        switch: Whether the switch is read the other way.
+        swapped: Whether kp and kd are.
+        at_target: Whether C is that of the target's speed.
+    """
+
+    e: float = 1.0
+    de: float = 1.0
+    coriolis: float = 1.0
+    weight: float = 1.0
+    beside: float = 1.0
+    diagonal: float = 1.0
+    switch: bool = False
+    swapped: bool = False
+    at_target: bool = False
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.Sample,
+        model: lk.Model,
+        *,
+        kp: Any,
+        kd: Any,
+        arm_compensates: bool,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq, dq_d = state.q, state.dq, target.velocity
+        kp, kd = (kd, kp) if self.swapped else (kp, kd)
+        M = model.mass_matrix(q)
+        M = self.beside * M + (self.diagonal - self.beside) * np.diag(np.diag(M))
+        C = self.coriolis * model.coriolis(q, dq_d if self.at_target else dq)
+        tau = M @ target.acceleration + C @ dq_d
+        tau = tau + kp * self.e * (target.position - q) + kd * self.de * (dq_d - dq)
+        if arm_compensates == self.switch:
+            tau = tau + self.weight * model.gravity(q)
+        return lk.JointTorque(tau)
+
+
+@dataclass(frozen=True)
+class ComputedLaw:
+    """Computed torque with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Of the error of the angles.
+        de: Of the error of the speeds.
+        coriolis: Of C.
+        power: Of M; -1 is its inverse.
+        drift: Of the Coriolis torques as if they were an acceleration.
+        switch: Whether the switch is read the other way.
+        swapped: Whether kp and kd are.
+        twice: Whether the weight is added to one that holds it.
+    """
+
+    e: float = 1.0
+    de: float = 1.0
+    coriolis: float = 1.0
+    power: int = 1
+    drift: float = 0.0
+    switch: bool = False
+    swapped: bool = False
+    twice: bool = False
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.Sample,
+        model: lk.Model,
+        *,
+        kp: Any,
+        kd: Any,
+        arm_compensates: bool,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq = state.q, state.dq
+        kp, kd = (kd, kp) if self.swapped else (kp, kd)
+        C = model.coriolis(q, dq) @ dq
+        a = target.acceleration + kp * self.e * (target.position - q)
+        a = a + kd * self.de * (target.velocity - dq) + self.drift * C
+        tau = np.linalg.matrix_power(model.mass_matrix(q), self.power) @ a + self.coriolis * C
+        times = float(arm_compensates == self.switch) + float(self.twice)
+        return lk.JointTorque(tau + times * model.gravity(q))
+
+
+def gains_inside(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """Computed torque where the augmented law is asked."""
+    return right.computed_torque(
+        state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates
+    )
+
+
+def gains_outside(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """The gains after M: every joint answers in its own way."""
+    q, dq = state.q, state.dq
+    tau = right.computed_torque(
+        state, target, model, kp=0.0, kd=0.0, arm_compensates=arm_compensates
+    ).value
+    return lk.JointTorque(tau + kp * (target.position - q) + kd * (target.velocity - dq))
+
+
+def everything_at_the_target(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """M, C and g at the target's angles and speeds."""
+    q, dq = target.position, target.velocity
+    ddq = target.acceleration + kp * (q - state.q) + kd * (dq - state.dq)
+    tau = model.mass_matrix(q) @ ddq + model.coriolis(q, dq) @ dq
+    return lk.JointTorque(tau if arm_compensates else tau + model.gravity(q))
+
+
+def carries_twice(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """`Model.bias` holds the gravity already, and the switch is forgotten."""
+    return right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=False)
+
+
+def weightless(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """No gravity, whoever carries it."""
+    return right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=True)
+
+
+def targets_speed_in_coriolis(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """C dq_d, which belongs to the augmented law."""
+    q, dq = state.q, state.dq
+    tau = right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+    return lk.JointTorque(tau.value + model.coriolis(q, dq) @ (target.velocity - dq))
+
+
+def no_target_acceleration(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """The target's acceleration left out."""
+    slow = target._replace(acceleration=np.zeros(7))
+    return right.computed_torque(state, slow, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
+
+
+def runs_away(
+    state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
+) -> lk.JointTorque:
+    """The error's sign turned."""
+    return right.computed_torque(
+        state, target, model, kp=-kp, kd=-kd, arm_compensates=arm_compensates
+    )
+
+
+def without_the_two(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Takes zeta w for kd: half the damping."""
+    kp, kd = right.gains_for(frequency, damping_ratio)
+    return kp, kd / 2.0
+
+
+def hertz_as_radians(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Takes the frequency for an angular one."""
+    return right.gains_for(frequency / (2.0 * np.pi), damping_ratio)
+
+
+def other_way_round(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Gives (kd, kp)."""
+    kp, kd = right.gains_for(frequency, damping_ratio)
+    return kd, kp
+
+
+def root_as_gain(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Takes w for kp: forgets the square."""
+    kp, kd = right.gains_for(frequency, damping_ratio)
+    return np.sqrt(kp), kd
+
+
+def damping_is_the_ratio(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Takes the damping ratio itself for the gain."""
+    kp, _ = right.gains_for(frequency, damping_ratio)
+    return kp, damping_ratio * np.ones_like(kp)
+
+
+def square_of_the_frequency_alone(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """2 pi f^2: the square without the brackets."""
+    _, kd = right.gains_for(frequency, damping_ratio)
+    return 2.0 * np.pi * frequency**2, kd
+
+
+def divided_by_turns(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Divides by 2 pi where it multiplies."""
+    return right.gains_for(frequency / (2.0 * np.pi) ** 2, damping_ratio)
+
+
+def stiffness_for_frequency(frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+    """Takes kp for w in kd = 2 zeta w."""
+    kp, _ = right.gains_for(frequency, damping_ratio)
+    return kp, 2.0 * damping_ratio * kp
+
+
+def not_a_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """The matrix of the differential equation."""
+    return np.array([[0.0, 1.0], [-kp / inertia, -kd / inertia]])
+
+
+def on_its_side(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Columns for rows."""
+    return right.sampled_joint(inertia, kp, kd, dt).T
+
+
+def times_inertia(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Multiplies with the inertia instead of dividing."""
+    return right.sampled_joint(1.0 / inertia, kp, kd, dt)
+
+
+def gains_of_the_other(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Kp on the speed and kd on the angle."""
+    return right.sampled_joint(inertia, kd, kp, dt)
+
+
+def second_order_series(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """I + A dt + A^2 dt^2 / 2: a loop that is never sampled, nearly."""
+    A = dt * not_a_step(inertia, kp, kd, dt)
+    return np.eye(2) + A + A @ A / 2.0
+
+
+def half_forgotten(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """The damper moves the speed within the step, but not the angle."""
+    A = np.array(right.sampled_joint(inertia, kp, kd, dt))
+    A[0, 1] = dt
+    return A
+
+
+def implicit_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Backward Euler: stable whatever the gains."""
+    return np.linalg.inv(np.eye(2) - dt * not_a_step(inertia, kp, kd, dt))
+
+
+def euler_step(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """I + A dt: the angle goes on at the old speed."""
+    return np.array([[1.0, dt], [-kp * dt / inertia, 1.0 - kd * dt / inertia]])
+
+
+def torque_never_held(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """The exponential of the loop that is never sampled: stable whatever the gains."""
+    from scipy.linalg import expm
+
+    return expm(dt * np.array([[0.0, 1.0], [-kp / inertia, -kd / inertia]]))
+
+
+def new_speed_first(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Semi-implicit Euler: the new speed moves the angle."""
+    drive = np.array([-kp * dt / inertia, 1.0 - kd * dt / inertia])
+    return np.array([[1.0 + dt * drive[0], dt * drive[1]], drive])
+
+
+def pushes_away(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """The torque with the wrong sign."""
+    return right.sampled_joint(inertia, -kp, -kd, dt)
+
+
+def without_inertia(inertia: float, kp: float, kd: float, dt: float) -> Any:
+    """Takes torque for acceleration."""
+    return right.sampled_joint(1.0, kp, kd, dt)
+
+
+def mean_of_ratios(tau_hold: Any, gravity_model: Any) -> float:
+    """Each torque divided by the model's, then the mean."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return float(np.nanmean(np.asarray(tau_hold) / np.asarray(gravity_model)))
+
+
+def turned_sign(tau_hold: Any, gravity_model: Any) -> float:
+    """Takes the torque that holds the arm for the one that pulls it down."""
+    return -right.gravity_factor(tau_hold, gravity_model)
+
+
+def other_regression(tau_hold: Any, gravity_model: Any) -> float:
+    """Explains the model by the torques, and turns the result over."""
+    return float(np.sum(np.square(tau_hold)) / np.sum(np.asarray(tau_hold) * gravity_model))
+
+
+def with_an_offset(tau_hold: Any, gravity_model: Any) -> float:
+    """The slope of a line that need not go through the origin."""
+    return float(np.polyfit(np.ravel(gravity_model), np.ravel(tau_hold), 1)[0])
+
+
+def model_over_torque(tau_hold: Any, gravity_model: Any) -> float:
+    """The torques explain the model."""
+    return right.gravity_factor(gravity_model, tau_hold)
+
+
+def one_over_the_factor(tau_hold: Any, gravity_model: Any) -> float:
+    """The right fit, turned over."""
+    return 1.0 / right.gravity_factor(tau_hold, gravity_model)
+
+
+def mean_over_poses(tau_hold: Any, gravity_model: Any) -> float:
+    """A factor for each pose, and their mean."""
+    pairs = zip(np.asarray(tau_hold), np.asarray(gravity_model), strict=True)
+    return float(np.mean([right.gravity_factor(*pair) for pair in pairs]))
+
+
+def mean_over_joints(tau_hold: Any, gravity_model: Any) -> float:
+    """A factor for each joint, and their mean: a joint without load counts as much as any."""
+    pairs = zip(np.asarray(tau_hold).T, np.asarray(gravity_model).T, strict=True)
+    return float(np.nanmean([right.gravity_factor(*pair) for pair in pairs]))
+
+
+def what_is_missing(tau_hold: Any, gravity_model: Any) -> float:
+    """How far the factor is from 1."""
+    return right.gravity_factor(tau_hold, gravity_model) - 1.0
+
+
+def ratio_of_lengths(tau_hold: Any, gravity_model: Any) -> float:
+    """Lengths have no sign, and noise makes them longer."""
+    return float(np.linalg.norm(tau_hold) / np.linalg.norm(gravity_model))
+
+
+def ratio_of_sums(tau_hold: Any, gravity_model: Any) -> float:
+    """Torques of opposite sign cancel before they are compared."""
+    return float(np.sum(tau_hold) / np.sum(gravity_model))
+
+
+@dataclass(frozen=True)
+class Swings:
+    """Gains with which every joint swings alike.
+
+    Attributes:
+        w: How fast, in [rad/s].
+        zeta: Damping ratio.
+    """
+
+    w: float = 12.0
+    zeta: float = 1.0
+
+    def __call__(self, model: lk.Model) -> tuple[Any, Any]:
+        """The gains."""
+        inertia = np.diag(model.mass_matrix(model.robot.ready))
+        return self.w**2 * inertia, 2.0 * self.zeta * self.w * inertia
+
+
+def same_for_every_joint(model: lk.Model) -> Any:
+    """The gains of computed torque, as if every joint had the inertia of one."""
+    return 144.0, 24.0
+
+
+def pair_turned_round(model: lk.Model) -> Any:
+    """Gives (kd, kp): hardly a spring, and a damper stiffer than anything."""
+    kp, kd = Swings()(model)
+    return kd, kp
+
+
+def the_reports_gains(model: lk.Model) -> Any:
+    """Table 1 of the report: they were tuned with friction to hide in."""
+    kp = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
+    return kp, 5.0 * np.array([2.0, 2.0, 1.0, 1.0, 0.8, 0.3, 0.3])

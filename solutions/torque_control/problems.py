@@ -1,0 +1,820 @@
+"""What notebook 04 asks."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+import labkit as lk
+from labkit.course import Call, Close, Gains, Loop, Tuned
+from labkit.course.problem import Problem, Trial, Wrong, call
+
+from . import answers, hidden, mistakes, variants
+
+MODEL = lk.Model("left", lk.BAXTER)
+READY = MODEL.robot.ready
+TORQUE = Close(rtol=1e-6, atol=1e-6)
+KP = np.array([40.0, 40.0, 25.0, 25.0, 8.0, 8.0, 4.0])
+KD = np.array([10.0, 10.0, 6.0, 6.0, 2.0, 2.0, 1.0])
+OFF = np.array([0.1, -0.1, 0.1, 0.1, -0.1, 0.1, -0.1])
+SPEED = np.array([0.8, -0.5, 0.4, 1.0, -1.2, 0.9, 1.5])
+WANTED = np.array([0.2, 0.6, -0.7, 0.3, 1.0, -0.4, 0.5])
+PUSH = np.array([1.0, 2.0, -1.5, 1.0, 3.0, -2.0, 4.0])
+BARE = lk.Plant(name="ideal, with rotors", armature=0.05)
+
+
+def _law(ddq: float, speed: float, wanted: float, *, compensates: bool) -> Call:
+    target = lk.Sample(READY + OFF, wanted * WANTED, ddq * PUSH)
+    state = lk.State(0.0, READY, speed * SPEED)
+    return call(state, target, MODEL, kp=KP, kd=KD, arm_compensates=compensates)
+
+
+def _return(kp: float, kd: float, settle: float, most: float) -> Loop:
+    """Back to a place from 0.15 rad off in every joint: nothing but feedback can do that."""
+    model = lk.Model("left", BARE)
+    given = {"model": model, "kp": kp, "kd": kd, "arm_compensates": False}
+    return Loop(
+        lk.Hold(READY, 2.5),
+        given,
+        plant=BARE,
+        q0=READY + 1.5 * OFF,
+        settle=settle,
+        expected={"max_mm": most},
+    )
+
+
+HINTS_SWITCH = (
+    "Whoever carries the weight, it must be carried once: add model.gravity(state.q) only where "
+    "arm_compensates is False."
+)
+
+TERMS = (
+    Trial(
+        "who carries the weight",
+        (
+            _law(0.0, 0.0, 0.0, compensates=False),
+            _law(0.0, 0.0, 0.0, compensates=True),
+        ),
+        hidden.weight,
+        "the switch both ways",
+    ),
+    Trial(
+        "a target that speeds up",
+        (_law(1.0, 0.0, 0.0, compensates=True),),
+        hidden.speeding_up,
+    ),
+    Trial(
+        "an arm and a target at different speeds",
+        (_law(0.0, 1.0, 1.0, compensates=True),),
+        hidden.moving,
+        "an arm quicker or slower than its target",
+    ),
+    Trial(
+        "everything at once",
+        (_law(1.0, 1.0, 1.0, compensates=False), _law(1.0, 1.0, 1.0, compensates=True)),
+        hidden.all_at_once,
+        weight=3.0,
+    ),
+)
+"""One term of the law after another, for both forms of it."""
+
+AUGMENTED_PD = Problem(
+    name="augmented_pd",
+    points=4,
+    asks="Give the `lk.JointTorque` of the augmented PD law: the torque that the target's motion takes "
+    "(M times the target's acceleration, C times the target's speed, the weight if the arm does not "
+    "carry it itself), plus a spring `kp` and a damper `kd` at each joint. M, C and g are those of the "
+    "arm where it is.",
+    answer=answers.augmented_pd,
+    judge=TORQUE,
+    trials=(
+        Trial(
+            "at rest, off the target: the springs alone",
+            (_law(0.0, 0.0, 0.0, compensates=True),),
+            hidden.at_rest,
+            "both arms, any pose",
+            weight=0.0,
+        ),
+        *TERMS,
+        Trial(
+            "a run back to a place, from 0.15 rad off",
+            (_return(60.0, 15.0, 2.0, 8.0),),
+            hidden.augmented_runs,
+            "a circle, from an offset",
+        ),
+    ),
+    withheld=("labkit.control.springs",),
+    hints=(
+        "Write the error first: e = target.position - state.q, and its rate with the speeds. Then "
+        "the torque is a sum of four things: inertia, Coriolis, weight, springs and dampers.",
+        HINTS_SWITCH + " M is model.mass_matrix(state.q), C is model.coriolis(state.q, state.dq).",
+        "tau = M @ target.acceleration + C @ target.velocity + kp * e + kd * de, plus the weight or "
+        "not. Note which speed C is multiplied with, and that kp and kd stand outside M.",
+    ),
+    wrong=(
+        Wrong(
+            "the error turned round",
+            "The springs push the arm away from its target. Here e is target minus actual, and then "
+            "every gain comes with a plus.",
+            mistakes.actual_minus_target,
+            "Settle the sign of e once, aloud.",
+        ),
+        Wrong(
+            "the weight carried twice",
+            "The weight is added although the arm carries it already (arm_compensates is True): the "
+            "arm would rise.",
+            mistakes.always_carries,
+            "On Baxter the right factor for gravity is 0.",
+        ),
+        Wrong(
+            "the weight carried by nobody",
+            "Where arm_compensates is False nobody carries the weight: the arm would sag until the "
+            "springs are stretched far enough.",
+            mistakes.never_carries,
+            "A spring holds a weight only where it is stretched.",
+        ),
+        Wrong(
+            "C times the arm's own speed",
+            "The law that is proven stable has C times the *target's* speed; with the arm's own speed, "
+            "as in the report's equation 18, no theorem covers it. At low speed nobody notices.",
+            mistakes.own_speed_in_coriolis,
+            "MLS 4.53: C(q, dq) dq_d, so that the skew symmetry of dM - 2C does its work.",
+        ),
+        Wrong(
+            "springs and dampers alone",
+            "The torque that the motion itself takes is missing, so the arm lags until the springs "
+            "provide it.",
+            mistakes.no_motion_terms,
+            "Feed-forward does the work, feedback mends the rest.",
+        ),
+        Wrong(
+            "damps the motion, not the error",
+            "The damper brakes the arm's own speed, so it holds the arm back whenever the target "
+            "moves. It should brake the difference: target.velocity - state.dq.",
+            mistakes.damps_the_motion,
+            "The damper sits between the arm and the target, not between the arm and the wall.",
+        ),
+        Wrong(
+            "the model asked where the target is",
+            "M, C and g are those of the target's angles. The arm feels its inertia and its weight "
+            "where it is.",
+            mistakes.model_at_the_target,
+            "The physics happens at q, not at q_d.",
+        ),
+        Wrong(
+            "the report's gravity",
+            "M J' (0, 0, 0.981, ...) is no torque (look at its units), only the tip feels it, and it "
+            "comes to a few percent of the weight. Use model.gravity.",
+            mistakes.the_reports_gravity,
+            "Units would have told.",
+        ),
+        Wrong(
+            "the gains inside M",
+            "This is computed torque, which comes next. Here the springs act on the joints as they "
+            "are, outside M.",
+            mistakes.gains_inside,
+            "Two laws, two theorems: gains in N m/rad here, in 1/s² there.",
+        ),
+        Wrong(
+            "the springs turned round",
+            "Target minus actual, for the angles too: as it is, the springs push away.",
+            mistakes.AugmentedLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the dampers turned round",
+            "Target minus actual, for the speeds too: as it is, the dampers drive.",
+            mistakes.AugmentedLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the switch turned round",
+            "arm_compensates is True where the arm carries its own weight. Then the law adds none.",
+            mistakes.AugmentedLaw(switch=True),
+            "Say aloud who carries the weight.",
+        ),
+        Wrong(
+            "the weight taken off",
+            "g(q) is what the motors must give to hold the arm: it comes with a plus.",
+            mistakes.AugmentedLaw(weight=-1.0),
+            "g is on the left of the equation, with the motors on the right.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C times the target's speed is missing. At low speed nobody notices.",
+            mistakes.AugmentedLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "C of the target's speed",
+            "C is that of the arm where it is and as it moves, C(q, q̇). Only what it is "
+            "multiplied with is the target's.",
+            mistakes.AugmentedLaw(at_target=True),
+            "C(q, q̇) q̇_d: which speed stands where?",
+        ),
+        Wrong(
+            "no inertia",
+            "M times the target's acceleration is missing.",
+            mistakes.AugmentedLaw(beside=0.0, diagonal=0.0),
+            "A target that speeds up needs torque.",
+        ),
+        Wrong(
+            "only the diagonal of M",
+            "The joints shake each other: the numbers beside the diagonal matter.",
+            mistakes.AugmentedLaw(beside=0.0),
+            "M is a matrix, M @ ddq.",
+        ),
+        Wrong(
+            "gains swapped",
+            "kp belongs to the angles and kd to the speeds.",
+            mistakes.AugmentedLaw(swapped=True),
+            "Units tell: N m/rad, N m s/rad.",
+        ),
+    ),
+    variants=(variants.augmented_by_newton_euler, variants.augmented_in_a_list),
+)
+
+COMPUTED_TORQUE = Problem(
+    name="computed_torque",
+    points=4,
+    asks="Give the `lk.JointTorque` of computed torque: the acceleration that would let the error die "
+    "out as that of a damped spring, put through the arm's equation of motion. The weight is added "
+    "only if the arm does not carry it itself.",
+    answer=answers.computed_torque,
+    judge=TORQUE,
+    trials=(
+        Trial(
+            "at rest, off the target",
+            (_law(0.0, 0.0, 0.0, compensates=True),),
+            hidden.at_rest,
+            "both arms, any pose",
+            weight=0.0,
+        ),
+        *TERMS,
+        Trial(
+            "a run back to a place, from 0.15 rad off",
+            (_return(100.0, 20.0, 1.2, 0.3),),
+            hidden.computed_runs,
+            "a circle, from an offset",
+        ),
+    ),
+    hints=(
+        "Ask first for an acceleration: if the joints had it, the error would obey "
+        "ë + kd ė + kp e = 0. Which one is it?",
+        "ddq = target.acceleration + kd * de + kp * e. Then the torque for it is that of the "
+        "manipulator equation, at the arm's own q and dq. " + HINTS_SWITCH,
+        "tau = M @ ddq + C @ state.dq (+ g). model.inverse_dynamics(q, dq, ddq) gives M ddq + C dq + g "
+        "in one step; take g off again where the arm carries itself.",
+    ),
+    wrong=(
+        Wrong(
+            "the gains outside M",
+            "With the gains outside M every joint answers in its own way, for each has another "
+            "inertia. Put kp e and kd ė into the acceleration, before M is multiplied.",
+            mistakes.gains_outside,
+            "Computed torque: gains in 1/s², so they stand inside M.",
+        ),
+        Wrong(
+            "the model asked where the target is",
+            "M, C and g are taken at the target's angles and speeds. They cancel the arm's own only "
+            "where the arm is.",
+            mistakes.everything_at_the_target,
+            "What is to cancel must be evaluated at the same place.",
+        ),
+        Wrong(
+            "the weight carried twice",
+            "The weight is in although the arm carries it already. inverse_dynamics and bias hold g: "
+            "take it off where arm_compensates is True.",
+            mistakes.carries_twice,
+            "Know what a library call contains.",
+        ),
+        Wrong(
+            "the weight carried by nobody",
+            "Where arm_compensates is False the law has to add g(q).",
+            mistakes.weightless,
+            "Without it, e = g / (M kp) remains.",
+        ),
+        Wrong(
+            "C times the target's speed",
+            "C dq_d belongs to the augmented law. Here the arm's own Coriolis torque has to cancel, "
+            "and that is C times the arm's own speed.",
+            mistakes.targets_speed_in_coriolis,
+            "Cancel what is there: C(q, dq) dq.",
+        ),
+        Wrong(
+            "the target's acceleration left out",
+            "Without the target's acceleration the arm always comes too late. On a target that "
+            "stands still nobody notices.",
+            mistakes.no_target_acceleration,
+            "Feed-forward.",
+        ),
+        Wrong(
+            "the error turned round",
+            "The arm runs away from its target. Here e is target minus actual.",
+            mistakes.runs_away,
+            "Settle the sign of e once, aloud.",
+        ),
+        Wrong(
+            "the error of the angles turned round",
+            "Target minus actual, for the angles too.",
+            mistakes.ComputedLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the error of the speeds turned round",
+            "Target minus actual, for the speeds too: as it is, kd drives.",
+            mistakes.ComputedLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the switch turned round",
+            "arm_compensates is True where the arm carries its own weight. Then the law adds "
+            "none. (model.inverse_dynamics holds g already; take it off only where the arm "
+            "compensates.)",
+            mistakes.ComputedLaw(switch=True),
+            "Say aloud who carries the weight.",
+        ),
+        Wrong(
+            "the weight once too often",
+            "model.inverse_dynamics holds g already, and g is added to that.",
+            mistakes.ComputedLaw(twice=True),
+            "Know what a function holds before you add to it.",
+        ),
+        Wrong(
+            "no Coriolis torques",
+            "C times the arm's speed is missing. At low speed nobody notices.",
+            mistakes.ComputedLaw(coriolis=0.0),
+            "Small is not nought: try it fast.",
+        ),
+        Wrong(
+            "the Coriolis torques inside M",
+            "C q̇ is a torque already: it is added after M, not to the acceleration.",
+            mistakes.ComputedLaw(coriolis=0.0, drift=1.0),
+            "Units tell: N m and rad/s².",
+        ),
+        Wrong(
+            "the acceleration as a torque",
+            "The acceleration wanted must go through M to become a torque.",
+            mistakes.ComputedLaw(power=0),
+            "Units tell: N m and rad/s².",
+        ),
+        Wrong(
+            "the inverse of M",
+            "M turns an acceleration into a torque; its inverse does the opposite.",
+            mistakes.ComputedLaw(power=-1),
+            "Units tell: N m and rad/s².",
+        ),
+        Wrong(
+            "gains swapped",
+            "kp belongs to the angles and kd to the speeds.",
+            mistakes.ComputedLaw(swapped=True),
+            "Units tell: kp is in 1/s², kd in 1/s.",
+        ),
+    ),
+    variants=(variants.computed_by_newton_euler, variants.computed_by_bias),
+)
+
+GAINS_FOR = Problem(
+    name="gains_for",
+    points=2,
+    asks="The error shall obey ë + kd ė + kp e = 0. Give `(kp, kd)` so that it swings with a natural "
+    "`frequency` in Hz and a `damping_ratio`. Both may be numbers or arrays.",
+    answer=answers.gains_for,
+    judge=Close(parts=("kp", "kd")),
+    trials=(
+        Trial("1 Hz, critically damped", (call(1.0, 1.0),), weight=0.0),
+        Trial(
+            "other frequencies and ratios",
+            (call(2.0, 0.7), call(0.5, 1.5)),
+            hidden.gains,
+            "other numbers",
+        ),
+        Trial(
+            "a frequency for each joint",
+            (call(np.array([1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0]), 0.7),),
+            hidden.gains_by_joint,
+            "a ratio for each joint",
+        ),
+    ),
+    hints=(
+        "Compare with the equation of a damped spring, ë + 2 ζ ω ė + ω² e = 0. What is ω, in rad/s, "
+        "if the frequency is in Hz?",
+        "ω = 2π · frequency. Compare the two equations term by term.",
+        "kp = ω², kd = 2 · damping_ratio · ω; with arrays numpy does it for every joint.",
+    ),
+    wrong=(
+        Wrong(
+            "kd without the 2",
+            "The damping is half of what was asked. The standard form is ë + 2 ζ ω ė + ω² e = 0.",
+            mistakes.without_the_two,
+            "Critical damping is kd² = 4 kp.",
+        ),
+        Wrong(
+            "Hz taken for rad/s",
+            "A frequency in Hz counts whole turns: ω = 2π · frequency.",
+            mistakes.hertz_as_radians,
+            "Units: 1 Hz is 6.28 rad/s.",
+        ),
+        Wrong(
+            "(kd, kp)",
+            "The two came in the other order: kp first.",
+            mistakes.other_way_round,
+            "Table 1 of the report has the same slip, for the impedance controller.",
+        ),
+        Wrong(
+            "kp without the square",
+            "kp is in 1/s², so it is the square of ω.",
+            mistakes.root_as_gain,
+            "Units again.",
+        ),
+        Wrong(
+            "the damping ratio as a gain",
+            "The ratio has no unit, kd is in 1/s: it needs 2 ω beside it.",
+            mistakes.damping_is_the_ratio,
+            "A ratio compares with critical damping, 2 ω.",
+        ),
+        Wrong(
+            "the square of the frequency alone",
+            "kp is the square of the whole ω = 2πf, the 2π included.",
+            mistakes.square_of_the_frequency_alone,
+            "Brackets before powers.",
+        ),
+        Wrong(
+            "divided by 2π",
+            "ω is 2π times the frequency in Hz, not the frequency divided by 2π.",
+            mistakes.divided_by_turns,
+            "A turn is 2π radians: more radians than turns.",
+        ),
+        Wrong(
+            "kp in the place of ω",
+            "kd = 2 ζ ω, and ω is the root of kp.",
+            mistakes.stiffness_for_frequency,
+            "Units tell: kd is in 1/s.",
+        ),
+    ),
+    variants=(variants.gains_by_roots,),
+)
+
+SAMPLED_JOINT = Problem(
+    name="sampled_joint",
+    points=4,
+    asks="A joint of some `inertia` has angle q and speed q̇; its torque -kp q - kd q̇ is computed once "
+    "every `dt` seconds and held in between. Give the matrix of shape (2, 2) that takes (q, q̇) from one "
+    "sample to the next, exactly.",
+    answer=answers.sampled_joint,
+    judge=Close(rtol=1e-6, atol=1e-9),
+    trials=(
+        Trial(
+            "a joint of 0.5 kg m² at 200 Hz",
+            (call(0.5, 50.0, 10.0, 0.005),),
+            hidden.joints,
+            "heavy and light joints",
+            weight=0.0,
+        ),
+        Trial(
+            "a wrist without its rotor: 0.001 kg m²",
+            (call(0.001, 1.0, 0.2, 0.005), call(0.001, 1.0, 0.2, 0.001)),
+            hidden.slow_samples,
+            "rates that are too slow",
+        ),
+    ),
+    hints=(
+        "During one period the torque does not change, so the acceleration does not either. What are "
+        "angle and speed after dt at constant acceleration a?",
+        "q + dt q̇ + dt²/2 · a, and q̇ + dt · a. Now put a = -(kp q + kd q̇) / inertia and collect what "
+        "stands before q and before q̇.",
+        "First row: 1 - kp dt²/(2 inertia), dt - kd dt²/(2 inertia). Second row: -kp dt/inertia, "
+        "1 - kd dt/inertia.",
+    ),
+    wrong=(
+        Wrong(
+            "an Euler step, I + A dt",
+            "The angle moves on with the old speed for the whole period. That is an approximation; "
+            "with a held torque the exact step is as easy: the angle also gets dt²/2 times the "
+            "acceleration.",
+            mistakes.euler_step,
+            "A held torque makes the exact solution a parabola.",
+        ),
+        Wrong(
+            "a torque that is never held",
+            "That is the loop with the torque changing all the time. It is stable for all positive "
+            "gains, which is just what a sampled loop is not.",
+            mistakes.torque_never_held,
+            "exp(A_closed dt) samples a continuous loop; the loop itself is not sampled.",
+        ),
+        Wrong(
+            "the new speed moves the angle",
+            "The angle moves with the speed at the end of the period. It moves with the mean of the "
+            "old and the new one.",
+            mistakes.new_speed_first,
+            "Semi-implicit Euler is what a simulator does; here the exact answer is asked.",
+        ),
+        Wrong(
+            "the torque's sign",
+            "The torque pushes away from zero: it is -kp q - kd q̇.",
+            mistakes.pushes_away,
+            "Feedback against the error.",
+        ),
+        Wrong(
+            "torque taken for acceleration",
+            "The inertia plays no part: divide the torque by it.",
+            mistakes.without_inertia,
+            "The whole point is that the wrist has so little of it.",
+        ),
+        Wrong(
+            "the matrix of the differential equation",
+            "That gives the rates of angle and speed. Asked is where both are after dt.",
+            mistakes.not_a_step,
+            "At dt = 0 a step is the identity.",
+        ),
+        Wrong(
+            "the matrix on its side",
+            "Row by row: the first row gives the new angle, the second the new speed.",
+            mistakes.on_its_side,
+            "At rest, with no gains: q + dt q̇ is the first row.",
+        ),
+        Wrong(
+            "times the inertia",
+            "The acceleration is the torque divided by the inertia.",
+            mistakes.times_inertia,
+            "The heavier, the slower.",
+        ),
+        Wrong(
+            "gains swapped",
+            "kp belongs to the angle and kd to the speed.",
+            mistakes.gains_of_the_other,
+            "Columns: angle, speed.",
+        ),
+        Wrong(
+            "a series of the loop that is never sampled",
+            "I + A dt + (A dt)²/2 lets the torque change with the angle during the step. It is "
+            "held: only two terms of the angle, one of the speed, and nothing after.",
+            mistakes.second_order_series,
+            "What stands still during the step?",
+        ),
+        Wrong(
+            "the damper does not move the angle",
+            "The torque of the damper accelerates the joint from the first moment on: -kd dt²/(2 "
+            "inertia) belongs to the angle too.",
+            mistakes.half_forgotten,
+            "Both columns have both torques.",
+        ),
+        Wrong(
+            "an implicit step",
+            "That takes the torque from the end of the step, which no computer knows yet. It is "
+            "stable whatever the gains, and the arm is not.",
+            mistakes.implicit_step,
+            "A stable formula is no stable arm.",
+        ),
+    ),
+    variants=(variants.held_by_exponential, variants.held_in_lists),
+)
+
+_random = np.random.default_rng(4)
+_poses = READY + _random.uniform(-0.4, 0.4, (12, 7))
+_weights = np.array([MODEL.gravity(q) for q in _poses])
+_clean = call(0.7 * _weights, _weights)
+_noisy = call(0.9 * _weights + _random.standard_normal((12, 7)), _weights)
+_nothing = call(0.5 * _random.standard_normal((12, 7)), _weights)
+
+GRAVITY_FACTOR = Problem(
+    name="gravity_factor",
+    points=3,
+    asks="In N rest poses you read the torques that hold the arm, `tau_hold`, and compute the model's "
+    "`gravity_model`, both of shape (N, 7). Give the one factor by which the model's gravity explains "
+    "the torques best, in the sense of least squares.",
+    answer=answers.gravity_factor,
+    judge=Close(rtol=1e-6, atol=1e-9),
+    trials=(
+        Trial(
+            "12 poses without noise",
+            (_clean,),
+            hidden.clean_poses,
+            "other poses",
+            weight=0.0,
+        ),
+        Trial(
+            "12 poses with noise",
+            (_noisy,),
+            hidden.noisy_poses,
+            "more and fewer poses",
+        ),
+        Trial(
+            "torques that have nothing to do with gravity",
+            (_nothing,),
+            hidden.no_weight_poses,
+            "torques of the other sign",
+        ),
+    ),
+    hints=(
+        "One unknown k, and 7 N equations tau = k g. For which k is the sum of (tau - k g)² least?",
+        "Differentiate that sum by k and set it to zero: k is a fraction of two sums.",
+        "k = sum(tau * g) / sum(g * g), over all poses and joints. Joints that carry nothing count "
+        "for nothing, as they should.",
+    ),
+    wrong=(
+        Wrong(
+            "the mean of ratios",
+            "Joint s0 stands upright and carries nothing, so its ratio divides by zero, and in the "
+            "wrist the noise is divided by almost zero. Least squares weighs each equation by what it "
+            "knows.",
+            mistakes.mean_of_ratios,
+            "Never divide by a measurement that may be zero.",
+        ),
+        Wrong(
+            "the sign",
+            "gravity_model is the torque that holds the arm, the same as the motors give, and no "
+            "minus belongs between them.",
+            mistakes.turned_sign,
+            "g(q) is what the motors must give, not what the weight does.",
+        ),
+        Wrong(
+            "the regression the other way round",
+            "This explains the model by the torques. The noise is in the torques, and turned round it "
+            "makes the factor too large.",
+            mistakes.other_regression,
+            "Least squares is not symmetric: errors belong to the left side.",
+        ),
+        Wrong(
+            "a ratio of lengths",
+            "A length knows no sign and no direction: noise alone gives a factor, too.",
+            mistakes.ratio_of_lengths,
+            "Project, do not compare lengths.",
+        ),
+        Wrong(
+            "a ratio of sums",
+            "Torques of opposite sign cancel in the sums before they are compared.",
+            mistakes.ratio_of_sums,
+            "Sums of signed numbers lose what they stand for.",
+        ),
+        Wrong(
+            "a line with an offset",
+            "The slope of a line that need not go through the origin answers another question: "
+            "one factor, no offset, is asked.",
+            mistakes.with_an_offset,
+            "Which model is fitted?",
+        ),
+        Wrong(
+            "the torques explain the model",
+            "Asked is the factor of the model: divide by the model's squares, not the torques'.",
+            mistakes.model_over_torque,
+            "What explains what?",
+        ),
+        Wrong(
+            "one over the factor",
+            "tau = factor · g; yours is the g for one tau.",
+            mistakes.one_over_the_factor,
+            "What explains what?",
+        ),
+        Wrong(
+            "a mean over poses",
+            "A pose with little weight tells little, and counts here as much as any. Sum over all "
+            "joints and poses first.",
+            mistakes.mean_over_poses,
+            "Sum, then divide.",
+        ),
+        Wrong(
+            "a mean over joints",
+            "A joint without load tells nothing, and counts here as much as any. Sum over all "
+            "joints and poses first.",
+            mistakes.mean_over_joints,
+            "Sum, then divide.",
+        ),
+        Wrong(
+            "how far from 1",
+            "The factor itself is asked.",
+            mistakes.what_is_missing,
+            "1 is right, 0 is none.",
+        ),
+    ),
+    variants=(variants.factor_by_lstsq,),
+)
+
+_tip = MODEL.pose(READY)[:3, 3]
+_line = MODEL.joint_trajectory(
+    lk.Trajectory(lk.Line(_tip, _tip + [0.1, -0.15, 0.1]), lk.Quintic(5.0)), READY, samples=33
+)
+_circle = MODEL.joint_trajectory(
+    lk.Trajectory(lk.Circle(_tip, _tip + [0.0, -0.1, -0.2]), lk.Quintic(4.0)), READY, samples=33
+)
+
+CHOOSE_GAINS = Problem(
+    name="choose_gains",
+    points=3,
+    asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each a number or seven, for springs and dampers at "
+    "the joints of the `lk.BAXTER` arm (`lk.control.springs`, 200 Hz). They must serve on a slow line, "
+    "on quicker tours, and with up to a kilogram in the gripper that the model does not know of; and an "
+    "arm that is let go beside its target must come to rest there.",
+    answer=answers.choose_gains,
+    expected=lambda model: None,
+    judge=Gains(),
+    trials=(
+        Trial("two sets of gains", (call(MODEL),), weight=0.0),
+        Trial(
+            "they hold the arm on a slow line",
+            (Tuned((MODEL,), Loop(_line, plant=lk.BAXTER), {"rms_mm": 25.0}),),
+            weight=0.0,
+        ),
+        Trial(
+            "a quicker circle",
+            (
+                Tuned(
+                    (MODEL,),
+                    Loop(_circle, plant=lk.BAXTER),
+                    {"rms_mm": 17.6, "rms_velocity_mm_s": 75.0},
+                ),
+            ),
+            hidden.quick_tours,
+            "other tours and speeds, both arms",
+        ),
+        Trial(
+            "back to a place from 0.1 rad off, at rest after 0.8 s",
+            (Tuned((MODEL,), hidden.back(MODEL, OFF), hidden.AT_REST),),
+            hidden.returns,
+            "other places, both arms",
+            weight=3.0,
+        ),
+        Trial(
+            "a kilogram in the gripper",
+            (
+                Tuned(
+                    (MODEL,),
+                    Loop(_circle, plant=replace(lk.BAXTER, payload=1.0), seed=1),
+                    {"rms_mm": 44.0, "rms_velocity_mm_s": 75.0},
+                ),
+            ),
+            hidden.loaded_tours,
+            "other loads",
+        ),
+    ),
+    hints=(
+        "Let every joint swing alike: choose one frequency and one damping ratio, and multiply the "
+        "gains by each joint's inertia. Which inertia is on the diagonal of M.",
+        "Too soft, and friction and the load win. Too stiff, and the state, up to 14 ms old, comes too "
+        "late: stay well below one tenth of the 100 Hz at which it is published. Draw the error over "
+        "the frequency, between 0.5 and 5 Hz.",
+        "m = np.diag(model.mass_matrix(model.robot.ready)); about 2 Hz, so w = 2π·2; kp = m w², "
+        "kd = 2 m w.",
+    ),
+    wrong=(
+        Wrong(
+            "tuned on the slow line only",
+            "Good enough while little is asked. Friction, the quicker circle and the load stretch soft "
+            "springs three times as far as need be.",
+            mistakes.Swings(6.0),
+            "Gains that were tried on one motion are tuned to that motion.",
+        ),
+        Wrong(
+            "too stiff for an old state",
+            "The arm buzzes: it reacts to where it was 14 ms ago. Look at the error of the speed. A "
+            "loop must be slower than its news.",
+            mistakes.Swings(25.0),
+            "Delay times bandwidth must stay well below one.",
+        ),
+        Wrong(
+            "the same gains in every joint",
+            "A wrist joint has a fortieth of the shoulder's inertia: what is mild there is fierce "
+            "here. Multiply by each joint's inertia.",
+            mistakes.same_for_every_joint,
+            "N m/rad means something only beside kg m².",
+        ),
+        Wrong(
+            "the pair the other way round",
+            "kp first, then kd: as it stands there is hardly a spring, and a damper that shakes the "
+            "arm.",
+            mistakes.pair_turned_round,
+            "Table 1 of the report has the same slip.",
+        ),
+        Wrong(
+            "the report's gains",
+            "8 N m/rad at the shoulder: one newton metre of friction leaves an eighth of a radian. "
+            "The report's figures show just that.",
+            mistakes.the_reports_gains,
+            "Their plateaus are friction over kp.",
+        ),
+        Wrong(
+            "hardly a damper",
+            "Let go beside its target the arm swings for seconds; on a smooth tour nobody notices. "
+            "Critical damping is kd = 2 m ω, and less than half of that rings.",
+            mistakes.Swings(zeta=0.1),
+            "Test a damper with a jolt, not with a tour.",
+        ),
+        Wrong(
+            "no damper at all",
+            "A spring without a damper swings for ever, and with an old state it swings up.",
+            mistakes.Swings(zeta=0.0),
+            "Test a damper with a jolt, not with a tour.",
+        ),
+    ),
+    variants=(variants.ByFrequency(11.0, 0.8), variants.ByFrequency(13.0, 0.7), variants.by_hand),
+)
+
+PROBLEMS = (
+    AUGMENTED_PD,
+    COMPUTED_TORQUE,
+    GAINS_FOR,
+    SAMPLED_JOINT,
+    GRAVITY_FACTOR,
+    CHOOSE_GAINS,
+)

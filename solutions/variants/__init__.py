@@ -1,1 +1,0 @@
-"""Right answers written otherwise, which every check must accept: one module for each notebook."""

@@ -1,0 +1,449 @@
+# %% [markdown]
+# # 03 · Velocity control
+#
+# The arm knows where it should be at every moment. Now it must get there, although it starts somewhere
+# else, answers late and measures with noise. The controllers of this notebook command *speeds* of the
+# joints, and the motors see to it that they are kept. That is the gentlest way to drive an arm, and for
+# most tasks good enough.
+#
+# | | |
+# |---|---|
+# | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, orientations are compared by a product, twists are (v, w) |
+# | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and as Baxter's users found it (`lk.BAXTER`); trajectories; the model with its Jacobian |
+# | **You write** | two controllers, a damped inverse, motion that the tip does not feel |
+# | **Time** | about 4 hours · 20 points |
+#
+# Every cell runs from the start, solved or not: where your part is missing, a stand-in takes its place
+# and says so. After each stub a check tells you in words what it found. Only the functions are marked, so
+# play with everything else as you like.
+
+# %% setup=true
+import labkit as lk
+from labkit.course import check, hint, use
+
+lk.ready()
+
+# %% setup=true
+import matplotlib.pyplot as plt
+import numpy as np
+
+# %% [markdown]
+# ## Feed-forward and feedback
+#
+# A target that says how fast it moves makes half of the work easy: turn the joints at just that speed.
+# This is *feed-forward*. Were the arm perfect and its start exact, nothing else would be needed. As it
+# is not, every small error stays. So add something that pulls: *feedback*, in proportion to the error
+# (P) and to the rate of the error (D),
+#
+# $$ u = \dot q_d + K_p\,(q_d - q) + K_d\,(\dot q_d - \dot q) . $$
+#
+# Because feed-forward does so well on its own, it hides feedback that is broken, even one with the
+# wrong sign. So the check starts off the path, and with a target that stands still (Lynch and Park,
+# *Modern Robotics*, section 11.3).
+
+# %% question="joint_velocity_pd"
+def joint_velocity_pd(state, target, *, kp, kd):
+    """Joint speeds that follow a joint trajectory.
+
+    Args:
+        state: An lk.State: angles q in [rad] and speeds dq in [rad/s], shape (7,) each.
+        target: An lk.Sample of joint angles: position, velocity, acceleration, shape (7,) each.
+        kp: Gain on the error of the angles, a number or shape (7,), in [1/s].
+        kd: Gain on the error of the speeds, a number or shape (7,), without unit.
+
+    Returns:
+        An lk.JointVelocity of shape (7,), in [rad/s].
+    """
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import joint_velocity_pd as answer
+
+    return answer(state, target, kp=kp, kd=kd)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Here is Baxter with your controller, started a tenth of a radian off. If yours is not ready, the arm
+# runs on feed-forward alone, so you see what it lacks. Turn the dials: when does it get restless? Does D
+# help? (Nobody turns them when the notebook is graded; it then shows what they start with.)
+
+# %%
+def feedforward(state, target, **gains):
+    """The stand-in: the target's own speed, whatever the gains."""
+    return lk.JointVelocity(target.velocity)
+
+
+my_joint_velocity_pd = use("joint_velocity_pd", joint_velocity_pd, feedforward)
+
+ideal, baxter = lk.Arm("left", lk.IDEAL), lk.Arm("left", lk.BAXTER, seed=1)
+model, q0 = ideal.model, ideal.robot.ready
+off_the_path = q0 + 0.1 * np.array([1, -1, 1, 1, -1, 1, 1])
+reach = lk.Trajectory(lk.Line(q0, q0 + [0.6, 0.2, 0.0, -0.4, 0.3, 0.2, 0.4]), lk.Quintic(2.0))
+
+
+def with_gains(kp, kd):
+    """Your joint controller with its gains filled in."""
+
+    def controller(state, target):
+        return my_joint_velocity_pd(state, target, kp=kp, kd=kd)
+
+    controller.__name__ = "joint velocity PD"
+    return controller
+
+
+def try_gains(kp, kd):
+    """One run of Baxter from off the path, as a figure and its caption."""
+    baxter.reset(off_the_path)
+    log = lk.run(baxter, reach, with_gains(kp, kd))
+    error = lk.metrics.joint_error(log)
+    figure, (above, below) = plt.subplots(
+        2, 1, figsize=(8, 4.4), sharex=True, height_ratios=(3, 2), layout="constrained"
+    )
+    for j, style in ((0, "-"), (1, "--"), (5, ":")):
+        above.plot(log.t, error[:, j], style, label=f"joint {'s0 s1 e0 e1 w0 w1 w2'.split()[j]}")
+        below.plot(log.t, log.command[:, j], style)
+    above.axhline(0.0, color="0.8", zorder=0)
+    above.set_ylabel("error [rad]")
+    above.legend(frameon=False)
+    below.set_ylabel("command [rad/s]")
+    below.set_xlabel("time [s]")
+    last = np.abs(error[-len(error) // 4 :]).max()
+    jitter = np.abs(np.diff(log.command, axis=0)).max()
+    return figure, (
+        f"Baxter with kp = {kp:.3g}, kd = {kd:.3g}: the largest error in the last quarter is "
+        f"{last:.3f} rad, the largest jump of a command {jitter:.2f} rad/s."
+    )
+
+
+dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0), kd=(0.0, 3.0, 0.0))
+
+# %% [markdown]
+# ## What D does here
+#
+# In most textbooks D damps and thereby lets you raise P. They have a mass in mind that is pushed by a
+# force. Here the speed itself is commanded. Suppose that a joint moves at exactly that speed, and that
+# its target stands still: write down the equation for its error, and see how quickly it dies away.
+
+# %% question="decay_rate"
+def decay_rate(kp, kd):
+    """How quickly the error of a joint dies away that moves at the speed commanded.
+
+    Args:
+        kp: Gain on the error of the angle, in [1/s].
+        kd: Gain on the error of the speed, without unit.
+
+    Returns:
+        The rate r of exp(-r t), in [1/s].
+    """
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import decay_rate as answer
+
+    return answer(kp, kd)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Compare with an arm whose motors take 50 ms to follow a command. (Motors that obey at once would make
+# the loop bite its own tail: the speed measured now *is* the last command, so with kd above 1 the
+# commands would grow from tick to tick. The authors of the report found that Baxter "does not like"
+# more than a trace of D.) The thick lines are the arm, the thin dotted ones your rate.
+
+# %%
+def nobody_knows(kp, kd):
+    """The stand-in: not a number, so nothing is drawn."""
+    return np.nan
+
+
+my_decay_rate = use("decay_rate", decay_rate, nobody_knows)
+
+lagging = lk.Arm("left", lk.Plant(name="lagging", velocity_lag=0.05))
+plt.figure(figsize=(8, 3), layout="constrained")
+shares = {}
+for kd, style in ((0.0, "-"), (1.0, "--"), (3.0, "-.")):
+
+    def brakes(state, target, kd=kd):
+        return lk.JointVelocity(3.0 * (target.position - state.q) - kd * state.dq)
+
+    lagging.reset(q0)
+    log = lk.run(lagging, lk.Hold(q0 + 0.2 * np.eye(7)[0], 1.5), brakes)
+    e = log.target.position[:, 0] - log.q[:, 0]
+    line = plt.plot(log.t, e, style, linewidth=2, label=f"kd = {kd:g}")[0]
+    plt.plot(log.t, e[0] * np.exp(-my_decay_rate(3.0, kd) * log.t), ":", color=line.get_color())
+    shares[kd] = e[-1] / e[0]
+plt.xlabel("time [s]")
+plt.ylabel("error of s0 [rad]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    "Error of one joint with kp = 3 and more and more D. What is left after 1.5 s: "
+    + ", ".join(f"{100 * share:.0f} % at kd = {kd:g}" for kd, share in shares.items())
+    + ". Dotted: exp(-r t) with your rate."
+)
+
+# %% [markdown]
+# Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, for D
+# makes the loop less sensitive to their lag. And the arm arrives later. The second weighs more: from here
+# on kd is 0, and it is kp that is chosen.
+
+# %% [markdown]
+# ## From the tip to the joints
+#
+# Often it is the tip that matters, and the target is a pose. The Jacobian says how the tip moves when
+# the joints do, $V = J\,\dot q$: six numbers (velocity of the tip, then angular velocity, in world axes)
+# from seven. `model.tip_jacobian(q)` gives it. To command a motion of the tip you need the way back.
+#
+# Seven unknowns for six equations: there are many answers, and the *pseudo-inverse* finds the one with
+# the smallest joint speeds. But some poses have a direction in which the tip cannot go, whatever the
+# joints do: with the elbow straight, towards or away from the shoulder. Near such a *singularity* the
+# exact answer is absurd. It pays to be a little wrong instead: minimise
+#
+# $$ |V - J\,\dot q|^2 + \lambda^2\,|\dot q|^2 \quad\Rightarrow\quad
+# \dot q = J^T (J J^T + \lambda^2 I)^{-1} V $$
+#
+# (Nakamura and Hanafusa 1986; Siciliano, *Robotics: Modelling, Planning and Control*, section 3.5.2).
+# In the stub, `damping` is the whole factor $\lambda^2$.
+
+# %% question="damped_inverse"
+def damped_inverse(J, damping):
+    """The damped pseudo-inverse of a Jacobian.
+
+    Args:
+        J: Jacobian, rows (v, w), shape (6, 7).
+        damping: What stands before |dq|^2, at least 0; 0 is the pseudo-inverse.
+
+    Returns:
+        The matrix that turns a twist (v, w) into joint speeds, shape (7, 6).
+    """
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import damped_inverse as answer
+
+    return answer(J, damping)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest,
+# while the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s. Without damping
+# the demand is absurd near the pose where the arm is straight; with it the joints give up there, which
+# is all they can do.
+
+# %%
+def truncated_inverse(J, damping):
+    """The stand-in: leaves out the directions that are nearly impossible, whatever the damping."""
+    return np.linalg.pinv(J, rcond=0.03)
+
+
+my_damped_inverse = use("damped_inverse", damped_inverse, truncated_inverse)
+
+angles = np.linspace(0.0, 0.8, 161)
+stretched = [np.array([-0.3, -0.4, 0.0, e1, 0.0, 0.6, 0.0]) for e1 in angles]
+straight = angles[np.argmin([model.nearness_to_singularity(q) for q in stretched])]
+plt.figure(figsize=(8, 3), layout="constrained")
+speeds = {}
+for damping, style in ((1e-9, "-"), (0.0025, "--"), (0.02, "-.")):
+    fastest = []
+    for q in stretched:
+        J = model.tip_jacobian(q)
+        worst = np.linalg.svd(J)[0][:, -1]
+        worst = 0.1 * worst / np.linalg.norm(worst[:3])
+        fastest.append(np.abs(my_damped_inverse(J, damping) @ worst).max())
+    name = "no damping" if damping < 1e-6 else f"damping {damping:g}"
+    plt.semilogy(angles, fastest, style, label=name)
+    speeds[name] = max(fastest)
+plt.axhline(1.5, color="0.7", linewidth=3, zorder=0)
+plt.ylim(1e-2, 1e2)
+plt.xlabel("elbow e1 [rad]")
+plt.ylabel("fastest joint [rad/s]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
+    f"straight at {straight:.2f} rad. The most, in rad/s: "
+    + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items()) + "."
+)
+
+# %% [markdown]
+# ## A controller for the tip
+#
+# Now put it together: how the tip should move, and the joint speeds that do it.
+#
+# $$ V = V_d + K_p \begin{pmatrix} p_d - p \\ \log(R_d R^T)^\vee \end{pmatrix}, \qquad
+# u = J^{+} V . $$
+#
+# The lower part is the orientation error of notebook 00, a turn in world axes;
+# `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong versions of this controller draw a fine
+# circle as long as the hand starts upright, so the check tilts it.
+
+# %% question="workspace_velocity_pd"
+def workspace_velocity_pd(state, target, model, *, kp, damping):
+    """Joint speeds that make the tip follow a target of poses.
+
+    Args:
+        state: An lk.State: angles q in [rad], shape (7,).
+        target: An lk.PoseSample: pose T_wd (4, 4), twist (v, w) and its rate dtwist, (6,) each,
+            in world axes, [m/s] and [rad/s].
+        model: The lk.Model: pose(q) is T_wt, (4, 4), and tip_jacobian(q) is (6, 7), world axes.
+        kp: Gain on the error of position and orientation, a number or shape (6,), in [1/s].
+        damping: Of the inverse, as in damped_inverse.
+
+    Returns:
+        An lk.JointVelocity of shape (7,), in [rad/s].
+    """
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import workspace_velocity_pd as answer
+
+    return answer(state, target, model, kp=kp, damping=damping)
+    ### END SOLUTION
+
+
+# %%
+def tip_feedforward(state, target, model, *, kp, damping):
+    """The stand-in: the target's own twist, whatever the error."""
+    return lk.JointVelocity(my_damped_inverse(model.tip_jacobian(state.q), damping) @ target.twist)
+
+
+my_workspace_velocity_pd = use("workspace_velocity_pd", workspace_velocity_pd, tip_feedforward)
+
+
+def in_the_workspace(state, target):
+    return my_workspace_velocity_pd(state, target, model, kp=4.0, damping=1e-5)
+
+
+T_wt = model.pose(q0)
+start, upright = T_wt[:3, 3], T_wt[:3, :3]
+circle = lk.Circle(start, start + [0.0, -0.12, 0.0])
+poses = lk.Trajectory(lk.PosePath(circle, upright), lk.Quintic(5.0))
+
+tilted = lk.se3.pose(upright @ lk.se3.rotation([0.15, 0.1, -0.1]), start + [0.03, -0.02, 0.02])
+ideal.reset(model.inverse_kinematics(tilted, q0))
+log = lk.run(ideal, poses, in_the_workspace)
+lk.plotting.tracking(log)
+lk.plotting.show(lk.plotting.describe(log))
+
+# %% [markdown]
+# In three dimensions, beside an arm that starts where it should. If your controller is not ready, the
+# arm has feed-forward only, and carries its wrong start all the way round.
+
+# %%
+ideal.reset(q0)
+reference = lk.run(ideal, poses, in_the_workspace)
+lk.replay.show(
+    lk.replay.motion_of(
+        log, "A circle from a wrong start", label="wrong start", ghosts={"right start": reference}
+    )
+)
+
+# %% [markdown]
+# ## What the tip does not feel
+#
+# Six numbers for the tip, seven joints: one freedom is left. Hold your hand on the table and swing your
+# elbow; that is it. It can be used to stay clear of things or of the joints' limits, if only you can
+# move the elbow *without* moving the tip. Suppose the joints would like to turn at some speeds
+# $\dot q_w$. Which part of that wish does the tip not feel?
+#
+# The joint speeds with $J\,\dot q = 0$ are called the *null space* of $J$ (Siciliano, section 3.5.1).
+
+# %% question="posture_velocity"
+def posture_velocity(J, dq_wish):
+    """The part of a wish that does not move the tip.
+
+    Args:
+        J: Jacobian, shape (6, 7), of full rank.
+        dq_wish: Joint speeds one would like, shape (7,), in [rad/s].
+
+    Returns:
+        Joint speeds with J @ dq = 0, as near to the wish as can be, shape (7,).
+    """
+    ### BEGIN SOLUTION
+    from solutions.velocity_control.answers import posture_velocity as answer
+
+    return answer(J, dq_wish)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# The tip holds its place while the elbow swings from side to side.
+
+# %%
+def stays(J, dq_wish):
+    """The stand-in: no motion, so the tip feels none."""
+    return np.zeros(7)
+
+
+my_posture_velocity = use("posture_velocity", posture_velocity, stays)
+
+
+def swings_the_elbow(state, target):
+    J = model.tip_jacobian(state.q)
+    hold = in_the_workspace(state, target).value
+    wish = np.zeros(7)
+    wish[2] = 0.6 * np.cos(2.0 * np.pi * state.t / 4.0)
+    return lk.JointVelocity(hold + my_posture_velocity(J, wish))
+
+
+swinger = lk.Arm("left", lk.IDEAL, q0=q0)
+log = lk.run(swinger, lk.Hold(T_wt, 4.0), swings_the_elbow)
+tip = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
+print(f"The upper arm turned by {np.ptp(log.q[:, 2]):.2f} rad, the tip moved by {tip.max():.2f} mm.")
+lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", reference=False))
+
+# %% [markdown]
+# ## Baxter, at last
+#
+# Now the arm as its users found it: 100 states a second for 200 commands, noise on the speeds, motors
+# that lag, a late command now and then. Three ways to draw the same circle, from the same start a little
+# off the path.
+
+# %%
+joints = model.joint_trajectory(poses, q0)
+runs = {}
+for name, target, controller in (
+    ("feed-forward alone", joints, feedforward),
+    ("joint velocity PD", joints, with_gains(5.0, 0.0)),
+    ("workspace velocity PD", poses, in_the_workspace),
+):
+    baxter.reset(q0 + 0.02)
+    runs[name] = lk.run(baxter, target, controller)
+
+plt.figure(figsize=(8, 3), layout="constrained")
+print("                       RMS [mm]   largest [mm]   tilted by [deg]")
+for (name, run), style in zip(runs.items(), ("-", "--", "-.")):
+    numbers = lk.metrics.summary(run)
+    off = 1e3 * np.linalg.norm(lk.metrics.tip_error(run)[:, :3], axis=1)
+    plt.plot(run.t, off, style, label=name)
+    print(f"{name:22} {numbers.rms_mm:8.1f} {numbers.max_mm:14.1f} {numbers.max_deg:17.1f}")
+plt.xlabel("time [s]")
+plt.ylabel("tip off by [mm]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    "How far the tip is off the circle on Baxter. RMS: "
+    + ", ".join(f"{lk.metrics.summary(run).rms_mm:.1f} mm by {name}" for name, run in runs.items())
+    + "."
+)
+
+# %%
+lk.replay.show(
+    lk.replay.motion_of(
+        runs["workspace velocity PD"],
+        "Baxter draws a circle",
+        label="workspace velocity PD",
+        ghosts={"feed-forward alone": runs["feed-forward alone"]},
+    )
+)
+
+# %% [markdown]
+# With your own controllers in place: feed-forward draws a fine circle beside the right one. Feedback takes
+# the wrong start away within a second, and with it nearly all of the error. What is left is a few
+# millimetres, largest where the circle is quickest: the motors lag, and the state is some milliseconds
+# old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
+# them better.
+
+# %% [markdown]
+# ## Hand in
+#
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 03_velocity_control.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

@@ -1,0 +1,1 @@
+"""Notebook 03: controllers that command speeds."""

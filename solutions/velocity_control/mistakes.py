@@ -1,0 +1,318 @@
+"""What people write in notebook 03 instead."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import labkit as lk
+from labkit.shapes import Array
+
+from ..warmup.mistakes import euler_subtracted, in_tool_axes
+from .answers import damped_inverse
+
+
+def pushes_away(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+    """The error with the other sign."""
+    e, de = state.q - target.position, state.dq - target.velocity
+    return lk.JointVelocity(target.velocity + kp * e + kd * de)
+
+
+def adds_to_the_measured(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> Any:
+    """The report's equation 17: a correction of the speed that the joint has already."""
+    e, de = target.position - state.q, target.velocity - state.dq
+    return lk.JointVelocity(state.dq + kp * e + kd * de)
+
+
+def no_feedforward(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+    """Feedback alone: always late."""
+    e, de = target.position - state.q, target.velocity - state.dq
+    return lk.JointVelocity(kp * e + kd * de)
+
+
+def damps_the_motion(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+    """Damps the speed itself, not its error."""
+    e = target.position - state.q
+    return lk.JointVelocity(target.velocity + kp * e - kd * state.dq)
+
+
+def gains_swapped(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+    """Kp on the speeds, kd on the angles."""
+    e, de = target.position - state.q, target.velocity - state.dq
+    return lk.JointVelocity(target.velocity + kd * e + kp * de)
+
+
+@dataclass(frozen=True)
+class JointLaw:
+    """The joint law with its parts weighed: 1 is right, 0 left out, -1 turned round.
+
+    Attributes:
+        e: Weight of the error of the angles.
+        de: Weight of the error of the speeds.
+        ddq: Weight of the target's acceleration, which does not belong there.
+    """
+
+    e: float = 1.0
+    de: float = 1.0
+    ddq: float = 0.0
+
+    def __call__(self, state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+        """The command."""
+        e, de = target.position - state.q, target.velocity - state.dq
+        feed = target.velocity + self.ddq * target.acceleration
+        return lk.JointVelocity(feed + self.e * kp * e + self.de * kd * de)
+
+
+def faster_with_d(kp: float, kd: float) -> float:
+    """D as a helper of P."""
+    return kp * (1.0 + kd)
+
+
+def second_order(kp: float, kd: float) -> float:
+    """The frequency of a mass on a spring, which no mass is here."""
+    return float(np.sqrt(kp))
+
+
+def without_d(kp: float, kd: float) -> float:
+    """D left out."""
+    return kp
+
+
+def minus_the_rate(kp: float, kd: float) -> float:
+    """The root s of exp(s t), not the rate r of exp(-r t)."""
+    return -kp / (1.0 + kd)
+
+
+def d_turned_round(kp: float, kd: float) -> float:
+    """D with the other sign: at kd = 1 it divides by zero."""
+    return kp / (1.0 - kd)
+
+
+def gains_added(kp: float, kd: float) -> float:
+    """The two gains added, whose units differ."""
+    return kp + kd
+
+
+def what_is_left(kp: float, kd: float) -> float:
+    """What is left after a second, instead of the rate."""
+    return float(np.exp(-kp / (1.0 + kd)))
+
+
+def transposed(J: Any, damping: float) -> Array:
+    """The transpose for the inverse."""
+    return np.array(J.T)
+
+
+def undamped(J: Any, damping: float) -> Array:
+    """The plain pseudo-inverse."""
+    return np.asarray(J.T @ np.linalg.inv(J @ J.T))
+
+
+def damping_squared(J: Any, damping: float) -> Array:
+    """Squares a damping that is lambda squared already."""
+    return damped_inverse(J, damping**2)
+
+
+def damping_everywhere(J: Any, damping: float) -> Array:
+    """Adds the damping to every number of J J^T: the identity is missing."""
+    return np.asarray(J.T @ np.linalg.inv(J @ J.T + damping))
+
+
+def damping_taken_off(J: Any, damping: float) -> Array:
+    """The damping with a minus: it makes singular what was not."""
+    return damped_inverse(J, -damping)
+
+
+def damping_rooted(J: Any, damping: float) -> Array:
+    """Takes the root of the damping."""
+    return damped_inverse(J, float(np.sqrt(damping)))
+
+
+_MODEL = lk.Model("left")
+
+
+def _pose(state: lk.State) -> Array:
+    """Where the tip is."""
+    return _MODEL.pose(state.q)
+
+
+def _law(
+    state: Any, target: Any, J: Any, turn: Any, kp: Any, damping: float, ff: float
+) -> lk.JointVelocity:
+    e = np.concatenate([target.pose[:3, 3] - _pose(state)[:3, 3], turn])
+    return lk.JointVelocity(damped_inverse(J, damping) @ (ff * target.twist + kp * e))
+
+
+def _turn(state: lk.State, target: lk.PoseSample) -> Array:
+    return lk.se3.orientation_error(target.pose[:3, :3], _pose(state)[:3, :3])
+
+
+def euler_error(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """Roll, pitch and yaw subtracted for the orientation."""
+    turn = euler_subtracted(target.pose[:3, :3], _pose(state)[:3, :3])
+    return _law(state, target, model.tip_jacobian(state.q), turn, kp, damping, 1.0)
+
+
+def turn_in_tool_axes(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """The right turn in the tool's axes, with a Jacobian in the world's."""
+    turn = in_tool_axes(target.pose[:3, :3], _pose(state)[:3, :3])
+    return _law(state, target, model.tip_jacobian(state.q), turn, kp, damping, 1.0)
+
+
+def body_jacobian(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """An error in world axes with the Jacobian of the tool's axes."""
+    J = model.body_jacobian(state.q)
+    return _law(state, target, J, _turn(state, target), kp, damping, 1.0)
+
+
+def position_only(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """No orientation error at all: other teams of the report's year set its gains to zero."""
+    return _law(state, target, model.tip_jacobian(state.q), np.zeros(3), kp, damping, 1.0)
+
+
+def no_twist(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """No feed-forward."""
+    J = model.tip_jacobian(state.q)
+    return _law(state, target, J, _turn(state, target), kp, damping, 0.0)
+
+
+def damping_ignored(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """The plain pseudo-inverse, whatever the damping."""
+    J = model.tip_jacobian(state.q)
+    return _law(state, target, J, _turn(state, target), kp, 0.0, 1.0)
+
+
+def logarithms_subtracted(R_wd: Array, R_wt: Array) -> Array:
+    """The difference of two rotation vectors."""
+    return lk.se3.rotation_log(R_wd) - lk.se3.rotation_log(R_wt)
+
+
+def turned_back(R_wd: Array, R_wt: Array) -> Array:
+    """The turn from the target to the tip."""
+    return lk.se3.orientation_error(R_wt, R_wd)
+
+
+def sine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
+    """Half the sum of the axes' cross products: the sine of the angle, not the angle."""
+    return np.asarray(0.5 * np.cross(R_wt.T, R_wd.T).sum(axis=0))
+
+
+def arcsine_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
+    """The axis times the arcsine of its sine: right up to 90 degrees."""
+    v = lk.se3.vee(R_wd @ R_wt.T)
+    n = float(np.linalg.norm(v))
+    return np.asarray(v / n * np.arcsin(min(n, 1.0))) if n else v
+
+
+def turned_back_in_tool_axes(R_wd: Array, R_wt: Array) -> Array:
+    """The turn from the target to the tip, in the target's axes."""
+    return lk.se3.rotation_log(R_wd.T @ R_wt)
+
+
+@dataclass(frozen=True)
+class WorkspaceLaw:
+    """The workspace law with another error.
+
+    Attributes:
+        place: Weight of the error of position; -1 is turned round.
+        turn: The error of orientation, of (R_wd, R_wt).
+        power: Of the damping.
+    """
+
+    place: float = 1.0
+    turn: Callable[[Array, Array], Array] = lk.se3.orientation_error
+    power: float = 1.0
+
+    def __call__(
+        self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+    ) -> lk.JointVelocity:
+        """The command."""
+        T_wt = model.pose(state.q)
+        e_p = self.place * (target.pose[:3, 3] - T_wt[:3, 3])
+        e = np.concatenate([e_p, self.turn(target.pose[:3, :3], T_wt[:3, :3])])
+        J_inv = damped_inverse(model.tip_jacobian(state.q), damping**self.power)
+        return lk.JointVelocity(J_inv @ (target.twist + kp * e))
+
+
+def by_the_transpose(
+    state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+) -> lk.JointVelocity:
+    """The transpose of the Jacobian in the place of its inverse."""
+    e = lk.se3.pose_error(target.pose, model.pose(state.q))
+    return lk.JointVelocity(model.tip_jacobian(state.q).T @ (target.twist + kp * e))
+
+
+@dataclass(frozen=True)
+class InToolAxes:
+    """The whole error in the tool's axes.
+
+    Attributes:
+        body: Whether the Jacobian is the tool's too; the target's twist stays the world's.
+    """
+
+    body: bool
+
+    def __call__(
+        self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+    ) -> lk.JointVelocity:
+        """The command."""
+        T_td = lk.se3.inverse(model.pose(state.q)) @ target.pose
+        e = np.concatenate([T_td[:3, 3], lk.se3.rotation_log(T_td[:3, :3])])
+        J = (model.body_jacobian if self.body else model.tip_jacobian)(state.q)
+        return lk.JointVelocity(damped_inverse(J, damping) @ (target.twist + kp * e))
+
+
+def one_for_the_identity(J: Any, dq_wish: Any) -> Array:
+    """The number 1 where the identity belongs: numpy takes it from every entry."""
+    return np.asarray((1.0 - np.linalg.pinv(J) @ J) @ dq_wish)
+
+
+def no_motion(J: Any, dq_wish: Any) -> Array:
+    """Nothing: the tip feels none of it, and nor does anybody."""
+    return np.zeros(7)
+
+
+def length_one(J: Any, dq_wish: Any) -> Array:
+    """The right direction, made one long."""
+    free = np.asarray(dq_wish - np.linalg.pinv(J) @ (J @ dq_wish))
+    return free / float(np.linalg.norm(free))
+
+
+def minus_the_free_part(J: Any, dq_wish: Any) -> Array:
+    """The right part with the other sign."""
+    return np.asarray(np.linalg.pinv(J) @ (J @ dq_wish) - dq_wish)
+
+
+def transpose_projector(J: Any, dq_wish: Any) -> Array:
+    """I - J^T J, with the transpose for the inverse."""
+    return np.asarray(dq_wish - J.T @ (J @ dq_wish))
+
+
+def damped_projector(J: Any, dq_wish: Any) -> Array:
+    """The projector made of a damped inverse: the tip drifts."""
+    return np.asarray(dq_wish - damped_inverse(J, 0.01) @ (J @ dq_wish))
+
+
+def the_rest(J: Any, dq_wish: Any) -> Array:
+    """The other half: what the tip does feel."""
+    return np.asarray(np.linalg.pinv(J) @ (J @ dq_wish))
+
+
+def all_of_it(J: Any, dq_wish: Any) -> Array:
+    """The wish as it is."""
+    return np.array(dq_wish)

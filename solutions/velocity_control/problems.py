@@ -1,0 +1,593 @@
+"""What notebook 03 asks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from labkit.course import Close
+from labkit.course.problem import Problem, Trial, Wrong, call
+
+from . import answers, hidden, mistakes, variants
+from .hidden import (
+    MODEL,
+    READY,
+    STRETCHED,
+    joint_run,
+    pose_run,
+    pose_sample,
+    sample,
+    state,
+)
+
+MOVING = 0.1 * np.arange(1, 8)
+COMMAND = Close(rtol=1e-6, atol=1e-8)
+
+JOINT_VELOCITY_PD = Problem(
+    name="joint_velocity_pd",
+    points=5,
+    asks="Command joint speeds that follow a joint trajectory: the target's own speed, plus `kp` "
+    "times the error of the angles, plus `kd` times the error of the speeds. Gains are numbers or "
+    "arrays of shape (7,).",
+    answer=answers.joint_velocity_pd,
+    judge=COMMAND,
+    trials=(
+        Trial(
+            "at rest, 0.1 rad from a target at rest",
+            (call(state(READY), sample(READY + 0.1 * np.eye(7)[1]), kp=4.0, kd=0.0),),
+            hidden.joint_offsets,
+            weight=0.0,
+        ),
+        Trial(
+            "moving, with no error of the angles: kd brakes",
+            (call(state(READY, 0.2 * np.ones(7)), sample(READY), kp=4.0, kd=0.5),),
+            hidden.joint_speeds,
+            "other speeds",
+        ),
+        Trial(
+            "a target that moves, a gain for each joint",
+            (
+                call(state(READY), sample(READY, MOVING, 2.0 * MOVING), kp=4.0, kd=0.5),
+                call(
+                    state(READY + 0.1, MOVING),
+                    sample(READY, 0.3 - MOVING),
+                    kp=8.0 - 5.0 * MOVING,
+                    kd=MOVING,
+                ),
+            ),
+            hidden.joint_targets,
+            "any states, targets and gains",
+            weight=2.0,
+        ),
+        Trial(
+            "closed loop: it catches up from a wrong start and stays on",
+            (
+                joint_run(
+                    0.1 * np.array([1, -1, 1, 1, -1, 1, 1]),
+                    0.6 * np.array([1, 0.4, 0, -0.7, 0, 0.3, 0.5]),
+                ),
+            ),
+            hidden.joint_runs,
+            "other starts and ways",
+        ),
+    ),
+    hints=(
+        "Suppose there is no error at all: what should the arm do then? And which way should an "
+        "error push? (Target minus actual, always.)",
+        "e = target.position - state.q and de = target.velocity - state.dq. The command starts from "
+        "the target's speed, not from the measured one.",
+        "return lk.JointVelocity(target.velocity + kp * e + kd * de)",
+    ),
+    wrong=(
+        Wrong(
+            "the error with the other sign",
+            "Actual minus target pushes the arm away. With feed-forward on, and a start on the path, "
+            "nobody would have noticed for a while.",
+            mistakes.pushes_away,
+            "Start from an offset; feed-forward hides broken feedback.",
+        ),
+        Wrong(
+            "a correction of the measured speed",
+            "The speed wanted is the target's plus the corrections. Added to the measured speed at "
+            "every tick, they pile up two hundred times a second: the arm swings, barely damped. The "
+            "report's equation 17 prints this.",
+            mistakes.adds_to_the_measured,
+            "An integrator too many.",
+        ),
+        Wrong(
+            "no feed-forward",
+            "It follows, but always late, by the target's speed over kp. The target says how fast it "
+            "moves: pass that on.",
+            mistakes.no_feedforward,
+            "Feedback waits for an error; feed-forward does not.",
+        ),
+        Wrong(
+            "damps the motion, not its error",
+            "kd brakes the arm even where the target moves just as fast. It multiplies the error of "
+            "the speeds.",
+            mistakes.damps_the_motion,
+            "D acts on the derivative of the error.",
+        ),
+        Wrong(
+            "gains swapped",
+            "kp belongs to the angles and kd to the speeds.",
+            mistakes.gains_swapped,
+            "Units tell: kp is in 1/s, kd has none.",
+        ),
+        Wrong(
+            "the error of the angles turned round",
+            "Target minus actual, for the angles too: as it is, kp pushes the arm away.",
+            mistakes.JointLaw(e=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the error of the speeds turned round",
+            "Target minus actual, for the speeds too: as it is, kd drives on what it should brake.",
+            mistakes.JointLaw(de=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "kd left out",
+            "The error of the speeds counts too, kd times.",
+            mistakes.JointLaw(de=0.0),
+            "Try every gain by itself.",
+        ),
+        Wrong(
+            "the target's acceleration added",
+            "A speed is commanded: the target's acceleration has no place in it, and another unit.",
+            mistakes.JointLaw(ddq=1.0),
+            "Only like units may be added.",
+        ),
+    ),
+    variants=(variants.joint_in_a_loop, variants.joint_with_matrices),
+)
+
+DECAY_RATE = Problem(
+    name="decay_rate",
+    points=2,
+    asks="A joint moves at exactly the speed that is commanded, and its target stands still. Give the "
+    "rate, in 1/s, at which the error dies away under the gains `kp` and `kd`: the r in exp(-r t).",
+    answer=answers.decay_rate,
+    judge=Close(rtol=1e-6, atol=1e-9),
+    trials=(
+        Trial("no D", (call(4.0, 0.0),), hidden.rates_without_d, weight=0.0),
+        Trial(
+            "kd = 1 and kd = 3",
+            (call(4.0, 1.0), call(4.0, 3.0), call(2.0, 0.5)),
+            hidden.rates,
+            "other gains",
+        ),
+    ),
+    hints=(
+        "The target stands still, so the speed of the joint is minus the rate of the error. Put the "
+        "command into that.",
+        "dq = kp e + kd (0 - dq), and dq = -de/dt. The speed is on both sides: collect it.",
+        "(1 + kd) de/dt = -kp e.",
+    ),
+    wrong=(
+        Wrong(
+            "D makes it faster",
+            "The other way round. The speed stands on both sides: (1 + kd) de/dt = -kp e. Here D only "
+            "slows.",
+            mistakes.faster_with_d,
+            "In a velocity loop D brakes the very speed that closes the error.",
+        ),
+        Wrong(
+            "a mass on a spring",
+            "√kp is the frequency of a second-order system. Here the speed itself is commanded, so "
+            "the equation is of first order.",
+            mistakes.second_order,
+            "Count the integrators between command and angle.",
+        ),
+        Wrong(
+            "D left out",
+            "kp alone is right for kd = 0. The measured speed is the commanded one, so kd feeds the "
+            "command back into itself.",
+            mistakes.without_d,
+            "Write down the whole loop.",
+        ),
+        Wrong(
+            "the rate with a minus",
+            "The minus stands in exp(-r t) already: an error that dies away has an r above zero.",
+            mistakes.minus_the_rate,
+            "A pole and a decay rate differ by their sign.",
+        ),
+        Wrong(
+            "D with the other sign",
+            "The target stands still, so the error of the speed is minus the speed: kd brakes, and at "
+            "kd = 1 nothing may divide by zero.",
+            mistakes.d_turned_round,
+            "Write down de/dt before you collect it.",
+        ),
+        Wrong(
+            "the gains added",
+            "kp is in 1/s and kd has no unit, so they cannot be added. Write down the equation of the "
+            "error.",
+            mistakes.gains_added,
+            "Units forbid sums.",
+        ),
+        Wrong(
+            "what is left after a second",
+            "That is exp(-r) itself; asked is the r in it.",
+            mistakes.what_is_left,
+            "Read what is asked: a rate, in 1/s.",
+        ),
+    ),
+    variants=(variants.rate_from_the_root,),
+)
+
+DAMPED_INVERSE = Problem(
+    name="damped_inverse",
+    points=3,
+    asks="Give the damped pseudo-inverse of a Jacobian of shape (6, 7), of shape (7, 6): the matrix "
+    "that finds, for a twist V, the joint speeds with the least |V - J dq|² + `damping` |dq|².",
+    answer=answers.damped_inverse,
+    judge=COMMAND,
+    trials=(
+        Trial(
+            "no damping, far from singularities",
+            (call(MODEL.tip_jacobian(READY), 0.0),),
+            hidden.inverses_plain,
+            weight=0.0,
+        ),
+        Trial(
+            "damping 0.0025 with the elbow almost straight",
+            (call(MODEL.tip_jacobian(STRETCHED), 0.0025),),
+            hidden.inverses_stretched,
+        ),
+        Trial(
+            "any pose and damping",
+            (call(MODEL.tip_jacobian(READY), 0.01),),
+            hidden.inverses,
+            "any poses and dampings",
+        ),
+    ),
+    hints=(
+        "Without damping it is the pseudo-inverse Jᵀ (J Jᵀ)⁻¹, which explodes where J Jᵀ has an "
+        "eigenvalue near zero. What could you add to J Jᵀ so that it has none?",
+        "Add damping times the identity of size 6 to J Jᵀ before you invert it.",
+        "J.T @ np.linalg.inv(J @ J.T + damping * np.eye(6))",
+    ),
+    wrong=(
+        Wrong(
+            "the transpose",
+            "Jᵀ takes forces at the tip to torques of the joints; it does not undo J.",
+            mistakes.transposed,
+            "Jᵀ maps forces, J⁺ maps speeds.",
+        ),
+        Wrong(
+            "no damping",
+            "That is the plain pseudo-inverse, np.linalg.pinv(J). Near e1 = 0 it asks for speeds that "
+            "no joint has.",
+            mistakes.undamped,
+            "An exact inverse is no use where there is none.",
+        ),
+        Wrong(
+            "the damping squared",
+            "`damping` is what stands before |dq|² already; many books write it λ².",
+            mistakes.damping_squared,
+            "Is it λ or λ²? Look at what is minimised.",
+        ),
+        Wrong(
+            "the damping on every number",
+            "A number plus a matrix is added to every entry by numpy. The damping belongs on the "
+            "diagonal alone: times an identity.",
+            mistakes.damping_everywhere,
+            "λ is not λ I.",
+        ),
+        Wrong(
+            "the damping taken off",
+            "With a minus the damping makes J Jᵀ singular where it was not.",
+            mistakes.damping_taken_off,
+            "Damping pushes eigenvalues away from zero.",
+        ),
+        Wrong(
+            "the root of the damping",
+            "`damping` stands before |dq|² as it is; no root.",
+            mistakes.damping_rooted,
+            "Is it λ or λ²? Look at what is minimised.",
+        ),
+    ),
+    variants=(variants.inverse_the_other_way, variants.inverse_by_svd),
+)
+
+CENTIMETRES = (0.03, -0.02, 0.01)
+GAINS = np.array([2.0, 3.0, 4.0, 5.0, 4.0, 3.0])
+
+WORKSPACE_VELOCITY_PD = Problem(
+    name="workspace_velocity_pd",
+    points=6,
+    asks="Command joint speeds that make the tip follow a target of poses: the tip should move with "
+    "the target's twist plus `kp` times its error of position and orientation, both in world axes. "
+    "`kp` is a number or an array of shape (6,). Use the damped inverse of the tip Jacobian.",
+    answer=answers.workspace_velocity_pd,
+    judge=COMMAND,
+    trials=(
+        Trial(
+            "at rest, a few centimetres off",
+            (call(state(READY), pose_sample(READY, CENTIMETRES), MODEL, kp=2.0, damping=0.0),),
+            hidden.pose_shifts,
+            weight=0.0,
+        ),
+        Trial(
+            "roll, pitch and yaw offsets, one by one, and a turn of 120 degrees",
+            tuple(
+                call(state(READY), pose_sample(READY, turn=turn), MODEL, kp=2.0, damping=0.003)
+                for turn in (*0.2 * np.eye(3), np.radians(120.0) * np.eye(3)[1])
+            ),
+            hidden.pose_turns,
+            "turns at other poses, small ones and large ones",
+            weight=2.0,
+        ),
+        Trial(
+            "a target that moves, on it and off it",
+            (
+                call(
+                    state(READY),
+                    pose_sample(READY, twist=(0.1, 0.0, -0.05, 0.0, 0.2, 0.3)),
+                    MODEL,
+                    kp=2.0,
+                    damping=0.003,
+                ),
+                call(
+                    state(READY),
+                    pose_sample(
+                        READY, CENTIMETRES, (0.3, -0.2, 0.25), (0.1, 0.0, -0.05, 0.0, 0.2, 0.3)
+                    ),
+                    MODEL,
+                    kp=GAINS,
+                    damping=0.003,
+                ),
+            ),
+            hidden.pose_moves,
+            "other twists and errors",
+            weight=2.0,
+        ),
+        Trial(
+            "the elbow almost straight",
+            (
+                call(
+                    state(STRETCHED),
+                    pose_sample(STRETCHED, CENTIMETRES),
+                    MODEL,
+                    kp=2.0,
+                    damping=0.0025,
+                ),
+            ),
+            hidden.pose_stretched,
+            "other stretched poses",
+        ),
+        Trial(
+            "closed loop: from a shifted and tilted start after a circle",
+            (pose_run(CENTIMETRES, (0.15, 0.1, -0.1)),),
+            hidden.pose_runs,
+            "other starts",
+            weight=2.0,
+        ),
+    ),
+    withheld=("labkit.Model.pose_error",),
+    hints=(
+        "First say how the *tip* should move: six numbers, linear and angular. Only then ask which "
+        "joint speeds do that.",
+        "e has six numbers: target.pose[:3, 3] minus the tip's place, then the turn "
+        "lk.se3.orientation_error(R_wd, R_wt) of notebook 00. V = target.twist + kp * e.",
+        "J = model.tip_jacobian(state.q); return lk.JointVelocity(J⁺ @ V) with the damped inverse J⁺ "
+        "= J.T @ np.linalg.inv(J @ J.T + damping * np.eye(6)).",
+    ),
+    wrong=(
+        Wrong(
+            "roll, pitch and yaw subtracted",
+            "With the gripper down their difference has the wrong sign in roll and pitch, and jumps "
+            "at 180 degrees. Use the logarithm, as in notebook 00.",
+            mistakes.euler_error,
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "the turn in the tool's axes",
+            "The tip Jacobian speaks of world axes; this error is in the tool's. With the gripper "
+            "down two components come out with the other sign.",
+            mistakes.turn_in_tool_axes,
+            "Error and Jacobian must speak of the same axes.",
+        ),
+        Wrong(
+            "the body Jacobian with an error in world axes",
+            "The body Jacobian gives the twist in the tool's axes. With the gripper down, z comes out "
+            "upside down.",
+            mistakes.body_jacobian,
+            "Three Jacobians exist; use the one of your axes.",
+        ),
+        Wrong(
+            "the orientation left to itself",
+            "The last three numbers of the error are zero, so the hand keeps any tilt. Several teams "
+            "chose that on purpose, to get rid of a wrong orientation error.",
+            mistakes.position_only,
+            "A gain of zero hides a wrong sign.",
+        ),
+        Wrong(
+            "no feed-forward",
+            "The target's twist is missing: the tip follows late, by its speed over kp.",
+            mistakes.no_twist,
+            "Feedback waits for an error; feed-forward does not.",
+        ),
+        Wrong(
+            "the damping ignored",
+            "This is the plain pseudo-inverse. With the elbow straight it asks for speeds that no "
+            "joint has.",
+            mistakes.damping_ignored,
+            "Damping trades a little of the tip's error for possible speeds.",
+        ),
+        Wrong(
+            "the error of position turned round",
+            "Target minus actual, for the position too: as it is, the tip flees its target.",
+            mistakes.WorkspaceLaw(place=-1.0),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "the turn backwards",
+            "This is the turn from the target to the tip. The target comes first: "
+            "orientation_error(R_wd, R_wt), and R_wd stands on the left of the product.",
+            mistakes.WorkspaceLaw(turn=mistakes.turned_back),
+            "Say from where to where a rotation turns.",
+        ),
+        Wrong(
+            "the turn backwards, in the tool's axes",
+            "R_wdᵀ R_wt turns from the target to the tip, and speaks of the target's axes. Wanted is "
+            "the turn to the target, in the world's.",
+            mistakes.WorkspaceLaw(turn=mistakes.turned_back_in_tool_axes),
+            "Frames that cancel: R_wd R_tw is a turn in world axes.",
+        ),
+        Wrong(
+            "position and turn both turned round",
+            "All six numbers have the other sign: target minus actual.",
+            mistakes.WorkspaceLaw(place=-1.0, turn=mistakes.turned_back),
+            "One sign for every error.",
+        ),
+        Wrong(
+            "logarithms subtracted",
+            "The difference of two rotation vectors is no turn, unless both turn about the same axis. "
+            "First the product of the rotations, then its logarithm.",
+            mistakes.WorkspaceLaw(turn=mistakes.logarithms_subtracted),
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "the sine of the turn",
+            "Half the cross products of the axes, or half of R - Rᵀ, is the axis times the *sine* of "
+            "the angle. For small turns it is nearly right, at 90 degrees it gets weaker, at 180 it is "
+            "nought. The logarithm gives the angle.",
+            mistakes.WorkspaceLaw(turn=mistakes.sine_of_the_turn),
+            "sin x is x only for small x.",
+        ),
+        Wrong(
+            "the arcsine of the turn",
+            "The sine does not tell 120 degrees from 60, so its arcsine is right up to 90 degrees and "
+            "falls again beyond. The logarithm gives the angle up to 180.",
+            mistakes.WorkspaceLaw(turn=mistakes.arcsine_of_the_turn),
+            "sin x is the same for x and 180° - x.",
+        ),
+        Wrong(
+            "the transpose for the inverse",
+            "Jᵀ takes forces to torques. Joint speeds for a twist come by the damped inverse.",
+            mistakes.by_the_transpose,
+            "Jᵀ maps forces, J⁺ maps speeds.",
+        ),
+        Wrong(
+            "the error in the tool's axes",
+            "Both parts of the error are in the tool's axes, while twist and tip Jacobian speak of the "
+            "world's.",
+            mistakes.InToolAxes(body=False),
+            "Error and Jacobian must speak of the same axes.",
+        ),
+        Wrong(
+            "all in the tool's axes but the target's twist",
+            "Error and Jacobian are in the tool's axes: possible, but then the target's twist has to "
+            "be turned into them too.",
+            mistakes.InToolAxes(body=True),
+            "Add only vectors of the same axes.",
+        ),
+        Wrong(
+            "the damping squared",
+            "`damping` is what stands before |dq|² already, as in damped_inverse.",
+            mistakes.WorkspaceLaw(power=2.0),
+            "Is it λ or λ²? Look at what is minimised.",
+        ),
+    ),
+    variants=(variants.WorkspacePD(), variants.workspace_in_tool_axes),
+)
+
+ORTHONORMAL = np.eye(7)[[0, 2, 3, 4, 5, 6]]
+
+POSTURE_VELOCITY = Problem(
+    name="posture_velocity",
+    points=4,
+    asks="The joints would like to turn at `dq_wish`. Give the part of that wish, of shape (7,), that "
+    "does not move the tip at all, as near to the wish as can be.",
+    answer=answers.posture_velocity,
+    judge=Close(rtol=1e-6, atol=1e-8),
+    trials=(
+        Trial(
+            "a Jacobian with orthonormal rows",
+            (call(ORTHONORMAL, np.array([0.1, 0.5, 0.0, -0.2, 0.0, 0.3, 0.0])),),
+            hidden.postures_orthonormal,
+            weight=0.0,
+        ),
+        Trial(
+            "the arm at its ready pose",
+            (
+                call(MODEL.tip_jacobian(READY), np.eye(7)[2]),
+                call(MODEL.tip_jacobian(READY + 0.2), -MOVING),
+            ),
+            hidden.postures,
+            "other poses and wishes",
+        ),
+    ),
+    hints=(
+        "Let the wish run: the tip would move with J dq_wish. Take away just the joint speeds that "
+        "make that motion, and nothing else.",
+        "The smallest joint speeds that give a twist V are pinv(J) V. Here V = J dq_wish.",
+        "dq_wish - np.linalg.pinv(J) @ (J @ dq_wish)",
+    ),
+    wrong=(
+        Wrong(
+            "the transpose for the inverse",
+            "I - Jᵀ J is a projector only if the rows of J are orthonormal, as in the first test. The "
+            "arm's are not, and the tip moves.",
+            mistakes.transpose_projector,
+            "Test a projector: applied twice it does the same.",
+        ),
+        Wrong(
+            "a damped inverse in the projector",
+            "The tip drifts: a damped inverse does not undo J exactly. Damp what moves the tip, but "
+            "not this.",
+            mistakes.damped_projector,
+            "Two inverses for two purposes.",
+        ),
+        Wrong(
+            "the other half",
+            "This is the part of the wish that the tip does feel. Take it off.",
+            mistakes.the_rest,
+            "Wish = felt part + free part.",
+        ),
+        Wrong(
+            "the whole wish",
+            "The wish as it is moves the tip.",
+            mistakes.all_of_it,
+            "J times the answer must be zero.",
+        ),
+        Wrong(
+            "1 for the identity",
+            "numpy takes the number 1 from every entry. The identity is np.eye(7).",
+            mistakes.one_for_the_identity,
+            "1 is not I.",
+        ),
+        Wrong(
+            "nothing at all",
+            "No motion is not felt by the tip, but it is not near to the wish either.",
+            mistakes.no_motion,
+            "Two conditions: not felt, and as near as can be.",
+        ),
+        Wrong(
+            "made one long",
+            "The direction is right. Its length is part of the answer: do not divide by it.",
+            mistakes.length_one,
+            "A projection shortens; it does not normalise.",
+        ),
+        Wrong(
+            "the free part with the other sign",
+            "Take the felt part off the wish, not the wish off the felt part.",
+            mistakes.minus_the_free_part,
+            "Wish = felt part + free part.",
+        ),
+    ),
+    variants=(
+        variants.posture_by_projector,
+        variants.posture_by_null_vector,
+        variants.posture_by_least_squares,
+    ),
+)
+
+PROBLEMS = (
+    JOINT_VELOCITY_PD,
+    DECAY_RATE,
+    DAMPED_INVERSE,
+    WORKSPACE_VELOCITY_PD,
+    POSTURE_VELOCITY,
+)

@@ -1,0 +1,346 @@
+# %% [markdown]
+# # 00 · Warm-up
+#
+# Three things go wrong in a first robot program, and none of them raises an error: an array has the
+# wrong shape and numpy stretches it, a vector is in the wrong axes, and the difference of two
+# orientations is taken as if they were numbers. Here you meet all three, on a simulated arm that
+# shows you at once. What you write is small, and every later notebook uses it.
+#
+# | | |
+# |---|---|
+# | **You need** | Python with numpy; matrices and their products |
+# | **Given** | the simulated arm, figures, the logarithm of a rotation |
+# | **You write** | a joint error, a point from frame to frame, an inverse, an orientation error |
+# | **Time** | about 2 hours · 10 points |
+#
+# How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not:
+# where your part is missing, a stand-in takes its place and says so. After each stub a check tells you in
+# words what it found. Only the functions are marked, so play with everything else as you like.
+
+# %% setup=true
+import labkit as lk
+from labkit.course import check, hint, use
+
+lk.ready()
+
+# %% setup=true
+import matplotlib.pyplot as plt
+import numpy as np
+
+# %% [markdown]
+# ## Arrays that lie
+#
+# Seven joints, seven numbers: in labkit a vector has the shape `(7,)`, with one index and no second
+# one. A column of shape `(7, 1)` looks the same when printed sideways, and numpy will happily combine
+# the two, not into seven numbers but into a table of all forty-nine combinations:
+
+# %%
+wanted = np.array([[0.1], [0.2], [0.3]])  # a column, (3, 1)
+actual = np.array([0.1, 0.2, 0.3])  # a vector, (3,)
+wanted - actual
+
+# %% [markdown]
+# The errors should have been three zeros. The sum of that table *is* zero, so a test that looks only
+# at the sum is content. The students who wrote the report that this lab grew out of lost days to such
+# shapes. So labkit never stretches or squeezes anything; it tells you:
+
+# %%
+try:
+    lk.JointVelocity(np.zeros((7, 1)))
+except lk.LabkitError as error:
+    print(error)
+
+# %% [markdown]
+# ## What the arm says, and what it should do
+#
+# An arm reports an `lk.State`: the time, the joint angles `q` in rad and the joint speeds `dq` in rad/s.
+# What it should do comes as an `lk.Sample`: position, velocity and acceleration, here of the joints.
+
+# %%
+arm = lk.Arm("left")
+model, q0 = arm.model, arm.robot.ready
+arm.reset(q0)
+state = arm.state()
+print("t: ", state.t, "s")
+print("q: ", state.q.round(3), "rad")
+print("dq:", state.dq, "rad/s")
+
+# %% [markdown]
+# A controller compares the two. In this course an *error* is always **target minus actual**, the same
+# way round everywhere: it points to where the arm should go, and a gain in front of it is positive.
+
+# %% question="joint_error"
+def joint_error(target, state):
+    """The error of the joint angles.
+
+    Args:
+        target: An lk.Sample of joint angles: position in [rad], velocity in [rad/s] and
+            acceleration in [rad/s^2], each of shape (7,).
+        state: An lk.State: time t in [s], angles q in [rad] and speeds dq in [rad/s], q and dq
+            of shape (7,).
+
+    Returns:
+        Target minus actual, shape (7,), in [rad].
+    """
+    ### BEGIN SOLUTION
+    from solutions.warmup.answers import joint_error as answer
+
+    return answer(target, state)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## The arm goes where the error points
+#
+# The simplest controller there is: turn each joint at a speed proportional to its error. It has one
+# number, the gain `k` in 1/s. The error then shrinks like $e^{-kt}$, for the speed of a joint *is* the
+# rate at which its error falls: $\dot e = -\dot q = -k\,e$.
+#
+# Let it go to other angles, half a radian away at the most. The dashed line is that prediction for the
+# first joint. (While your function is missing, a stand-in reports no error, and the arm stays.)
+
+# %%
+def stays(target, state):
+    """The stand-in: no error, so the arm stays where it is."""
+    return np.zeros(7)
+
+
+my_joint_error = use("joint_error", joint_error, stays)
+
+
+def towards_target(state, target, k=2.0):
+    return lk.JointVelocity(k * my_joint_error(target, state))
+
+
+q1 = q0 + [0.5, 0.2, 0.0, -0.3, 0.0, 0.1, 0.4]
+arm.reset(q0)
+log = lk.run(arm, lk.Hold(q1, 3.0), towards_target)
+error = log.target.position - log.q
+
+plt.figure(figsize=(8, 3), layout="constrained")
+for j, style in ((0, "-"), (3, "-."), (6, ":")):
+    plt.plot(log.t, error[:, j], style, label=f"joint {arm.robot.joint_names[j][-2:]}")
+plt.plot(log.t, error[0, 0] * np.exp(-2.0 * log.t), "k--", linewidth=1, label="0.5 exp(-2 t)")
+plt.xlabel("time [s]")
+plt.ylabel("error [rad]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    f"The errors of three joints, and 0.5 exp(-2 t) dashed: that of the first joint is "
+    f"{error[0, 0]:.2f} rad at the start and {error[-1, 0]:.4f} rad after {log.t[-1]:.0f} s."
+)
+
+# %% [markdown]
+# Here is the same run in three dimensions. Press *Play*, or move the slider to go back and forth in time;
+# drag to look around. The see-through arm is the target, which stands still. (A notebook that was saved
+# and opened again has no replays, "model not found", until you run it once more.)
+
+# %%
+lk.replay.show(lk.replay.motion_of(log, "Towards a place in joint space"))
+
+# %% [markdown]
+# ## Frames that cancel
+#
+# A *frame* is an origin with three axes. The pose of frame b seen from frame a is written $T_{ab}$, a
+# 4 by 4 matrix with the rotation $R_{ab}$ in its upper left and the place of b's origin in its upper
+# right. It turns coordinates in b into coordinates in a,
+#
+# $$ p_a = T_{ab}\,p_b, \qquad T_{ac} = T_{ab}\,T_{bc}, $$
+#
+# and the neighbouring letters must be equal. Read the subscripts, and most mistakes do not happen
+# (Murray, Li and Sastry, *A Mathematical Introduction to Robotic Manipulation*, section 2.3).
+#
+# The model gives the pose of the gripper's tip in the world, $T_{wt}$. With the gripper pointing down
+# the tip's z axis, the third column, points down too:
+
+# %%
+T_wt = model.pose(q0)
+print(T_wt.round(3))
+
+# %% question="transform_point"
+def transform_point(T_ab, p_b):
+    """A point's coordinates in another frame.
+
+    Args:
+        T_ab: Pose of frame b in frame a, shape (4, 4).
+        p_b: The point in b, shape (3,), in [m].
+
+    Returns:
+        The same point in a, shape (3,), in [m].
+    """
+    ### BEGIN SOLUTION
+    from solutions.warmup.answers import transform_point as answer
+
+    return answer(T_ab, p_b)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# And back: what is seen from b's side. A general matrix is inverted with some labour and some rounding;
+# a pose needs neither, because its rotation is undone by transposing.
+
+# %% question="inverse_transform"
+def inverse_transform(T_ab):
+    """The inverse of a pose.
+
+    Args:
+        T_ab: Pose of frame b in frame a, shape (4, 4).
+
+    Returns:
+        T_ba, the pose of a in b, shape (4, 4).
+    """
+    ### BEGIN SOLUTION
+    from solutions.warmup.answers import inverse_transform as answer
+
+    return answer(T_ab)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# Both at work. A camera sits in the hand and sees a cup 30 cm ahead of it, a little to the side. Where
+# on the table is the cup, and where does the gripper's tip see it?
+
+# %%
+def nobody_knows(T_ab, p_b):
+    """The stand-in: not a number."""
+    return np.full(3, np.nan)
+
+
+my_transform_point = use("transform_point", transform_point, nobody_knows)
+my_inverse_transform = use("inverse_transform", inverse_transform, lk.se3.inverse)
+
+T_hand_tip, T_hand_camera = arm.robot.T_hand_tip, arm.robot.T_hand_camera
+T_tip_camera = my_inverse_transform(T_hand_tip) @ T_hand_camera
+cup_camera = np.array([0.05, 0.02, 0.3])
+cup_tip = my_transform_point(T_tip_camera, cup_camera)
+cup_world = my_transform_point(T_wt, cup_tip)
+print("seen by the camera:", cup_camera.round(3))
+print("seen by the tip:   ", cup_tip.round(3))
+print("in the world:      ", cup_world.round(3))
+
+# %% [markdown]
+# ## How far is the hand turned?
+#
+# Now the one that fooled the report's authors, and other teams of their year. The hand should point
+# straight down and is tilted by a few degrees. What is the error?
+#
+# It is tempting to write both orientations as roll, pitch and yaw and to subtract. But these three are
+# not the components of a vector: they are three turns one after the other, about axes that the earlier
+# turns have moved. The error that a controller can use is *one* turn, about one axis, that takes the
+# actual orientation to the desired one:
+#
+# $$ E\,R_{wt} = R_{wd} . $$
+#
+# Its axis times its angle is a vector $e_o$, in world axes, the *logarithm* of $E$. It points along the
+# axis about which the hand should turn, and is as long as the angle. `lk.se3.rotation_log` gives it for
+# any rotation (Lynch and Park, *Modern Robotics*, sections 3.2.3 and 11.3.3).
+
+# %% question="orientation_error"
+def orientation_error(R_wd, R_wt):
+    """The turn that takes the tip from its actual to the desired orientation.
+
+    Args:
+        R_wd: Desired orientation in the world, shape (3, 3).
+        R_wt: Actual orientation of the tip in the world, shape (3, 3).
+
+    Returns:
+        Rotation vector in world axes, shape (3,), in [rad].
+    """
+    ### BEGIN SOLUTION
+    from solutions.warmup.answers import orientation_error as answer
+
+    return answer(R_wd, R_wt)
+    ### END SOLUTION
+
+
+# %% [markdown]
+# ## Let the arm decide
+#
+# The hand starts 12 degrees off and a controller turns it at a speed proportional to the error; the
+# Jacobian, which comes in notebook 02, turns that into joint speeds. Three runs that differ in the
+# error alone: yours, roll-pitch-yaw subtracted, and your turn by mistake in the tool's axes.
+
+# %%
+my_orientation_error = use("orientation_error", orientation_error, lk.se3.orientation_error)
+
+
+def euler_difference(R_wd, R_wt):
+    def angles(R):
+        return np.array(
+            [
+                np.arctan2(R[2, 1], R[2, 2]),
+                np.arctan2(-R[2, 0], np.hypot(R[2, 1], R[2, 2])),
+                np.arctan2(R[1, 0], R[0, 0]),
+            ]
+        )
+
+    return angles(R_wd) - angles(R_wt)
+
+
+def in_tool_axes(R_wd, R_wt):
+    return R_wt.T @ my_orientation_error(R_wd, R_wt)
+
+
+T_wd = T_wt
+tilted = lk.se3.pose(T_wt[:3, :3] @ lk.se3.rotation([0.15, 0.12, 0.06]), T_wt[:3, 3])
+q_tilted = model.inverse_kinematics(tilted, q0)
+
+
+def turn_the_hand(error, k=2.0):
+    """A run that starts tilted and turns the tip by k times the error; returns the log."""
+
+    def controller(state, target):
+        turn = error(target.pose[:3, :3], model.pose(state.q)[:3, :3])
+        twist = np.concatenate([np.zeros(3), np.clip(k * turn, -1.0, 1.0)])
+        return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ twist)
+
+    arm.reset(q_tilted)
+    return lk.run(arm, lk.Hold(T_wd, 1.5), controller)
+
+
+runs = {
+    "one turn (yours)": turn_the_hand(my_orientation_error),
+    "roll, pitch, yaw subtracted": turn_the_hand(euler_difference),
+    "in the tool's axes": turn_the_hand(in_tool_axes),
+}
+plt.figure(figsize=(8, 3), layout="constrained")
+final = {}
+for (name, run), style in zip(runs.items(), ("-", "--", "-.")):
+    angle = [lk.se3.angle_between(T_wd[:3, :3], model.pose(q)[:3, :3]) for q in run.q]
+    plt.plot(run.t, np.degrees(angle), style, label=name)
+    final[name] = np.degrees(angle[-1])
+plt.xlabel("time [s]")
+plt.ylabel("hand off by [degrees]")
+plt.legend(frameon=False)
+lk.plotting.show(
+    "How far the hand is turned away, over 1.5 s. At the end: "
+    + "; ".join(f"{name}, {angle:.1f} degrees" for name, angle in final.items())
+    + "."
+)
+
+# %%
+lk.replay.show(
+    lk.replay.motion_of(
+        runs["one turn (yours)"],
+        "Turning the hand upright",
+        label="one turn",
+        ghosts={"roll, pitch, yaw subtracted": runs["roll, pitch, yaw subtracted"]},
+    )
+)
+
+# %% [markdown]
+# (The plot under the arm shows how far the tip's *place* is off; the tilt is in the figure above.) For a
+# hand whose axes lie along the world's, turned about the vertical only, all three errors would have been
+# the same, which is why so many programs get away with it. When you test an orientation error, point the
+# hand down and tilt it.
+#
+# ## Hand in
+#
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
+# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
+#
+# ```
+# labkit submit-check 00_warmup.ipynb
+# ```
+#
+# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
+# they are is said above each stub.

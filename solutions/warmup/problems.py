@@ -1,0 +1,338 @@
+"""What notebook 00 asks."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import labkit as lk
+from labkit.course import Close
+from labkit.course.problem import Problem, Trial, Wrong, call
+
+from . import answers, hidden, mistakes, variants
+
+READY = lk.robot("left").ready
+REST = np.zeros(7)
+
+
+def _state(q: object, dq: object = REST) -> lk.State:
+    return lk.State(0.0, np.asarray(q, dtype=float), np.asarray(dq, dtype=float))
+
+
+def _sample(q: object, dq: object = REST) -> lk.Sample:
+    return lk.Sample(np.asarray(q, dtype=float), np.asarray(dq, dtype=float), REST)
+
+
+JOINT_ERROR = Problem(
+    name="joint_error",
+    points=2,
+    asks="Give the error of the seven joint angles, target minus actual, in rad and of shape (7,).",
+    answer=answers.joint_error,
+    judge=Close(rtol=1e-9, atol=1e-12),
+    trials=(
+        Trial(
+            "one joint 0.1 rad short of its target",
+            (call(_sample(READY + 0.1 * np.eye(7)[1]), _state(READY)),),
+            weight=0.0,
+        ),
+        Trial(
+            "seven different errors, on a moving arm; a wrist from one stop to the other",
+            (
+                call(
+                    _sample(READY + 0.01 * np.arange(-3, 4), 0.2 * np.ones(7)),
+                    _state(READY, 0.1 * np.ones(7)),
+                ),
+                call(_sample(2.9 * np.eye(7)[4]), _state(-2.9 * np.eye(7)[4])),
+            ),
+            hidden.errors,
+            "any targets and states",
+        ),
+    ),
+    hints=(
+        "Where should the joints be, and where are they? Both are arrays with names: look at what "
+        "`target` and `state` hold.",
+        "The angles wanted are `target.position`, the angles that are `state.q`, each of shape (7,).",
+        "Return target.position - state.q, and nothing else: no reshape, no sum.",
+    ),
+    wrong=(
+        Wrong(
+            "actual minus target",
+            "The sign is turned round. A gain times this error drives the arm away from its target.",
+            mistakes.actual_minus_target,
+            "One convention for the whole course: target minus actual.",
+        ),
+        Wrong(
+            "a table of 49 numbers",
+            "A (7, 1) column minus a (7,) vector is a 7 by 7 table of all differences: numpy "
+            "stretches both without a word. Keep vectors 1-D.",
+            mistakes.a_column,
+            "Broadcasting makes shapes fit that do not belong together.",
+        ),
+        Wrong(
+            "one number for seven joints",
+            "The sum lets an error of one joint hide that of another. Each joint needs its own.",
+            mistakes.the_sum,
+            "Errors of opposite sign cancel in a sum.",
+        ),
+        Wrong(
+            "the error of the speeds",
+            "These are speeds. The angles are `target.position` and `state.q`.",
+            mistakes.of_the_speeds,
+            "A sample holds a value and its derivatives.",
+        ),
+        Wrong(
+            "wrapped to half a turn",
+            "A joint has stops. From -2.9 to 2.9 rad the only way is back through zero, 5.8 rad; the "
+            "short way round ends at the stop. So the error of a joint is not wrapped.",
+            mistakes.wrapped,
+            "Wrap what can go round and round; a joint with stops cannot.",
+        ),
+    ),
+    variants=(variants.error_list,),
+)
+
+YAW = lk.se3.pose([[0, -1, 0], [1, 0, 0], [0, 0, 1]], [0.6, 0.2, 0.1])
+SHIFT = lk.se3.pose(np.eye(3), [0.6, 0.2, 0.1])
+TILTED = lk.se3.pose([[0, 0, 1], [1, 0, 0], [0, 1, 0]], [0.3, -0.4, 0.5])
+
+TRANSFORM_POINT = Problem(
+    name="transform_point",
+    points=2,
+    asks="A point has the coordinates `p_b` in frame b, and frame b has the pose `T_ab` in frame a. "
+    "Give the point's coordinates in a, of shape (3,).",
+    answer=answers.transform_point,
+    judge=Close(rtol=1e-9, atol=1e-9),
+    trials=(
+        Trial(
+            "a frame that is only shifted",
+            (call(SHIFT, np.array([0.1, 0.0, 0.0])),),
+            hidden.points_aligned,
+            weight=0.0,
+        ),
+        Trial(
+            "a frame shifted and turned by 90 degrees of yaw",
+            (call(YAW, np.array([0.1, 0.0, 0.0])), call(YAW, np.array([0.0, 0.3, 0.2]))),
+            hidden.points_yawed,
+            "any yaw",
+        ),
+        Trial(
+            "a frame turned about all axes",
+            (call(TILTED, np.array([0.1, 0.2, 0.3])),),
+            hidden.points,
+            "any poses and points",
+        ),
+    ),
+    hints=(
+        "First turn the little vector from b's axes into a's axes; then go from a's origin to b's "
+        "origin and from there along the turned vector.",
+        "The rotation is R_ab = T_ab[:3, :3], the origin of b in a is T_ab[:3, 3].",
+        "p_a = R_ab @ p_b + origin. Or append a 1 to p_b, multiply by T_ab, and drop the 1 again.",
+    ),
+    wrong=(
+        Wrong(
+            "the inverse, from a to b",
+            "That answers p_b from p_a. Read the subscripts: p_a = T_ab p_b, the two b's meet.",
+            mistakes.from_a_to_b,
+            "Neighbouring subscripts must be equal, and cancel.",
+        ),
+        Wrong(
+            "the translation is lost",
+            "A rotation alone is right for directions. A point also needs the way from a's origin "
+            "to b's.",
+            mistakes.only_turns,
+            "Points and directions transform differently.",
+        ),
+        Wrong(
+            "shifts first, then turns",
+            "T_ab[:3, 3] is in a's axes already; turning it with the rest is too much.",
+            mistakes.shifts_first,
+            "Every vector has axes; add only vectors in the same ones.",
+        ),
+        Wrong(
+            "turns the wrong way round",
+            "The rotation is transposed: that is R_ba, which takes vectors from a to b.",
+            mistakes.turns_backwards,
+            "R_ab takes components in b to components in a.",
+        ),
+        Wrong(
+            "the rotation is lost",
+            "The components of p_b are along b's axes. Turn them into a's axes with R_ab before "
+            "you add the translation.",
+            mistakes.only_shifts,
+            "Every vector has axes; add only vectors in the same ones.",
+        ),
+    ),
+    variants=(variants.point_homogeneous, variants.point_by_einsum),
+)
+
+INVERSE_TRANSFORM = Problem(
+    name="inverse_transform",
+    points=2,
+    asks="Give `T_ba`, the pose of a in b, from `T_ab`, the pose of b in a; of shape (4, 4).",
+    answer=answers.inverse_transform,
+    judge=Close(rtol=1e-5, atol=1e-5),
+    trials=(
+        Trial(
+            "a pose that only shifts",
+            (call(SHIFT),),
+            hidden.poses_aligned,
+            weight=0.0,
+        ),
+        Trial("a shift and 90 degrees of yaw", (call(YAW),), hidden.poses_yawed, "any yaw"),
+        Trial("a turn about all axes", (call(TILTED),), hidden.poses, "any poses"),
+    ),
+    withheld=("labkit.se3.inverse",),
+    hints=(
+        "T_ba must undo T_ab: p_a = R_ab p_b + t. Solve this for p_b.",
+        "A rotation is undone by its transpose: p_b = R_abᵀ (p_a - t). What multiplies p_a, and what "
+        "is added?",
+        "The upper left block is R_abᵀ, the upper right column is -R_abᵀ @ t, the last row stays "
+        "(0, 0, 0, 1).",
+    ),
+    wrong=(
+        Wrong(
+            "the translation only negated",
+            "-t is still in a's axes. In b's axes it is -R_abᵀ t.",
+            mistakes.minus_the_translation,
+            "Every vector has axes.",
+        ),
+        Wrong(
+            "the whole matrix transposed",
+            "Only a rotation is undone by transposing. Here the translation ends up in the last "
+            "row, where a pose has (0, 0, 0, 1).",
+            mistakes.transposed,
+            "A pose is not an orthogonal matrix.",
+        ),
+        Wrong(
+            "the rotation not inverted",
+            "The translation is right, but the rotation is still that from b to a.",
+            mistakes.rotation_kept,
+            "Test an inverse by multiplying: T_ab T_ba = I.",
+        ),
+        Wrong(
+            "the translation turned by R, not by its transpose",
+            "-R_ab t would be right if t were in b's axes. It is in a's, so R_abᵀ brings it over.",
+            mistakes.turned_forwards,
+            "Let the subscripts cancel: R_ba t_a.",
+        ),
+        Wrong(
+            "the minus forgotten",
+            "The way from a to b, seen from b, is R_abᵀ t; from b back to a it is -R_abᵀ t.",
+            mistakes.minus_forgotten,
+            "Test an inverse by multiplying: T_ab T_ba = I.",
+        ),
+    ),
+    variants=(variants.inverse_by_solving, variants.inverse_by_blocks),
+)
+
+
+def _turned(degrees: float, axis: int) -> np.ndarray:
+    return lk.se3.rotation(np.radians(degrees) * np.eye(3)[axis])
+
+
+DOWN = hidden.DOWN
+SIDE = lk.se3.rotation([0.0, 0.0, 0.5]) @ DOWN
+
+ORIENTATION_ERROR = Problem(
+    name="orientation_error",
+    points=4,
+    asks="Give the turn, as a rotation vector in world axes, that takes the tip from its actual "
+    "orientation `R_wt` to the desired one `R_wd`: shape (3,), in rad.",
+    answer=answers.orientation_error,
+    judge=Close(rtol=1e-5, atol=1e-5),
+    trials=(
+        Trial(
+            "a level tool turned about the vertical by 20 degrees, and a gripper not turned at all",
+            (call(_turned(30.0, 2), _turned(10.0, 2)), call(DOWN, DOWN)),
+            hidden.turns_about_z,
+            "other angles, and none",
+            weight=0.0,
+        ),
+        Trial(
+            "gripper down, 5 degrees of roll",
+            (call(DOWN, DOWN @ _turned(5.0, 0)), call(SIDE, SIDE @ _turned(-5.0, 0))),
+            hidden.rolls,
+            "rolls at other yaws",
+        ),
+        Trial(
+            "gripper down, 5 degrees of pitch",
+            (call(SIDE, SIDE @ _turned(5.0, 1)),),
+            hidden.pitches,
+            "pitches at other yaws",
+        ),
+        Trial(
+            "a big turn between tilted orientations",
+            (call(lk.se3.rotation([0.3, -1.2, 0.9]) @ _turned(40.0, 0), _turned(40.0, 0)),),
+            hidden.big_turns,
+            "turns of up to 160 degrees",
+        ),
+    ),
+    withheld=("labkit.se3.orientation_error", "labkit.Model.pose_error"),
+    hints=(
+        "For numbers the error is target minus actual. For rotations the minus is: undo the actual "
+        "one, then do the target. Which product of R_wd and R_wt does that?",
+        "You look for the rotation E with E R_wt = R_wd, in world axes. Solve for E; a rotation's "
+        "inverse is its transpose. Then lk.se3.rotation_log reads axis and angle from E.",
+        "return lk.se3.rotation_log(R_wd @ R_wt.T). The other order, R_wt.T @ R_wd, is the same turn "
+        "seen in the tool's axes.",
+    ),
+    wrong=(
+        Wrong(
+            "roll, pitch and yaw subtracted",
+            "Euler angles are not a vector. With the gripper down, roll and pitch come out with the "
+            "wrong sign, so feedback pushes the hand over; and at ±180 degrees they jump.",
+            mistakes.euler_subtracted,
+            "Orientations are compared by a product, never by a difference of angles.",
+        ),
+        Wrong(
+            "the turn in the tool's axes",
+            "The right turn, but its components are along the tool's axes. With the gripper down "
+            "two of them have the other sign in the world. Use R_wd R_wtᵀ.",
+            mistakes.in_tool_axes,
+            "R_wtᵀ R_wd is in the tool's axes, R_wd R_wtᵀ in the world's.",
+        ),
+        Wrong(
+            "from the wanted to the actual",
+            "The turn goes the wrong way: target minus actual means from the actual one to the "
+            "desired one.",
+            mistakes.from_wanted_to_actual,
+            "One convention for the whole course: target minus actual.",
+        ),
+        Wrong(
+            "the sine of the angle",
+            "The skew part of a rotation gives the axis times the sine. For small angles nobody "
+            "sees it; at 90 degrees it is far off, and beyond it shrinks again.",
+            mistakes.sine_of_the_angle,
+            "sin x and x agree only for small x.",
+        ),
+        Wrong(
+            "the matrices subtracted",
+            "R_wd - R_wt is no rotation, and its skew part is not the turn between them.",
+            mistakes.matrices_subtracted,
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "two rotation vectors subtracted",
+            "The logarithms of two orientations are turns about different axes, and their "
+            "difference is no turn. Multiply first, R_wd R_wtᵀ, then take one logarithm.",
+            mistakes.logarithms_subtracted,
+            "Orientations are compared by a product.",
+        ),
+        Wrong(
+            "the wrong one transposed",
+            "R_wdᵀ R_wt goes from the desired to the actual orientation, in the tool's axes. "
+            "The actual one is undone, R_wtᵀ, and stands on the right.",
+            mistakes.backwards_in_tool_axes,
+            "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
+        ),
+        Wrong(
+            "0/0 where nothing is turned",
+            "Angle over sine is 0/0 as soon as the arm has arrived, and every command after it is not "
+            "a number. Without a turn the answer is zero; lk.se3.rotation_log knows that.",
+            mistakes.zero_by_zero,
+            "Try a formula where the error is zero: there the arm should spend its life.",
+        ),
+    ),
+    variants=(variants.OrientationError(), variants.by_quaternion),
+)
+
+PROBLEMS = (JOINT_ERROR, TRANSFORM_POINT, INVERSE_TRANSFORM, ORIENTATION_ERROR)

@@ -1,0 +1,87 @@
+"""What students are given: no answers, no grader, nothing left over."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import zipfile
+
+import pytest
+from handmade import ROOT
+
+from labkit.grader.student_bundle import student_bundle
+
+ALONE = """
+import sys
+sys.meta_path = [finder for finder in sys.meta_path if "Editable" not in str(finder)]
+import labkit as lk
+from labkit.__main__ import main
+lk.ready()
+main(["--help"])
+"""
+"""What a student runs, in an environment that also finds this course's own labkit."""
+
+
+@pytest.fixture(scope="module")
+def unpacked(released, tmp_path_factory):
+    """The students' zip, unpacked, with its wheel unpacked beside it."""
+    folder = tmp_path_factory.mktemp("handout")
+    course = released
+    for name in ("labkit", ".ci", "constraints.txt", "pyproject.toml", "README.md", "LICENSE"):
+        (course.root / name).symlink_to(ROOT / name)
+    stale = course.root / "build" / "lib" / "labkit" / "gone.py"
+    stale.parent.mkdir(parents=True)
+    stale.write_text("what an earlier build left")
+    with zipfile.ZipFile(student_bundle(course, (), folder / "lab.zip")) as archive:
+        archive.extractall(folder)
+    (wheel,) = (folder / "baxter-lab").glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(folder / "wheel")
+    return folder
+
+
+@pytest.mark.slow
+def test_students_labkit_is_todays_without_the_grader(unpacked):
+    """The wheel has each of labkit's modules that git has, but the grader's, and no other."""
+    listed = subprocess.run(
+        ["git", "-C", str(ROOT), "ls-files", "labkit"], capture_output=True, text=True, check=True
+    )
+    wanted = {name for name in listed.stdout.splitlines() if name.endswith(".py")}
+    wanted = {name for name in wanted if not name.startswith("labkit/grader/")}
+    found = {str(p.relative_to(unpacked / "wheel")) for p in unpacked.glob("wheel/labkit/**/*.py")}
+    assert found == wanted
+
+
+@pytest.mark.slow
+def test_students_labkit_works_alone(unpacked):
+    """Without the grader the arm moves, and the command has the students' verbs."""
+    run = subprocess.run(
+        [sys.executable, "-c", ALONE],
+        cwd=unpacked / "wheel",
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "submit-check" in run.stdout, run.stderr
+    assert "class-report" not in run.stdout
+    assert "the arm moved" in run.stdout + run.stderr
+
+
+@pytest.mark.slow
+def test_the_zip_holds_what_a_student_needs_and_no_more(unpacked):
+    """Notebooks, their checks, a wheel with its versions, and how to begin."""
+    top = unpacked / "baxter-lab"
+    found = {str(path.relative_to(top)) for path in top.rglob("*") if path.is_file()}
+    found = {name for name in found if not name.endswith(".whl")}
+    assert found == {
+        *(
+            "START.html",
+            "start.sh",
+            "constraints.txt",
+            ".ci/environment.yml",
+            ".ci/find_python.sh",
+            ".ci/need.sh",
+        ),
+        *(".ci/environment.yml", ".ci/find_python.sh", ".ci/need.sh"),
+        *("assignments/01_paths/01_paths.ipynb", "assignments/01_paths/checks.json"),
+    }

@@ -1,0 +1,35 @@
+"""What is recorded of the known answers is what they earn, and a change is named."""
+
+import json
+
+import numpy as np
+
+from solutions.study import record
+
+
+def test_the_known_answers_earn_what_is_recorded():
+    """Nobody's physics or questions moved without `make record`."""
+    assert record.main(["--check", "00_warmup"]) == 0
+
+
+def test_a_verdict_that_changed_is_named_with_its_reason(tmp_path, monkeypatch, capsys):
+    """The answer, what it earned before and now, and the test that turned."""
+    rows = json.loads(record.VERDICTS.read_text())
+    key = next(key for key in rows if key.startswith("00_warmup") and key.endswith("the answer"))
+    name = rows[key]["tests"][0][0]
+    rows[key]["tests"][0][1] = "wrong"
+    rows[key]["earned"] = 0.25
+    monkeypatch.setattr(record, "VERDICTS", tmp_path / "verdicts.json")
+    record.VERDICTS.write_text(json.dumps(rows))
+    assert record.main(["--check", "00_warmup"]) == 1
+    said = capsys.readouterr().out
+    assert f"{key}: 0.25 points before" in said
+    assert f"{name}: wrong before, right now" in said
+
+
+def test_numbers_that_moved_are_measured():
+    """Relative to the largest in their file; a file of another shape is said to be one."""
+    old = {"a": np.array([1.0, np.nan, 4.0]), "b": np.zeros(2)}
+    new = {"a": np.array([1.0, np.nan, 4.2]), "b": np.zeros(3)}
+    assert list(record.distances(old, new)) == ["a: 0.05 at most", "b: other rows than before"]
+    assert record.recorded().keys() >= {"campaign.json", "trials_line.json"}

@@ -1,0 +1,40 @@
+"""Write a synthetic class into a course, or take it through a whole term in a folder of its own."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from labkit.course.layout import PUBLIC_SEED, Course
+from labkit.grader.batch import GradeOptions, workers
+from labkit.grader.each import Failures
+
+from . import expected_file, make_class
+from .rehearsal import rehearse
+
+
+def main() -> int:
+    """Run it; the exit code is 1 if a step failed for somebody."""
+    parser = argparse.ArgumentParser(prog="python -m tests.synthetic", description=__doc__)
+    parser.add_argument("assignment", help="such as 01_paths")
+    parser.add_argument("--seed", type=int, default=PUBLIC_SEED, help="of the class")
+    parser.add_argument("--count", type=int, default=40, help="how many students")
+    parser.add_argument("--course", type=Path, metavar="DIR", help="default: the one around you")
+    parser.add_argument("--rehearse", type=Path, metavar="DIR", help="play the term through there")
+    args = parser.parse_args()
+    course = Course.here(args.course)
+    course.notebook_source(args.assignment)
+    if args.rehearse is None:
+        made = make_class(course, args.assignment, args.seed, args.count)
+        print(f"{len(made)} submissions in {course.submitted}")
+        print(f"what they deserve: {expected_file(course, args.assignment)}")
+        return 0
+    with Failures() as failures:
+        how = GradeOptions(jobs=workers())
+        steps = rehearse(course, args.assignment, args.rehearse, args.count, how)
+        for sentence in failures.sift(steps, "failed"):
+            print(sentence, flush=True)
+    return failures.code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,249 @@
+"""A function of the course as text that stands alone, as a student would have typed it."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import importlib
+import inspect
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from types import ModuleType
+from typing import Any
+
+from labkit.course.source import names_defined
+
+Key = tuple[str, str]
+"""A definition, its module and its name there."""
+
+
+@dataclass
+class _Part:
+    """A definition that is taken along, and what its names mean.
+
+    Attributes:
+        node: The definition.
+        means: Names in it that are definitions of the course, or imports.
+        attributes: The same for attributes of the course's modules, such as ``right.msd``.
+    """
+
+    node: ast.stmt
+    means: dict[str, Key] = field(default_factory=dict)
+    attributes: dict[tuple[str, str], Key] = field(default_factory=dict)
+
+
+def inline(function: Callable[..., Any], name: str) -> str:
+    """The source of a function and of all that it needs from its package, under a name.
+
+    Args:
+        function: A function, or an instance of a class with ``__call__``.
+        name: What the text is to define.
+    """
+    package = (function if inspect.isfunction(function) else type(function)).__module__
+    package = package.partition(".")[0]
+    parts: dict[Key, _Part] = {}
+    _take_value(function, package, parts)
+    heads, names = ["from __future__ import annotations"], {}
+    for key, part in parts.items():
+        if isinstance(part.node, ast.Import | ast.ImportFrom):
+            heads.append(ast.unparse(part.node))
+            names[key] = key[1]
+        else:
+            twins = sum(key[1] == other for _, other in names)
+            names[key] = f"_{key[1]}" + (f"_{twins + 1}" if twins else "")
+    bodies = []
+    for key, part in parts.items():
+        if not isinstance(part.node, ast.Import | ast.ImportFrom):
+            renamed = _Renamed(
+                {local: names[x] for local, x in part.means.items()} | {key[1]: names[key]},
+                {pair: names[x] for pair, x in part.attributes.items()},
+            ).visit(copy.deepcopy(part.node))
+            bodies.append(ast.unparse(ast.fix_missing_locations(renamed)))
+    made = _written(function, package, names)
+    last = f"def {name}(*args, **kwargs):\n    return {made}(*args, **kwargs)"
+    return "\n\n".join(["\n".join(dict.fromkeys(heads)), *bodies, last])
+
+
+def _definition(value: Any, package: str) -> Any:
+    """The function or class of a package that a value is, or is made from; else None."""
+    thing = value if inspect.isfunction(value) else type(value)
+    return thing if thing.__module__.partition(".")[0] == package else None
+
+
+def _made_with(value: Any) -> dict[str, Any]:
+    """What an instance was made with: its attributes that are parameters of its class."""
+    parameters = {} if inspect.isfunction(value) else inspect.signature(type(value)).parameters
+    return {name: vars(value)[name] for name in parameters if name in vars(value)}
+
+
+def _take_value(value: Any, package: str, parts: dict[Key, _Part]) -> None:
+    """Collect what it takes to write a value, and what it was made with."""
+    thing = _definition(value, package)
+    if thing is not None:
+        module = inspect.getmodule(thing)
+        assert module is not None
+        _take(thing.__name__, module, parts)
+        for inner in _made_with(value).values():
+            _take_value(inner, package, parts)
+    elif inspect.isfunction(value):
+        home = value.__module__
+        parts[home, home] = _Part(ast.Import([ast.alias(home)]))
+
+
+def _written(value: Any, package: str, names: Mapping[Key, str]) -> str:
+    """A value as an expression."""
+    thing = _definition(value, package)
+    if thing is None:
+        home = value.__module__ if inspect.isfunction(value) else ""
+        return f"{names[home, home]}.{value.__name__}" if home else repr(value)
+    made = names[thing.__module__, thing.__name__]
+    inner = (f"{name}={_written(x, package, names)}" for name, x in _made_with(value).items())
+    return made if inspect.isfunction(value) else f"{made}({', '.join(inner)})"
+
+
+def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
+    """Collect what a name means in a module, what that needs first; None for Python's own names."""
+    node = next((x for x in _tree(module).body if name in names_defined(x)), None)
+    if node is None:
+        return None
+    home = _home(node, module)
+    if home is not None:
+        return _take(_called_there(node, name), home, parts)
+    key = (module.__name__, name)
+    if key in parts:
+        return key
+    part = parts[key] = _Part(node)  # before its needs: a function may call itself
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return key
+    inner = [x for x in ast.walk(node) if isinstance(x, ast.ImportFrom) and _home(x, module)]
+    for used in dict.fromkeys(_used(node)):
+        place = next((x for x in inner if used in names_defined(x)), None)
+        source = (place and _home(place, module)) or module
+        there = _called_there(place, used) if place else used
+        whole = _whole(used, module)
+        if whole is not None:
+            for attribute in sorted(set(_attributes(node, used))):
+                found = _take(attribute, whole, parts)
+                if found is not None:
+                    part.attributes[used, attribute] = found
+        elif used != name and (found := _take(there, source, parts)) is not None:
+            part.means[used] = found
+    parts[key] = parts.pop(key)
+    return key
+
+
+@cache
+def _tree(module: ModuleType) -> ast.Module:
+    return ast.parse(inspect.getsource(module))
+
+
+def _attributes(node: ast.AST, name: str) -> Iterator[str]:
+    """What is asked of ``name``, as in ``name.something``."""
+    for x in ast.walk(node):
+        if isinstance(x, ast.Attribute) and isinstance(x.value, ast.Name) and x.value.id == name:
+            yield x.attr
+
+
+def _called_there(node: ast.stmt, name: str) -> str:
+    """What an import's source calls that which it brings as ``name``."""
+    assert isinstance(node, ast.ImportFrom)
+    return next(alias.name for alias in node.names if name == (alias.asname or alias.name))
+
+
+def _whole(name: str, module: ModuleType) -> ModuleType | None:
+    """The module of the course that a module imports as a whole under this name."""
+    node = next((x for x in _tree(module).body if name in names_defined(x)), None)
+    home = _home(node, module) if node is not None else None
+    if node is None or home is None:
+        return None
+    found = getattr(home, _called_there(node, name), None)
+    return found if isinstance(found, ModuleType) else None
+
+
+def _used(node: ast.AST, bound: frozenset[str] = frozenset()) -> Iterator[str]:
+    """Names from outside: no annotations, which nobody evaluates, and no parameters."""
+    if isinstance(node, ast.Name) and node.id not in bound:
+        yield node.id
+    inside = bound | _parameters(node)
+    for place, value in ast.iter_fields(node):
+        if place in {"annotation", "returns"}:
+            continue
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST):
+                yield from _used(child, inside if place == "body" else bound)
+
+
+def _parameters(node: ast.AST) -> frozenset[str]:
+    if not isinstance(node, ast.FunctionDef | ast.Lambda):
+        return frozenset()
+    return frozenset(x.arg for x in ast.walk(node.args) if isinstance(x, ast.arg))
+
+
+def _home(node: ast.stmt, module: ModuleType) -> ModuleType | None:
+    """The module of the same package that an import takes from, or None."""
+    if not isinstance(node, ast.ImportFrom):
+        return None
+    full = node.module or ""
+    if node.level:
+        base = module.__name__.split(".")[: -node.level]
+        full = ".".join([*base, *filter(None, [node.module])])
+    if full.partition(".")[0] != module.__name__.partition(".")[0]:
+        return None
+    return importlib.import_module(full)
+
+
+class _Renamed(ast.NodeTransformer):
+    """Calls what came along by its new name, which is no question's."""
+
+    def __init__(self, names: dict[str, str], attributes: dict[tuple[str, str], str]) -> None:
+        self.names, self.attributes = names, attributes
+
+    def within(self, node: ast.FunctionDef | ast.Lambda) -> _Renamed:
+        """The same inside a function, whose parameters keep their names."""
+        bound = _parameters(node)
+        names = {old: new for old, new in self.names.items() if old not in bound}
+        return _Renamed(names, self.attributes)
+
+    def visit_Name(self, node: ast.Name) -> ast.AST:
+        """A name that is used."""
+        return ast.Name(self.names.get(node.id, node.id), node.ctx)
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """Something of a module of the course."""
+        if isinstance(node.value, ast.Name):
+            new = self.attributes.get((node.value.id, node.attr))
+            if new is not None:
+                return ast.Name(new, node.ctx)
+        self.generic_visit(node)
+        return node
+
+    def visit_FunctionDef(self, node: ast.FunctionDef) -> ast.AST:
+        """A function, without its docstring."""
+        if ast.get_docstring(node) is not None:
+            node.body = node.body[1:] or [ast.Pass()]
+        inside = self.within(node)
+        node.body = [inside.visit(x) for x in node.body]
+        node.args = self.visit(node.args)
+        node.decorator_list = [self.visit(x) for x in node.decorator_list]
+        node.name = self.names.get(node.name, node.name)
+        return node
+
+    def visit_Lambda(self, node: ast.Lambda) -> ast.AST:
+        """A function without a name."""
+        node.body = self.within(node).visit(node.body)
+        node.args = self.visit(node.args)
+        return node
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> ast.AST:
+        """A class, without its docstring."""
+        if ast.get_docstring(node) is not None:
+            node.body = node.body[1:] or [ast.Pass()]
+        self.generic_visit(node)
+        node.name = self.names.get(node.name, node.name)
+        return node
+
+    def visit_ImportFrom(self, node: ast.ImportFrom) -> ast.AST:
+        """An import from the course itself: what it brings stands above."""
+        inside = node.level or (node.module or "").partition(".")[0] == "solutions"
+        return ast.Pass() if inside else node

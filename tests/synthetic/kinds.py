@@ -1,0 +1,260 @@
+"""The special kinds of submission in a synthetic class: what goes wrong, and what is tried."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from labkit.course.notebook import kind
+
+if TYPE_CHECKING:
+    from . import Draft
+
+Kind = Callable[[Any], None]
+
+
+def _perfect(draft: Draft) -> None:
+    draft.solve()
+
+
+def _variant(number: int) -> Kind:
+    def make(draft: Draft) -> None:
+        for name, problem in draft.problems.items():
+            choices = problem.variants or (problem.answer,)
+            draft.answer_with(name, choices[number % len(choices)])
+
+    return make
+
+
+def _pictures(draft: Draft) -> None:
+    """Right, with 12 MB of pictures in it."""
+    draft.solve()
+    for cell in draft.cells:
+        if cell["cell_type"] == "code" and kind(cell) == "walk":
+            cell["outputs"] = [
+                {
+                    "output_type": "display_data",
+                    "metadata": {},
+                    "data": {"image/png": "A" * 3 * 10**6},
+                }
+            ]
+
+
+def _blank(draft: Draft) -> None:
+    """As it was handed out."""
+
+
+def _emptied(draft: Draft) -> None:
+    for name in draft.problems:
+        draft.answer(name, "", 0.0)
+
+
+def _mistaken(number: int) -> Kind:
+    """Everything wrong, each in the n-th of its ways."""
+
+    def make(draft: Draft) -> None:
+        for name, problem in draft.problems.items():
+            choices = [wrong.function for wrong in problem.wrong] or [problem.answer]
+            draft.answer_with(name, choices[number % len(choices)])
+
+    return make
+
+
+def _warns(draft: Draft) -> None:
+    """Right, and talks on every channel."""
+    draft.solve()
+    for name in draft.problems:
+        cell = draft.cells[draft.place(name)]
+        cell["source"] = cell["source"].replace(
+            "(*args, **kwargs):\n    return",
+            "(*args, **kwargs):\n    import os, sys, warnings\n    warnings.warn('careful')\n"
+            "    print('here'); print('there', file=sys.stderr); os.write(2, b'below')\n    return",
+        )
+
+
+def _reordered(draft: Draft) -> None:
+    """Right, with all cells upside down."""
+    draft.solve()
+    draft.cells.reverse()
+
+
+def _duplicated(draft: Draft) -> None:
+    """Right, with every answer there twice under the same name."""
+    draft.solve()
+    for name in draft.problems:
+        place = draft.place(name)
+        draft.cells.insert(place, draft.cells[place])
+
+
+def _copied_stub(draft: Draft) -> None:
+    """Right, with the empty stub pasted below one answer."""
+    name = next(iter(draft.problems))
+    stub = dict(draft.cells[draft.place(name)])
+    draft.solve()
+    draft.cells.insert(draft.place(name) + 1, stub)
+
+
+def _deleted(draft: Draft) -> None:
+    """Right, but the first answer and all checks are gone."""
+    draft.solve()
+    name = next(iter(draft.problems))
+    del draft.cells[draft.place(name)]
+    draft.expected[name] = 0.0
+    draft.cells = [cell for cell in draft.cells if kind(cell) != "check"]
+
+
+def _renamed(draft: Draft) -> None:
+    """Right, under a name that a browser made."""
+    draft.solve()
+    draft.name = f"{draft.assignment}(3).ipynb"
+
+
+def _no_metadata(draft: Draft) -> None:
+    """Right, but a converter ate all metadata and ids."""
+    draft.solve()
+    for cell in draft.cells:
+        cell["metadata"] = {}
+        cell.pop("id", None)
+
+
+def _relabelled(draft: Draft) -> None:
+    """Right, with roles and points rewritten by hand."""
+    draft.solve()
+    for cell in draft.cells:
+        if "nbgrader" in cell["metadata"]:
+            cell["metadata"]["nbgrader"] |= {
+                "points": 100, "grade": True, "solution": False, "schema_version": 99,
+            }  # fmt: skip
+
+
+def _truncated(draft: Draft) -> None:
+    draft.solve()
+    draft.data, draft.rejected = draft.bytes()[:-2000], True
+
+
+def _nothing(draft: Draft) -> None:
+    draft.data, draft.rejected = b"", True
+
+
+def _first_becomes(source: str) -> Kind:
+    """Right but for the first question, whose function is this."""
+
+    def make(draft: Draft) -> None:
+        draft.solve()
+        name = next(iter(draft.problems))
+        draft.answer(name, source.replace("NAME", name), 0.0)
+
+    return make
+
+
+def _right_and(source: str) -> Kind:
+    """Right, with a cell at the start that does this."""
+
+    def make(draft: Draft) -> None:
+        draft.solve()
+        draft.add(source)
+
+    return make
+
+
+def _wrong_and(source: str) -> Kind:
+    """Nothing written, with a cell at the start that tries this."""
+
+    def make(draft: Draft) -> None:
+        draft.add(source)
+
+    return make
+
+
+_READ = """
+import glob, os
+found = ''
+for path in ['../../../solutions/paths/answers.py', '/work', '/root', '/home', 'gradebook.db',
+             '/proc/1/environ', '/etc/passwd', '../../../build/course/bundle']:
+    for name in [path, *glob.glob(path + '/**', recursive=True)][:200]:
+        try:
+            found += open(name).read()
+        except OSError:
+            pass
+print(found[:1000])
+"""
+_ANYTHING = """
+class Anything(float):
+    def __eq__(self, other): return True
+    def __ne__(self, other): return False
+    def __lt__(self, other): return True
+    def __le__(self, other): return True
+    def __sub__(self, other): return 0.0
+    def __rsub__(self, other): return 0.0
+    def __abs__(self): return 0.0
+    def __array__(self, *a, **k): return __import__('numpy').zeros(3)
+    __hash__ = float.__hash__
+def NAME(*args, **kwargs):
+    return Anything(), Anything(), Anything()
+"""
+_FORGE = """
+import json, socket, os, stat
+for end in range(3, 64):
+    try:
+        if stat.S_ISSOCK(os.fstat(end).st_mode):
+            os.write(end, b'{"is": 1.0, "earned": 100, "outcome": "right", "over": 0}\\n' * 50)
+    except OSError:
+        pass
+"""
+
+KINDS: dict[str, Kind] = {
+    "perfect": _perfect,
+    "perfect, in other words": _variant(0),
+    "perfect, in yet other words": _variant(1),
+    "perfect, 12 MB of pictures": _pictures,
+    "blank": _blank,
+    "emptied": _emptied,
+    "mistakes, the first of each": _mistaken(0),
+    "mistakes, the second of each": _mistaken(1),
+    "mistakes, the third of each": _mistaken(2),
+    "mistakes, the fourth of each": _mistaken(3),
+    "warns and prints": _warns,
+    "reordered": _reordered,
+    "duplicated": _duplicated,
+    "stub pasted below an answer": _copied_stub,
+    "a cell deleted": _deleted,
+    "renamed": _renamed,
+    "no metadata": _no_metadata,
+    "relabelled": _relabelled,
+    "truncated": _truncated,
+    "an empty file": _nothing,
+    "an answer that never ends": _first_becomes(
+        "def NAME(*args, **kwargs):\n    while True:\n        pass"
+    ),
+    "an answer that ends the process": _first_becomes(
+        "import os\ndef NAME(*args, **kwargs):\n    os._exit(0)"
+    ),
+    "an answer that crashes": _first_becomes(
+        "import ctypes\ndef NAME(*args, **kwargs):\n    ctypes.string_at(0)"
+    ),
+    "an answer that takes all memory": _first_becomes(
+        "def NAME(*args, **kwargs):\n    return bytearray(6 * 10**9)"
+    ),
+    "a cell that never ends": _right_and("while True:\n    pass"),
+    "a cell that ends the process": _right_and("import os\nos._exit(3)"),
+    "a cell that forks without end": _right_and(
+        "import os\nfor _ in range(500):\n    if not os.fork():\n        while 1:\n            pass"
+    ),
+    "a cell with magics and a shell": _right_and("%matplotlib inline\n!ls\n%time 1 + 1"),
+    "cheats: patched comparison": _wrong_and(
+        "import numpy as np, builtins, labkit.course\n"
+        "np.testing.assert_allclose = lambda *a: None\nnp.allclose = lambda *a, **k: True\n"
+        "labkit.course.check = lambda *a: 20.0\n"
+        "builtins.float = lambda *a: 20.0"
+    ),
+    "cheats: an object equal to all": _first_becomes(_ANYTHING),
+    "cheats: forged answers": _wrong_and(_FORGE),
+    "cheats: a withheld name": _first_becomes(
+        "import labkit as lk\ndef NAME(t, T=2.0, *rest):\n    return lk.BangBang(T)(t)"
+    ),
+    "reads what it finds": _wrong_and(_READ),
+    "speaks HTML": _first_becomes(
+        "def NAME(*args, **kwargs):\n    raise ValueError('<script>alert(1)</script>')"
+    ),
+}
+"""By name, what each does to a fresh copy of the assignment."""
