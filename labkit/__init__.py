@@ -74,7 +74,7 @@ def ready() -> None:
     off = abs(log.q[-1] - goal).max()
     if off > 0.01:
         raise LabkitError(f"the arm ended {off:.3f} rad from where it was sent; reinstall labkit")
-    engines = ", ".join(f"{name} {version(name)}" for name in ("pybullet", "pin"))
+    engines = ", ".join(f"{name} {version(name)}" for name in (arm.world.engine, "pin"))
     free = psutil.virtual_memory().available / 2**30
     print(  # short enough for one line of a notebook beside its file browser
         f"labkit {__version__}: the arm moved {1e3 * norm(b - a):.0f} mm; Python "

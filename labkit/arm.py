@@ -1,4 +1,4 @@
-"""The arm: the plant in PyBullet.  Read its state, give it a command."""
+"""The arm: the plant in a physics engine.  Read its state, give it a command."""
 
 from __future__ import annotations
 
@@ -8,22 +8,17 @@ from typing import Any
 import numpy as np
 
 from .baxter import robot
-from .body import load
-from .control import COMMANDS, NOTHING, Command, JointPosition, State, still
+from .control import COMMANDS, NOTHING, Command, JointPosition, JointTorque, State, still
 from .errors import Closed, ControllerError, LabkitError, TypeMismatch
+from .joints import Joints, Touch
 from .model import Model
-from .motors import JOINTS, Motors
+from .motors import Motors
 from .plant import IDEAL, Plant
-from .quiet import quiet
-from .robot import DOF, Robot, Side
-from .sensors import Reports, TorqueSensors, angles
+from .robot import Robot, Side
+from .sensors import Reports, TorqueSensors
 from .shapes import Array, as_array, locked, shown
+from .sim import new_arm
 from .world import World
-
-with quiet():
-    import pybullet as bullet
-
-_HAND = DOF - 1  # PyBullet's number of the last link
 
 
 class Arm:
@@ -72,18 +67,17 @@ class Arm:
             raise TypeMismatch(
                 f"seed is {shown(seed)}, expected a whole number from 0 up"
             ) from None
-        self._client, dt = self.world.client, self.world.dt
-        self._body = load(self._client, side, plant)
-        hand = self.robot.T_hand_tip
-        com = bullet.getDynamicsInfo(self._body, _HAND, self._client)[3]
-        self._lever = hand[:3, :3].T @ (hand[:3, 3] - com)  # from the hand's centre to the tip
+        if q0 is not None:
+            self.model.within_limits(q0, "q")
+        dt = self.world.dt
+        self._engine = new_arm(self.world.engine, self.robot, plant, dt)
         own = Model(side, replace(plant, payload=0.0))  # the arm does not know what it carries
+        self._viscous = np.array(plant.viscous)
         self._patience = round(plant.command_timeout / dt)  # in physics steps
-        self._motors = Motors(self.world, self._body, plant, own)
+        self._motors, self._joints = Motors(dt, plant, own), Joints(self.model, dt)
         self._reports = Reports(plant, dt, self._random)
         self._sensors = TorqueSensors(own, plant, dt)
         self.reset(q0)
-        self.world.add(self._act)
         self.world.arms.append(self)
 
     def _check_place(self) -> None:
@@ -101,7 +95,11 @@ class Arm:
 
     def state(self) -> State:
         """The joints as the arm reports them now: as old and as noisy as the plant makes them."""
-        return self._reported(self._read())
+        if not self._reports.every:
+            return self.truth()
+        if self._reports.due(self.world.steps):
+            self._report()
+        return self._reports.newest(self.world.t)
 
     def apply(self, command: Command) -> None:
         """Follow ``command`` until the next one, or until the plant's command timeout.
@@ -141,8 +139,11 @@ class Arm:
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
         self.check_open()
-        for i in JOINTS:
-            bullet.resetJointState(self._body, i, q[i], 0.0, physicsClientId=self._client)
+        self._engine.place(q)
+        self._joints.reset()
+        self._known: tuple[Array, Array] | None = None
+        self._torque: Array = NOTHING
+        self._touches: list[Touch] = []
         self._sensors.reset()
         self._reports.reset(State(self.world.t, locked(np.array(q)), NOTHING))
         self._motors.kind = type(None)
@@ -158,7 +159,9 @@ class Arm:
 
     def truth(self) -> State:
         """The joints as they really are."""
-        return self._exact(self._read())
+        q, dq = self._read()
+        steps = self.world.steps
+        return State(steps * self.world.dt, q, dq, self._sensors.felt(dq, steps))
 
     @property
     def torque(self) -> Array:
@@ -167,7 +170,8 @@ class Arm:
         Returns:
             Shape (7,) in [N m].
         """
-        return self._motors.torque(self._read())
+        self.check_open()
+        return self._torque
 
     def push(self, force: Any, moment: Any = (0.0, 0.0, 0.0)) -> None:
         """Push the tip during the next physics step; world axes, at the tip's origin.
@@ -178,18 +182,21 @@ class Arm:
             force: Shape (3,) in [N].
             moment: Shape (3,) in [N m].
         """
-        f, m = as_array(force, (3,), "force").tolist(), as_array(moment, (3,), "moment").tolist()
-        R_wt = self.model.pose(angles(self._read()))[:3, :3]
-        # PyBullet's idea of where the link is lags a step behind: count the lever from there.
-        centre = bullet.getLinkState(self._body, _HAND, physicsClientId=self._client)[0]
-        at, frame = (R_wt @ self._lever + centre).tolist(), bullet.WORLD_FRAME
-        bullet.applyExternalForce(self._body, _HAND, f, at, frame, physicsClientId=self._client)
-        if any(m):
-            bullet.applyExternalTorque(self._body, _HAND, m, frame, physicsClientId=self._client)
+        force, moment = as_array(force, (3,), "force"), as_array(moment, (3,), "moment")
+        self._touches.append(Touch(np.concatenate([force, moment]), np.zeros((3, 3))))
+
+    def touch(self, touch: Touch) -> None:
+        """Let something act on the tip during the next physics step."""
+        self._touches.append(touch)
+
+    def tip(self) -> tuple[Array, Array]:
+        """Place [m] and velocity [m/s] of the tip as they really are, each of shape (3,)."""
+        q, dq = self._read()
+        return self.model.pose(q)[:3, 3], self.model.tip_jacobian(q)[:3] @ dq
 
     def check_open(self) -> None:
         """Raise `Closed` if the world it stands in was closed."""
-        if self.world.client < 0:
+        if self.world.closed:
             raise Closed("this arm's world was closed; make a new Arm")
 
     def lost_ticks(self, ticks: int) -> list[bool]:
@@ -201,40 +208,34 @@ class Arm:
 
     def observe(self) -> tuple[State, State, Array]:
         """What `run` writes down: the truth, the state as reported, and `torque`, read at once."""
-        rows = self._read()
-        truth = self._exact(rows)
-        seen = self._reported(rows) if self._reports.every else truth
-        return truth, seen, self._motors.torque(rows)
+        truth = self.truth()
+        seen = self.state() if self._reports.every else truth
+        return truth, seen, self._torque
 
     # The machinery, once per physics step
 
-    def _act(self) -> None:
-        """Set motors and torques for the next physics step; the world calls it."""
+    def step(self) -> None:
+        """Take a physics step; the world calls it."""
         if self.world.steps > self._deadline:
             self._hold()
-        touchable = self.world.things or self.plant.payload  # else no torque comes from outside
-        rows = self._read() if touchable or self._motors.needs_rows else None
         if self._reports.every and self._reports.due(self.world.steps):
-            self._report(rows or self._read())
-        self._motors.drive(rows)
-        if touchable:
-            self._sensors.begin(rows, self._motors.driven, self.world.steps)
+            self._report()
+        q, dq = self._read()
+        drive = self._motors.drive(q, dq)
+        given, tau = self._joints.solve(q, dq, drive, self._touches)
+        if self.world.things or self.plant.payload:  # else no torque comes from outside
+            joint = drive.tau + given - self._viscous * dq
+            self._sensors.begin(q, dq, joint, self.world.steps)
+        self._torque = drive.tau if self._motors.kind is JointTorque else given
+        self._engine.step(tau)
+        self._known, self._touches = None, []
 
-    def _exact(self, rows: Any) -> State:
-        steps = self.world.steps
-        columns = zip(*rows)  # noqa: B905  # angles, speeds, reactions, torques
-        both = locked(np.array(next(columns) + next(columns)))  # quicker than two arrays
-        return State(steps * self.world.dt, both[:DOF], both[DOF:], self._sensors.felt(rows, steps))
+    def release(self) -> None:
+        """Free what it holds; the world calls it."""
+        self._engine.close()
 
-    def _reported(self, rows: Any) -> State:
-        if not self._reports.every:
-            return self._exact(rows)
-        if self._reports.due(self.world.steps):
-            self._report(rows)
-        return self._reports.newest(self.world.t)
-
-    def _report(self, rows: Any) -> None:
-        self._reports.send(self._exact(rows), self.world.steps)
+    def _report(self) -> None:
+        self._reports.send(self.truth(), self.world.steps)
 
     def _hold(self) -> None:
         """The command ran out: stay at the place reached (Rethink's arm does so after 0.2 s)."""
@@ -244,9 +245,13 @@ class Arm:
         q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
         self.apply(JointPosition(q))
 
-    def _read(self) -> Any:
+    def _read(self) -> tuple[Array, Array]:
+        """Angles and speeds as they really are, read-only."""
         self.check_open()
-        return bullet.getJointStates(self._body, JOINTS, self._client)
+        if self._known is None:
+            q, dq = self._engine.state()
+            self._known = locked(q), locked(dq)
+        return self._known
 
     def close(self) -> None:
         """Close the world it stands in."""

@@ -86,6 +86,7 @@ class Model(Kinematics):
                 f"plant is {shown(plant)}, expected lk.IDEAL, lk.BAXTER or an lk.Plant(...)"
             )
         super().__init__(robot(side), robot(side).urdf(plant))
+        self._pin.armature = np.array(plant.armature)
         self.plant = plant
 
     def __repr__(self) -> str:
@@ -103,6 +104,17 @@ class Model(Kinematics):
         M: Array = pin.crba(self._pin, self._data, as_array(q, (DOF,), "q")).copy()
         M[_LOWER] = M.T[_LOWER]  # Pinocchio fills the upper half
         return M
+
+    def inverse_mass(self, q: Any) -> Array:
+        """The inverse of M(q), quicker than inverting it.
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+
+        Returns:
+            Shape (7, 7) in [1/(kg m^2)].
+        """
+        return np.array(pin.computeMinverse(self._pin, self._data, as_array(q, (DOF,), "q")))
 
     def coriolis(self, q: Any, dq: Any) -> Array:
         r"""The matrix C(q, dq) for which :math:`\dot M - 2C` is skew (MLS eq. 4.23, Lemma 4.2).
@@ -156,6 +168,21 @@ class Model(Kinematics):
         q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
         ddq = as_array(ddq, (DOF,), "ddq")
         return np.array(pin.rnea(self._pin, self._data, q, dq, ddq))
+
+    def forward_dynamics(self, q: Any, dq: Any, tau: Any) -> Array:
+        """The accelerations that torques make, ``M @ ddq = tau - C @ dq - g``.
+
+        Args:
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
+            tau: Joint torques, shape (7,) in [N m].
+
+        Returns:
+            Shape (7,) in [rad/s^2].
+        """
+        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
+        tau = as_array(tau, (DOF,), "tau")
+        return np.array(pin.aba(self._pin, self._data, q, dq, tau))
 
     def tip_wrench(self, q: Any, tau_ext: Any) -> Array:
         r"""The wrench on the arm's tip that explains external joint torques, :math:`J^{-T}\tau`.
@@ -212,7 +239,10 @@ class Model(Kinematics):
         return float(pin.computePotentialEnergy(self._pin, self._data, as_array(q, (DOF,), "q")))
 
     def links(self, q: Any) -> tuple[Link, ...]:
-        """The seven bodies at ``q``, shape (7,) in [rad]: what M and g are summed from."""
+        """The seven bodies at ``q``, shape (7,) in [rad]: what M and g are summed from.
+
+        The rotors, diag(A) of M, are not among them.
+        """
         m, d = self._pin, self._data
         pin.computeJointJacobians(m, d, as_array(q, (DOF,), "q"))
         out = []

@@ -21,7 +21,8 @@ class Plant:
         name: What figures and tables call it.
         gravity_compensation: The arm itself adds the torque that holds it against gravity, in every
             mode, as Baxter does; a torque controller then adds none.
-        armature: Rotor inertia about each joint's axis, shape (7,) in [kg m^2].
+        armature: Inertia of each motor's rotor as its joint feels it, which is that of the rotor
+            times the gear ratio squared, shape (7,) in [kg m^2]; it adds to the diagonal of M.
         viscous: Viscous friction, shape (7,) in [N m s/rad].
         stiction: Dry friction that a joint must overcome, shape (7,) in [N m].
         payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].

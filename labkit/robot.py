@@ -52,17 +52,13 @@ class Robot:
     bodies: tuple[dict[str, Any], ...]
 
     def urdf(self, plant: Plant = IDEAL) -> str:
-        """The arm as seven bodies without fixed links, with the plant's rotors and payload.
-
-        A rotor is a flat disc on the joint's axis: A about the axis, A/2 across it, the least that
-        a rigid body can have (both physics engines refuse less).  The usual shorthand M + diag(A)
-        leaves out that a rotor is also carried round by the joints before its own; here it is.
+        """The arm as seven bodies without fixed links, with the plant's payload.
 
         Args:
-            plant: Its armature and payload are built in.
+            plant: Its payload is built in.
 
         Returns:
-            URDF text; the joints have no damping and no friction, which belong to the arm.
+            URDF text; rotors, damping and friction are not in it, they belong to the joints.
         """
         parts = [f'<robot name="baxter_{self.side}_arm">', '<link name="base"/>']
         parent = "base"
@@ -72,7 +68,6 @@ class Robot:
                 mass, com, inertia = _with_point_mass(
                     mass, com, inertia, plant.payload, self.T_hand_tip[:3, 3]
                 )
-            inertia = inertia + plant.armature[i] * np.diag([0.5, 0.5, 1.0])
             moments, axes = np.linalg.eigh(inertia)  # principal axes: PyBullet keeps only those
             if np.linalg.det(axes) < 0.0:
                 axes[:, 0] = -axes[:, 0]

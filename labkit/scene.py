@@ -1,8 +1,8 @@
 r"""The scene: what an arm can meet in its world, as frozen values.
 
-A `Table` and a `Wall` are solid; the tip, a small ball, is all of the arm that they meet.  A
-`Spring` and a `Push` act on the tip without touching it.  PyBullet makes a contact as stiff as
-the two bodies' stiffnesses in series and as damped as their dampings together:
+A `Table` and a `Wall` are solid; the tip, a small ball, is all of the arm that they meet, and only
+with their face, not with its rim.  A `Spring` and a `Push` act on the tip without touching it.  A
+contact is as stiff as the two stiffnesses in series and as damped as both dampings together:
 
 .. math:: 1/k = 1/k_{thing} + 1/k_{tip}, \qquad d = d_{thing} + d_{tip}
 """
@@ -16,13 +16,10 @@ import numpy as np
 
 from . import se3
 from .errors import OutOfRange, UnknownName
-from .quiet import quiet
+from .joints import Touch
 from .robot import Side
 from .shapes import Array, as_number, lock_vectors, locked
-from .world import Actor, Pushable, World
-
-with quiet():
-    import pybullet as bullet
+from .world import Actor, Standing, World
 
 TIP_RADIUS = 0.01
 """Radius of the ball about the tip's origin, in [m]; contact begins this far from it."""
@@ -33,16 +30,55 @@ TIP_STIFFNESS = 10_000.0
 TIP_DAMPING = 20.0
 """Of the finger's rubber pad, in [N s/m]."""
 
-FACE = 0.02  # thickness of a wall or a table top, in [m]
+FACE = 0.02
+"""Thickness of a wall or a table top, in [m]."""
+
+CREEP = 1e-4
+"""Speed up to which dry friction grows, in [m/s]: what is held by it creeps, slower than this."""
 
 
-def contact_stiffness(thing: Wall | Table) -> float:
+def contact_stiffness(thing: _Slab) -> float:
     """What the tip feels when it presses on a thing, the two stiffnesses in series, in [N/m]."""
     return 1.0 / (1.0 / thing.stiffness + 1.0 / TIP_STIFFNESS)
 
 
+class _Slab:
+    """A wall or a table top, as the tip meets it."""
+
+    T_wf: Any
+    size: Any
+    stiffness: float
+    damping: float
+    friction: float
+
+    def put_into(self, world: World) -> Actor:
+        """Build it."""
+
+        def act() -> None:
+            for arm in world.arms:
+                p, v = arm.tip()
+                self._meet(arm, world.dt, p, v)
+
+        return act
+
+    def _meet(self, arm: Standing, dt: float, p: Array, v: Array) -> None:
+        """Push back a tip that is in it, as a spring and a damper of its own and the pad's."""
+        n = self.T_wf[:3, 2]
+        x, y, z = self.T_wf[:3, :3].T @ (p - self.T_wf[:3, 3])
+        k, d, depth = contact_stiffness(self), self.damping + TIP_DAMPING, TIP_RADIUS - z
+        press = k * depth - d * float(n @ v)
+        beside = max(abs(x) / self.size[0], abs(y) / self.size[1]) > 0.5
+        if beside or press <= 0.0 or not 0.0 < depth < TIP_RADIUS + FACE:
+            return
+        across = np.eye(3) - np.outer(n, n)
+        slide = float(np.linalg.norm(across @ v))
+        drag = self.friction * press / max(slide, CREEP)
+        damping = (d + k * dt) * np.outer(n, n) + drag * across
+        arm.touch(Touch(np.append(k * depth * n, np.zeros(3)), damping, outwards=n))
+
+
 @dataclass(frozen=True, eq=False)
-class Wall:
+class Wall(_Slab):
     """A flat solid face; with a low stiffness, a compliant surface.
 
     Attributes:
@@ -79,13 +115,9 @@ class Wall:
         x /= np.linalg.norm(x)
         return se3.pose(np.column_stack([x, np.cross(z, x), z]), self.point)
 
-    def put_into(self, world: World) -> None:
-        """Build it."""
-        _build_box(world, self)
-
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class Table(_Slab):
     """A level table top.
 
     Attributes:
@@ -116,10 +148,6 @@ class Table:
     def T_wf(self) -> Array:
         """Pose of the upper face in the world, shape (4, 4)."""
         return se3.pose(np.eye(3), np.array([*self.centre, self.height]))
-
-    def put_into(self, world: World) -> None:
-        """Build it."""
-        _build_box(world, self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,14 +215,14 @@ class Spring:
 
         def act() -> None:
             arm = _arm_of(world, self.side)
-            _, q, dq, *_ = arm.truth()
-            p, v = arm.model.pose(q)[:3, 3], arm.model.tip_jacobian(q)[:3] @ dq
-            arm.push(self.force(p, v), np.zeros(3))
+            give = self.damping + self.stiffness * world.dt  # its force at the end of the step
+            pull = self.stiffness * (self.anchor - arm.tip()[0])
+            arm.touch(Touch(np.append(pull, np.zeros(3)), give * np.eye(3)))
 
         return act
 
 
-def _arm_of(world: World, side: Side | None) -> Pushable:
+def _arm_of(world: World, side: Side | None) -> Standing:
     arms = [arm for arm in world.arms if side in (None, arm.robot.side)]
     if len(arms) == 1:
         return arms[0]
@@ -214,25 +242,3 @@ def _check_slab(thing: Any) -> None:
     as_number(thing.stiffness, "stiffness", above=0.0)
     as_number(thing.damping, "damping", least=0.0)
     as_number(thing.friction, "friction", least=0.0)
-
-
-def _build_box(world: World, thing: Wall | Table) -> None:
-    """A fixed box whose upper face is the thing's."""
-    client, T_wf = world.client, thing.T_wf
-    half = [*(0.5 * thing.size).tolist(), 0.5 * FACE]
-    box: dict[str, Any] = {"halfExtents": half, "physicsClientId": client}
-    colour = thing.colour.tolist()
-    body = bullet.createMultiBody(
-        0.0,
-        bullet.createCollisionShape(bullet.GEOM_BOX, **box),
-        bullet.createVisualShape(bullet.GEOM_BOX, rgbaColor=colour, **box),
-        (T_wf[:3, 3] - 0.5 * FACE * T_wf[:3, 2]).tolist(),
-        se3.quaternion(T_wf[:3, :3]).tolist(),
-        physicsClientId=client,
-    )
-    material: dict[str, Any] = {
-        "contactStiffness": thing.stiffness,
-        "contactDamping": thing.damping,
-        "lateralFriction": thing.friction,
-    }
-    bullet.changeDynamics(body, -1, restitution=0.0, physicsClientId=client, **material)

@@ -1,12 +1,8 @@
-"""What an arm can know of itself: its joints as they are published, and torque from outside.
-
-`rows` are PyBullet's joint states: angle, speed, reaction and motor torque of each joint.
-"""
+"""What an arm can know of itself: its joints as they are published, and torque from outside."""
 
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
 
 import numpy as np
 
@@ -16,21 +12,6 @@ from .plant import Plant
 from .robot import DOF
 from .shapes import Array, locked
 from .world import whole_steps
-
-
-def angles(rows: Any) -> Array:
-    """The joint angles, shape (7,) in [rad]."""
-    return np.array([joint[0] for joint in rows])
-
-
-def speeds(rows: Any) -> Array:
-    """The joint speeds, shape (7,) in [rad/s]."""
-    return np.array([joint[1] for joint in rows])
-
-
-def motor_torques(rows: Any) -> Array:
-    """What the motors gave in the last step, in torque mode the dry friction, (7,) in [N m]."""
-    return np.array([joint[3] for joint in rows])
 
 
 class Reports:
@@ -90,33 +71,36 @@ class TorqueSensors:
     def __init__(self, own: Model, plant: Plant, dt: float) -> None:
         """Sense with the model ``own``, in a world of steps of ``dt`` [s]."""
         self._own, self._dt, self._lag = own, dt, plant.torque_lag
-        self._viscous = np.array(plant.viscous)
         self.reset()
 
     def reset(self) -> None:
         """Forget what was felt."""
         self._felt, self._at = NOTHING, -1
-        self._begun: tuple[Any, Array] | None = None
+        self._begun: tuple[Array, Array, Array] | None = None
 
-    def begin(self, rows: Any, driven: Array, steps: int) -> None:
+    def begin(self, q: Array, dq: Array, joint: Array, steps: int) -> None:
         """Take note of how a physics step begins.
 
         Args:
-            rows: The joints' states now.
-            driven: Torque that drives the joints beside their motors, shape (7,) in [N m].
+            q: Joint angles, shape (7,) in [rad].
+            dq: Joint speeds, shape (7,) in [rad/s].
+            joint: What motors and friction give in it, shape (7,) in [N m].
             steps: Which step.
         """
         if self._lag:  # it averages over all steps, not only over those that someone asks about
-            self.felt(rows, steps)
-        self._begun = rows, driven
+            self.felt(dq, steps)
+        self._begun = q, dq, joint
 
-    def felt(self, rows: Any, steps: int) -> Array:
-        """The external torque, shape (7,) in [N m], before physics step ``steps``."""
+    def felt(self, now: Array, steps: int) -> Array:
+        """The external torque, shape (7,) in [N m], before physics step ``steps``.
+
+        Args:
+            now: Joint speeds, shape (7,) in [rad/s].
+            steps: Which step.
+        """
         if self._begun is not None and self._at != steps:
-            then, driven = self._begun
-            q, dq, dt = angles(then), speeds(then), self._dt
-            joint = driven + motor_torques(rows) - self._viscous * dq
-            felt = self._own.inverse_dynamics(q, dq, (speeds(rows) - dq) / dt) - joint
+            (q, dq, joint), dt = self._begun, self._dt
+            felt = self._own.inverse_dynamics(q, dq, (now - dq) / dt) - joint
             if self._lag > dt:
                 felt = self._felt + dt / self._lag * (felt - self._felt)
             self._felt, self._at = locked(felt), steps

@@ -1,21 +1,20 @@
-"""The world: a physics engine with a clock of its own, and what stands in it."""
+"""The world: a clock, and what stands in it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
-from . import se3
 from .errors import Closed, OutOfRange, TypeMismatch
-from .quiet import quiet
+from .joints import Touch
 from .shapes import Array, as_number, shown
+from .sim import chosen
 
-with quiet():
-    import pybullet as bullet
-
+if TYPE_CHECKING:
+    from .sim.pybullet import Pictures
 
 Actor = Callable[[], None]
-"""Applies forces and motor targets for the next physics step."""
+"""Applies forces for the next physics step."""
 
 
 class Thing(Protocol):
@@ -25,22 +24,30 @@ class Thing(Protocol):
         """Build it; what it returns, if anything, acts before each physics step from now on."""
 
 
-class Pushable(Protocol):
-    """An arm, as far as the things around it need to know it."""
-
-    def truth(self) -> Any:
-        """The joints as they really are."""
-
-    def push(self, force: Array, moment: Array) -> None:
-        """Push the tip during the next physics step."""
+class Standing(Protocol):
+    """An arm, as far as its world and the things around it need to know it."""
 
     @property
     def robot(self) -> Any:
         """Its names."""
 
-    @property
-    def model(self) -> Any:
-        """Its equations."""
+    def truth(self) -> Any:
+        """The joints as they really are."""
+
+    def tip(self) -> tuple[Array, Array]:
+        """Place [m] and velocity [m/s] of the tip, world axes, each of shape (3,)."""
+
+    def push(self, force: Array, moment: Array) -> None:
+        """Push the tip during the next physics step."""
+
+    def touch(self, touch: Touch) -> None:
+        """Let something act on the tip during the next physics step."""
+
+    def step(self) -> None:
+        """Take a physics step."""
+
+    def release(self) -> None:
+        """Free what it holds."""
 
 
 class Shown(Protocol):
@@ -48,7 +55,7 @@ class Shown(Protocol):
 
     @property
     def bodies(self) -> Iterable[int]:
-        """PyBullet's numbers of what is seen."""
+        """The numbers that it goes by in `World.pictures`."""
 
     def update(self) -> None:
         """Put its looks where they belong now."""
@@ -60,32 +67,39 @@ class World:
     Attributes:
         dt: The physics step, in [s].
         steps: How many physics steps were taken.
-        client: PyBullet's number of this world, -1 once it is closed.
+        engine: The physics engine that moves its arms, "pybullet" or "mujoco".
+        closed: Whether it was closed.
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
         shown: What only cameras see.
     """
 
-    client: int = -1
+    closed = True
 
-    def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
+    def __init__(
+        self, dt: float = 1e-3, things: Iterable[Thing] = (), engine: str | None = None
+    ) -> None:
         """Open a world with gravity.
 
         Args:
             dt: The physics step, in [s].
             things: What to put into it: `Table`, `Wall`, `Spring`, `Push` …
+            engine: "pybullet" or "mujoco"; None is what the environment variable LABKIT_ENGINE
+                says, else PyBullet where it is installed, else MuJoCo.
+
+        Raises:
+            UnknownName: There is no such engine.
+            LabkitError: The engine is not installed.
         """
         self.dt = as_number(dt, "dt", above=0.0)
-        self.client = bullet.connect(bullet.DIRECT)
+        self.engine = chosen(engine)
         self.steps = 0
         self._actors: list[Actor] = []
         self.things: list[Thing] = []
-        self.arms: list[Pushable] = []
+        self.arms: list[Standing] = []
         self.shown: list[Shown] = []
-        bullet.setTimeStep(self.dt, physicsClientId=self.client)
-        bullet.setGravity(0.0, 0.0, -9.81, physicsClientId=self.client)
-        # By default the solver stops early, and a motor told to stand still creeps at 0.6 mrad/s.
-        bullet.setPhysicsEngineParameter(solverResidualThreshold=0.0, physicsClientId=self.client)
+        self._pictures: Any = None
+        self.closed = False
         for thing in things:
             self.put(thing)
 
@@ -101,7 +115,7 @@ class World:
             Closed: The world is closed.
             TypeMismatch: It cannot be put into a world.
         """
-        if self.client < 0:
+        if self.closed:
             raise Closed("this world was closed; make a new World")
         if isinstance(thing, type) or not hasattr(thing, "put_into"):
             raise TypeMismatch(
@@ -121,21 +135,20 @@ class World:
         """Let ``thing`` be brought up to date before each picture from now on."""
         self.shown.append(thing)
 
-    def add_visual(self, kind: int, **shape: Any) -> int:
-        """Put something to be seen into the world, which nothing touches; PyBullet's number."""
-        seen = bullet.createVisualShape(kind, physicsClientId=self.client, **shape)
-        return int(bullet.createMultiBody(0, -1, seen, physicsClientId=self.client))
+    @property
+    def pictures(self) -> Pictures:
+        """What cameras see of this world, made when it is first asked for.
 
-    def move_visual(self, body: int, T: Array) -> None:
-        """Put a body that is only seen to a pose, shape (4, 4)."""
-        turn = se3.quaternion(T[:3, :3]).tolist()
-        bullet.resetBasePositionAndOrientation(
-            body, T[:3, 3].tolist(), turn, physicsClientId=self.client
-        )
+        Raises:
+            LabkitError: PyBullet, which draws, is not installed.
+        """
+        if self._pictures is None:
+            chosen("pybullet")
+            from .sim.pybullet import Pictures  # it draws, whichever engine moves the arms
 
-    def paint(self, body: int, colour: Iterable[float]) -> None:
-        """Show a body in a colour: red, green, blue and opacity, from 0 to 1."""
-        bullet.changeVisualShape(body, -1, rgbaColor=list(colour), physicsClientId=self.client)
+            self._pictures = Pictures()
+        made: Pictures = self._pictures
+        return made
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
@@ -143,20 +156,24 @@ class World:
         Raises:
             Closed: The world is closed.
         """
-        client = self.client
-        if client < 0:
+        if self.closed:
             raise Closed("this world was closed; make a new World, or a new Arm")
         for _ in range(count):
             for act in self._actors:
                 act()
-            bullet.stepSimulation(client)
+            for arm in self.arms:
+                arm.step()
             self.steps += 1
 
     def close(self) -> None:
         """Free the world; closing twice is harmless."""
-        if self.client >= 0:
-            bullet.disconnect(physicsClientId=self.client)
-            self.client = -1
+        if self.closed:
+            return
+        self.closed = True
+        for arm in self.arms:
+            arm.release()
+        if self._pictures is not None:
+            self._pictures.close()
 
     def __enter__(self) -> Self:
         return self

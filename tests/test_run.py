@@ -57,6 +57,7 @@ def test_a_closed_loop_is_the_same_in_mujoco(side, armature):
         target, controller = swing(arm), computed_torque(arm.model)
         log = lk.run(arm, target, controller, rate=1000)
     m = mujoco.MjModel.from_xml_string(lk.robot(side).urdf(plant))
+    m.dof_armature[:] = plant.armature
     d = mujoco.MjData(m)
     m.opt.timestep, m.opt.integrator = 1e-3, mujoco.mjtIntegrator.mjINT_EULER
     d.qpos[:] = log.q[0]

@@ -14,14 +14,10 @@ import numpy as np
 
 from .. import se3
 from ..errors import Closed, TypeMismatch
-from ..quiet import quiet
 from ..shapes import Array, as_array, locked, shown
 from ..trajectory import PoseSample, Sample, Target
 from ..world import World
 from .tag import Tag
-
-with quiet():
-    import pybullet as bullet
 
 _THICKNESS = 0.003  # of the plate behind the paper, in [m]
 
@@ -32,7 +28,7 @@ class Board:
     Attributes:
         tag: What is printed on it.
         world: Where it is.
-        bodies: PyBullet's numbers of its paper and its plate.
+        bodies: The numbers of its paper and its plate in `World.pictures`.
     """
 
     def __init__(self, world: World, tag: Tag, T_wm: Any) -> None:
@@ -120,26 +116,19 @@ class Board:
         """Put what cameras see where it belongs; they call it before each picture."""
         T_wm = self.T_wm
         for body in self.bodies:
-            self.world.move_visual(body, T_wm)
+            self.world.pictures.move(body, T_wm)
 
     def _build(self) -> None:
         world, half = self.world, 0.5 * self.tag.paper
-        if world.client < 0:
+        if world.closed:
             raise Closed("this world was closed; make a new World")
         mesh, texture = _paper(self.tag)
-        white = {"rgbaColor": [1, 1, 1, 1], "specularColor": [0, 0, 0]}
-        plate = {"halfExtents": [half, half, 0.5 * _THICKNESS], "rgbaColor": [0.5, 0.5, 0.5, 1]}
-        behind = [0, 0, -_THICKNESS]
-        with quiet():
-            paper = world.add_visual(bullet.GEOM_MESH, fileName=str(mesh), **white)
-            self.bodies = (
-                paper,
-                world.add_visual(bullet.GEOM_BOX, visualFramePosition=behind, **plate),
-            )
-            print_on = bullet.loadTexture(str(texture), physicsClientId=world.client)
-            bullet.changeVisualShape(
-                paper, -1, textureUniqueId=print_on, physicsClientId=world.client
-            )
+        white, grey = (1.0, 1.0, 1.0, 1.0), (0.5, 0.5, 0.5, 1.0)
+        plate, behind = (half, half, 0.5 * _THICKNESS), (0.0, 0.0, -_THICKNESS)
+        self.bodies = (
+            world.pictures.add_mesh(mesh, white, texture),
+            world.pictures.add_box(plate, grey, behind),
+        )
 
 
 @cache

@@ -9,17 +9,13 @@ import numpy as np
 from .. import se3
 from ..arm import Arm
 from ..errors import Closed, LabkitError, OutOfRange, TypeMismatch
-from ..quiet import quiet
 from ..shapes import Array, as_number, as_vector, locked, shown
 from ..world import World
 from .board import Board
 from .intrinsics import Intrinsics
 from .rendering import FAR, NEAR, View, Window, draw, draw_finely
 from .tag import Picture
-from .visuals import RobotVisuals
-
-with quiet():
-    import pybullet as bullet
+from .visuals import RobotVisuals, show_slabs
 
 BACKGROUND = 255
 """Grey level where there is nothing to see."""
@@ -147,9 +143,10 @@ class Camera:
 
     def _focus(self) -> View:
         """Everything in its place; where the camera is, and the robot it sees."""
-        if self.world.client < 0:
+        if self.world.closed:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
         robot = RobotVisuals.of(self.world)
+        show_slabs(self.world)
         for thing in self.world.shown:
             thing.update()
         T_wc = self.T_wc
@@ -172,10 +169,10 @@ class Camera:
             window, depth = place
             behind = self._behind(board)
             for body, (*rgb, _) in behind.items():
-                self.world.paint(body, [*rgb, 0.0])
+                self.world.pictures.paint(body, [*rgb, 0.0])
             fine = draw_finely(view, window, depth, self.samples)
             for body, colour in behind.items():
-                self.world.paint(body, colour)
+                self.world.pictures.paint(body, colour)
             part = picture[window.rows, window.columns]
             np.copyto(part, fine, where=(fine != BACKGROUND).any(axis=2, keepdims=True))
             windows.append(window)
@@ -198,20 +195,15 @@ class Camera:
         )
 
     def _behind(self, board: Board) -> dict[int, Any]:
-        """Colours of the plain bodies that lie behind a board's plane and so cannot hide it."""
-        client, T_wm = self.world.client, board.T_wm
+        """Colours of the boxes that lie behind a board's plane and so cannot hide it."""
+        normal, middle = board.T_wm[:3, 2], board.T_wm[:3, 3]
         ours = {body for thing in self.world.shown for body in thing.bodies}
-        found = {}
-        for i in range(bullet.getNumBodies(physicsClientId=client)):
-            body = bullet.getBodyUniqueId(i, physicsClientId=client)
-            if body in ours or bullet.getNumJoints(body, physicsClientId=client):
-                continue
-            box = np.array(bullet.getAABB(body, physicsClientId=client)) - T_wm[:3, 3]
-            if np.maximum(*(box * T_wm[:3, 2])).sum() <= 0.0:  # its foremost corner
-                shapes = bullet.getVisualShapeData(body, physicsClientId=client)
-                if len(shapes) == 1:
-                    found[body] = shapes[0][7]
-        return found
+        return {
+            body: colour
+            for body, (half, colour, T) in self.world.pictures.boxes.items()
+            if body not in ours
+            and (T[:3, 3] - middle) @ normal + abs(normal @ T[:3, :3]) @ half <= 0.0
+        }
 
     def _developed(self, picture: Picture, windows: list[Window]) -> Picture:
         """With the sensor's noise where something was drawn, frozen."""

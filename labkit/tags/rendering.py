@@ -12,20 +12,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .. import se3
-from ..quiet import quiet
 from ..shapes import Array
 from .intrinsics import Intrinsics
 from .tag import Picture
 from .visuals import RobotVisuals
 
-with quiet():
-    import pybullet as bullet
-
 NEAR, FAR = 0.02, 12.0
 """Nothing nearer or farther than this is drawn, in [m]."""
 
 _PLAIN = np.eye(2)  # the picture's own grid
-_LIGHT = (0.6, 0.35, 1.0)  # where the light comes from, world axes
 
 
 class Window(NamedTuple):
@@ -107,17 +102,7 @@ def draw(
         ]
     )
     view_matrix = np.diag([1.0, -1.0, -1.0, 1.0]) @ se3.inverse(T_wc)
-    options: dict[str, Any] = {
-        "renderer": bullet.ER_TINY_RENDERER,
-        "flags": bullet.ER_NO_SEGMENTATION_MASK,
-        "physicsClientId": robot.world.client,
-    }
-    matrices = view_matrix.T.ravel().tolist(), projection.T.ravel().tolist()
-    rgba = bullet.getCameraImage(wide, tall, *matrices, lightDirection=_LIGHT, shadow=0, **options)[
-        2
-    ]
-    picture = np.asarray(rgba, dtype=np.uint8).reshape(tall, wide, 4)
-    return np.ascontiguousarray(picture[..., :3])
+    return robot.world.pictures.draw(wide, tall, view_matrix, projection)
 
 
 def draw_finely(view: View, window: Window, depth: float, s: int) -> Picture:

@@ -18,12 +18,9 @@ from scipy.spatial.transform import Rotation
 
 from .. import se3
 from ..baxter import robot
-from ..quiet import quiet
+from ..scene import FACE, Table, Wall
 from ..shapes import Array, locked
 from ..world import World
-
-with quiet():
-    import pybullet as bullet
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -71,7 +68,7 @@ class RobotVisuals:
 
     Attributes:
         world: Where it stands.
-        bodies: PyBullet's numbers of the pieces.
+        bodies: The numbers of the pieces in `World.pictures`.
         poses: Pose of each piece in the world at the last update, shape (pieces, 4, 4).
     """
 
@@ -84,11 +81,7 @@ class RobotVisuals:
     def __init__(self, world: World) -> None:
         """Load the meshes into ``world``."""
         self.world = world
-        with quiet():
-            self.bodies = [
-                world.add_visual(bullet.GEOM_MESH, fileName=str(p.file), rgbaColor=list(p.colour))
-                for p in pieces()
-            ]
+        self.bodies = [world.pictures.add_mesh(p.file, p.colour) for p in pieces()]
         self._seen = np.ones(len(self.bodies), dtype=bool)
         self._centres = np.array([[*p.ball[0], 1.0] for p in pieces()])
         self._radii = np.array([p.ball[1] for p in pieces()])
@@ -107,7 +100,7 @@ class RobotVisuals:
         frames = joint_frames(q)
         self.poses = np.array([frames[piece.parent] @ piece.T_jp for piece in pieces()])
         for body, T in zip(self.bodies, self.poses, strict=True):
-            self.world.move_visual(body, T)
+            self.world.pictures.move(body, T)
 
     @property
     def balls(self) -> tuple[Array, Array]:
@@ -122,7 +115,7 @@ class RobotVisuals:
         """
         for i in np.flatnonzero(wanted != self._seen):
             *rgb, opacity = pieces()[i].colour
-            self.world.paint(self.bodies[i], [*rgb, opacity if wanted[i] else 0.0])
+            self.world.pictures.paint(self.bodies[i], [*rgb, opacity if wanted[i] else 0.0])
         self._seen = np.array(wanted)
 
     def around(self, point: Array) -> str | None:
@@ -133,6 +126,19 @@ class RobotVisuals:
             if pieces()[i].encloses(T[:3, :3].T @ (point - T[:3, 3])):
                 return pieces()[i].parent
         return None
+
+
+def show_slabs(world: World) -> None:
+    """Let cameras see the walls and tables that were put into a world since the last time."""
+    drawn = world.pictures.slabs
+    for thing in world.things:
+        if isinstance(thing, Wall | Table) and thing not in drawn:
+            half = np.array([*(0.5 * thing.size), 0.5 * FACE])
+            drawn[thing] = world.pictures.add_box(half, thing.colour.tolist())
+            T = thing.T_wf
+            world.pictures.move(
+                drawn[thing], T @ se3.pose(np.eye(3), np.array([0.0, 0.0, -half[2]]))
+            )
 
 
 def joint_frames(q: dict[str, Any]) -> dict[str, Array]:

@@ -9,7 +9,18 @@ import json
 import sys
 from pathlib import Path
 
-from . import camera, campaign, closed_loop, drake, grading, notebooks, realistic, start, viewer
+from . import (
+    camera,
+    campaign,
+    closed_loop,
+    drake,
+    engines,
+    grading,
+    notebooks,
+    realistic,
+    start,
+    viewer,
+)
 
 ROOT = Path(__file__).parents[2]
 sys.path += [str(ROOT / "book"), str(ROOT / "book/_tools")]  # the viewer is measured in pages
@@ -17,6 +28,7 @@ sys.path += [str(ROOT / "book"), str(ROOT / "book/_tools")]  # the viewer is mea
 MEASUREMENTS = (
     start,
     closed_loop,
+    engines,
     realistic,
     drake,
     campaign,

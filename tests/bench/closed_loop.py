@@ -34,7 +34,7 @@ def measure():
     target, controller = task()
     client, body = open_arm(lk.robot("left").urdf())
     ratios, by_hand = [], []
-    with lk.Arm("left") as arm:
+    with lk.Arm("left", world=lk.World(engine="pybullet")) as arm:
         for _ in range(PAIRS):
             arm.reset(target(0.0).position)
             labkit_s, log = timed(lambda: lk.run(arm, target, controller, rate=1000))

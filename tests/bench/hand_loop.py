@@ -1,7 +1,8 @@
-"""The plain loop that `run` is measured against: PyBullet by hand, no classes, log or checks."""
+"""The plain loops that `run` is measured against: an engine by hand, no classes, log or checks."""
 
 import tempfile
 
+import mujoco
 import numpy as np
 
 import labkit as lk
@@ -45,3 +46,14 @@ def hand_loop(client, body, target, controller, seconds):
                                          physicsClientId=client)  # fmt: skip
         bullet.stepSimulation(physicsClientId=client)
     return np.array([j[0] for j in bullet.getJointStates(body, JOINTS, physicsClientId=client)])
+
+
+def hand_loop_mujoco(model, data, target, controller, seconds):
+    """The same in MuJoCo."""
+    mujoco.mj_resetData(model, data)
+    q, dq, tau = data.qpos, data.qvel, data.qfrc_applied
+    q[:] = target(0.0).position
+    for k in range(round(seconds * 1000)):
+        tau[:] = controller(lk.State(k * 1e-3, q.copy(), dq.copy()), target(k * 1e-3)).value
+        mujoco.mj_step(model, data)
+    return q.copy()

@@ -4,7 +4,6 @@ import time
 
 import cv2
 import numpy as np
-import pybullet as bullet
 import pytest
 
 import labkit as lk
@@ -30,23 +29,9 @@ def ready_arm(world):
 
 
 def dark_box(world, half, T):
-    shape = bullet.createVisualShape(
-        bullet.GEOM_BOX,
-        halfExtents=half,
-        rgbaColor=[0, 0, 0, 1],
-        specularColor=[0, 0, 0],
-        physicsClientId=world.client,
-    )
-    body = bullet.createMultiBody(0, -1, shape, physicsClientId=world.client)
-    put(world, body, T)
+    body = world.pictures.add_box(half, [0, 0, 0, 1])
+    world.pictures.move(body, T)
     return body
-
-
-def put(world, body, T):
-    turn = se3.quaternion(T[:3, :3]).tolist()
-    bullet.resetBasePositionAndOrientation(
-        body, T[:3, 3].tolist(), turn, physicsClientId=world.client
-    )
 
 
 @pytest.mark.parametrize("axis", [0, 1])
@@ -70,7 +55,7 @@ def test_the_renderer_looks_where_the_intrinsics_say(world, axis):
             T_cb = np.eye(4)
             T_cb[:3, 3] = edge
             T_cb[axis, 3] -= 1.0  # the box ends at the edge
-            put(world, box, camera.T_wc @ T_cb)
+            world.pictures.move(box, camera.T_wc @ T_cb)
             looked_at = (24, pixel) if axis == 0 else (pixel, 32)
             covered = camera.image()[looked_at][0] < 128
             low, high = (low, at) if covered else (at, high)
@@ -205,12 +190,8 @@ def test_the_hand_camera_sees_the_tag_below_and_moves_with_the_arm(world):
 
 
 def test_noise_is_as_loud_as_stated_and_repeats_with_the_seed(world):
-    grey = bullet.createVisualShape(
-        bullet.GEOM_BOX, halfExtents=[9, 9, 0.1], rgbaColor=[0.5, 0.5, 0.5, 1],
-        physicsClientId=world.client,
-    )  # fmt: skip
-    body = bullet.createMultiBody(0, -1, grey, physicsClientId=world.client)
-    put(world, body, AWAY @ se3.pose(np.eye(3), np.array([0, 0, 3.0])))
+    body = world.pictures.add_box([9, 9, 0.1], [0.5, 0.5, 0.5, 1])
+    world.pictures.move(body, AWAY @ se3.pose(np.eye(3), np.array([0, 0, 3.0])))
     clean = lk.Camera(world, AWAY).image().astype(float)
     assert clean.min() > 50 and clean.max() < 205
     first, again, other = (lk.Camera(world, AWAY, noise=8.0, seed=s).image() for s in (1, 1, 2))

@@ -1,0 +1,40 @@
+"""Physics engines behind one protocol; each has one module, the only one that imports it."""
+
+from __future__ import annotations
+
+import os
+from importlib import import_module
+from importlib.util import find_spec
+
+from ..errors import LabkitError, UnknownName
+from ..plant import Plant
+from ..robot import Robot
+from .engine import Engine
+
+ENGINES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
+"""Their modules and classes; the first that is installed is the default."""
+
+
+def chosen(name: str | None = None) -> str:
+    """The engine that a world asks for; None is that of LABKIT_ENGINE, or the first installed.
+
+    Raises:
+        UnknownName: There is no such engine.
+        LabkitError: It is not installed.
+    """
+    name = name or os.environ.get("LABKIT_ENGINE") or next(filter(find_spec, ENGINES), "mujoco")
+    if name not in ENGINES:
+        raise UnknownName("engine", name, ENGINES)
+    if find_spec(name) is None:
+        others = ", ".join(filter(find_spec, ENGINES)) or "none"
+        raise LabkitError(
+            f"the engine {ENGINES[name]} is not installed here: pip install {name}; "
+            f"installed: {others}"
+        )
+    return name
+
+
+def new_arm(name: str, robot: Robot, plant: Plant, dt: float) -> Engine:
+    """An arm in the engine ``name``, in steps of ``dt`` [s]."""
+    made: Engine = getattr(import_module(f".{name}", __name__), ENGINES[name])(robot, plant, dt)
+    return made

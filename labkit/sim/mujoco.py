@@ -1,0 +1,45 @@
+"""MuJoCo as the engine of an arm."""
+
+from __future__ import annotations
+
+import mujoco
+
+from ..plant import Plant
+from ..robot import Robot
+from ..shapes import Array
+
+_OFF = (
+    mujoco.mjtDisableBit.mjDSBL_CONSTRAINT,  # stops, contacts and friction are the lab's
+    mujoco.mjtDisableBit.mjDSBL_SENSOR,
+    mujoco.mjtDisableBit.mjDSBL_ACTUATION,
+    mujoco.mjtDisableBit.mjDSBL_AUTORESET,  # a runaway is for `run` to see
+)
+# It would write its warnings to a file in the working folder.
+mujoco.set_mju_user_warning(lambda text: None)
+
+
+class MuJoCo:
+    """An arm in MuJoCo."""
+
+    def __init__(self, robot: Robot, plant: Plant, dt: float) -> None:
+        """Read the arm from its URDF text."""
+        self._model = mujoco.MjModel.from_xml_string(robot.urdf(plant))
+        self._model.dof_armature[:] = plant.armature
+        self._model.opt.timestep = dt
+        for part in _OFF:
+            self._model.opt.disableflags |= int(part)
+        self._data = mujoco.MjData(self._model)
+        self._q, self._dq, self._tau = self._data.qpos, self._data.qvel, self._data.qfrc_applied
+
+    def place(self, q: Array) -> None:
+        self._q[:], self._dq[:] = q, 0.0
+
+    def state(self) -> tuple[Array, Array]:
+        return self._q.copy(), self._dq.copy()
+
+    def step(self, tau: Array) -> None:
+        self._tau[:] = tau
+        mujoco.mj_step(self._model, self._data)
+
+    def close(self) -> None:
+        pass  # MuJoCo frees it with the object
