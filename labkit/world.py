@@ -8,7 +8,7 @@ from typing import Any, Protocol, Self
 from .errors import Closed, OutOfRange, TypeMismatch
 from .shapes import Array, as_number, shown
 from .sim.engine import Engine
-from .sim.pybullet import Pictures, PyBullet
+from .sim.pybullet import PyBullet
 
 Actor = Callable[[], None]
 """Applies forces and motor targets for the next physics step."""
@@ -42,12 +42,8 @@ class Pushable(Protocol):
 class Shown(Protocol):
     """Something that cameras see and the physics does not."""
 
-    @property
-    def bodies(self) -> Iterable[int]:
-        """The numbers that it goes by in `World.pictures`."""
-
-    def update(self) -> None:
-        """Put its looks where they belong now."""
+    def surface(self) -> Any:
+        """Its triangles where it is now, a `labkit.tags.surface.Surface`."""
 
 
 class World:
@@ -63,7 +59,6 @@ class World:
     """
 
     engine: Engine | None = None
-    _pictures: Pictures | None = None
 
     def __init__(self, dt: float = 1e-3, things: Iterable[Thing] = ()) -> None:
         """Open a world with gravity.
@@ -116,15 +111,8 @@ class World:
         self._actors.append(actor)
 
     def show(self, thing: Shown) -> None:
-        """Let ``thing`` be brought up to date before each picture from now on."""
+        """Let cameras see ``thing`` from now on."""
         self.shown.append(thing)
-
-    @property
-    def pictures(self) -> Pictures:
-        """What cameras see of this world, made when it is first asked for."""
-        if self._pictures is None:
-            self._pictures = Pictures()
-        return self._pictures
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
@@ -143,10 +131,9 @@ class World:
 
     def close(self) -> None:
         """Free the world; closing twice is harmless."""
-        for part in (self.engine, self._pictures):
-            if part is not None:
-                part.close()
-        self.engine = self._pictures = None
+        if self.engine is not None:
+            self.engine.close()
+        self.engine = None
 
     def __enter__(self) -> Self:
         return self

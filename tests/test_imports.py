@@ -39,9 +39,9 @@ ORDER = [
     {"replay.recorded", "replay.figure"},
     {"replay.widget"},
     {"replay"},
-    {"tags.tag", "tags.intrinsics", "tags.estimation"},
-    {"tags.edges", "tags.board", "tags.visuals"},
-    {"tags.rendering"},
+    {"tags.tag", "tags.intrinsics", "tags.estimation", "tags.surface"},
+    {"tags.edges", "tags.board", "tags.visuals", "tags.rendering"},
+    {"tags.paper"},
     {"tags.camera"},
     {"tags.detection"},
     {"tags.stream"},
@@ -56,7 +56,7 @@ UPSTAIRS = {"course", "grader", "cli", "verbs"}
 SIMULATE = {"sim.pybullet"}
 MODEL = {"kinematics", "model"}
 DRAW = {"plotting", "replay"}
-SEE = {"tags.tag", "tags.detection", "tags.edges"}
+SEE = {"tags.rendering", "tags.tag", "tags.detection", "tags.edges"}
 
 
 def names(path):
