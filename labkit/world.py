@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import Any, Protocol, Self
 
 from .errors import Closed, OutOfRange, TypeMismatch
 from .joints import Touch
 from .shapes import Array, as_number, shown
 from .sim import chosen
-
-if TYPE_CHECKING:
-    from .sim.pybullet import Pictures
 
 Actor = Callable[[], None]
 """Applies forces for the next physics step."""
@@ -53,12 +50,8 @@ class Standing(Protocol):
 class Shown(Protocol):
     """Something that cameras see and the physics does not."""
 
-    @property
-    def bodies(self) -> Iterable[int]:
-        """The numbers that it goes by in `World.pictures`."""
-
-    def update(self) -> None:
-        """Put its looks where they belong now."""
+    def surface(self) -> Any:
+        """Its triangles where it is now, a `labkit.tags.surface.Surface`."""
 
 
 class World:
@@ -98,7 +91,6 @@ class World:
         self.things: list[Thing] = []
         self.arms: list[Standing] = []
         self.shown: list[Shown] = []
-        self._pictures: Any = None
         self.closed = False
         for thing in things:
             self.put(thing)
@@ -132,23 +124,8 @@ class World:
         self._actors.append(actor)
 
     def show(self, thing: Shown) -> None:
-        """Let ``thing`` be brought up to date before each picture from now on."""
+        """Let cameras see ``thing`` from now on."""
         self.shown.append(thing)
-
-    @property
-    def pictures(self) -> Pictures:
-        """What cameras see of this world, made when it is first asked for.
-
-        Raises:
-            LabkitError: PyBullet, which draws, is not installed.
-        """
-        if self._pictures is None:
-            chosen("pybullet")
-            from .sim.pybullet import Pictures  # it draws, whichever engine moves the arms
-
-            self._pictures = Pictures()
-        made: Pictures = self._pictures
-        return made
 
     def step(self, count: int = 1) -> None:
         """Advance by ``count`` physics steps.
@@ -172,8 +149,6 @@ class World:
         self.closed = True
         for arm in self.arms:
             arm.release()
-        if self._pictures is not None:
-            self._pictures.close()
 
     def __enter__(self) -> Self:
         return self

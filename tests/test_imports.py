@@ -39,9 +39,9 @@ ORDER = [
     {"replay.recorded", "replay.figure"},
     {"replay.widget"},
     {"replay"},
-    {"tags.tag", "tags.intrinsics", "tags.estimation"},
-    {"tags.edges", "tags.board", "tags.visuals"},
-    {"tags.rendering"},
+    {"tags.tag", "tags.intrinsics", "tags.estimation", "tags.surface"},
+    {"tags.edges", "tags.board", "tags.visuals", "tags.rendering"},
+    {"tags.paper"},
     {"tags.camera"},
     {"tags.detection"},
     {"tags.stream"},
@@ -68,7 +68,7 @@ UPSTAIRS = {"grader", "__main__"}
 # What simulates, what knows the equations, what draws and what sees.
 MODEL = {"kinematics", "model"}
 DRAW = {"plotting", "replay", "grader.drawing"}
-SEE = {"tags.tag", "tags.detection", "tags.edges"}
+SEE = {"tags.rendering", "tags.tag", "tags.detection", "tags.edges"}
 
 
 def names(path):

@@ -5,9 +5,6 @@ It has neither weight nor substance: cameras see it, arms pass through it.
 
 from __future__ import annotations
 
-import tempfile
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,9 +14,11 @@ from ..errors import Closed, TypeMismatch
 from ..shapes import Array, as_array, locked, shown
 from ..trajectory import PoseSample, Sample, Target
 from ..world import World
+from .surface import Surface, box
 from .tag import Tag
 
 _THICKNESS = 0.003  # of the plate behind the paper, in [m]
+_GREY = (0.5, 0.5, 0.5)
 
 
 class Board:
@@ -28,7 +27,6 @@ class Board:
     Attributes:
         tag: What is printed on it.
         world: Where it is.
-        bodies: The numbers of its paper and its plate in `World.pictures`.
     """
 
     def __init__(self, world: World, tag: Tag, T_wm: Any) -> None:
@@ -48,9 +46,10 @@ class Board:
                 f"a board takes a World (an arm's is arm.world) and a Tag, not {shown(world)} and "
                 f"{shown(tag)}"
             )
+        if world.closed:
+            raise Closed("this world was closed; make a new World")
         self.tag, self.world = tag, world
         self.place(T_wm)
-        self._build()
         world.show(self)
 
     def place(self, T_wm: Any) -> None:
@@ -112,41 +111,8 @@ class Board:
         """The paper's corners in the tag's frame, shape (4, 3) in [m]."""
         return np.asarray(self.tag.corners * (self.tag.paper / self.tag.size))
 
-    def update(self) -> None:
-        """Put what cameras see where it belongs; they call it before each picture."""
-        T_wm = self.T_wm
-        for body in self.bodies:
-            self.world.pictures.move(body, T_wm)
-
-    def _build(self) -> None:
-        world, half = self.world, 0.5 * self.tag.paper
-        if world.closed:
-            raise Closed("this world was closed; make a new World")
-        mesh, texture = _paper(self.tag)
-        white, grey = (1.0, 1.0, 1.0, 1.0), (0.5, 0.5, 0.5, 1.0)
-        plate, behind = (half, half, 0.5 * _THICKNESS), (0.0, 0.0, -_THICKNESS)
-        self.bodies = (
-            world.pictures.add_mesh(mesh, white, texture),
-            world.pictures.add_box(plate, grey, behind),
-        )
-
-
-@cache
-def _folder() -> tempfile.TemporaryDirectory[str]:
-    return tempfile.TemporaryDirectory(prefix="labkit-tags-")
-
-
-@cache
-def _paper(tag: Tag) -> tuple[Path, Path]:
-    """PyBullet reads only files: a square and its picture, gone with the process."""
-    name = Path(_folder().name) / f"{tag.dictionary}_{tag.id}_{tag.size}_{tag.border}"
-    h = 0.5 * tag.paper
-    corners = [(-h, -h), (h, -h), (h, h), (-h, h)]
-    lines = [f"v {x!r} {y!r} 0" for x, y in corners]
-    lines += ["vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1", "vn 0 0 1"]
-    lines += ["f 1/1/1 2/2/1 3/3/1", "f 1/1/1 3/3/1 4/4/1"]
-    mesh = name.with_name(f"{name.name}.obj")
-    mesh.write_text("\n".join(lines) + "\n")
-    return mesh, tag.save(
-        name.with_name(f"{name.name}.png"), dpi=16 * tag.cells / tag.size * 0.0254
-    )
+    def surface(self) -> Surface:
+        """The plate behind the paper, in the world; the paper itself is printed by the camera."""
+        half = 0.5 * self.tag.paper
+        plate = box((half, half, 0.5 * _THICKNESS), _GREY)
+        return plate.moved(self.T_wm @ se3.pose(np.eye(3), np.array([0.0, 0.0, -_THICKNESS])))

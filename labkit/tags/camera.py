@@ -13,14 +13,17 @@ from ..shapes import Array, as_number, as_vector, locked, shown
 from ..world import World
 from .board import Board
 from .intrinsics import Intrinsics
-from .rendering import FAR, NEAR, View, Window, draw, draw_finely
+from .paper import paper
+from .rendering import FAR, NEAR, Window, brightness, draw
+from .surface import Surface, joined
 from .tag import Picture
-from .visuals import RobotVisuals, show_slabs
+from .visuals import RobotVisuals, scenery
 
 BACKGROUND = 255
 """Grey level where there is nothing to see."""
 
 _MARGIN = 4  # pixels around a tag's paper that are drawn with it
+_FINE = 4  # samples of a pixel along either side, where something may hide a tag
 
 
 class CameraBlocked(LabkitError, ValueError):
@@ -34,7 +37,7 @@ class Camera:
         world: What it looks at.
         intrinsics: Its lens and sensor.
         noise: Standard deviation of each colour of each pixel, in grey levels.
-        samples: How fine tags are drawn: at s^2 + 1 points of each pixel.
+        samples: How fine a tag's edges are drawn: at s^2 points of each pixel.
     """
 
     def __init__(
@@ -44,7 +47,7 @@ class Camera:
         intrinsics: Intrinsics | None = None,
         *,
         noise: float = 0.0,
-        samples: int = 2,
+        samples: int = 8,
         seed: int = 0,
     ) -> None:
         """Fix a camera in ``world``.
@@ -55,8 +58,7 @@ class Camera:
                 `looking_at` makes one.
             intrinsics: Lens and sensor; None is 640 x 480 pixels and a focal length of 515 px.
             noise: Standard deviation of each colour of each pixel, in grey levels of 255.
-            samples: s, for s^2 + 1 points of each pixel on a tag; 1 shows the renderer's own jagged
-                edges.
+            samples: s, for s^2 points of each pixel on an edge of a tag; 1 makes it jagged.
             seed: Of the noise.
 
         Raises:
@@ -70,8 +72,8 @@ class Camera:
         if not isinstance(self.intrinsics, Intrinsics):
             raise TypeMismatch(f"intrinsics is {shown(intrinsics)}, expected lk.Intrinsics(...)")
         self.noise = as_number(noise, "noise", least=0.0)
-        if not isinstance(samples, int) or not 1 <= samples <= 8:
-            raise OutOfRange(f"samples is {samples!r}; give a whole number from 1 to 8")
+        if not isinstance(samples, int) or not 1 <= samples <= 16:
+            raise OutOfRange(f"samples is {samples!r}; give a whole number from 1 to 16")
         self.samples = samples
         self._random = np.random.default_rng(seed)
         self._hand: Arm | None = None
@@ -119,37 +121,33 @@ class Camera:
             CameraBlocked: The camera is inside the robot.
             Closed: The world is closed.
         """
-        view = self._focus()
+        robot, T_wc = self._focus()
         size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
-        picture = draw(view, size, FAR)
-        if self.samples > 1:
-            self._refine(picture, view)
+        seen = joined([self._robot_in(robot, T_wc, size, FAR), scenery(self.world)])
+        picture = 255.0 * draw(seen, self.intrinsics, T_wc, size)[0]
+        self._print(picture, robot, T_wc)
         return self._developed(picture, [size])
 
     def tag_image(self) -> Picture:
-        """A quick picture of only the tags and of what may hide them; the rest stays blank.
+        """A quick picture of only the tags and of what hides them; the rest stays blank.
 
         Returns:
-            As `image`; without noise, where both show something, they show the same.
+            As `image`; without noise, both are the same within a tag's paper.
 
         Raises:
             CameraBlocked: The camera is inside the robot.
             Closed: The world is closed.
         """
-        view = self._focus()
+        robot, T_wc = self._focus()
         shape = (self.intrinsics.height, self.intrinsics.width, 3)
-        picture = np.full(shape, BACKGROUND, np.uint8)
-        return self._developed(picture, self._refine(picture, view))
+        picture = np.full(shape, BACKGROUND, np.float32)
+        return self._developed(picture, self._print(picture, robot, T_wc))
 
-    def _focus(self) -> View:
-        """Everything in its place; where the camera is, and the robot it sees."""
+    def _focus(self) -> tuple[RobotVisuals, Array]:
+        """The robot as it stands now, and where the camera is."""
         if self.world.closed:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
-        robot = RobotVisuals.of(self.world)
-        show_slabs(self.world)
-        for thing in self.world.shown:
-            thing.update()
-        T_wc = self.T_wc
+        robot, T_wc = RobotVisuals(self.world), self.T_wc
         blocker = None if self._hand else robot.around(T_wc[:3, 3])
         if blocker is not None:
             x, y, z = T_wc[:3, 3]
@@ -157,30 +155,67 @@ class Camera:
                 f"the camera at ({x:.3g}, {y:.3g}, {z:.3g}) m is inside the robot, near its joint "
                 f"{blocker}; move it out with camera.place(T_wc)"
             )
-        return View(self.intrinsics, T_wc, robot)
+        return robot, T_wc
 
-    def _refine(self, picture: Picture, view: View) -> list[Window]:
-        """Draw tags, and what may hide them, finely over the picture."""
+    def _robot_in(self, robot: RobotVisuals, T_wc: Array, window: Window, depth: float) -> Surface:
+        """Those pieces of the robot that reach into a window's cone, up to a depth."""
+        centres, radii = robot.balls
+        x, y, z = ((centres - T_wc[:3, 3]) @ T_wc[:3, :3]).T
+        outside = (z + radii < NEAR) | (z - radii > depth)
+        for coordinate, rays in zip((x, y), window.rays(self.intrinsics), strict=True):
+            low, high = rays[0], rays[-1]
+            outside |= coordinate - low * z < -radii * np.hypot(1.0, low)
+            outside |= coordinate - high * z > radii * np.hypot(1.0, high)
+        return robot.surface(~outside)
+
+    def _print(self, picture: Any, robot: RobotVisuals, T_wc: Array) -> list[Window]:
+        """Print the tags' papers over a picture, and over them what hides them; returns where."""
+        boards = [thing for thing in self.world.shown if isinstance(thing, Board)]
+        poses = [se3.inverse(T_wc) @ board.T_wm for board in boards]
         windows = []
-        for board in [thing for thing in self.world.shown if isinstance(thing, Board)]:
-            place = self._window(board, view.T_wc)
+        for k in sorted(range(len(boards)), key=lambda k: -float(poses[k][2, 3])):  # nearest last
+            board, T_cm = boards[k], poses[k]
+            place = self._window(board, T_cm)
             if place is None:
                 continue
             window, depth = place
-            behind = self._behind(board)
-            for body, (*rgb, _) in behind.items():
-                self.world.pictures.paint(body, [*rgb, 0.0])
-            fine = draw_finely(view, window, depth, self.samples)
-            for body, colour in behind.items():
-                self.world.pictures.paint(body, colour)
+            share, white = paper(board.tag, T_cm, self.intrinsics, window, self.samples)
+            shade = 255.0 * float(brightness(board.T_wm[:3, 2]))
             part = picture[window.rows, window.columns]
-            np.copyto(part, fine, where=(fine != BACKGROUND).any(axis=2, keepdims=True))
+            part += share[..., None] * (shade * white[..., None] - part)
+            self._hide(part, board, robot, T_wc, window, depth)
             windows.append(window)
         return windows
 
-    def _window(self, board: Board, T_wc: Array) -> tuple[Window, float] | None:
+    def _hide(
+        self,
+        part: Any,
+        board: Board,
+        robot: RobotVisuals,
+        T_wc: Array,
+        window: Window,
+        depth: float,
+    ) -> None:
+        """Draw what stands before a board over its part of the picture."""
+        T_wm = board.T_wm
+        near = joined([self._robot_in(robot, T_wc, window, depth), scenery(self.world)])
+        height = (near.corners - T_wm[:3, 3]) @ T_wm[:3, 2]
+        near = near.only((height > 1e-6).any(axis=1))
+        if not len(near.corners):
+            return
+        n = _FINE
+        colours, z = draw(near, self.intrinsics, T_wc, window, n)
+        right, down = window.rays(self.intrinsics, n)
+        normal, middle = T_wc[:3, :3].T @ T_wm[:3, 2], T_wc[:3, :3].T @ (T_wm[:3, 3] - T_wc[:3, 3])
+        plane = (normal @ middle) / (normal[0] * right + (normal[1] * down + normal[2])[:, None])
+        before = ((z < plane) | (plane <= 0.0)) & (z < 0.99 * FAR)
+        tiles = (window.height, n, window.width, n)
+        share = before.reshape(tiles).mean(axis=(1, 3))[..., None]
+        colour = (255.0 * colours * before[..., None]).reshape(*tiles, 3).mean(axis=(1, 3))
+        part += colour - share * part
+
+    def _window(self, board: Board, T_cm: Array) -> tuple[Window, float] | None:
         """The part of the picture that a board's paper covers, and a depth just behind it."""
-        T_cm = se3.inverse(T_wc) @ board.T_wm
         corners = board.outline @ T_cm[:3, :3].T + T_cm[:3, 3]
         if corners[:, 2].min() < NEAR or T_cm[:3, 2] @ T_cm[:3, 3] >= 0.0:
             return None  # too near to be seen whole, or seen from behind
@@ -190,32 +225,19 @@ class Camera:
         wide, tall = np.minimum(high, (lens.width, lens.height)) - low
         if wide <= 0 or tall <= 0:
             return None
-        return Window(int(low[0]), int(low[1]), int(wide), int(tall)), 1.05 * float(
-            corners[:, 2].max()
-        )
+        return Window(int(low[0]), int(low[1]), int(wide), int(tall)), float(corners[:, 2].max())
 
-    def _behind(self, board: Board) -> dict[int, Any]:
-        """Colours of the boxes that lie behind a board's plane and so cannot hide it."""
-        normal, middle = board.T_wm[:3, 2], board.T_wm[:3, 3]
-        ours = {body for thing in self.world.shown for body in thing.bodies}
-        return {
-            body: colour
-            for body, (half, colour, T) in self.world.pictures.boxes.items()
-            if body not in ours
-            and (T[:3, 3] - middle) @ normal + abs(normal @ T[:3, :3]) @ half <= 0.0
-        }
-
-    def _developed(self, picture: Picture, windows: list[Window]) -> Picture:
-        """With the sensor's noise where something was drawn, frozen."""
+    def _developed(self, picture: Any, windows: list[Window]) -> Picture:
+        """With the sensor's noise where something was drawn, as whole grey levels, frozen."""
         if self.noise and windows:
             drawn = np.zeros(picture.shape[:2], dtype=bool)
             for window in windows:
                 drawn[window.rows, window.columns] = True
             grain = self._random.standard_normal((int(drawn.sum()), 3), dtype=np.float32)
-            noisy = picture[drawn] + np.float32(self.noise) * grain
-            picture[drawn] = np.clip(np.rint(noisy), 0, 255).astype(np.uint8)
-        picture.setflags(write=False)
-        return picture
+            picture[drawn] += np.float32(self.noise) * grain
+        levels: Picture = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
+        levels.setflags(write=False)
+        return levels
 
 
 def _held(arm: Arm, q: Array) -> Array:

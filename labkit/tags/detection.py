@@ -29,7 +29,7 @@ from .tag import APRILTAG, Picture, as_picture, pattern, tag_corners
 if TYPE_CHECKING:
     from .camera import Camera
 
-CORNER_NOISE = 0.035
+CORNER_NOISE = 0.015
 """Standard deviation of a corner's coordinate, in [px], without image noise: `make tag-bench`."""
 
 _APRILTAG_OFFSET = 0.5  # OpenCV's AprilTag code counts pixels from their corners

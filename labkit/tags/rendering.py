@@ -1,26 +1,33 @@
-"""Rendering: a part of a camera's picture, drawn by PyBullet's software renderer.
+"""Rendering: a part of a camera's picture, by OpenCV's rasteriser and a depth for each sample.
 
-The renderer looks at one point in the middle of each pixel.  A real pixel collects light from its
-whole area; so tags are drawn on a finer grid and averaged down, which costs little, for they are
-small.
+It needs neither a physics engine nor a graphics card, and gives the same picture everywhere.
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
-from .. import se3
 from ..shapes import Array
 from .intrinsics import Intrinsics
-from .tag import Picture
-from .visuals import RobotVisuals
+from .surface import Surface
 
 NEAR, FAR = 0.02, 12.0
 """Nothing nearer or farther than this is drawn, in [m]."""
 
-_PLAIN = np.eye(2)  # the picture's own grid
+_LIGHT = np.array([0.6, 0.35, 1.0]) / np.linalg.norm([0.6, 0.35, 1.0])
+"""Where the light comes from, world axes."""
+
+_AMBIENT = 0.6
+"""Brightness of a face that the light does not reach; one that faces it has 1."""
+
+_HALF_ANGLE = 0.25 * np.pi  # the rasteriser's own lens; `_folded` makes any other of it
+
+Levels = NDArray[np.float32]
+"""Brightness from 0 to 1, or depth in [m]."""
 
 
 class Window(NamedTuple):
@@ -48,94 +55,112 @@ class Window(NamedTuple):
         """Its columns of a picture."""
         return slice(self.left, self.left + self.width)
 
+    def rays(self, lens: Intrinsics, samples: int = 1) -> tuple[Array, Array]:
+        """Where samples look: X/Z of each column and Y/Z of each row, in the camera's frame.
 
-class View(NamedTuple):
-    """What a camera sees from where it is.
+        Args:
+            lens: The lens.
+            samples: For each pixel, along either side.
+        """
+        u = self.left - 0.5 + (np.arange(self.width * samples) + 0.5) / samples
+        v = self.top - 0.5 + (np.arange(self.height * samples) + 0.5) / samples
+        return (u - lens.cx) / lens.fx, (v - lens.cy) / lens.fy
 
-    Attributes:
-        lens: Lens and sensor.
-        T_wc: Pose of the camera in the world, shape (4, 4).
-        robot: The robot that it sees, in its world.
+
+def brightness(normals: Any) -> Array:
+    """How bright faces are, from 0 to 1, by Lambert's law and some light from everywhere.
+
+    Args:
+        normals: Unit vectors out of the faces, world axes, shape (..., 3).
     """
-
-    lens: Intrinsics
-    T_wc: Array
-    robot: RobotVisuals
+    return np.asarray(_AMBIENT + (1.0 - _AMBIENT) * np.maximum(normals @ _LIGHT, 0.0))
 
 
 def draw(
-    view: View,
-    window: Window,
-    depth: float,
-    grid: Any = _PLAIN,
-    size: tuple[int, int] | None = None,
-    first: Any = (0, 0),
-) -> Picture:
-    """Let PyBullet draw a part of the picture, its middles of pixels on a grid of its own.
-
-    PyBullet's sample points, measured in ``tests/tags/test_camera.py``, are columns 0, 1, ...
-    from the left edge of what its projection matrix takes in, and rows 1, 2, ... from the
-    upper.
+    surface: Surface, lens: Intrinsics, T_wc: Array, window: Window, samples: int = 1
+) -> tuple[Levels, Levels]:
+    """Draw a surface.
 
     Args:
-        view: From where.
-        window: Which part.
-        depth: Up to how far away, in [m].
-        grid: From pixels to steps of the grid, shape (2, 2).
-        size: Columns and rows of the grid; None is the window's own.
-        first: Where on the grid the window's first pixel comes to lie.
+        surface: In the world.
+        lens: Lens and sensor.
+        T_wc: Pose of the camera in the world, shape (4, 4).
+        window: Which part of the picture.
+        samples: For each pixel, along either side.
+
+    Returns:
+        Colours, shape (rows, columns, 3), white where nothing is, and depths along the camera's
+        axis, shape (rows, columns), `FAR` to a thousandth where nothing is.
     """
-    (lens, T_wc, robot), (wide, tall) = view, size or (window.width, window.height)
-    x0, y0 = window.left - 0.5, window.top - 0.5
-    left, right = (x0 - lens.cx) / lens.fx, (x0 + window.width - lens.cx) / lens.fx
-    top, bottom = (y0 - lens.cy) / lens.fy, (y0 + window.height - lens.cy) / lens.fy
-    _cull(robot, T_wc, (left, right, top, bottom), depth)
-    (a, b), (c, d) = grid @ np.diag([lens.fx, lens.fy])
-    e, f = grid @ (lens.cx - window.left, lens.cy - window.top) + first
-    span = depth - NEAR
-    projection = np.array(
-        [
-            [2 * a / wide, -2 * b / wide, 1 - 2 * e / wide, 0],
-            [-2 * c / tall, 2 * d / tall, 2 * (f + 1) / tall - 1, 0],
-            [0, 0, -(depth + NEAR) / span, -2 * depth * NEAR / span],
-            [0, 0, -1, 0],
-        ]
-    )
-    view_matrix = np.diag([1.0, -1.0, -1.0, 1.0]) @ se3.inverse(T_wc)
-    return robot.world.pictures.draw(wide, tall, view_matrix, projection)
+    wide, tall = window.width * samples, window.height * samples
+    colours, depth = np.ones((tall, wide, 3), np.float32), np.full((tall, wide), FAR, np.float32)
+    lit, T_cw = _lit(surface, T_wc[:3, 3]), (T_wc[:3, 3], T_wc[:3, :3])
+    corners, tints = _clipped((lit.corners - T_cw[0]) @ T_cw[1], lit.colours)
+    if len(corners):
+        seen = _folded(corners, lens, window, samples).astype(np.float32).reshape(1, -1, 3)
+        numbers = np.arange(seen.shape[1], dtype=np.int32).reshape(1, -1, 3)
+        paints = np.repeat(tints, 3, axis=0).astype(np.float32).reshape(1, -1, 3)
+        own = (np.eye(4), 2.0 * _HALF_ANGLE, NEAR, FAR, _SETTINGS)
+        cv2.triangleRasterize(seen, numbers, paints, colours, depth, *own)
+    return colours, depth
 
 
-def draw_finely(view: View, window: Window, depth: float, s: int) -> Picture:
-    """Draw a window on a finer grid, turned so that no two samples of a pixel share a row.
+_SETTINGS = (
+    cv2.TriangleRasterizeSettings()
+    .setCullingMode(cv2.RASTERIZE_CULLING_NONE)
+    .setShadingType(cv2.RASTERIZE_SHADING_FLAT)
+)
 
-    A pixel holds s^2 + 1 points of the grid, all at different heights and
-    at different places from left to right; an edge along the picture's own rows, which is
-    common, then shows where it is to that part of a pixel.
+
+def _lit(surface: Surface, eye: Array) -> Surface:
+    """The surface in the light; of a sheet, the side towards the eye counts."""
+    a, b, c = np.moveaxis(surface.corners, 1, 0)
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1)
+    solid = lengths > 0.0  # a triangle without an area is not seen
+    normals = normals[solid] / lengths[solid, None]
+    away = np.einsum("ij,ij->i", normals, eye - a[solid]) < 0.0
+    shade = brightness(np.where(away[:, None], -normals, normals))
+    corners, colours = surface.only(solid)
+    return Surface(corners, colours * shade[:, None])
+
+
+def _clipped(corners: Array, colours: Array) -> tuple[Array, Array]:
+    """Triangles in the camera's frame, cut off at `NEAR`: the rasteriser drops what crosses it."""
+    behind = corners[:, :, 2] < NEAR
+    count = behind.sum(axis=1)
+    whole, parts = count == 0, [(corners[count == 0], colours[count == 0])]
+    for k in (1, 2):  # corners behind: with the odd one first, a quadrangle or a triangle is left
+        cut = corners[count == k]
+        odd = np.argmax(behind[count == k] == (k == 1), axis=1)
+        a, b, c = (cut[np.arange(len(cut)), (odd + j) % 3] for j in range(3))
+        ab, ac = (_where(a, x) for x in (b, c))
+        triangles = [(a, ab, ac)] if k == 2 else [(ab, b, c), (ab, c, ac)]
+        parts += [(np.stack(t, axis=1), colours[count == k]) for t in triangles]
+    if whole.all():
+        return parts[0]
+    return np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
+
+
+def _where(a: Array, b: Array) -> Array:
+    """Where lines from ``a`` to ``b`` come as near as `NEAR`, shape (n, 3)."""
+    share = (NEAR - a[:, 2:]) / (b[:, 2:] - a[:, 2:])
+    at = a + share * (b - a)
+    at[:, 2] = NEAR
+    return at
+
+
+def _folded(corners: Array, lens: Intrinsics, window: Window, samples: int) -> Array:
+    """Points as OpenGL has them, so that the rasteriser's lens sees them as ours does.
+
+    Its samples are the pixels' middles, its axis meets the picture's middle, and its focal length
+    is half of the picture's height.
     """
-    if s == 1:
-        return draw(view, window, depth)
-    turn = np.array([[s, -1], [1, s]])  # from pixels to the fine grid
-    size = (s * window.width + window.height + 2 * s, window.width + s * window.height + 2 * s)
-    first = np.array([window.height + s - 1, s])  # where the first pixel's middle comes to lie
-    fine = draw(view, window, depth, turn, size, first).reshape(-1, 3)
-    column, row = np.meshgrid(np.arange(window.width), np.arange(window.height))
-    middles = (s * column - row + first[0]) + size[0] * (column + s * row + first[1])
-    near = np.mgrid[-s : s + 1, -s : s + 1].reshape(2, -1).T
-    inside = (np.abs(near @ np.linalg.inv(turn).T + 1e-9) < 0.5).all(axis=1)
-    offsets = near[inside] @ (1, size[0])
-    total = np.zeros((window.height, window.width, 3), dtype=np.uint16)
-    for offset in offsets:
-        total += fine[middles + offset]
-    return ((total + len(offsets) // 2) // len(offsets)).astype(np.uint8)
-
-
-def _cull(robot: RobotVisuals, T_wc: Array, borders: tuple[float, ...], depth: float) -> None:
-    """Draw only those pieces of the robot that reach into the cone seen, up to a depth."""
-    centres, radii = robot.balls
-    x, y, z = ((centres - T_wc[:3, 3]) @ T_wc[:3, :3]).T
-    left, right, top, bottom = borders
-    outside = (z + radii < NEAR) | (z - radii > depth)
-    for coordinate, low, high in ((x, left, right), (y, top, bottom)):
-        outside |= coordinate - low * z < -radii * np.hypot(1.0, low)
-        outside |= coordinate - high * z > radii * np.hypot(1.0, high)
-    robot.draw_only(~outside)
+    x, y, z = np.moveaxis(corners, -1, 0)
+    wide, tall = window.width * samples, window.height * samples
+    focal = 0.5 * tall / np.tan(_HALF_ANGLE)
+    u = samples * (lens.cx - window.left + 0.5) - 0.5 * wide
+    v = samples * (lens.cy - window.top + 0.5) - 0.5 * tall
+    right = (samples * lens.fx * x + u * z) / focal
+    down = (samples * lens.fy * y + v * z) / focal
+    return np.stack([right, -down, -z], axis=-1)

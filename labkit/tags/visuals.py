@@ -1,4 +1,4 @@
-"""What cameras see of Baxter: meshes, moved with the joints before each picture.
+"""What cameras see of Baxter: meshes, where the joints have moved them.
 
 They belong to no physics: arms in the engine are seven bodies without a shape.  Where a world has
 only one arm, or none, the other hangs at Rethink's neutral pose.
@@ -21,6 +21,7 @@ from ..baxter import robot
 from ..scene import FACE, Table, Wall
 from ..shapes import Array, locked
 from ..world import World
+from .surface import Surface, box, joined, mesh
 
 DATA = Path(__file__).parents[1] / "data"
 
@@ -42,21 +43,21 @@ class Piece:
     file: Path
 
     @cached_property
-    def points(self) -> Array:
-        """The mesh's corners, shape (n, 3) in [m]."""
-        lines = self.file.read_text().splitlines()
-        return np.array([x.split()[1:4] for x in lines if x.startswith("v ")], dtype=float)
+    def surface(self) -> Surface:
+        """Its triangles, in the joint's moving frame."""
+        return mesh(self.file, self.colour).moved(self.T_jp)
 
     @cached_property
     def ball(self) -> tuple[Array, float]:
-        """A ball around the mesh: its centre, shape (3,) in [m], and its radius in [m]."""
-        centre = 0.5 * (self.points.min(axis=0) + self.points.max(axis=0))
-        return centre, float(np.linalg.norm(self.points - centre, axis=1).max())
+        """A ball around it: its centre, shape (3,) in [m], and its radius in [m]."""
+        points = self.surface.corners.reshape(-1, 3)
+        centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+        return centre, float(np.linalg.norm(points - centre, axis=1).max())
 
     @cached_property
     def _hull(self) -> Array:
         """Planes of the convex hull, outward normals and offsets, shape (planes, 4)."""
-        return np.asarray(ConvexHull(self.points).equations)
+        return np.asarray(ConvexHull(self.surface.corners.reshape(-1, 3)).equations)
 
     def encloses(self, point: Array) -> bool:
         """Whether a point is within the convex hull: the real shells are hollow."""
@@ -64,81 +65,48 @@ class Piece:
 
 
 class RobotVisuals:
-    """What cameras see of the robot in one world; made when the first camera opens its eye.
+    """What cameras see of the robot, with its joints where they are now.
 
     Attributes:
-        world: Where it stands.
-        bodies: The numbers of the pieces in `World.pictures`.
-        poses: Pose of each piece in the world at the last update, shape (pieces, 4, 4).
+        frames: Pose in the world of each piece's joint, shape (pieces, 4, 4).
     """
 
-    @staticmethod
-    def of(world: World) -> RobotVisuals:
-        """Those in ``world``: there is one robot."""
-        found = next((thing for thing in world.shown if isinstance(thing, RobotVisuals)), None)
-        return RobotVisuals(world) if found is None else found
-
     def __init__(self, world: World) -> None:
-        """Load the meshes into ``world``."""
-        self.world = world
-        self.bodies = [world.pictures.add_mesh(p.file, p.colour) for p in pieces()]
-        self._seen = np.ones(len(self.bodies), dtype=bool)
-        self._centres = np.array([[*p.ball[0], 1.0] for p in pieces()])
-        self._radii = np.array([p.ball[1] for p in pieces()])
-        self._at: bytes = b""
-        world.show(self)
-        self.update()
-
-    def update(self) -> None:
-        """Move every piece to where the joints are now."""
+        """Look where the joints of ``world`` are."""
         q = {side: robot(side).neutral for side in ("left", "right")}
-        q |= {arm.robot.side: arm.truth().q for arm in self.world.arms}
-        now = q["left"].tobytes() + q["right"].tobytes()
-        if now == self._at:
-            return
-        self._at = now
+        q |= {arm.robot.side: arm.truth().q for arm in world.arms}
         frames = joint_frames(q)
-        self.poses = np.array([frames[piece.parent] @ piece.T_jp for piece in pieces()])
-        for body, T in zip(self.bodies, self.poses, strict=True):
-            self.world.pictures.move(body, T)
+        self.frames = np.array([frames[piece.parent] for piece in pieces()])
 
     @property
     def balls(self) -> tuple[Array, Array]:
         """A ball around each piece: centres in the world (pieces, 3) and radii (pieces,) in [m]."""
-        return np.einsum("nij,nj->ni", self.poses, self._centres)[:, :3], self._radii
+        centres, radii = _balls()
+        return np.einsum("nij,nj->ni", self.frames, centres)[:, :3], radii
 
-    def draw_only(self, wanted: Any) -> None:
-        """Leave pieces out of the pictures to come: they would cost time and show nothing.
-
-        Args:
-            wanted: Which pieces to draw, shape (pieces,), bool.
-        """
-        for i in np.flatnonzero(wanted != self._seen):
-            *rgb, opacity = pieces()[i].colour
-            self.world.pictures.paint(self.bodies[i], [*rgb, opacity if wanted[i] else 0.0])
-        self._seen = np.array(wanted)
+    def surface(self, wanted: Any) -> Surface:
+        """Those pieces that are wanted, shape (pieces,), bool, in the world."""
+        return joined(pieces()[i].surface.moved(self.frames[i]) for i in np.flatnonzero(wanted))
 
     def around(self, point: Array) -> str | None:
         """The joint whose link a point of the world, shape (3,) in [m], is inside of, if any."""
         centres, radii = self.balls
         for i in np.flatnonzero(np.linalg.norm(centres - point, axis=1) < radii):
-            T = self.poses[i]
+            T = self.frames[i]
             if pieces()[i].encloses(T[:3, :3].T @ (point - T[:3, 3])):
                 return pieces()[i].parent
         return None
 
 
-def show_slabs(world: World) -> None:
-    """Let cameras see the walls and tables that were put into a world since the last time."""
-    drawn = world.pictures.slabs
+def scenery(world: World) -> Surface:
+    """Walls, tables and whatever else is shown in a world, the robot apart."""
+    slabs = []
     for thing in world.things:
-        if isinstance(thing, Wall | Table) and thing not in drawn:
-            half = np.array([*(0.5 * thing.size), 0.5 * FACE])
-            drawn[thing] = world.pictures.add_box(half, thing.colour.tolist())
-            T = thing.T_wf
-            world.pictures.move(
-                drawn[thing], T @ se3.pose(np.eye(3), np.array([0.0, 0.0, -half[2]]))
-            )
+        if isinstance(thing, Wall | Table):
+            below = se3.pose(np.eye(3), np.array([0.0, 0.0, -0.5 * FACE]))
+            slab = box([*(0.5 * thing.size), 0.5 * FACE], thing.colour)
+            slabs.append(slab.moved(thing.T_wf @ below))
+    return joined([*slabs, *(thing.surface() for thing in world.shown)])
 
 
 def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
@@ -166,6 +134,12 @@ def pieces() -> tuple[Piece, ...]:
     return tuple(
         Piece(p["parent"], _placed(p), tuple(p["rgba"]), DATA / p["mesh"]) for p in _table("pieces")
     )
+
+
+@cache
+def _balls() -> tuple[Array, Array]:
+    centres = np.array([[*piece.ball[0], 1.0] for piece in pieces()])
+    return centres, np.array([piece.ball[1] for piece in pieces()])
 
 
 @cache

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from labkit.tags import sensing
+from solutions.study import sensing
 
 LIMITS = {"found": 0.99, "position_p95_mm": 2.0, "position_max_mm": 5.0, "orientation_p95_deg": 0.5}
 STEEP = pi / 12

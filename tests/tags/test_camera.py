@@ -10,6 +10,7 @@ import labkit as lk
 from labkit import se3
 from labkit.errors import Closed, OutOfRange, TypeMismatch, UnknownName
 from labkit.tags.camera import BACKGROUND, CameraBlocked
+from labkit.tags.surface import Block
 from labkit.tags.visuals import joint_frames
 
 AWAY = lk.looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))
@@ -28,12 +29,6 @@ def ready_arm(world):
     return arm
 
 
-def dark_box(world, half, T):
-    body = world.pictures.add_box(half, [0, 0, 0, 1])
-    world.pictures.move(body, T)
-    return body
-
-
 @pytest.mark.parametrize("axis", [0, 1])
 def test_the_renderer_looks_where_the_intrinsics_say(world, axis):
     """A sharp edge moved across the picture covers a pixel when it passes the pixel's middle.
@@ -43,7 +38,6 @@ def test_the_renderer_looks_where_the_intrinsics_say(world, axis):
     """
     lens = lk.Intrinsics(64, 48, 80.0, 90.0, 30.3, 25.1)
     camera = lk.Camera(world, AWAY, lens, samples=1)
-    box = dark_box(world, [1, 1, 1e-4], np.eye(4))
     offsets = []
     for pixel in (5, 20, 31, 42):
         low, high = pixel - 1.0, pixel + 1.0
@@ -55,7 +49,7 @@ def test_the_renderer_looks_where_the_intrinsics_say(world, axis):
             T_cb = np.eye(4)
             T_cb[:3, 3] = edge
             T_cb[axis, 3] -= 1.0  # the box ends at the edge
-            world.pictures.move(box, camera.T_wc @ T_cb)
+            world.shown[:] = [Block((1, 1, 1e-4), (0, 0, 0), camera.T_wc @ T_cb)]
             looked_at = (24, pixel) if axis == 0 else (pixel, 32)
             covered = camera.image()[looked_at][0] < 128
             low, high = (low, at) if covered else (at, high)
@@ -190,8 +184,8 @@ def test_the_hand_camera_sees_the_tag_below_and_moves_with_the_arm(world):
 
 
 def test_noise_is_as_loud_as_stated_and_repeats_with_the_seed(world):
-    body = world.pictures.add_box([9, 9, 0.1], [0.5, 0.5, 0.5, 1])
-    world.pictures.move(body, AWAY @ se3.pose(np.eye(3), np.array([0, 0, 3.0])))
+    T = AWAY @ se3.pose(np.eye(3), np.array([0, 0, 3.0]))
+    world.show(Block((9, 9, 0.1), (0.9, 0.9, 0.9), T))
     clean = lk.Camera(world, AWAY).image().astype(float)
     assert clean.min() > 50 and clean.max() < 205
     first, again, other = (lk.Camera(world, AWAY, noise=8.0, seed=s).image() for s in (1, 1, 2))
