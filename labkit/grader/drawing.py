@@ -84,7 +84,7 @@ def side_by_side(expected: ArrayLike, given: ArrayLike, alt: str) -> Markup:
 
 
 def _axes() -> tuple[Figure, Axes]:
-    figure = Figure(figsize=SIZE)
+    figure = Figure(figsize=SIZE, layout="none")  # the axes are placed below
     axes = figure.add_axes((0.1, 0.2, 0.87, 0.68))
     axes.yaxis.set_major_locator(MaxNLocator(4))
     return figure, axes

@@ -85,7 +85,7 @@ def test_the_arms_pictures_stick_out_of_its_simple_shapes_no_further_than_stated
 
 
 def links_at_zero():
-    return lk.links(lk.Model(), np.zeros(7))
+    return lk.Model().links(np.zeros(7))
 
 
 def distance(shape, points):
