@@ -209,7 +209,6 @@ def test_a_sandbox_killed_while_it_starts_is_made_again(dying_bwrap, here, task)
 
 def test_a_forkserver_killed_while_it_loads_is_made_again(here, task):
     """What is ended when it has said something already, such as a library's banner, is no fault."""
-
     others = running()  # among them other tests' sandboxes
 
     def kill():
