@@ -10,7 +10,7 @@ from .errors import LabkitError
 FORMAT = 2
 """Of checks.json, bundles and results; files of version 0.1 have no number and count as 1."""
 PHYSICS = 2
-"""Of the plant and its engines: runs with another number give other logs."""
+"""Of the plant and its engines; under another number the same run gives another log."""
 
 
 def stamp() -> dict[str, int]:

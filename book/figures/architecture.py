@@ -15,14 +15,14 @@ from .page import framed, holds
 
 HOME = Path(labkit.__file__).parent
 LAYERS = (
-    ("Sentences and numbers", ("errors", "quiet", "shapes", "se3")),
+    ("Sentences and numbers", ("errors", "quiet", "formats", "shapes", "se3")),
     ("What is wanted", ("trajectory", "paths")),
     ("What is known", ("plant", "robot", "baxter", "kinematics", "model")),
     ("What moves", ("control", "world", "scene", "sensors", "body", "motors", "arm")),
     ("The loop, and what it did", ("log", "run", "metrics", "recordings", "loop")),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
     ("What judges", ("course",)),
-    ("For instructors, and what one types", ("grader", "verbs", "cli")),
+    ("For instructors", ("grader",)),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
 
@@ -47,7 +47,7 @@ def picture() -> HTML:
     """The rows, each above what it stands on."""
     row_of = {name: k for k, (_, names) in enumerate(LAYERS) for name in names}
     drawn = set(row_of)
-    arrows = {(a, b) for a in drawn - {"cli"} for b in imported(a) & drawn}
+    arrows = {(a, b) for a in drawn for b in imported(a) & drawn}
     modules, folders = HOME.glob("[a-z]*.py"), HOME.glob("*/__init__.py")
     there = {path.stem for path in modules} | {path.parent.name for path in folders}
     holds(there == drawn, "every module has its place")

@@ -24,7 +24,7 @@ from .submission import Submission
 from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3
-"""If more than this share of a class fails one test, the run says so: is the test to blame?"""
+"""If more than this share of a class fails one test, the run asks whether the test is to blame."""
 MIN_ATTEMPTS = 5
 """Nothing is concluded from fewer than these."""
 

@@ -49,7 +49,7 @@ def report(
     who = {r.student: _as_text(called(r.student)) for r in results}
     graded = [r for r in results if not r.rejected]
     times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
-    return render(
+    text = render(
         "class_report.md.j2",
         assignment=assignment,
         handed_in=len(results) + left_out,
@@ -67,6 +67,7 @@ def report(
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
         alike=list(_alike(graded, who)),
     )
+    return text.rstrip() + "\n"
 
 
 def for_jplag(results: Sequence[Result], folder: Path, called: Callable[[str], str]) -> int:

@@ -85,6 +85,7 @@ def side_by_side(expected: ArrayLike, given: ArrayLike, alt: str) -> Markup:
 
 def _axes() -> tuple[Figure, Axes]:
     figure = Figure(figsize=SIZE)
+    figure.set_layout_engine("none")  # the axes are placed here
     axes = figure.add_axes((0.1, 0.2, 0.87, 0.68))
     axes.yaxis.set_major_locator(MaxNLocator(4))
     return figure, axes

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .camera import Camera
 
 CORNER_NOISE = 0.015
-"""Standard deviation of a corner's coordinate, in [px], without image noise: `make tag-bench`."""
+"""Standard deviation of a corner's coordinate, in [px], without noise, by `make tag-bench`."""
 
 _APRILTAG_OFFSET = 0.5  # OpenCV's AprilTag code counts pixels from their corners
 

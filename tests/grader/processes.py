@@ -21,12 +21,21 @@ def _all() -> dict[int, tuple[int, str]]:
     return found
 
 
-def child(pid: int, word: str) -> int:
-    """A child of a process that was started with a word, once there is one."""
+def running() -> set[int]:
+    """All processes of this machine."""
+    return set(_all())
+
+
+def child(pid: int, word: str, but: set[int] = frozenset()) -> int:
+    """A child of a process that was started with a word, once there is one beside some others."""
     until = time.monotonic() + GUARD
     while time.monotonic() < until:
         for one, (parent, _) in _all().items():
-            if parent == pid and word.encode() in Path(f"/proc/{one}/cmdline").read_bytes():
+            if (
+                parent == pid
+                and one not in but
+                and word.encode() in Path(f"/proc/{one}/cmdline").read_bytes()
+            ):
                 return one
         time.sleep(0.05)
     raise AssertionError(f"{pid} has no child {word}")

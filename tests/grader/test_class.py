@@ -294,7 +294,7 @@ def test_late_rules_and_timestamps(part):
     with open_gradebook(part) as book:
         book.update_or_create_assignment(NAME, duedate="2029-01-01 10:00:00 UTC")
     notes = record(part, NAME, done)
-    assert [note for note in notes if odd in note and "no time" in note]
+    assert [note for note in notes if odd in note and "is not a time" in note]
     with open_gradebook(part) as book:
         assert book.find_submission(NAME, late).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
@@ -312,9 +312,8 @@ def test_command(part, capsys):
     assert main(["grade", NAME, "--course", str(part.root), "--json"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert {json.loads(line)["student"] for line in lines} == set(students(part, NAME))
-    with pytest.raises(SystemExit, match="2"):
-        main(["grade", NAME, "--course", str(part.root), "--shard", "5/4"])
-    assert "5/4 is no part; write 1/4, 2/4, 3/4 or 4/4" in capsys.readouterr().err
+    assert main(["grade", NAME, "--course", str(part.root), "--shard", "5/4"]) == 2
+    assert "5/4 is not a part; write 1/4, 2/4, 3/4 or 4/4" in capsys.readouterr().err
 
 
 def test_refuses_without_bubblewrap(part, capsys, monkeypatch):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 from handmade import QUICK, add, hand_in
-from processes import below, child, wait_until_gone
+from processes import below, child, running, wait_until_gone
 
 from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError
@@ -209,9 +209,10 @@ def test_a_sandbox_killed_while_it_starts_is_made_again(dying_bwrap, here, task)
 
 def test_a_forkserver_killed_while_it_loads_is_made_again(here, task):
     """What is ended when it has said something already, such as a library's banner, is no fault."""
+    others = running()  # among them other tests' sandboxes
 
     def kill():
-        for pid, _ in below(child(os.getpid(), "bwrap"), at_least=3):
+        for pid, _ in below(child(os.getpid(), "bwrap", others), at_least=3):
             if Path(f"/proc/{pid}/cmdline").read_text().startswith(sys.executable):
                 os.kill(pid, signal.SIGKILL)
 

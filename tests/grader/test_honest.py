@@ -10,11 +10,10 @@ from labkit.course.layout import Course
 from labkit.course.solved import inlined
 from labkit.course.source import look
 from labkit.course.withheld import withheld_tools
-from labkit.grader import synthetic_kinds
 from labkit.grader.plan import plan
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.tricks import tricks
-from tests.synthetic import Draft
+from tests.synthetic import Draft, kinds
 from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))
@@ -49,7 +48,7 @@ def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blan
     problems = {p.name: p for p in released.problems("01_paths")}
     questions = {q.name: q for q in bundle.questions}
     suspected = set()
-    for kind, make in synthetic_kinds.KINDS.items():
+    for kind, make in kinds.KINDS.items():
         cells = json.loads(json.dumps(blank["cells"]))
         draft = Unmarked("01_paths", problems, questions, np.random.default_rng(1), cells)
         make(draft)

@@ -64,7 +64,6 @@ def test_the_class_report_lists_both(graded):
         "- ADA, not counted: bang_bang uses lk.BangBang, which this question asks you to write",
         "- BOB, worth a look: cell 5 imports importlib.util; cell 5 uses labkit.paths.__file__; "
         "cell 5 uses sys.modules",
-        "",
     ]
     assert "| bang_bang | 1 | 1 | 0 | 1 | 0 |" in text
 

@@ -16,10 +16,9 @@ from labkit.course import question_data
 from labkit.course.bundle import Bundle
 from labkit.course.handin import look
 from labkit.course.layout import Course
-from labkit.course.notebook import source_notebook, verdict_in
+from labkit.course.notebook import manifest, source_notebook, verdict_in
 from labkit.course.withheld import find
 from labkit.grader.grade import grade
-from labkit.grader.release import manifest
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from tests.synthetic.inline import inline

@@ -22,7 +22,7 @@ MAX_STARTS = 6
 MAX_LOST = 3
 """After so many calls that died or hung, a question is not asked any more."""
 LEAST_SHARE = 0.05
-"""Of the time of all cells: what each still has once those before it have spent it."""
+"""Share of the time of all cells that each still has once those before it have spent it."""
 _EXCEPTIONS = {"ArgumentChanged", "LinAlgError"} | {
     name
     for module in (builtins, errors)
