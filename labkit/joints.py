@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .control import NOTHING
 from .model import Model
 from .shapes import Array
 
@@ -129,7 +128,9 @@ class Joints:
     def __init__(self, model: Model, dt: float) -> None:
         """Joints as ``model`` and its plant have them, in steps of ``dt`` [s]."""
         self._model, self._dt, robot = model, dt, model.robot
-        self._viscous = np.array(model.plant.viscous) if any(model.plant.viscous) else None
+        viscous = model.plant.each("viscous", robot.n)
+        self._viscous = viscous if viscous.any() else None
+        self._nothing = robot.zeros
         self._lower, self._upper = robot.lower, robot.upper
         self._low, self._high = (
             (robot.lower + QUICK * dt).tolist(),
@@ -157,8 +158,8 @@ class Joints:
         tau = drive.tau if self._viscous is None else drive.tau - self._viscous * dq
         angles = q.tolist()
         if not touches and all(map(lt, self._low, angles)) and all(map(lt, angles, self._high)):
-            if drive.bound is NOTHING:
-                return NOTHING, tau
+            if drive.bound is self._nothing:
+                return drive.bound, tau
             if self._stands.count(STICK) == len(angles):  # that motors hold is common, and cheap
                 a = (drive.speed - dq) / self._dt
                 y = self._model.inverse_dynamics(q, dq, a) - tau

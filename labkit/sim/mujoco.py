@@ -24,7 +24,7 @@ class MuJoCo:
     def __init__(self, robot: Robot, plant: Plant, dt: float) -> None:
         """Read the arm from its URDF text."""
         self._model = mujoco.MjModel.from_xml_string(robot.urdf(plant))
-        self._model.dof_armature[:] = plant.armature
+        self._model.dof_armature[:] = plant.each("armature", robot.n)
         self._model.opt.timestep = dt
         for part in _OFF:
             self._model.opt.disableflags |= int(part)

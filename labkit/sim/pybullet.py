@@ -41,8 +41,8 @@ class PyBullet:
             bullet.changeDynamics(self._arm, joint, **free, **here)
         motors = {"forces": [0.0] * len(self._joints), **here}
         bullet.setJointMotorControlArray(self._arm, self._joints, bullet.VELOCITY_CONTROL, **motors)
-        self._rotors = np.array(plant.armature)
-        self._geared = Model(robot.side, plant) if self._rotors.any() else None
+        self._rotors = plant.each("armature", robot.n)
+        self._geared = Model(robot, plant) if self._rotors.any() else None
 
     def place(self, q: Array) -> None:
         for joint, angle in enumerate(q):

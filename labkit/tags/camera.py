@@ -242,6 +242,11 @@ class Camera:
 
 def _held(arm: Arm, q: Array) -> Array:
     """Pose in the world of the camera in an arm's hand, at joint angles ``q``."""
+    if arm.robot.T_hand_camera is None:
+        raise LabkitError(
+            f"{arm.robot.name} has no camera in its hand; dataclasses.replace(robot, "
+            "T_hand_camera=...) gives it one, or use a camera that stands: looking_at(eye, at)"
+        )
     T_tc = se3.inverse(arm.robot.T_hand_tip) @ arm.robot.T_hand_camera
     return locked(arm.model.pose(q) @ T_tc)
 

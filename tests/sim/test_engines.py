@@ -21,7 +21,7 @@ class Equations:
     """The protocol by itself: the equations of motion, integrated as it says."""
 
     def __init__(self, robot, plant, dt):
-        self.model, self.dt = lk.Model(robot.side, plant), dt
+        self.model, self.dt = lk.Model(robot, plant), dt
 
     def place(self, q):
         self.q, self.dq = np.array(q), np.zeros(7)
