@@ -99,7 +99,7 @@ class Log:
                 about = json.loads(str(file["about"]))
                 columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}
             return cls(**_read(about, columns))
-        except (OSError, ValueError, KeyError, TypeError, BadZipFile) as error:
+        except (OSError, EOFError, ValueError, KeyError, TypeError, BadZipFile) as error:
             raise LabkitError(f"{path} is not a log that labkit saved: {error}") from None
 
 

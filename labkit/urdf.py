@@ -25,8 +25,12 @@ def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, An
     name = name or root.get("name") or path.stem
     chain = [joint for joint in _chain(root, tip, path.name) if joint.get("type") != "fixed"]
     limits = [_limits(joint, path.name) for joint in chain]
-    if not chain:
-        raise LabkitError(f"{path.name} has no joint that moves the link {tip!r}; take another tip")
+    if len(chain) < 2:
+        many = "one joint that moves" if chain else "no joint that moves"
+        raise LabkitError(
+            f"{path.name} has {many} the link {tip!r}, and an arm has at least two; take another "
+            "tip"
+        )
     for joint in root.iter("joint"):
         if joint not in chain:
             joint.set("type", "fixed")

@@ -30,7 +30,7 @@ DATA = Path(__file__).parents[1] / "data"
 COLOUR = (0.45, 0.47, 0.5)
 """Of an arm without meshes."""
 
-THICK = 0.05
+THICK = 0.035
 """Radius of a capsule over the length of all of them."""
 
 
