@@ -15,14 +15,14 @@ from .page import framed, holds
 
 HOME = Path(labkit.__file__).parent
 LAYERS = (
-    ("Sentences and numbers", ("errors", "quiet", "shapes", "se3")),
+    ("Sentences and numbers", ("errors", "quiet", "formats", "shapes", "se3")),
     ("What is wanted", ("trajectory", "paths")),
-    ("What is known", ("plant", "robot", "baxter", "kinematics", "model")),
-    ("What moves", ("control", "world", "scene", "sensors", "body", "motors", "arm")),
-    ("The loop, and what it did", ("log", "run", "metrics", "recordings", "loop")),
+    ("What is known", ("plant", "urdf", "robot", "baxter", "kinematics", "model")),
+    ("What moves", ("control", "joints", "sim", "world", "scene", "sensors", "motors", "arm")),
+    ("The loop, and what it did", ("log", "driven", "run", "metrics", "recordings", "loop")),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
     ("What judges", ("course",)),
-    ("For instructors, and what one types", ("grader", "verbs", "cli")),
+    ("For instructors", ("grader",)),
 )
 """From the ground up: a module imports from its own row and the rows below, never above."""
 
