@@ -226,12 +226,12 @@ class Arm:
             self._report()
         q, dq = self._read()
         drive = self._motors.drive(q, dq)
-        given, tau = self._joints.solve(q, dq, drive, self._touches)
+        given = self._joints.solve(q, dq, drive, self._touches)
         if self.world.things or self.plant.payload:  # else no torque comes from outside
-            joint = drive.tau + given - self._viscous * dq
+            joint = drive.tau + given.held - self._viscous * dq
             self._sensors.begin(q, dq, joint, self.world.steps)
-        self._torque = drive.tau if self._motors.kind is JointTorque else given
-        self._engine.step(tau)
+        self._torque = drive.tau if self._motors.kind is JointTorque else given.held
+        self._engine.step(given.tau, given.ddq)
         self._known, self._touches = None, []
 
     def release(self) -> None:

@@ -37,7 +37,7 @@ class MuJoCo:
     def state(self) -> tuple[Array, Array]:
         return self._q.copy(), self._dq.copy()
 
-    def step(self, tau: Array) -> None:
+    def step(self, tau: Array, ddq: Array | None = None) -> None:
         self._tau[:] = tau
         mujoco.mj_step(self._model, self._data)
 

@@ -53,9 +53,11 @@ class PyBullet:
         self._state = np.array(q), np.array(dq)
         return self._state
 
-    def step(self, tau: Array) -> None:
+    def step(self, tau: Array, ddq: Array | None = None) -> None:
         if self._geared is not None:  # PyBullet has no rotors: take off what they would take
-            tau = tau - self._rotors * self._geared.forward_dynamics(*self._state, tau)
+            if ddq is None:
+                ddq = self._geared.forward_dynamics(*self._state, tau)
+            tau = tau - self._rotors * ddq
         bullet.setJointMotorControlArray(
             self._arm, self._joints, bullet.TORQUE_CONTROL, forces=tau.tolist(),
             physicsClientId=self._client,

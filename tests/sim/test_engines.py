@@ -29,7 +29,7 @@ class Equations:
     def state(self):
         return self.q.copy(), self.dq.copy()
 
-    def step(self, tau):
+    def step(self, tau, ddq=None):
         M, bias = self.model.mass_matrix(self.q), self.model.bias(self.q, self.dq)
         self.dq = self.dq + self.dt * np.linalg.solve(M, tau - bias)
         self.q = self.q + self.dt * self.dq
