@@ -105,7 +105,7 @@ class Model(Kinematics):
         Returns:
             Shape (n, n) in [kg m^2].
         """
-        M: Array = pin.crba(self._pin, self._data, as_array(q, self._joints, "q")).copy()
+        M: Array = pin.crba(self._pin, self._data, as_array(q, self._joints, "q"))
         M[self._lower] = M.T[self._lower]  # Pinocchio fills the upper half
         return M
 
@@ -118,7 +118,8 @@ class Model(Kinematics):
         Returns:
             Shape (n, n) in [1/(kg m^2)].
         """
-        return np.array(pin.computeMinverse(self._pin, self._data, as_array(q, self._joints, "q")))
+        made: Array = pin.computeMinverse(self._pin, self._data, as_array(q, self._joints, "q"))
+        return made
 
     def coriolis(self, q: Any, dq: Any) -> Array:
         r"""The matrix C(q, dq) for which :math:`\dot M - 2C` is skew (MLS eq. 4.23, Lemma 4.2).
@@ -131,7 +132,8 @@ class Model(Kinematics):
             Shape (n, n) in [kg m^2/s]; ``C @ dq`` is the Coriolis and centrifugal torque.
         """
         q, dq = as_array(q, self._joints, "q"), as_array(dq, self._joints, "dq")
-        return np.array(pin.computeCoriolisMatrix(self._pin, self._data, q, dq))
+        made: Array = pin.computeCoriolisMatrix(self._pin, self._data, q, dq)
+        return made
 
     def gravity(self, q: Any) -> Array:
         r"""The torque that holds the arm still, :math:`g(q) = \partial V / \partial q` (MLS 4.27).
@@ -143,7 +145,8 @@ class Model(Kinematics):
             Shape (n,) in [N m].
         """
         q = as_array(q, self._joints, "q")
-        return np.array(pin.computeGeneralizedGravity(self._pin, self._data, q))
+        made: Array = pin.computeGeneralizedGravity(self._pin, self._data, q)
+        return made
 
     def bias(self, q: Any, dq: Any) -> Array:
         """All that is not inertia: ``C(q, dq) @ dq + g(q)``.
@@ -156,7 +159,8 @@ class Model(Kinematics):
             Shape (n,) in [N m].
         """
         q, dq = as_array(q, self._joints, "q"), as_array(dq, self._joints, "dq")
-        return np.array(pin.nonLinearEffects(self._pin, self._data, q, dq))
+        made: Array = pin.nonLinearEffects(self._pin, self._data, q, dq)
+        return made
 
     def inverse_dynamics(self, q: Any, dq: Any, ddq: Any) -> Array:
         """The torque that a motion takes, ``M @ ddq + C @ dq + g`` (recursive Newton-Euler).
@@ -171,7 +175,8 @@ class Model(Kinematics):
         """
         q, dq = as_array(q, self._joints, "q"), as_array(dq, self._joints, "dq")
         ddq = as_array(ddq, self._joints, "ddq")
-        return np.array(pin.rnea(self._pin, self._data, q, dq, ddq))
+        made: Array = pin.rnea(self._pin, self._data, q, dq, ddq)
+        return made
 
     def forward_dynamics(self, q: Any, dq: Any, tau: Any) -> Array:
         """The accelerations that torques make, ``M @ ddq = tau - C @ dq - g``.
@@ -186,7 +191,8 @@ class Model(Kinematics):
         """
         q, dq = as_array(q, self._joints, "q"), as_array(dq, self._joints, "dq")
         tau = as_array(tau, self._joints, "tau")
-        return np.array(pin.aba(self._pin, self._data, q, dq, tau))
+        made: Array = pin.aba(self._pin, self._data, q, dq, tau)
+        return made
 
     def free_motion(self, q: Array, dq: Array, tau: Array) -> tuple[Array, Array]:
         """`forward_dynamics` and `inverse_mass` in one sweep over the arm, 6 us instead of 12.
