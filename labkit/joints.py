@@ -171,7 +171,6 @@ class Joints:
         self._signs, self._sign = signs, np.array(signs)
         self._held = np.array([k == STICK for k in stands])
         self._columns = self._held[None, :]
-        self._slipping = not self._held.any()
         self._beside = LOW not in stands and HIGH not in stands
 
     def solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch]) -> Given:
@@ -208,10 +207,9 @@ class Joints:
         bound, dt = drive.bound, self._dt
         wanted = (drive.speed - dq) / dt
         free, inverse = self._model.free_motion(q, dq, tau)
-        y = self._sign * bound
-        if not self._slipping:
-            rows = np.where(self._columns, inverse, self._unit).T  # as LAPACK reads: 1 us less
-            y = _dgesv()(rows, np.where(self._held, wanted - free, y), 1, 1)[2]
+        given = np.where(self._held, wanted - free, self._sign * bound)
+        rows = np.where(self._columns, inverse, self._unit).T  # as LAPACK reads: 1 us less
+        y = _dgesv()(rows, given, 1, 1)[2]
         a = free + inverse @ y
         slack = _ROUNDING / dt
         for sign, torque, most, made, meant in zip(
@@ -246,6 +244,7 @@ class Joints:
             kept = [touch for touch in touches if touch.pushes(v)]
             if len(kept) < len(touches):  # it has left the others
                 return self._solve(q, dq, drive, kept, tau)
-        self._stand(stands)
+        if stands != self._stands:
+            self._stand(stands)
         held = np.minimum(np.maximum(y, -drive.bound), drive.bound)
         return Given(held, push + y, (G @ (push - h + y) if not touches else a) / self._dt)
