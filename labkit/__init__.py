@@ -1,4 +1,4 @@
-"""A small laboratory for robot control: Baxter's arm, simulated, and what is needed to teach it.
+"""A small laboratory for robot control: Baxter's arm or your own, and what it takes to teach it.
 
 Three nouns and a verb: an `Arm`, a `Trajectory`, a controller (any function of state and target),
 and `run`.  Everything that a notebook needs is ``lk.something``.
@@ -13,7 +13,7 @@ from importlib import import_module
 from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
-from numpy.linalg import norm
+import numpy as np
 
 from . import control, metrics, se3
 from .arm import Arm
@@ -24,6 +24,7 @@ from .log import Log
 from .model import Model
 from .paths import BangBang, Circle, Cubic, Line, Polyline, Quintic, Trapezoid
 from .plant import BAXTER, IDEAL, Plant
+from .robot import Robot
 from .run import run
 from .scene import Push, Spring, Table, Wall
 from .trajectory import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
@@ -38,9 +39,10 @@ __version__ = "0.1.0"
 __all__ = [
     "BAXTER", "IDEAL", "Arm", "BangBang", "Board", "Camera", "Chain", "Circle", "Cubic", "Hold",
     "Intrinsics", "JointPosition", "JointTorque", "JointVelocity", "LabkitError", "Line", "Log",
-    "Model", "Plant", "Polyline", "PosePath", "PoseSample", "Push", "Quintic", "Sample", "Spring",
-    "State", "Table", "Tag", "TagStream", "TagTarget", "Trajectory", "Trapezoid", "Wall", "World",
-    "detect_tags", "looking_at", "metrics", "plotting", "ready", "replay", "robot", "run", "se3",
+    "Model", "Plant", "Polyline", "PosePath", "PoseSample", "Push", "Quintic", "Robot", "Sample",
+    "Spring", "State", "Table", "Tag", "TagStream", "TagTarget", "Trajectory", "Trapezoid", "Wall",
+    "World", "detect_tags", "looking_at", "metrics", "plotting", "ready", "replay", "robot", "run",
+    "se3",
 ]  # fmt: skip
 
 
@@ -68,7 +70,8 @@ def ready() -> None:
     from .run import run  # whatever somebody put in the place of `lk.run`
 
     with Arm() as arm:
-        start, goal = (arm.robot.neutral + [x, 0, 0, 0, 0, 0, 0] for x in (0.0, 0.1))
+        start = arm.robot.neutral
+        goal = start + 0.1 * (np.arange(arm.robot.n) == 0)
         log = run(arm, Trajectory(Line(start, goal), Quintic(0.5)), control.feedforward)
         a, b = (arm.model.pose(q)[:3, 3] for q in (log.q[0], log.q[-1]))
     off = abs(log.q[-1] - goal).max()
@@ -77,7 +80,7 @@ def ready() -> None:
     engines = ", ".join(f"{name} {version(name)}" for name in (arm.world.engine, "pin"))
     free = psutil.virtual_memory().available / 2**30
     print(  # short enough for one line of a notebook beside its file browser
-        f"labkit {__version__}: the arm moved {1e3 * norm(b - a):.0f} mm; Python "
+        f"labkit {__version__}: the arm moved {1e3 * np.linalg.norm(b - a):.0f} mm; Python "
         f"{platform.python_version()}, {sys.platform} {platform.machine()}, {engines}, "
         f"{free:.0f} GB free"
     )

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from .baxter import robot
-from .control import COMMANDS, NOTHING, Command, JointPosition, JointTorque, State, still
-from .errors import Closed, ControllerError, LabkitError, TypeMismatch
+from .baxter import as_robot
+from .control import COMMANDS, Command, JointPosition, JointTorque, JointVelocity, State
+from .errors import Closed, ControllerError, LabkitError, ShapeError, TypeMismatch
 from .joints import Joints, Touch
 from .model import Model
 from .motors import Motors
 from .plant import IDEAL, Plant
-from .robot import Robot, Side
+from .robot import Robot
 from .sensors import Reports, TorqueSensors
 from .shapes import Array, as_array, locked, shown
 from .sim import new_arm
@@ -22,7 +22,7 @@ from .world import World
 
 
 class Arm:
-    """One of Baxter's arms in a world: seven bodies, motors with limits, and the plant's realism.
+    """A robot's arm in a world: n bodies, motors with limits, and the plant's realism.
 
     Attributes:
         robot: Names and limits.
@@ -33,7 +33,7 @@ class Arm:
 
     def __init__(
         self,
-        side: Side = "left",
+        robot: Robot | str = "left",
         plant: Plant = IDEAL,
         seed: int = 0,
         *,
@@ -43,10 +43,10 @@ class Arm:
         """Put an arm into a world, at rest.
 
         Args:
-            side: "left" or "right".
+            robot: A `Robot`, or "left" or "right" for Baxter's.
             plant: `IDEAL`, `BAXTER` or a `Plant` of your own.
             seed: Of the measurement noise and of the ticks that come late.
-            q0: Joint angles at the start, shape (7,) in [rad]; None is Rethink's neutral pose.
+            q0: Joint angles at the start, shape (n,) in [rad]; None is `Robot.neutral`.
             world: Where to put it; None opens an empty world of its own.
 
         Raises:
@@ -55,10 +55,11 @@ class Arm:
             Closed: The world is closed.
             LabkitError: The world has this arm already.
             JointLimitExceeded: q0 is outside the joints' range.
+            ShapeError: The plant is that of an arm with another number of joints.
         """
-        self.robot: Robot = robot(side)
+        self.robot = robot = as_robot(robot)
         self.plant = plant
-        self.model = Model(side, plant)
+        self.model = Model(robot, plant)
         self.world = World() if world is None else world
         self._check_place()
         try:
@@ -71,11 +72,11 @@ class Arm:
             self.model.within_limits(q0, "q")
         dt = self.world.dt
         self._engine = new_arm(self.world.engine, self.robot, plant, dt)
-        own = Model(side, replace(plant, payload=0.0))  # the arm does not know what it carries
-        self._viscous = np.array(plant.viscous)
+        own = Model(robot, replace(plant, payload=0.0))  # the arm does not know what it carries
+        self._viscous = plant.each("viscous", robot.n)
         self._patience = round(plant.command_timeout / dt)  # in physics steps
         self._motors, self._joints = Motors(dt, plant, own), Joints(self.model, dt)
-        self._reports = Reports(plant, dt, self._random)
+        self._reports = Reports(plant, robot.n, dt, self._random)
         self._sensors = TorqueSensors(own, plant, dt)
         self.reset(q0)
         self.world.arms.append(self)
@@ -84,10 +85,10 @@ class Arm:
         if not isinstance(self.world, World):
             raise TypeMismatch(f"world is {shown(self.world)}, expected an lk.World")
         self.check_open()
-        side = self.robot.side
-        if side in [arm.robot.side for arm in self.world.arms]:
+        name = self.robot.name
+        if name in [arm.robot.name for arm in self.world.arms]:
             raise LabkitError(
-                f"this world has a {side} arm already, and two would stand in one place; use that "
+                f"this world has a {name} arm already, and two would stand in one place; use that "
                 "one, or make a new World too"
             )
 
@@ -111,12 +112,15 @@ class Arm:
 
         Raises:
             ControllerError: It is not a command.
+            ShapeError: It has not as many numbers as the arm has joints.
             JointLimitExceeded: A position is outside the joints' range.
         """
         self.check_open()
         if type(command) not in COMMANDS:
             names = ", ".join(kind.__name__ for kind in COMMANDS)
             raise ControllerError(f"{shown(command)} is not a command; give one of {names}")
+        if command.value.shape != self.robot.zeros.shape:
+            raise ShapeError(type(command).__name__, self.robot.zeros.shape, command.value.shape)
         if type(command) is JointPosition:
             self.model.within_limits(command.value, "JointPosition")
         self._motors.follow(command)
@@ -129,10 +133,10 @@ class Arm:
 
     def stop(self) -> None:
         """Come to rest and stay."""
-        self.apply(still())
+        self.apply(JointVelocity(self.robot.zeros))
 
     def reset(self, q: Any = None) -> None:
-        """Put the arm at rest at ``q``, shape (7,) in [rad]; None is Rethink's neutral pose.
+        """Put the arm at rest at ``q``, shape (n,) in [rad]; None is `Robot.neutral`.
 
         Raises:
             JointLimitExceeded: A joint is out of its range.
@@ -142,10 +146,10 @@ class Arm:
         self._engine.place(q)
         self._joints.reset()
         self._known: tuple[Array, Array] | None = None
-        self._torque: Array = NOTHING
+        self._torque: Array = self.robot.zeros
         self._touches: list[Touch] = []
         self._sensors.reset()
-        self._reports.reset(State(self.world.t, locked(np.array(q)), NOTHING))
+        self._reports.reset(State(self.world.t, locked(np.array(q)), self.robot.zeros))
         self._motors.kind = type(None)
         self.stop()
 
@@ -168,7 +172,7 @@ class Arm:
         """What the motors gave in the last physics step, gravity compensation included.
 
         Returns:
-            Shape (7,) in [N m].
+            Shape (n,) in [N m].
         """
         self.check_open()
         return self._torque
@@ -222,12 +226,12 @@ class Arm:
             self._report()
         q, dq = self._read()
         drive = self._motors.drive(q, dq)
-        given, tau = self._joints.solve(q, dq, drive, self._touches)
+        given = self._joints.solve(q, dq, drive, self._touches)
         if self.world.things or self.plant.payload:  # else no torque comes from outside
-            joint = drive.tau + given - self._viscous * dq
+            joint = drive.tau + given.held - self._viscous * dq
             self._sensors.begin(q, dq, joint, self.world.steps)
-        self._torque = drive.tau if self._motors.kind is JointTorque else given
-        self._engine.step(tau)
+        self._torque = drive.tau if self._motors.kind is JointTorque else given.held
+        self._engine.step(given.tau, given.ddq)
         self._known, self._touches = None, []
 
     def release(self) -> None:
@@ -264,4 +268,4 @@ class Arm:
         self.close()
 
     def __repr__(self) -> str:
-        return f"Arm({self.robot.side!r}, {self.plant.name})"
+        return f"Arm({self.robot.name!r}, {self.plant.name})"

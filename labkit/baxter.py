@@ -5,17 +5,17 @@ from __future__ import annotations
 import json
 from functools import cache
 from importlib.resources import files
-
-import numpy as np
+from typing import Literal
 
 from .errors import UnknownName
-from .robot import Robot
-from .shapes import locked
+from .robot import SIDES, Robot
+
+Side = Literal["left", "right"]
 
 
 @cache
 def robot(side: str) -> Robot:
-    """The data of one arm.
+    """One of Baxter's arms.
 
     Args:
         side: "left" or "right".
@@ -23,15 +23,16 @@ def robot(side: str) -> Robot:
     Raises:
         UnknownName: Baxter has no such arm.
     """
-    if side not in ("left", "right"):
-        raise UnknownName("arm", side, ("left", "right"))
+    if side not in SIDES:
+        raise UnknownName("arm", side, SIDES)
     data = json.loads((files("labkit") / "data" / "baxter.json").read_text())[side]
-    bodies = data.pop("bodies")  # the rest is named as here
-    for limit in ("lower", "upper", "speed", "effort"):
-        data[limit] = [body[limit] for body in bodies]
-    return Robot(
-        side=side,  # type: ignore[arg-type]
-        joint_names=tuple(body["joint"] for body in bodies),
-        bodies=tuple(bodies),
-        **{name: locked(np.array(numbers)) for name, numbers in data.items()},
-    )
+    return Robot(name=side, **data)
+
+
+def as_robot(arm: Robot | str) -> Robot:
+    """A robot, or Baxter's arm of that name.
+
+    Raises:
+        UnknownName: Baxter has no such arm.
+    """
+    return arm if isinstance(arm, Robot) else robot(arm)

@@ -14,29 +14,36 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .errors import ControllerError
-from .robot import DOF
 from .shapes import Array, as_gains, as_vector, locked
 from .trajectory import Sample
 
-NOTHING = locked(np.zeros(DOF))
-"""No torque, or no speed."""
+
+class _State(NamedTuple):
+    t: float
+    q: Array
+    dq: Array
+    tau_ext: Array
 
 
-class State(NamedTuple):
+class State(_State):
     """The joints as the arm reports them.
 
     Attributes:
         t: When it was measured, in [s] of the simulation's clock.
-        q: Joint angles, shape (7,) in [rad], read-only.
-        dq: Joint speeds, shape (7,) in [rad/s], read-only.
+        q: Joint angles, shape (n,) in [rad], read-only.
+        dq: Joint speeds, shape (n,) in [rad/s], read-only.
         tau_ext: What the world outside puts on the joints, as the arm estimates it from its torque
-            sensors, shape (7,) in [N m], read-only; `Model.tip_wrench` makes it a wrench.
+            sensors, shape (n,) in [N m], read-only; `Model.tip_wrench` makes it a wrench.
+            None is none.
     """
 
-    t: float
-    q: Array
-    dq: Array
-    tau_ext: Array = NOTHING
+    __slots__ = ()
+
+    def __new__(cls, t: float, q: Array, dq: Array, tau_ext: Array | None = None) -> State:
+        """A state; the arrays are taken as they are."""
+        if tau_ext is None:
+            tau_ext = locked(np.zeros(np.shape(q)))
+        return super().__new__(cls, t, q, dq, tau_ext)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,14 +51,14 @@ class _ForJoints:
     value: Array
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "value", as_vector(self.value, DOF, type(self).__name__))
+        object.__setattr__(self, "value", as_vector(self.value, None, type(self).__name__))
 
 
 class JointPosition(_ForJoints):
     """Go to these joint angles, as fast as speed and torque allow.
 
     Attributes:
-        value: Joint angles, shape (7,) in [rad].
+        value: Joint angles, shape (n,) in [rad].
     """
 
 
@@ -59,7 +66,7 @@ class JointVelocity(_ForJoints):
     """Turn the joints at these speeds.
 
     Attributes:
-        value: Joint speeds, shape (7,) in [rad/s].
+        value: Joint speeds, shape (n,) in [rad/s].
     """
 
 
@@ -67,7 +74,7 @@ class JointTorque(_ForJoints):
     """Drive the joints with these torques, on top of the arm's own gravity compensation, if any.
 
     Attributes:
-        value: Joint torques, shape (7,) in [N m].
+        value: Joint torques, shape (n,) in [N m].
     """
 
 
@@ -75,16 +82,11 @@ Command = JointPosition | JointVelocity | JointTorque
 COMMANDS = (JointPosition, JointVelocity, JointTorque)
 
 
-def still() -> JointVelocity:
-    """The command that stops the arm where it is."""
-    return JointVelocity(NOTHING)
-
-
 def hold(q: Any) -> Callable[[State, Any], JointPosition]:
     """A controller that asks for the joint angles ``q``, whatever the target: as stiff as it gets.
 
     Args:
-        q: Shape (7,) in [rad].
+        q: Shape (n,) in [rad].
     """
     command = JointPosition(q)
 
@@ -114,10 +116,10 @@ def springs(kp: Any, kd: Any) -> Callable[[State, Sample], JointTorque]:
     The arm must carry its own weight, or it sags.
 
     Args:
-        kp: Stiffness, shape (7,) or one number, in [N m/rad].
-        kd: Damping, shape (7,) or one number, in [N m s/rad].
+        kp: Stiffness, shape (n,) or one number, in [N m/rad].
+        kd: Damping, shape (n,) or one number, in [N m s/rad].
     """
-    stiffness, damping = as_gains(kp, DOF, "kp"), as_gains(kd, DOF, "kd")
+    stiffness, damping = as_gains(kp, None, "kp"), as_gains(kd, None, "kd")
 
     def springs(state: State, target: Sample) -> JointTorque:
         e, de = target.position - state.q, target.velocity - state.dq

@@ -100,5 +100,11 @@ class Diverged(ControllerError):
     log: object = None
 
 
+class ArmLost(LabkitError, RuntimeError):
+    """A real arm stopped answering, or its answer is none; the log up to then is kept as `log`."""
+
+    log: object = None
+
+
 class Closed(LabkitError, RuntimeError):
     """The simulated world was closed and can no longer be used."""

@@ -12,13 +12,13 @@ as its torque goes, dry friction that holds the speed zero, the stops at the end
 
 from __future__ import annotations
 
+from functools import cache
 from math import inf
 from operator import le, lt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from .control import NOTHING
 from .model import Model
 from .shapes import Array
 
@@ -61,8 +61,6 @@ def joint_torques(
     Returns:
         The torques, shape (n,) in [N m], and where each joint stands.
     """
-    from scipy.linalg.lapack import dgesv  # NumPy's own solve takes 6 us more; slow to import
-
     end, unit = np.full(len(u), inf), np.eye(len(u))
     goal = np.minimum(np.maximum(target, slowest), fastest)
     stairs = np.array([end, slowest, bound, goal, -bound, fastest, -end]).T.tolist()
@@ -71,7 +69,7 @@ def joint_torques(
         given = np.array([stair[k] for stair, k in zip(stairs, stands, strict=True)])
         held = np.array([k % 2 == 1 for k in stands])  # the speed is given, else the torque
         rows = np.where(held[:, None], G, unit)
-        y = dgesv(rows, np.where(held, given - u, given))[2]
+        y = _dgesv()(rows, np.where(held, given - u, given))[2]
         v, wrong = u + G @ y, False
         for i, (k, torque, speed) in enumerate(zip(stands, y.tolist(), v.tolist(), strict=True)):
             before, after = stairs[i][k - 1], stairs[i][k + 1]
@@ -87,6 +85,28 @@ def joint_torques(
         if not wrong:
             break
     return y, stands
+
+
+@cache
+def _dgesv() -> Any:
+    """LAPACK's solver: NumPy's own takes 6 us more; slow to import."""
+    from scipy.linalg.lapack import dgesv
+
+    return dgesv
+
+
+class Given(NamedTuple):
+    """What the joints give in a physics step, three vectors of shape (n,).
+
+    Attributes:
+        held: The torque within the drive's bound that holds its speeds, in [N m].
+        tau: All torque on the joints, friction, stops and touches included, in [N m].
+        ddq: The accelerations that it makes, in [rad/s^2]; None if nobody had to know them.
+    """
+
+    held: Array
+    tau: Array
+    ddq: Array | None
 
 
 class Drive(NamedTuple):
@@ -129,7 +149,9 @@ class Joints:
     def __init__(self, model: Model, dt: float) -> None:
         """Joints as ``model`` and its plant have them, in steps of ``dt`` [s]."""
         self._model, self._dt, robot = model, dt, model.robot
-        self._viscous = np.array(model.plant.viscous) if any(model.plant.viscous) else None
+        viscous = model.plant.each("viscous", robot.n)
+        self._viscous = viscous if viscous.any() else None
+        self._nothing, self._unit = robot.zeros, np.eye(robot.n)
         self._lower, self._upper = robot.lower, robot.upper
         self._low, self._high = (
             (robot.lower + QUICK * dt).tolist(),
@@ -139,9 +161,19 @@ class Joints:
 
     def reset(self) -> None:
         """Forget where the joints stood."""
-        self._stands = [STICK] * len(self._lower)
+        self._stand([STICK] * len(self._lower))
 
-    def solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch]) -> tuple[Array, Array]:
+    def _stand(self, stands: list[int]) -> None:
+        """Keep where the joints stand: which are held, and which way the others are pushed."""
+        self._stands = stands
+        self._sticking = stands.count(STICK) == len(stands)
+        signs = [float(STICK - k) for k in stands]
+        self._signs, self._sign = signs, np.array(signs)
+        self._held = np.array([k == STICK for k in stands])
+        self._columns = self._held[None, :]
+        self._beside = LOW not in stands and HIGH not in stands
+
+    def solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch]) -> Given:
         """What the joints give in this step.
 
         Args:
@@ -151,24 +183,49 @@ class Joints:
             touches: What acts on the tip.
 
         Returns:
-            The torque within the drive's bound that holds its speeds, shape (n,) in [N m]; and all
-            torque on the joints, friction, stops and touches included, shape (n,) in [N m].
+            What they give.
         """
         tau = drive.tau if self._viscous is None else drive.tau - self._viscous * dq
         angles = q.tolist()
         if not touches and all(map(lt, self._low, angles)) and all(map(lt, angles, self._high)):
-            if drive.bound is NOTHING:
-                return NOTHING, tau
-            if self._stands.count(STICK) == len(angles):  # that motors hold is common, and cheap
+            if drive.bound is self._nothing:
+                return Given(drive.bound, tau, None)
+            if self._sticking:  # that motors hold is common, and cheap
                 a = (drive.speed - dq) / self._dt
                 y = self._model.inverse_dynamics(q, dq, a) - tau
                 if all(map(le, map(abs, y.tolist()), drive.bound.tolist())):
-                    return y, tau + y
+                    return Given(y, tau + y, a)
+            if self._beside:
+                return self._slide(q, dq, drive, tau)
         return self._solve(q, dq, drive, touches, tau)
 
-    def _solve(
-        self, q: Array, dq: Array, drive: Drive, touches: list[Touch], tau: Array
-    ) -> tuple[Array, Array]:
+    def _slide(self, q: Array, dq: Array, drive: Drive, tau: Array) -> Given:
+        """As `solve`, far from stops: first as if all joints stood where they stood last.
+
+        That is right in 24 steps of 25, and takes 15 us where `_solve` takes 35.
+        """
+        bound, dt = drive.bound, self._dt
+        wanted = (drive.speed - dq) / dt
+        free, inverse = self._model.free_motion(q, dq, tau)
+        given = np.where(self._held, wanted - free, self._sign * bound)
+        rows = np.where(self._columns, inverse, self._unit).T  # as LAPACK reads: 1 us less
+        y = _dgesv()(rows, given, 1, 1)[2]
+        a = free + inverse @ y
+        slack = _ROUNDING / dt
+        for sign, torque, most, made, meant in zip(
+            self._signs, y.tolist(), bound.tolist(), a.tolist(), wanted.tolist(), strict=True
+        ):
+            if (meant - made) * sign < -slack if sign else not -most <= torque <= most:
+                ends = np.full(len(y), inf)
+                G, u = dt * inverse, dq + dt * free
+                problem = G, u, drive.speed, bound, -ends, ends
+                y, stands = joint_torques(*problem, self._stands)
+                self._stand(stands)
+                a = free + inverse @ y
+                break
+        return Given(y, tau + y, a)
+
+    def _solve(self, q: Array, dq: Array, drive: Drive, touches: list[Touch], tau: Array) -> Given:
         """As `solve`, with stops and touches."""
         model, h = self._model, self._model.bias(q, dq)
         if touches:
@@ -187,5 +244,7 @@ class Joints:
             kept = [touch for touch in touches if touch.pushes(v)]
             if len(kept) < len(touches):  # it has left the others
                 return self._solve(q, dq, drive, kept, tau)
-        self._stands = stands
-        return np.minimum(np.maximum(y, -drive.bound), drive.bound), push + y
+        if stands != self._stands:
+            self._stand(stands)
+        held = np.minimum(np.maximum(y, -drive.bound), drive.bound)
+        return Given(held, push + y, (G @ (push - h + y) if not touches else a) / self._dt)

@@ -10,6 +10,7 @@ Pinocchio's.
 from __future__ import annotations
 
 import warnings
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ import pinocchio as pin
 from . import se3
 from .errors import JointLimitExceeded, LabkitWarning, TypeMismatch, Unreachable
 from .paths import Spline
-from .robot import DOF, Robot
+from .robot import Robot
 from .shapes import Array, as_array
 from .trajectory import Chain, Hold, PosePath, PoseSample, Sample, Trajectory
 
@@ -43,20 +44,21 @@ class Kinematics:
         self.robot = robot
         self._pin = pin.buildModelFromXML(urdf)
         self._tip = self._pin.addFrame(
-            pin.Frame("tip", DOF, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
+            pin.Frame("tip", robot.n, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
         )
         self._data = self._pin.createData()
+        self._joints = (robot.n,)
 
     def pose(self, q: Any) -> Array:
         """Pose of the gripper's tip in the world, `T_wt` (Lynch & Park, chapter 4).
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
 
         Returns:
             Shape (4, 4).
         """
-        pin.forwardKinematics(self._pin, self._data, as_array(q, (DOF,), "q"))
+        pin.forwardKinematics(self._pin, self._data, as_array(q, self._joints, "q"))
         T: Array = pin.updateFramePlacement(self._pin, self._data, self._tip).homogeneous
         return T
 
@@ -67,10 +69,10 @@ class Kinematics:
         the geometric Jacobian.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
 
         Returns:
-            Shape (6, 7); rows 0-2 in [m/rad], rows 3-5 in [rad/rad].
+            Shape (6, n); rows 0-2 in [m/rad], rows 3-5 in [rad/rad].
         """
         return self._jacobian(q, pin.LOCAL_WORLD_ALIGNED)
 
@@ -80,10 +82,10 @@ class Kinematics:
         MLS eq. 3.55; Lynch & Park, section 5.1.2.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
 
         Returns:
-            Shape (6, 7), linear rows first.
+            Shape (6, n), linear rows first.
         """
         return self._jacobian(q, pin.LOCAL)
 
@@ -93,15 +95,15 @@ class Kinematics:
         MLS eq. 3.51.  Its linear rows are not the velocity of the tip.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
 
         Returns:
-            Shape (6, 7), linear rows first.
+            Shape (6, n), linear rows first.
         """
         return self._jacobian(q, pin.WORLD)
 
     def _jacobian(self, q: Any, frame: Any) -> Array:
-        q = as_array(q, (DOF,), "q")
+        q = as_array(q, self._joints, "q")
         J: Array = pin.computeFrameJacobian(self._pin, self._data, q, self._tip, frame)
         return J
 
@@ -109,13 +111,13 @@ class Kinematics:
         r"""The time derivative of `tip_jacobian`, :math:`\dot V = J\,\ddot q + \dot J\,\dot q`.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
-            dq: Joint speeds, shape (7,) in [rad/s].
+            q: Joint angles, shape (n,) in [rad].
+            dq: Joint speeds, shape (n,) in [rad/s].
 
         Returns:
-            Shape (6, 7).
+            Shape (6, n).
         """
-        q, dq = as_array(q, (DOF,), "q"), as_array(dq, (DOF,), "dq")
+        q, dq = as_array(q, self._joints, "q"), as_array(dq, self._joints, "dq")
         pin.computeJointJacobiansTimeVariation(self._pin, self._data, q, dq)
         pin.updateFramePlacement(self._pin, self._data, self._tip)
         dJ: Array = pin.getFrameJacobianTimeVariation(
@@ -129,7 +131,7 @@ class Kinematics:
         Yoshikawa 1985; Lynch & Park, section 5.4.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
 
         Returns:
             A number that is zero at a singularity.
@@ -140,7 +142,7 @@ class Kinematics:
         """The smallest singular value of `tip_jacobian`: how slowly the arm can be made to move.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
 
         Returns:
             Zero at a singularity, about 0.1 at a comfortable pose.
@@ -153,7 +155,7 @@ class Kinematics:
         """Read joint angles that the arm can take.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
             name: What to call them in the sentence, if they are out of range.
 
         Returns:
@@ -162,7 +164,7 @@ class Kinematics:
         Raises:
             JointLimitExceeded: A joint is outside its range.
         """
-        angles: Array = as_array(q, (DOF,), name)
+        angles: Array = as_array(q, self._joints, name)
         low, high = self.robot.lower, self.robot.upper
         outside = (angles < low - _SLACK) | (angles > high + _SLACK)
         if outside.any():
@@ -173,24 +175,29 @@ class Kinematics:
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:
         """Joint angles that put the tip at a pose; of all those, the nearest to a posture.
 
-        Gauss-Newton on the pose error, with the remaining freedom of the seventh joint spent on
-        coming close to ``posture``, so the answer depends on the pose and the posture alone and a
+        Gauss-Newton on the pose error, with the freedom that a seventh joint leaves spent on coming
+        close to ``posture``, so the answer depends on the pose and the posture alone and a
         closed path gives closed joint angles.
 
         Args:
             T_wt: Pose wanted, shape (4, 4).
-            q0: Where to start the search, shape (7,) in [rad].
-            posture: What to stay close to, shape (7,) in [rad]; None takes ``q0``.
+            q0: Where to start the search, shape (n,) in [rad].
+            posture: What to stay close to, shape (n,) in [rad]; None takes ``q0``.
 
         Returns:
-            Shape (7,) in [rad], within the joint limits, exact to 1e-9 m and rad.
+            Shape (n,) in [rad], within the joint limits, exact to 1e-9 m and rad.
 
         Raises:
             Unreachable: No such angles were found; the sentence says how near it came and why.
         """
+        if self.robot.n < 6:
+            raise Unreachable(
+                f"the {self.robot.n} joints of {self.robot.name} cannot put the tip at any pose, "
+                "which takes six; give a target of joint angles"
+            )
         T_wt = se3.as_pose(T_wt, "T_wt")
-        q = np.clip(as_array(q0, (DOF,), "q0"), self.robot.lower, self.robot.upper)
-        near = q if posture is None else as_array(posture, (DOF,), "posture")
+        q = np.clip(as_array(q0, self._joints, "q0"), self.robot.lower, self.robot.upper)
+        near = q if posture is None else as_array(posture, self._joints, "posture")
         for _ in range(_ITERATIONS):
             e = self.pose_error(T_wt, q)
             J = self.tip_jacobian(q)
@@ -217,7 +224,7 @@ class Kinematics:
 
         Args:
             T_wd: Desired pose, shape (4, 4).
-            q: Joint angles, shape (7,) in [rad].
+            q: Joint angles, shape (n,) in [rad].
 
         Returns:
             Position error [m] and orientation error [rad], world axes, shape (6,).
@@ -233,11 +240,11 @@ class Kinematics:
         Args:
             target: A `Trajectory` or a `Chain` of them, of poses; of points, then the tip keeps the
                 orientation that it has at ``q0``; or a `Hold`.
-            q0: Joint angles at the start, shape (7,) in [rad].
+            q0: Joint angles at the start, shape (n,) in [rad].
             samples: How many poses to solve along each path.
 
         Returns:
-            A target of the same make whose samples are joint angles, shape (7,) in [rad].
+            A target of the same make whose samples are joint angles, shape (n,) in [rad].
 
         Raises:
             Unreachable: A pose along the path cannot be reached; names s, the pose and the reason.
@@ -273,7 +280,7 @@ class Kinematics:
         if isinstance(start, Sample):
             target = Trajectory(PosePath(target.path, R_wt), target.scaling)
         grid = np.linspace(0.0, 1.0, samples)
-        angles = np.empty((samples, DOF))
+        angles = np.empty((samples, self.robot.n))
         for k, s in enumerate(grid):
             try:
                 q = self.inverse_kinematics(target.path(s).pose, q, posture=posture)
@@ -296,10 +303,14 @@ class Kinematics:
         off = f"(nearest found: {1e3 * np.linalg.norm(e[:3]):.3g} mm and " + (
             f"{np.degrees(np.linalg.norm(e[3:])):.3g} degrees off)"
         )
-        stretched = self.pose(np.zeros(DOF))
-        shoulder, wrist = (self._data.oMi[i].translation for i in (2, 6))
-        reach = np.linalg.norm(wrist - shoulder)
-        hand = stretched[:3, :3].T @ (stretched[:3, 3] - wrist)  # from the wrist to the tip
+        T = self.pose(q)
+        places = [M.translation.copy() for M in self._data.oMi[1:]]
+        axis = self._data.oMi[self.robot.n].rotation[:, 2]
+        if np.linalg.norm(np.cross(axis, places[-1] - places[-2])) < 1e-9:
+            places.pop()  # the last joint turns about a line through the one before
+        shoulder, wrist = places[1], places[-1]
+        reach = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(places[1:]))
+        hand = T[:3, :3].T @ (T[:3, 3] - wrist)  # from the wrist to the tip: always the same
         distance = np.linalg.norm(T_wt[:3, 3] - T_wt[:3, :3] @ hand - shoulder)
         if distance > reach:
             return (
@@ -344,7 +355,7 @@ def _warn_of_singularity(s: Array, jacobians: Array) -> None:
 
     Args:
         s: Places along the path, shape (k,).
-        jacobians: The tip Jacobian at each, shape (k, 6, 7).
+        jacobians: The tip Jacobian at each, shape (k, 6, n).
 
     Warns:
         LabkitWarning: Names the place and the manipulability there.

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from math import prod
-from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
-from .baxter import robot
+from .baxter import as_robot
 from .control import COMMANDS, Command, State
+from .errors import LabkitError
 from .plant import Plant
-from .robot import DOF, Side
+from .robot import SIDES, Robot
 from .shapes import Array, locked
 from .trajectory import AnySample, PoseSample, Sample
 
@@ -24,20 +25,20 @@ class Log:
 
     Attributes:
         t: Time since the run began, shape (N,) in [s].
-        q: Joint angles as they were, shape (N, 7) in [rad].
-        dq: Joint speeds as they were, shape (N, 7) in [rad/s].
+        q: Joint angles as they were, shape (N, n) in [rad].
+        dq: Joint speeds as they were, shape (N, n) in [rad/s].
         tau: Motor torque in the last physics step before the next tick, gravity compensation
-            included, shape (N, 7) in [N m]; the last row repeats the one before.
-        command: What the controller asked for, shape (N, 7), in the unit of `command_type`.
+            included, shape (N, n) in [N m]; the last row repeats the one before.
+        command: What the controller asked for, shape (N, n), in the unit of `command_type`.
         target: A `Sample` or `PoseSample` of stacked arrays, (N, ...).
-        measured: The `State` that the controller saw, stacked: t (N,), q (N, 7), dq (N, 7),
-            tau_ext (N, 7).
+        measured: The `State` that the controller saw, stacked: t (N,), q (N, n), dq (N, n),
+            tau_ext (N, n).
         saturated: Whether a limit of speed or torque cut what the arm did until the next tick,
             shape (N,).
         command_type: `JointPosition`, `JointVelocity` or `JointTorque`.
         controller: The controller's name.
         plant: The plant that was driven.
-        side: Which arm.
+        robot: Which arm.
     """
 
     t: Array
@@ -51,38 +52,74 @@ class Log:
     command_type: type
     controller: str
     plant: Plant
-    side: Side
+    robot: Robot
 
     def __len__(self) -> int:
         return len(self.t)
 
     def __repr__(self) -> str:
         return (
-            f"Log({self.controller} on the {self.plant.name} {self.side} arm, "
+            f"Log({self.controller} on the {self.plant.name} {self.robot.name} arm, "
             f"{len(self)} ticks, {self.t[-1]:.3g} s)"
         )
 
+    def save(self, path: Any, *, single: bool = False) -> None:
+        """Write the log, its robot and its plant to a file, which `load` reads.
 
-def load_log(path: Path) -> Log:
-    """A log from a file that `solutions.study.recording.save` wrote, in single precision."""
-    with np.load(path) as file:
-        about = json.loads(str(file["about"]))
-        columns = {name: file[name] for name in file.files if name != "about"}
-    wide: dict[str, Any] = {
-        x: a if a.dtype == bool else locked(a.astype(np.float64)) for x, a in columns.items()
+        Args:
+            path: Where to; its name should end in ".npz".
+            single: Keep the numbers in single precision: half the size, good to a micrometre.
+        """
+        columns = {name: getattr(self, name) for name in _ROWS}
+        for name in ("target", "measured"):
+            parts = getattr(self, name)._asdict()
+            columns |= {f"{name}.{part}": numbers for part, numbers in parts.items()}
+        about = {
+            "target": type(self.target).__name__,
+            "command": self.command_type.__name__,
+            "controller": self.controller,
+            "plant": asdict(self.plant),
+            "robot": self.robot.name if self.robot.name in SIDES else self.robot.data(),
+        }
+        if single:
+            columns = {
+                x: a if a.dtype == bool else a.astype(np.float32) for x, a in columns.items()
+            }
+        np.savez_compressed(path, about=np.array(json.dumps(about)), **columns)
+
+    @classmethod
+    def load(cls, path: Any) -> Log:
+        """The log that `save` wrote.
+
+        Raises:
+            LabkitError: The file cannot be read, or holds no log.
+        """
+        try:
+            with np.load(path) as file:
+                about = json.loads(str(file["about"]))
+                columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}
+            return cls(**_read(about, columns))
+        except (OSError, EOFError, ValueError, KeyError, TypeError, BadZipFile) as error:
+            raise LabkitError(f"{path} is not a log that labkit saved: {error}") from None
+
+
+_ROWS = ("t", "q", "dq", "tau", "command", "saturated")
+
+
+def _read(about: dict[str, Any], columns: dict[str, Any]) -> dict[str, Any]:
+    """The fields of a log from what stands in its file."""
+    wide = {x: locked(a if a.dtype == bool else a.astype(np.float64)) for x, a in columns.items()}
+    target = {c.__name__: c for c in (Sample, PoseSample)}[about["target"]]
+    robot = about.get("robot") or about["side"]  # the name until 0.2
+    return {
+        **{name: wide[name] for name in _ROWS},
+        "target": target(*(wide[f"target.{x}"] for x in target._fields)),
+        "measured": State._make(wide[f"measured.{x}"] for x in State._fields),
+        "command_type": {c.__name__: c for c in COMMANDS}[about["command"]],
+        "controller": about["controller"],
+        "plant": Plant(**about["plant"]),
+        "robot": Robot(**robot) if isinstance(robot, dict) else as_robot(robot),
     }
-    kind = {c.__name__: c for c in (Sample, PoseSample)}[about.pop("target")]
-    command = {c.__name__: c for c in COMMANDS}[about.pop("command")]
-    plant = about.pop("plant")
-    plant |= {x: tuple(v) for x, v in plant.items() if isinstance(v, list)}
-    return Log(
-        **{name: column for name, column in wide.items() if "." not in name},
-        target=kind(*(wide[f"target.{x}"] for x in kind._fields)),
-        measured=State(*(wide[f"measured.{x}"] for x in State._fields)),
-        command_type=command,
-        plant=Plant(**plant),
-        **about,
-    )
 
 
 class Recorder:
@@ -91,33 +128,37 @@ class Recorder:
     Joining ten short arrays takes 0.4 us, and copying them into a table of NumPy's takes 5.
     """
 
-    def __init__(self, period: float, first: AnySample) -> None:
-        """Write down ticks ``period`` [s] apart, with samples like ``first``."""
-        self._period, self._kind = period, type(first)
+    def __init__(self, robot: Robot, plant: Plant, first: AnySample) -> None:
+        """Write down what an arm does, with samples like ``first``."""
+        self._robot, self._plant, self._kind = robot, plant, type(first)
+        joints = (robot.n,)
         # q, dq, torque, command, the target's sample, and q, dq, tau_ext as reported
-        self._shapes = [(DOF,)] * 4 + [part.shape for part in first] + [(DOF,)] * 3
+        self._shapes = [joints] * 4 + [part.shape for part in first] + [joints] * 3
         self._rows: list[bytes] = []
         self._times: list[float] = []
+        self._reported: list[float] = []
         self._cut: list[bool] = []
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def keep(
-        self, truth: State, seen: State, torque: Array, command: Command, sample: AnySample
+        self, t: float, seen: tuple[State, State, Array], command: Command, sample: AnySample
     ) -> None:
-        """Write down one tick; ``torque`` belongs to the tick before."""
+        """Write down the tick at ``t`` [s]: truth, report, torque of the tick before; and more."""
+        truth, report, torque = seen
         x, dx, ddx = sample
         given = x.tobytes(), dx.tobytes(), ddx.tobytes()  # however they lie in memory
-        row: Any = (truth.q, truth.dq, torque, command.value, *given, *seen[1:])
-        self._rows.append(b"".join(row))
-        self._times.append(seen.t)
+        row: Any = (truth.q, truth.dq, torque, command.value, *given, *report[1:])
+        self._times.append(t)
+        self._reported.append(report.t)
+        self._rows.append(b"".join(row))  # last: a tick that is interrupted is none
 
     def cut(self, saturated: bool) -> None:
         """Write down whether a limit cut what the arm did since the latest tick."""
         self._cut.append(saturated)
 
-    def log(self, command_type: type, controller: str, plant: Plant, side: Side) -> Log:
+    def log(self, command_type: type, controller: str) -> Log:
         """What was written so far, frozen."""
         n = len(self)
         ends = np.cumsum([prod(shape) for shape in self._shapes])
@@ -125,20 +166,20 @@ class Recorder:
         parts = zip(np.split(table, ends[:-1], axis=1), self._shapes, strict=True)
         q, dq, torque, command, *others = (locked(x.reshape(n, *shape)) for x, shape in parts)
         tau = locked(np.concatenate([torque[1:], torque[-1:]]))
-        at_limit = np.abs(tau) >= robot(side).effort * (1.0 - 1e-9)
+        at_limit = np.abs(tau) >= self._robot.effort * (1.0 - 1e-9)
         saturated = at_limit.any(axis=1) | np.array([*self._cut, False][:n])
         saturated.setflags(write=False)
         return Log(
-            t=locked(self._period * np.arange(n, dtype=np.float64)),
+            t=locked(np.array(self._times[:n])),
             q=q,
             dq=dq,
             tau=tau,
             command=command,
             target=self._kind(*others[:3]),
-            measured=State(locked(np.array(self._times[:n])), *others[3:]),  # type: ignore[arg-type]
+            measured=State(locked(np.array(self._reported[:n])), *others[3:]),  # type: ignore[arg-type]
             saturated=saturated,
             command_type=command_type,
             controller=controller,
-            plant=plant,
-            side=side,
+            plant=self._plant,
+            robot=self._robot,
         )

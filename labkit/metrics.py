@@ -20,11 +20,11 @@ from .trajectory import PoseSample, Sample
 
 def model_of(log: Log) -> Model:
     """The model of the arm that made a log."""
-    return Model(log.side, log.plant)
+    return Model(log.robot, log.plant)
 
 
 def joint_error(log: Log) -> Array:
-    """Target minus actual joint angles of a run after joint angles, shape (N, 7) in [rad].
+    """Target minus actual joint angles of a run after joint angles, shape (N, n) in [rad].
 
     Raises:
         TypeMismatch: The run followed something else.
@@ -33,7 +33,7 @@ def joint_error(log: Log) -> Array:
 
 
 def joint_speed_error(log: Log) -> Array:
-    """Target minus actual joint speeds of a run after joint angles, shape (N, 7) in [rad/s].
+    """Target minus actual joint speeds of a run after joint angles, shape (N, n) in [rad/s].
 
     Raises:
         TypeMismatch: The run followed something else.

@@ -6,7 +6,7 @@ from operator import le
 
 import numpy as np
 
-from .control import NOTHING, Command, JointPosition, JointTorque, JointVelocity
+from .control import Command, JointPosition, JointTorque, JointVelocity
 from .joints import Drive
 from .model import Model
 from .plant import Plant
@@ -37,7 +37,9 @@ class Motors:
         """
         self._dt, self._plant, self._own = dt, plant, own
         self._effort, self._speed = own.robot.effort.tolist(), own.robot.speed.tolist()
-        self._stiction = np.array(plant.stiction) if any(plant.stiction) else NOTHING
+        self._nothing = own.robot.zeros
+        stiction = plant.each("stiction", own.robot.n)
+        self._stiction = stiction if stiction.any() else self._nothing
 
     def follow(self, command: Command) -> None:
         """Follow a command from the next physics step on, cut to the limits."""
@@ -55,15 +57,15 @@ class Motors:
         """What they do in the next physics step.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
-            dq: Joint speeds, shape (7,) in [rad/s].
+            q: Joint angles, shape (n,) in [rad].
+            dq: Joint speeds, shape (n,) in [rad/s].
         """
         if self.kind is JointTorque:
             total = self._wanted
             if self._plant.gravity_compensation:  # it carries its own weight
                 total, cut = _cut(total + self._own.gravity(q), self._effort)
                 self.saturated |= cut
-            return Drive(total, NOTHING, self._stiction)
+            return Drive(total, self._nothing, self._stiction)
         if self.kind is JointPosition:
             speed = self._approach(q)
         elif self._plant.velocity_lag:
@@ -73,7 +75,7 @@ class Motors:
         else:
             speed = self._wanted
         self._fresh = False
-        return Drive(NOTHING, speed, self._own.robot.effort)
+        return Drive(self._nothing, speed, self._own.robot.effort)
 
     def _approach(self, q: Array) -> Array:
         """Speeds towards the wanted angles, from which the motors can still brake before them.

@@ -10,29 +10,32 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from .errors import OutOfRange
-from .shapes import as_each, as_number
+from .shapes import Array, as_each, as_number
 
 
 @dataclass(frozen=True)
 class Plant:
     """What the arm is like; every effect is off by default.
 
+    What belongs to each joint is one number, or as many as the arm has joints: shape (n,).  Here it
+    is kept as a tuple, of one number where all are equal; `each` gives all n.
+
     Attributes:
         name: What figures and tables call it.
         gravity_compensation: The arm itself adds the torque that holds it against gravity, in every
             mode, as Baxter does; a torque controller then adds none.
         armature: Inertia of each motor's rotor as its joint feels it, which is that of the rotor
-            times the gear ratio squared, shape (7,) in [kg m^2]; it adds to the diagonal of M.
-        viscous: Viscous friction, shape (7,) in [N m s/rad].
-        stiction: Dry friction that a joint must overcome, shape (7,) in [N m].
+            times the gear ratio squared, shape (n,) in [kg m^2]; it adds to the diagonal of M.
+        viscous: Viscous friction, shape (n,) in [N m s/rad].
+        stiction: Dry friction that a joint must overcome, shape (n,) in [N m].
         payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].
         velocity_lag: Time constant with which the velocity mode follows its command, in [s].
         position_gain: How fast the position mode closes a gap, in [1/s]; 0 closes it as fast as
             speed and torque allow, the torque to brake before it included.
         state_rate: How often the arm publishes its state, in [Hz]; 0 is every physics step.
         state_delay: Age of a state when it arrives, in [s].
-        velocity_noise: Standard deviation of the measured joint speeds, shape (7,) in [rad/s].
-        torque_noise: Standard deviation of the external torque that the arm estimates, shape (7,)
+        velocity_noise: Standard deviation of the measured joint speeds, shape (n,) in [rad/s].
+        torque_noise: Standard deviation of the external torque that the arm estimates, shape (n,)
             in [N m].
         torque_lag: Time constant of that estimate, in [s]; 0 is that of the last physics step.
         lost_ticks: Share of the control ticks whose command comes too late to be used.
@@ -59,13 +62,23 @@ class Plant:
         for field in fields(self):
             value = getattr(self, field.name)
             if field.name in _PER_JOINT:
-                value = tuple(as_each(value, 7, field.name).tolist())  # hashable, comparable
+                value = tuple(as_each(value, None, field.name).tolist())  # hashable, comparable
+                value = value[:1] if len(set(value)) == 1 else value
                 object.__setattr__(self, field.name, value)
                 as_number(min(value), field.name, least=0.0)
             elif field.name not in ("name", "gravity_compensation"):
                 as_number(value, field.name, least=0.0)
         if self.lost_ticks > 1.0:
             raise OutOfRange(f"lost_ticks is {self.lost_ticks:g}; it is a share, at most 1")
+
+    def each(self, name: str, n: int) -> Array:
+        """What belongs to each of ``n`` joints, such as "stiction", shape (n,).
+
+        Raises:
+            ShapeError: This plant has another number of joints.
+        """
+        numbers = getattr(self, name)
+        return as_each(numbers if len(numbers) > 1 else numbers[0], n, f"the plant's {name}")
 
 
 _PER_JOINT = ("armature", "viscous", "stiction", "velocity_noise", "torque_noise")

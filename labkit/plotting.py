@@ -135,7 +135,7 @@ def describe(log: Log, model: Model | None = None) -> str:
     """A figure of this run in words, for readers who do not see it."""
     numbers = metrics.summary(log, model)
     return (
-        f"Tracking by {log.controller} on the {log.plant.name} {log.side} arm over "
+        f"Tracking by {log.controller} on the {log.plant.name} {log.robot.name} arm over "
         f"{numbers.duration:.3g} s: {numbers}."
     )
 

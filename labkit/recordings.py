@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .errors import OutOfRange, UnknownName
-from .log import Log, load_log
+from .log import Log
 from .shapes import Array, as_number
 
 DATA = Path(__file__).parent / "data"
@@ -35,7 +35,7 @@ def load(name: str) -> Log:
     """
     if name not in names():
         raise UnknownName("recorded run", name, names())
-    return load_log(DATA / "recorded" / f"{name}.npz")
+    return Log.load(DATA / "recorded" / f"{name}.npz")
 
 
 def campaign() -> Any:

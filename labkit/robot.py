@@ -1,58 +1,134 @@
-"""A robot arm as numbers: names, limits, bodies, and the URDF text made from them.
+"""A robot arm as a value: names, limits, bodies, and the URDF text made from them.
 
 Plant and model are both built from the text that `Robot.urdf` writes, so they agree.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from functools import cached_property
+from html import escape
 from math import atan2, cos, hypot, sin
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
+from .errors import LabkitError
 from .plant import IDEAL, Plant
-from .shapes import Array
+from .shapes import Array, locked
 
-DOF = 7
-"""Joints of one arm."""
-
-Side = Literal["left", "right"]
+SIDES = ("left", "right")
+"""Names of Baxter's arms, which no other robot may have."""
 
 
 @dataclass(frozen=True, eq=False)
 class Robot:
-    """One of Baxter's arms, as numbers.
+    """An arm of n joints that turn, one after another, on a base that stands still.
+
+    `lk.robot("left")` and `lk.robot("right")` are Baxter's arms; `from_urdf` reads any other.
 
     Attributes:
-        side: "left" or "right".
-        joint_names: Seven names from shoulder to wrist.
-        lower: Lower joint limits, shape (7,) in [rad].
-        upper: Upper joint limits, shape (7,) in [rad].
-        speed: Speed limits, shape (7,) in [rad/s].
-        effort: Torque limits, shape (7,) in [N m].
-        neutral: Rethink's neutral pose, shape (7,) in [rad].
-        ready: Gripper straight down with room all around, where the exercises start, shape (7,)
-            in [rad].
-        T_hand_tip: The gripper's tip in the last body, shape (4, 4).
-        T_hand_camera: The hand camera (z forward, x right of the image) there, shape (4, 4).
-        bodies: The seven bodies as they stand in the data file.
+        name: What a log and a world of several arms call it.
+        bodies: The n bodies from the base to the tip, each with its "joint", its pose in the body
+            before it at angle zero ("T_parent", the joint turns about its z axis), "mass", "com",
+            "inertia" about the centre of mass, and the joint's limits.
+        T_hand_tip: The tip in the last body, shape (4, 4).
+        ready: Where exercises start, with room all around, shape (n,) in [rad].
+        neutral: Where an arm is put if nothing else is said, shape (n,) in [rad].
+        T_hand_camera: The hand camera (z forward, x right of the image) in the last body, shape
+            (4, 4); None for a hand without one.
     """
 
-    side: Side
-    joint_names: tuple[str, ...]
-    lower: Array
-    upper: Array
-    speed: Array
-    effort: Array
-    neutral: Array
-    ready: Array
-    T_hand_tip: Array
-    T_hand_camera: Array
+    name: str
     bodies: tuple[dict[str, Any], ...]
+    T_hand_tip: Array
+    ready: Array
+    neutral: Array
+    T_hand_camera: Array | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "bodies", tuple(self.bodies))
+        for name in ("T_hand_tip", "ready", "neutral", "T_hand_camera"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, locked(np.array(getattr(self, name))))
+
+    @classmethod
+    def from_urdf(cls, file: Any, *, tip: str, ready: Any, name: str | None = None) -> Robot:
+        """Read an arm from a URDF file, by Pinocchio.
+
+        The joints between the root of the file and the tip are the arm's.  All other joints, such
+        as those of a gripper, stand still at zero, and each link is lumped with what it carries.
+        A continuous joint gets a range of one turn either way.
+
+        Args:
+            file: The URDF file; its meshes are not needed.
+            tip: The link whose frame is the arm's tip.
+            ready: Joint angles at which exercises may start, shape (n,) in [rad], from the base to
+                the tip.
+            name: What to call the arm; None takes the file's own name.
+
+        Returns:
+            The robot.
+
+        Raises:
+            UnknownName: The file has no link ``tip``.
+            LabkitError: There is no such file, it is not a URDF, or it has what an arm here cannot
+                have, such as a joint that slides; says what to do.
+            ShapeError: ``ready`` has another number of joints.
+            JointLimitExceeded: ``ready`` is outside the joints' range.
+        """
+        from .urdf import read_urdf
+
+        made = read_urdf(file, tip, ready, name)
+        if made["name"] in SIDES:
+            raise LabkitError(f"{made['name']!r} is a Baxter's arm; give this robot another name=")
+        return cls(**made)
+
+    def data(self) -> dict[str, Any]:
+        """What it is made of, as plain data: ``Robot(**robot.data())`` is the same robot."""
+        made = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {k: v.tolist() if isinstance(v, np.ndarray) else v for k, v in made.items()}
+
+    @property
+    def n(self) -> int:
+        """How many joints it has."""
+        return len(self.bodies)
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """From the base to the tip."""
+        return tuple(body["joint"] for body in self.bodies)
+
+    @cached_property
+    def lower(self) -> Array:
+        """Lower joint limits, shape (n,) in [rad]."""
+        return self._each("lower")
+
+    @cached_property
+    def upper(self) -> Array:
+        """Upper joint limits, shape (n,) in [rad]."""
+        return self._each("upper")
+
+    @cached_property
+    def speed(self) -> Array:
+        """Speed limits, shape (n,) in [rad/s]."""
+        return self._each("speed")
+
+    @cached_property
+    def effort(self) -> Array:
+        """Torque limits, shape (n,) in [N m]."""
+        return self._each("effort")
+
+    @cached_property
+    def zeros(self) -> Array:
+        """No speed, or no torque, at any joint, shape (n,)."""
+        return locked(np.zeros(self.n))
+
+    def _each(self, limit: str) -> Array:
+        return locked(np.array([body[limit] for body in self.bodies]))
 
     def urdf(self, plant: Plant = IDEAL) -> str:
-        """The arm as seven bodies without fixed links, with the plant's payload.
+        """The arm as n bodies without fixed links, with the plant's payload.
 
         Args:
             plant: Its payload is built in.
@@ -60,11 +136,11 @@ class Robot:
         Returns:
             URDF text; rotors, damping and friction are not in it, they belong to the joints.
         """
-        parts = [f'<robot name="baxter_{self.side}_arm">', '<link name="base"/>']
+        parts = [f'<robot name="{escape(self.name)}">', '<link name="base"/>']
         parent = "base"
         for i, body in enumerate(self.bodies):
             mass, com, inertia = body["mass"], np.array(body["com"]), np.array(body["inertia"])
-            if i == 6 and plant.payload > 0.0:
+            if i == self.n - 1 and plant.payload > 0.0:
                 mass, com, inertia = _with_point_mass(
                     mass, com, inertia, plant.payload, self.T_hand_tip[:3, 3]
                 )
@@ -72,7 +148,7 @@ class Robot:
             if np.linalg.det(axes) < 0.0:
                 axes[:, 0] = -axes[:, 0]
             xx, yy, zz = moments.tolist()
-            name, T = body["joint"], np.array(body["T_parent"])
+            name, T = escape(body["joint"]), np.array(body["T_parent"])
             lower, upper, speed, effort = (body[k] for k in ("lower", "upper", "speed", "effort"))
             parts.append(
                 f'<link name="{name}_body"><inertial>'

@@ -9,12 +9,21 @@ import numpy as np
 
 from .arm import Arm
 from .control import COMMANDS, Command, State
-from .errors import Closed, ControllerError, Diverged, LabkitError, OutOfRange, TypeMismatch
+from .driven import Real, RealArm, Simulated
+from .errors import (
+    ArmLost,
+    Closed,
+    ControllerError,
+    Diverged,
+    LabkitError,
+    OutOfRange,
+    ShapeError,
+    TypeMismatch,
+)
 from .log import Log, Recorder
-from .robot import DOF
-from .shapes import as_array, as_number, shown
+from .robot import Robot
+from .shapes import Array, as_array, as_number, shown
 from .trajectory import AnySample, PoseSample, Sample, Target
-from .world import whole_steps
 
 Controller = Callable[[State, Any], Command]
 """A function of the state and of the target's sample; nothing to inherit, nothing to register."""
@@ -24,7 +33,7 @@ RUNAWAY = 50.0
 
 
 def run(
-    arm: Arm,
+    arm: Arm | RealArm,
     target: Target,
     controller: Controller,
     rate: float = 200.0,
@@ -36,12 +45,12 @@ def run(
     is brought to rest at once.
 
     Args:
-        arm: The arm.
+        arm: The arm: simulated, or a real one behind the methods of `RealArm`.
         target: A function of the time since the start, in [s], that returns a `Sample` or a
             `PoseSample`.
         controller: A function of a `State` and the target's sample that returns a command.
         rate: How often the controller is asked, in [Hz]; its period is a whole number of physics
-            steps.
+            steps.  A real arm's loop leaves out the ticks for which it is late.
         duration: How long, in [s]; None takes the target's own duration.
 
     Returns:
@@ -51,6 +60,7 @@ def run(
         ControllerError: The controller or the target raised, or returned something that is not a
             command or not a sample; it says which and when.
         Diverged: The arm ran away; the error keeps the `log` up to then.
+        ArmLost: A real arm stopped answering, or answered with NaN; likewise.
         OutOfRange: The rate does not fit the physics step, or no duration is known.
         TypeMismatch: One of the three is not what it should be.
         Closed: The arm's world is closed.
@@ -60,55 +70,69 @@ def run(
             raise TypeMismatch(
                 f"{name} is {shown(given)}, expected a function: run(arm, target, controller)"
             )
-    if not isinstance(arm, Arm):
-        raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
-    arm.check_open()
-    world, who, whom = arm.world, _name(controller), f"the target {_name(target)}"
-    steps = whole_steps(as_number(rate, "rate", above=0.0), world.dt, "rate")
-    period = steps * world.dt
-    ticks = _ticks(target, duration, period)
-    lost = arm.lost_ticks(ticks)
+    driven = _driven(arm, rate)
+    robot, period = driven.robot, driven.period
+    who, whom = _name(controller), f"the target {_name(target)}"
+    last = _ticks(target, duration, period) - 1
+    lost = driven.lost_ticks(last + 1)
     samples = _Samples(target, whom)
-    recorder = Recorder(period, samples.first)
-    kind, t, k, asked = None, 0.0, 0, who
+    recorder = Recorder(robot, driven.plant, samples.first)
+    kind, k, asked = None, 0, who
     often = max(1, round(0.005 / period))  # every 5 ms: nothing runs far in so short a time
+    t = driven.begin()
     try:
-        for k in range(ticks):
-            t, asked = k * period, whom
-            truth, seen, torque = arm.observe()
+        while True:
+            asked = whom
+            seen = driven.observe()
             sample = samples.checked(target(t), t)
             asked = who
-            command = controller(seen, sample)
+            command = controller(seen[1], sample)
             if type(command) is not kind:
                 kind = _settled(command, kind, who, t)
-            recorder.keep(truth, seen, torque, command, sample)
-            if not k % often and not truth.dq.dot(truth.dq) <= RUNAWAY**2:  # a NaN runs away too
-                raise Diverged(_runaway(arm, truth, who, t))
-            if k < ticks - 1:
-                if not lost[k]:
-                    arm.apply(command)
-                world.step(steps)
-                recorder.cut(arm.saturated)
+            if command.value.shape != robot.zeros.shape:
+                raise ShapeError(kind.__name__, robot.zeros.shape, command.value.shape)
+            recorder.keep(t, seen, command, sample)
+            dq = seen[0].dq
+            if not k % often and not dq.dot(dq) <= RUNAWAY**2:  # a NaN runs away too
+                raise Diverged(_runaway(robot, dq, who, t))
+            if k >= last:
+                driven.stop()
+                break
+            if not lost[k]:
+                driven.apply(command)
+            k, t, cut = driven.advance(k)
+            recorder.cut(cut)
     except KeyboardInterrupt:
         if not len(recorder):
             raise
     except Diverged as error:
-        arm.recover()
-        error.log = recorder.log(kind or type(None), who, arm.plant, arm.robot.side)
+        driven.recover()
+        error.log = recorder.log(kind or type(None), who)
+        raise
+    except ArmLost as error:
+        error.log = recorder.log(kind, who) if kind else None
         raise
     except (ControllerError, Closed):
         raise
     except Exception as error:
         samples.blame(t)
         raise ControllerError(
-            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest)}"
+            f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest, robot.n)}"
         ) from error
     finally:
-        if not world.closed:
-            arm.stop()
-    log = recorder.log(kind or type(None), who, arm.plant, arm.robot.side)
-    samples.check_all(log.target, period)
+        driven.stop()
+    log = recorder.log(kind or type(None), who)
+    samples.check_all(log)
     return log
+
+
+def _driven(arm: object, rate: Any) -> Simulated | Real:
+    """The arm as the loop drives it."""
+    if isinstance(arm, Arm):
+        return Simulated(arm, rate)
+    if isinstance(arm, RealArm):
+        return Real(arm, rate)
+    raise TypeMismatch(f"arm is {shown(arm)}, expected an Arm: run(arm, target, controller)")
 
 
 _FLOAT = np.dtype(np.float64)
@@ -167,12 +191,13 @@ class _Samples:
         """Raise if it was the target that broke the controller."""
         self.read(self.latest, t)
 
-    def check_all(self, samples: AnySample, period: float) -> None:
+    def check_all(self, log: Log) -> None:
         """Raise if one held a NaN that did no harm; harmful ones were blamed at once."""
+        samples = log.target
         good = [np.isfinite(x).reshape(len(x), -1).all(axis=1) for x in samples]
         if not (whole := np.logical_and.reduce(good)).all():
             k = int(whole.argmin())
-            self.read(self.kind(*(x[k] for x in samples)), k * period)
+            self.read(self.kind(*(x[k] for x in samples)), float(log.t[k]))
 
 
 def _ticks(target: Target, duration: float | None, period: float) -> int:
@@ -187,7 +212,7 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
 
-def _what(error: Exception, sample: AnySample) -> str:
+def _what(error: Exception, sample: AnySample, joints: int) -> str:
     """What a controller's error says; where the sample is not one of joint angles, what it is."""
     if isinstance(error, LabkitError):
         return str(error)
@@ -199,7 +224,7 @@ def _what(error: Exception, sample: AnySample) -> str:
             what += f"; {makes} joint angles of poses"
     elif isinstance(error, ValueError) and isinstance(sample, Sample):
         n = sample.position.size
-        if n != DOF:
+        if n != joints:
             what += f"; the target gives {n} numbers, {makes} joint angles of points"
     return what
 
@@ -220,11 +245,11 @@ def _settled(command: object, kind: type | None, who: str, t: float) -> type:
     return type(command)
 
 
-def _runaway(arm: Arm, truth: State, who: str, t: float) -> str:
-    i = int(np.argmax(np.abs(truth.dq)))
+def _runaway(robot: Robot, dq: Array, who: str, t: float) -> str:
+    i = int(np.argmax(np.abs(dq)))
     return (
-        f"{who} lost the arm at t = {t:.3f} s: joint {arm.robot.joint_names[i]} turns at "
-        f"{truth.dq[i]:.3g} rad/s (its limit is {arm.robot.speed[i]:g}); check the sign of the "
+        f"{who} lost the arm at t = {t:.3f} s: joint {robot.joint_names[i]} turns at "
+        f"{dq[i]:.3g} rad/s (its limit is {robot.speed[i]:g}); check the sign of the "
         "error, then try smaller gains or a faster rate; the log up to here is in error.log"
     )
 

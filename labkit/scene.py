@@ -17,7 +17,6 @@ import numpy as np
 from . import se3
 from .errors import OutOfRange, UnknownName
 from .joints import Touch
-from .robot import Side
 from .shapes import Array, as_number, lock_vectors, locked
 from .world import Actor, Standing, World
 
@@ -159,14 +158,14 @@ class Push:
         moment: On the arm, world axes, shape (3,) in [N m].
         start: When it begins, in [s] of the world's clock.
         duration: How long it lasts, in [s].
-        side: Whose tip; None where the world has only one arm.
+        side: Whose tip, by the name of its robot; None where the world has only one arm.
     """
 
     force: Any = (0.0, 0.0, 0.0)
     moment: Any = (0.0, 0.0, 0.0)
     start: float = 0.0
     duration: float = np.inf
-    side: Side | None = None
+    side: str | None = None
 
     def __post_init__(self) -> None:
         lock_vectors(self, 3, "force", "moment")
@@ -193,13 +192,13 @@ class Spring:
         anchor: Where it pulls the tip to, world axes, shape (3,) in [m].
         stiffness: k in [N/m].
         damping: d in [N s/m].
-        side: Whose tip; None where the world has only one arm.
+        side: Whose tip, by the name of its robot; None where the world has only one arm.
     """
 
     anchor: Any
     stiffness: float
     damping: float = 0.0
-    side: Side | None = None
+    side: str | None = None
 
     def __post_init__(self) -> None:
         lock_vectors(self, 3, "anchor")
@@ -222,15 +221,16 @@ class Spring:
         return act
 
 
-def _arm_of(world: World, side: Side | None) -> Standing:
-    arms = [arm for arm in world.arms if side in (None, arm.robot.side)]
+def _arm_of(world: World, side: str | None) -> Standing:
+    arms = [arm for arm in world.arms if side in (None, arm.robot.name)]
     if len(arms) == 1:
         return arms[0]
     if arms:
-        raise OutOfRange("this world has two arms: give side='left' or side='right'")
+        names = " or ".join(f"side={arm.robot.name!r}" for arm in arms)
+        raise OutOfRange(f"this world has {len(arms)} arms: give {names}")
     if not world.arms:
         raise OutOfRange("this world has no arm to push: lk.Arm(world=world) puts one into it")
-    raise UnknownName("arm in this world", str(side), [arm.robot.side for arm in world.arms])
+    raise UnknownName("arm in this world", str(side), [arm.robot.name for arm in world.arms])
 
 
 def _check_slab(thing: Any) -> None:

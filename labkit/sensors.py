@@ -6,10 +6,9 @@ from collections import deque
 
 import numpy as np
 
-from .control import NOTHING, State
+from .control import State
 from .model import Model
 from .plant import Plant
-from .robot import DOF
 from .shapes import Array, locked
 from .world import whole_steps
 
@@ -21,12 +20,11 @@ class Reports:
         every: Physics steps between two reports; 0 for an arm whose state is always at hand.
     """
 
-    def __init__(self, plant: Plant, dt: float, random: np.random.Generator) -> None:
-        """Report as ``plant`` says, in a world of steps of ``dt`` [s]."""
+    def __init__(self, plant: Plant, n: int, dt: float, random: np.random.Generator) -> None:
+        """Report ``n`` joints as ``plant`` says, in a world of steps of ``dt`` [s]."""
         self._delay, self._random = plant.state_delay, random
         self._noise, self._torque_noise = (
-            np.array(plant.velocity_noise),
-            np.array(plant.torque_noise),
+            plant.each(name, n) for name in ("velocity_noise", "torque_noise")
         )
         self._noisy = bool(self._noise.any() or self._torque_noise.any())
         self.every = whole_steps(plant.state_rate, dt, "plant.state_rate")
@@ -46,8 +44,8 @@ class Reports:
         self._last = steps
         t, q, dq, felt = truth
         if self._noisy:
-            dq = locked(dq + self._noise * self._random.standard_normal(DOF))
-            felt = locked(felt + self._torque_noise * self._random.standard_normal(DOF))
+            dq = locked(dq + self._noise * self._random.standard_normal(dq.size))
+            felt = locked(felt + self._torque_noise * self._random.standard_normal(dq.size))
         self.newest(t)  # forgets those that nobody asked for
         self._mail.append(State(t, q, dq, felt))
 
@@ -75,16 +73,16 @@ class TorqueSensors:
 
     def reset(self) -> None:
         """Forget what was felt."""
-        self._felt, self._at = NOTHING, -1
+        self._felt, self._at = self._own.robot.zeros, -1
         self._begun: tuple[Array, Array, Array] | None = None
 
     def begin(self, q: Array, dq: Array, joint: Array, steps: int) -> None:
         """Take note of how a physics step begins.
 
         Args:
-            q: Joint angles, shape (7,) in [rad].
-            dq: Joint speeds, shape (7,) in [rad/s].
-            joint: What motors and friction give in it, shape (7,) in [N m].
+            q: Joint angles, shape (n,) in [rad].
+            dq: Joint speeds, shape (n,) in [rad/s].
+            joint: What motors and friction give in it, shape (n,) in [N m].
             steps: Which step.
         """
         if self._lag:  # it averages over all steps, not only over those that someone asks about
@@ -92,10 +90,10 @@ class TorqueSensors:
         self._begun = q, dq, joint
 
     def felt(self, now: Array, steps: int) -> Array:
-        """The external torque, shape (7,) in [N m], before physics step ``steps``.
+        """The external torque, shape (n,) in [N m], before physics step ``steps``.
 
         Args:
-            now: Joint speeds, shape (7,) in [rad/s].
+            now: Joint speeds, shape (n,) in [rad/s].
             steps: Which step.
         """
         if self._begun is not None and self._at != steps:

@@ -47,17 +47,22 @@ def as_array(x: Any, shape: tuple[int, ...], name: str) -> Array:
     return a
 
 
-def as_vector(x: Any, n: int, name: str) -> Array:
+def as_vector(x: Any, n: int | None, name: str) -> Array:
     """A read-only float vector of ``n`` numbers; a copy, so that the owner may go on writing.
 
     Args:
         x: Anything NumPy reads as a vector.
-        n: How many numbers.
+        n: How many numbers; None takes as many as there are.
         name: What to call it in the sentence, if it does not fit.
 
     Returns:
         Shape (n,), read-only.
     """
+    if n is None:
+        shape = (x if isinstance(x, np.ndarray) else _converted(x, None, name)).shape
+        if shape == ():
+            raise TypeMismatch(f"{name} is {shown(x)}, expected a vector: a number for each joint")
+        n = max(shape)
     return locked(np.array(as_array(x, (n,), name)))
 
 
@@ -81,22 +86,22 @@ def as_numbers(x: Any, name: str) -> Array:
     return as_array(a, a.shape, name)
 
 
-def as_each(x: Any, n: int, name: str) -> Array:
+def as_each(x: Any, n: int | None, name: str) -> Array:
     """Read ``x`` as ``n`` numbers; one number serves all.
 
     Args:
         x: A number, or a vector of ``n``.
-        n: How many.
+        n: How many; None takes as many as there are.
         name: What to call them in the sentence, if they do not fit.
 
     Returns:
-        Shape (n,), read-only.
+        Shape (n,), read-only; of one number, shape (1,) if n is None.
     """
     numbers = as_numbers(x, name)
-    return as_vector(np.full(n, numbers) if numbers.ndim == 0 else numbers, n, name)
+    return as_vector(np.full(n or 1, numbers) if numbers.ndim == 0 else numbers, n, name)
 
 
-def as_gains(x: Any, n: int, name: str) -> Array:
+def as_gains(x: Any, n: int | None, name: str) -> Array:
     """Read ``x`` as ``n`` gains: `as_each`, of which none is negative.
 
     Raises:

@@ -19,6 +19,7 @@ ORDER = [
     {"trajectory"},
     {"paths"},
     {"plant"},
+    {"urdf"},
     {"robot"},
     {"baxter"},
     {"kinematics"},
@@ -31,7 +32,7 @@ ORDER = [
     {"sensors"},
     {"motors"},
     {"arm"},
-    {"log"},
+    {"log", "driven"},
     {"run"},
     {"metrics", "recordings", "loop"},
     {"plotting"},
@@ -66,7 +67,7 @@ LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
 UPSTAIRS = {"grader", "__main__"}
 """The grader and the command line, which neither lab nor course knows."""
 # What simulates, what knows the equations, what draws and what sees.
-MODEL = {"kinematics", "model"}
+MODEL = {"kinematics", "model", "urdf"}
 DRAW = {"plotting", "replay", "grader.drawing"}
 SEE = {"tags.rendering", "tags.tag", "tags.detection", "tags.edges"}
 

@@ -84,7 +84,7 @@ def test_since_keeps_the_rows_from_a_time_on(joint_log):
 
 def test_a_log_knows_its_model(joint_log):
     model = metrics.model_of(joint_log)
-    assert (model.robot.side, model.plant) == ("left", lk.IDEAL)
+    assert (model.robot.name, model.plant) == ("left", lk.IDEAL)
 
 
 @given(errors, st.floats(0.01, 100.0))

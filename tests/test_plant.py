@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from numpy.testing import assert_array_equal
 
 import labkit as lk
 from labkit.errors import LabkitError
@@ -31,15 +32,21 @@ def test_a_plant_is_a_value():
 
 def test_one_effect_is_changed_at_a_time():
     quiet = dataclasses.replace(lk.BAXTER, velocity_noise=0.0)
-    assert quiet.velocity_noise == (0.0,) * 7
+    assert_array_equal(quiet.each("velocity_noise", 7), np.zeros(7))
     assert quiet.stiction == lk.BAXTER.stiction
 
 
 @pytest.mark.parametrize("field", PER_JOINT)
-@pytest.mark.parametrize("value", [[1.0] * 6, np.ones((7, 1)), np.nan, "high", None, -1.0])
+@pytest.mark.parametrize("value", [np.ones((7, 1)), np.nan, "high", None, -1.0])
 def test_a_bad_effect_per_joint_is_named(field, value):
     with pytest.raises(LabkitError, match=field):
         lk.Plant(**{field: value})
+
+
+@pytest.mark.parametrize("field", PER_JOINT)
+def test_a_plant_of_another_number_of_joints_is_refused_by_the_arm(field):
+    with pytest.raises(LabkitError, match=f"{field}.*give 7 numbers, not 6"):
+        lk.Arm(plant=lk.Plant(**{field: np.arange(6.0)}))
 
 
 @pytest.mark.parametrize(

@@ -292,7 +292,7 @@ def test_a_joint_stops_at_its_end():
     ("field", "value", "error"),
     [
         ("armature", -0.1, OutOfRange),
-        ("stiction", (1.0, 2.0), ShapeError),
+        ("stiction", ((1.0, 2.0),), ShapeError),
         ("velocity_noise", float("nan"), NotFinite),
         ("payload", -1.0, OutOfRange),
         ("lost_ticks", 1.5, OutOfRange),

@@ -6,10 +6,9 @@ import pytest
 import labkit as lk
 from labkit import metrics, recordings
 from labkit.errors import OutOfRange
-from labkit.log import load_log
 from labkit.recordings import LINE, Runner, Trials, read_trials
 from solutions.study import tasks
-from solutions.study.recording import save, save_trials
+from solutions.study.recording import save_trials
 
 
 def test_a_saved_log_reads_back_to_single_precision(tmp_path):
@@ -20,12 +19,12 @@ def test_a_saved_log_reads_back_to_single_precision(tmp_path):
 
     with lk.Arm(plant=lk.BAXTER, q0=task.q0) as arm:
         log = lk.run(arm, task.joints, forward, duration=0.5)
-    save(log, tmp_path / "run.npz")
-    back = load_log(tmp_path / "run.npz")
+    log.save(tmp_path / "run.npz", single=True)
+    back = lk.Log.load(tmp_path / "run.npz")
     for name in ("t", "q", "dq", "tau", "command", "saturated"):
         np.testing.assert_allclose(getattr(back, name), getattr(log, name), rtol=1e-6, atol=1e-7)
     np.testing.assert_allclose(back.measured.dq, log.measured.dq, rtol=1e-6, atol=1e-7)
-    assert (back.plant, back.side, back.controller) == (log.plant, log.side, "forward")
+    assert (back.plant, back.robot.name, back.controller) == (log.plant, log.robot.name, "forward")
     assert back.command_type is lk.JointVelocity
     assert metrics.summary(back).rms_mm == pytest.approx(metrics.summary(log).rms_mm, rel=1e-3)
 

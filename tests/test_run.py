@@ -26,7 +26,7 @@ def computed_torque(model, kp=100.0, kd=20.0):
 
 def swing(arm, seconds=5.0):
     q0 = arm.robot.neutral
-    way = WAY if arm.robot.side == "left" else -WAY * [1, -1, 1, -1, 1, -1, 1]
+    way = WAY if arm.robot.name == "left" else -WAY * [1, -1, 1, -1, 1, -1, 1]
     return lk.Trajectory(lk.Line(q0, q0 + way), lk.Quintic(seconds))
 
 
@@ -90,7 +90,7 @@ def test_a_log_has_a_row_for_each_tick_and_both_ends(ideal):
         assert rows.shape == (51, 7)
     assert log.saturated.shape == (51,)
     assert log.command_type is lk.JointPosition
-    assert (log.controller, log.plant, log.side) == ("follow", lk.IDEAL, "left")
+    assert (log.controller, log.plant, log.robot.name) == ("follow", lk.IDEAL, "left")
 
 
 def test_a_log_cannot_be_written_to(ideal):

@@ -177,7 +177,7 @@ def test_a_push_needs_to_know_whom():
     with lk.World(things=[lk.Push((0, 0, 1.0))]) as world:
         lk.Arm("left", world=world)
         lk.Arm("right", world=world)
-        with pytest.raises(OutOfRange, match="two arms"):
+        with pytest.raises(OutOfRange, match=r"2 arms: give side='left' or side='right'"):
             world.step()
     with (
         lk.World(things=[lk.Spring((0, 0, 1.0), 100.0)]) as world,

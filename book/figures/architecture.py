@@ -17,9 +17,9 @@ HOME = Path(labkit.__file__).parent
 LAYERS = (
     ("Sentences and numbers", ("errors", "quiet", "formats", "shapes", "se3")),
     ("What is wanted", ("trajectory", "paths")),
-    ("What is known", ("plant", "robot", "baxter", "kinematics", "model")),
-    ("What moves", ("control", "world", "scene", "sensors", "body", "motors", "arm")),
-    ("The loop, and what it did", ("log", "run", "metrics", "recordings", "loop")),
+    ("What is known", ("plant", "urdf", "robot", "baxter", "kinematics", "model")),
+    ("What moves", ("control", "joints", "sim", "world", "scene", "sensors", "motors", "arm")),
+    ("The loop, and what it did", ("log", "driven", "run", "metrics", "recordings", "loop")),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
     ("What judges", ("course",)),
     ("For instructors", ("grader",)),

@@ -21,7 +21,6 @@ from PIL import Image
 
 from labkit import Arm, Log, Plant, Table, World, metrics, plotting
 from labkit.replay import motion_of
-from labkit.robot import Side
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.intrinsics import Intrinsics
 from solutions.study.film import AT, EYE
@@ -141,10 +140,10 @@ def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
 
 def poster(log: Log) -> str:
     """What a camera beside the table sees in the middle of a run, as a data address."""
-    return picture(log.side, log.plant, log.q[len(log) // 2])
+    return picture(log.robot.name, log.plant, log.q[len(log) // 2])
 
 
-def picture(side: Side, plant: Plant, q: np.ndarray) -> str:
+def picture(side: str, plant: Plant, q: np.ndarray) -> str:
     """The arm at rest at q, shape (7,) in [rad], seen from beside the table, as a data address."""
     lens = Intrinsics(width=480, height=360, fx=405.0, fy=405.0)
     with World(things=(Table(),)) as world:

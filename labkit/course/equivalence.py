@@ -93,8 +93,8 @@ class TipTorque:
     """A torque as far as the tip feels it: the expected answer that `AtTip` compares with.
 
     Attributes:
-        value: One such torque, shape (7,) in [N m].
-        accelerates: J M^-1, what a torque adds to the tip's acceleration, shape (6, 7).
+        value: One such torque, shape (n,) in [N m].
+        accelerates: J M^-1, what a torque adds to the tip's acceleration, shape (6, n).
     """
 
     value: Array

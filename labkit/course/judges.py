@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from ..baxter import robot
 from ..control import COMMANDS
 from ..errors import LabkitError
-from ..robot import DOF
 from ..shapes import Array, as_array, as_gains
 from ..trajectory import PoseSample, Sample
 from .verdict import Difference, Kind, Value
@@ -75,7 +75,9 @@ class Close:
         if isinstance(expected, COMMANDS):
             kind = type(expected)
             if type(answer) is not kind:
-                return Difference(Kind.TYPE, part, expected=kind.__name__, found=_instead(answer))
+                return Difference(
+                    Kind.TYPE, part, expected=kind.__name__, found=_instead(answer, expected)
+                )
             return self._differ(answer.value, expected.value, part)
         if isinstance(expected, dict):
             return self._differ_dict(answer, expected)
@@ -210,7 +212,8 @@ class Gains:
     @staticmethod
     def _read(answer: Any) -> Array:
         kp, kd = answer
-        return np.concatenate([as_gains(kp, DOF, "kp"), as_gains(kd, DOF, "kd")])
+        n = robot("left").n  # the course is about Baxter's arms
+        return np.concatenate([as_gains(kp, n, "kp"), as_gains(kd, n, "kd")])
 
 
 def numbers(value: Any) -> Array:
@@ -245,11 +248,11 @@ def value(x: Any) -> Value:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def _instead(answer: Any) -> Value:
+def _instead(answer: Any, expected: Any) -> Value:
     """What came instead of a command: another one's name, "" for plain numbers of its size."""
     if isinstance(answer, COMMANDS):
         return type(answer).__name__
-    return "" if np.shape(answer) == (DOF,) else value(answer)
+    return "" if np.shape(answer) == np.shape(getattr(expected, "value", 0)) else value(answer)
 
 
 def _refused(error: LabkitError) -> Difference:

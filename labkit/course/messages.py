@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator
 
 from ..control import COMMANDS
 from ..errors import ControllerError
-from ..robot import DOF
 from .question import Loop, Question, Test, Tuned, in_brief
 from .verdict import Difference, Kind, Outcome, TestResult, Value, Verdict
 from .withheld import spoken
@@ -202,7 +201,7 @@ def _instead(d: Difference) -> str:
     what = _brief(d.found) or "plain numbers"
     if d.expected not in _COMMANDS:
         return what
-    return f"{what}; return lk.{d.expected}(...) with the {DOF} numbers in it"
+    return f"{what}; return lk.{d.expected}(...) with a number for each joint in it"
 
 
 def _guess(d: Difference) -> str:

@@ -64,11 +64,11 @@ class Loop:
     Attributes:
         target: What the arm follows.
         kwargs: What the controller is given besides state and target.
-        side: Which arm.
+        side: Which of Baxter's arms.
         plant: What it is like.
         things: What it meets, such as a `labkit.Push`.
         seed: Of its noise.
-        q0: Where it starts, shape (7,) in [rad]; None is its ready pose.
+        q0: Where it starts, shape (n,) in [rad]; None is its ready pose.
         rate: Control rate, in [Hz].
         duration: In [s]; None takes the target's.
         settle: How long it may take to recover from its start, in [s]; measured from then on.

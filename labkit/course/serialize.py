@@ -17,6 +17,7 @@ import msgspec
 import numpy as np
 
 from .. import control, paths, plant, scene, trajectory
+from ..baxter import robot
 from ..errors import LabkitError, TypeMismatch
 from ..log import Log
 from ..model import Model
@@ -68,9 +69,19 @@ _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {
     paths.Spline: lambda spline: {"s": spline.s, "values": spline.values},
     trajectory.Chain: lambda chain: {"parts": chain.parts},
     trajectory.Hold: lambda hold: {"place": hold(0.0)[0], "duration": hold.duration},
-    Model: lambda model: {"side": model.robot.side, "plant": model.plant},
+    Model: lambda model: {"side": model.robot.name, "plant": model.plant},
+    Log: lambda log: {
+        **{f.name: getattr(log, f.name) for f in dataclasses.fields(log) if f.name != "robot"},
+        "side": log.robot.name,
+    },
 }
 """The arguments to make those of again that are neither a dataclass nor a named tuple."""
+
+_MADE_BY: dict[str, Callable[..., Any]] = {
+    "Model": lambda side, plant: Model(side, plant),
+    "Log": lambda side, **columns: Log(**columns, robot=robot(side)),
+}
+"""What makes them of these, where it is not their type: the course knows arms by Baxter's names."""
 
 Kinds = Mapping[str, Any]
 """Types by their names."""
@@ -210,7 +221,8 @@ def _decode(data: Any, kinds: Kinds) -> Any:
     if kind == "dict":
         return {str(key): inner(x) for key, x in data["items"].items()}
     if kind in kinds:
-        return kinds[kind](**{key: inner(x) for key, x in data.items() if key != "$"})
+        made = _MADE_BY.get(kind) or kinds[kind]
+        return made(**{key: inner(x) for key, x in data.items() if key != "$"})
     if kinds is not _DATA and kind == "method":
         return getattr(inner(data["of"]), data["name"])
     if kinds is not _DATA and kind == "command type":

@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import OutOfRange, UnknownName
+from ..baxter import as_robot
+from ..errors import OutOfRange
+from ..robot import SIDES, Robot
 from ..shapes import Array, as_array, locked
 
-JOINT_NAMES = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")
 STEPS = {  # how fine each channel is kept
     "q": 1e-4,  # rad
     "target": 1e-4,  # m
@@ -31,9 +32,9 @@ class Motion:
     """What one arm did, to be seen again.
 
     Attributes:
-        side: "left" or "right".
+        robot: Whose arm: a `Robot`, or "left" or "right" for Baxter's.
         t: Times, shape (N,), increasing, in [s].
-        q: Joint angles s0 to w2, shape (N, 7), in [rad].
+        q: Joint angles, shape (N, n), in [rad].
         title: A few words; the heading and the name for assistive technology.
         label: Name of this arm in legend and plots.
         target_position: Where the target was, shape (N, 3), in [m], in the robot's base.
@@ -42,11 +43,11 @@ class Motion:
         board_rotation: How it was turned, shape (N, 3, 3), the tag facing its own +z.
         path: Points of the desired path, shape (K, 3), in [m].
         error: How far the tip was from its target, shape (N,), in [m].
-        tau: Joint torques, shape (N, 7), in [N m].
-        ghosts: Other arms' angles by name, each of shape (N, 7), in [rad].
+        tau: Joint torques, shape (N, n), in [N m].
+        ghosts: Other arms' angles by name, each of shape (N, n), in [rad].
     """
 
-    side: str
+    robot: Any
     t: Array
     q: Array
     title: str = "Motion of the arm"
@@ -61,27 +62,27 @@ class Motion:
     ghosts: Mapping[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        if self.side not in ("left", "right"):
-            raise UnknownName("side", self.side, ("left", "right"))
+        robot: Robot = as_robot(self.robot)
+        object.__setattr__(self, "robot", robot)
         n = np.shape(self.t)[0] if np.ndim(self.t) else 0
         if n < 2:
             raise OutOfRange(f"t has {n} times, and a motion needs at least two")
         shapes: dict[str, tuple[int, ...]] = {
             "t": (n,),
-            "q": (n, 7),
+            "q": (n, robot.n),
             "target_position": (n, 3),
             "target_rotation": (n, 3, 3),
             "board_position": (n, 3),
             "board_rotation": (n, 3, 3),
             "path": (0 if self.path is None else len(self.path), 3),
             "error": (n,),
-            "tau": (n, 7),
+            "tau": (n, robot.n),
         }
         for name, shape in shapes.items():
             value = getattr(self, name)
             if value is not None:
                 object.__setattr__(self, name, _frozen(value, shape, name))
-        ghosts = {k: _frozen(v, (n, 7), f"ghost {k!r}") for k, v in self.ghosts.items()}
+        ghosts = {k: _frozen(v, (n, robot.n), f"ghost {k!r}") for k, v in self.ghosts.items()}
         object.__setattr__(self, "ghosts", ghosts)
         if not (np.diff(self.t) > 0).all():
             raise OutOfRange("t does not increase from row to row; is it in the log's order?")
@@ -118,7 +119,8 @@ class Motion:
             "title": self.title,
             "alt": self.alt,
             "label": self.label,
-            "side": self.side,
+            "side": self.robot.name,
+            **({} if self.robot.name in SIDES else {"robot": _drawn(self.robot)}),
             "start": round(float(times[0]), 6),
             "period": round(float(times[1] - times[0]), 9),
             **packed,
@@ -132,7 +134,9 @@ class Motion:
     @cached_property
     def alt(self) -> str:
         """One or two sentences for whoever does not see the picture, with the run's own numbers."""
-        words = f"Baxter's {self.side} arm moves for {self.t[-1] - self.t[0]:.1f} s"
+        name = self.robot.name
+        whose = f"Baxter's {name} arm" if name in SIDES else f"The arm {name}"
+        words = f"{whose} moves for {self.t[-1] - self.t[0]:.1f} s"
         if self.error is not None:
             rms = float(np.sqrt(np.mean(self.error**2)))
             words += f"; tip error {_mm(rms)} RMS, {_mm(np.abs(self.error).max())} at most"
@@ -143,11 +147,12 @@ class Motion:
     @cached_property
     def description(self) -> str:
         """A paragraph: duration, joint travel, error over time, torques, all from the arrays."""
+        names = [name.removeprefix(f"{self.robot.name}_") for name in self.robot.joint_names]
         travel = np.ptp(self.q, axis=0)
         most = int(travel.argmax())
         words = [
             self.alt,
-            f"Joint {JOINT_NAMES[most]} travels farthest, {travel[most]:.2f} rad between"
+            f"Joint {names[most]} travels farthest, {travel[most]:.2f} rad between"
             f" {self.q[:, most].min():.2f} and {self.q[:, most].max():.2f} rad.",
         ]
         if self.target_position is not None:
@@ -167,7 +172,7 @@ class Motion:
             at, joint = np.unravel_index(np.abs(self.tau).argmax(), self.tau.shape)
             words.append(
                 f"The largest torque is {self.tau[at, joint]:.1f} N m at joint "
-                f"{JOINT_NAMES[joint]}, t = {self.t[at]:.2f} s."
+                f"{names[joint]}, t = {self.t[at]:.2f} s."
             )
         return " ".join(words)
 
@@ -219,15 +224,33 @@ def _frozen(value: Any, shape: tuple[int, ...], name: str) -> Array:
     return locked(np.array(as_array(value, shape, name)))
 
 
+def _drawn(robot: Robot) -> dict[str, Any]:
+    """The joints of an arm that the viewer has no meshes of, in the form of Baxter's file."""
+    names = ("base", *robot.joint_names)
+    poses = np.array([*(body["T_parent"] for body in robot.bodies), robot.T_hand_tip])
+    turns = np.round(_turns(poses[:, :3, :3]), 9).tolist()
+    positions = np.round(poses[:, :3, 3], 9).tolist()
+    places = [
+        {"parent": parent, "position": position, "quaternion": turn}
+        for parent, position, turn in zip(names, positions, turns, strict=True)
+    ]
+    joints = [{"name": name, **place} for name, place in zip(names[1:], places, strict=False)]
+    return {"arm": list(names[1:]), "joints": joints, "tips": {robot.name: places[-1]}}
+
+
 def _quaternions(R: Array | None) -> Array | None:
     """Rotations (N, 3, 3) to unit quaternions x y z w (N, 4) without jumps of sign."""
     if R is None:
         return None
-    from scipy.spatial.transform import Rotation  # a slow import, for who shows a motion
-
-    q = Rotation.from_matrix(R).as_quat()
+    q = _turns(R)
     flips = np.where(np.sum(q[1:] * q[:-1], axis=1) < 0, -1.0, 1.0)
     return np.asarray(q * np.cumprod([1.0, *flips])[:, None], dtype=np.float64)
+
+
+def _turns(R: Array) -> Array:
+    from scipy.spatial.transform import Rotation  # a slow import, for who shows a motion
+
+    return np.asarray(Rotation.from_matrix(R).as_quat(), dtype=np.float64)
 
 
 def _mm(metres: float) -> str:

@@ -40,7 +40,7 @@ def motion_of(
     if reference and not isinstance(log.target, PoseSample):
         arms["the target"] = log.target.position
     return Motion(
-        log.side,
+        log.robot,
         log.t,
         log.q,
         title=title,

@@ -29,11 +29,13 @@ class Engine(Protocol):
     def state(self) -> tuple[Array, Array]:
         """Joint angles in [rad] and speeds in [rad/s], two new arrays of shape (n,)."""
 
-    def step(self, tau: Array) -> None:
+    def step(self, tau: Array, ddq: Array | None = None) -> None:
         """Take a step under all torques on the joints, once `state` was asked where it begins.
 
         Args:
             tau: Shape (n,) in [N m].
+            ddq: The accelerations that they make, shape (n,) in [rad/s^2], where somebody knows
+                them already: 7 us less where the engine has no rotors.
         """
 
     def close(self) -> None:

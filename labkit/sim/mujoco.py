@@ -24,7 +24,7 @@ class MuJoCo:
     def __init__(self, robot: Robot, plant: Plant, dt: float) -> None:
         """Read the arm from its URDF text."""
         self._model = mujoco.MjModel.from_xml_string(robot.urdf(plant))
-        self._model.dof_armature[:] = plant.armature
+        self._model.dof_armature[:] = plant.each("armature", robot.n)
         self._model.opt.timestep = dt
         for part in _OFF:
             self._model.opt.disableflags |= int(part)
@@ -37,7 +37,7 @@ class MuJoCo:
     def state(self) -> tuple[Array, Array]:
         return self._q.copy(), self._dq.copy()
 
-    def step(self, tau: Array) -> None:
+    def step(self, tau: Array, ddq: Array | None = None) -> None:
         self._tau[:] = tau
         mujoco.mj_step(self._model, self._data)
 

@@ -41,8 +41,8 @@ class PyBullet:
             bullet.changeDynamics(self._arm, joint, **free, **here)
         motors = {"forces": [0.0] * len(self._joints), **here}
         bullet.setJointMotorControlArray(self._arm, self._joints, bullet.VELOCITY_CONTROL, **motors)
-        self._rotors = np.array(plant.armature)
-        self._geared = Model(robot.side, plant) if self._rotors.any() else None
+        self._rotors = plant.each("armature", robot.n)
+        self._geared = Model(robot, plant) if self._rotors.any() else None
 
     def place(self, q: Array) -> None:
         for joint, angle in enumerate(q):
@@ -53,9 +53,11 @@ class PyBullet:
         self._state = np.array(q), np.array(dq)
         return self._state
 
-    def step(self, tau: Array) -> None:
+    def step(self, tau: Array, ddq: Array | None = None) -> None:
         if self._geared is not None:  # PyBullet has no rotors: take off what they would take
-            tau = tau - self._rotors * self._geared.forward_dynamics(*self._state, tau)
+            if ddq is None:
+                ddq = self._geared.forward_dynamics(*self._state, tau)
+            tau = tau - self._rotors * ddq
         bullet.setJointMotorControlArray(
             self._arm, self._joints, bullet.TORQUE_CONTROL, forces=tau.tolist(),
             physicsClientId=self._client,

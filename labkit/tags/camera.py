@@ -81,13 +81,21 @@ class Camera:
 
     @classmethod
     def in_hand(cls, arm: Arm, intrinsics: Intrinsics | None = None, **options: Any) -> Camera:
-        """Baxter's hand camera, which moves with the arm.
+        """A hand's camera, such as Baxter's, which moves with the arm.
 
         Args:
             arm: Whose hand.
             intrinsics: As for a fixed camera.
             **options: The other arguments of a fixed camera.
+
+        Raises:
+            LabkitError: The hand has no camera.
         """
+        if arm.robot.T_hand_camera is None:
+            raise LabkitError(
+                f"{arm.robot.name} has no camera in its hand; dataclasses.replace(robot, "
+                "T_hand_camera=...) gives it one, or use a camera that stands: looking_at(eye, at)"
+            )
         camera = cls(arm.world, np.eye(4), intrinsics, **options)
         camera._hand = arm
         return camera
@@ -242,7 +250,8 @@ class Camera:
 
 def _held(arm: Arm, q: Array) -> Array:
     """Pose in the world of the camera in an arm's hand, at joint angles ``q``."""
-    T_tc = se3.inverse(arm.robot.T_hand_tip) @ arm.robot.T_hand_camera
+    T_hc: Any = arm.robot.T_hand_camera
+    T_tc = se3.inverse(arm.robot.T_hand_tip) @ T_hc
     return locked(arm.model.pose(q) @ T_tc)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.spatial import ConvexHull
 
 from ..shapes import Array
 
@@ -56,6 +57,12 @@ def box(half: Any, colour: Any) -> Surface:
         colour: Red, green and blue, and opacity, which is not drawn.
     """
     corners = (_BOX * half)[_SIDES]
+    return Surface(corners, np.tile(np.asarray(colour, dtype=float)[:3], (len(corners), 1)))
+
+
+def wrapped(points: Array, colour: Any) -> Surface:
+    """The convex hull of points, shape (n, 3) in [m]."""
+    corners = points[ConvexHull(points).simplices]
     return Surface(corners, np.tile(np.asarray(colour, dtype=float)[:3], (len(corners), 1)))
 
 

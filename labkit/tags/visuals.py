@@ -1,14 +1,14 @@
-"""What cameras see of Baxter: meshes, where the joints have moved them.
+"""What cameras see of robots: Baxter's meshes, and of other arms a capsule for each link.
 
-They belong to no physics: arms in the engine are seven bodies without a shape.  Where a world has
-only one arm, or none, the other hangs at Rethink's neutral pose.
+They belong to no physics: arms in the engine are bodies without a shape.  Where a world has only
+one of Baxter's arms, or no arm, the other hangs at Rethink's neutral pose.
 """
 
 from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache, cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -18,34 +18,26 @@ from scipy.spatial.transform import Rotation
 
 from .. import se3
 from ..baxter import robot
+from ..robot import SIDES, Robot
 from ..scene import FACE, Table, Wall
 from ..shapes import Array, locked
 from ..world import World
-from .surface import Surface, box, joined, mesh
+from .surface import Surface, box, joined, mesh, wrapped
 
 DATA = Path(__file__).parents[1] / "data"
 
 
-@dataclass(frozen=True, eq=False)
-class Piece:
-    """A mesh of one colour, a part of the robot.
+COLOUR = (0.45, 0.47, 0.5)
+"""Of an arm without meshes."""
 
-    Attributes:
-        parent: The joint that carries it.
-        T_jp: Its pose in that joint's moving frame, shape (4, 4).
-        colour: Red, green, blue, opacity, from 0 to 1.
-        file: The mesh's file.
-    """
+THICK = 0.035
+"""Radius of a capsule over the length of all of them."""
 
-    parent: str
-    T_jp: Array
-    colour: tuple[float, ...]
-    file: Path
 
-    @cached_property
-    def surface(self) -> Surface:
-        """Its triangles, in the joint's moving frame."""
-        return mesh(self.file, self.colour).moved(self.T_jp)
+class _Part:
+    """A part of a robot, with a surface in the frame of the joint that carries it."""
+
+    surface: Any
 
     @cached_property
     def ball(self) -> tuple[Array, float]:
@@ -64,37 +56,93 @@ class Piece:
         return bool((self._hull[:, :3] @ point + self._hull[:, 3]).max() < -0.002)
 
 
-class RobotVisuals:
-    """What cameras see of the robot, with its joints where they are now.
+@dataclass(frozen=True, eq=False)
+class Capsule(_Part):
+    """A link as a rod with round ends.
 
     Attributes:
-        frames: Pose in the world of each piece's joint, shape (pieces, 4, 4).
+        parent: The joint that carries it.
+        end: Where it ends, in that joint's moving frame, where it begins, shape (3,) in [m].
+        radius: In [m].
+    """
+
+    parent: str
+    end: Array
+    radius: float
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Its triangles, in the joint's moving frame."""
+        around, along = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 13)[1:], np.linspace(0, np.pi, 7))
+        ring = np.array(
+            [np.cos(around) * np.sin(along), np.sin(around) * np.sin(along), np.cos(along)]
+        )
+        ball = self.radius * ring.reshape(3, -1).T
+        return wrapped(np.concatenate([ball, ball + self.end]), COLOUR)
+
+
+@dataclass(frozen=True, eq=False)
+class Piece(_Part):
+    """A mesh of one colour, a part of Baxter.
+
+    Attributes:
+        parent: The joint that carries it.
+        T_jp: Its pose in that joint's moving frame, shape (4, 4).
+        colour: Red, green, blue, opacity, from 0 to 1.
+        file: The mesh's file.
+    """
+
+    parent: str
+    T_jp: Array
+    colour: tuple[float, ...]
+    file: Path
+
+    @cached_property
+    def surface(self) -> Surface:
+        """Its triangles, in the joint's moving frame."""
+        return mesh(self.file, self.colour).moved(self.T_jp)
+
+
+class RobotVisuals:
+    """What cameras see of the robots, with their joints where they are now.
+
+    Attributes:
+        pieces: All of their parts.
+        frames: Pose in the world of each part's joint, shape (pieces, 4, 4).
     """
 
     def __init__(self, world: World) -> None:
         """Look where the joints of ``world`` are."""
-        q = {side: robot(side).neutral for side in ("left", "right")}
-        q |= {arm.robot.side: arm.truth().q for arm in world.arms}
-        frames = joint_frames(q)
-        self.frames = np.array([frames[piece.parent] for piece in pieces()])
+        q = {arm.robot.name: arm.truth().q for arm in world.arms if arm.robot.name in SIDES}
+        others = [arm for arm in world.arms if arm.robot.name not in SIDES]
+        self.pieces: tuple[Piece | Capsule, ...] = pieces() if q or not others else ()
+        frames = joint_frames({side: robot(side).neutral for side in SIDES} | q)
+        poses = [frames[piece.parent] for piece in self.pieces]
+        for arm in others:
+            links = capsules(arm.robot)
+            frames = link_frames(arm.robot, arm.truth().q)
+            self.pieces += links
+            poses += [frames[link.parent] for link in links]
+        self.frames = np.array(poses)
 
     @property
     def balls(self) -> tuple[Array, Array]:
         """A ball around each piece: centres in the world (pieces, 3) and radii (pieces,) in [m]."""
-        centres, radii = _balls()
+        centres, radii = _balls(self.pieces)
         return np.einsum("nij,nj->ni", self.frames, centres)[:, :3], radii
 
     def surface(self, wanted: Any) -> Surface:
         """Those pieces that are wanted, shape (pieces,), bool, in the world."""
-        return joined(pieces()[i].surface.moved(self.frames[i]) for i in np.flatnonzero(wanted))
+        chosen = np.flatnonzero(wanted)
+        return joined(self.pieces[i].surface.moved(self.frames[i]) for i in chosen)
 
     def around(self, point: Array) -> str | None:
         """The joint whose link a point of the world, shape (3,) in [m], is inside of, if any."""
         centres, radii = self.balls
         for i in np.flatnonzero(np.linalg.norm(centres - point, axis=1) < radii):
             T = self.frames[i]
-            if pieces()[i].encloses(T[:3, :3].T @ (point - T[:3, 3])):
-                return pieces()[i].parent
+            if self.pieces[i].encloses(T[:3, :3].T @ (point - T[:3, 3])):
+                return self.pieces[i].parent
         return None
 
 
@@ -110,10 +158,10 @@ def scenery(world: World) -> Surface:
 
 
 def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
-    """Pose in the world of every joint's moving frame, and of the base.
+    """Pose in the world of the moving frames of all of Baxter's joints, and of the base.
 
     Args:
-        q: Joint angles of each side, shape (7,) in [rad].
+        q: Joint angles of each side, shape (n,) in [rad].
     """
     angle = {
         name: float(x)
@@ -122,24 +170,51 @@ def joint_frames(q: dict[str, Any]) -> dict[str, Array]:
     }
     frames: dict[str, Array] = {"base": np.eye(4)}
     for name, parent, T in _joints():
-        c, s = np.cos(angle.get(name, 0.0)), np.sin(angle.get(name, 0.0))
-        turn = np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
-        frames[name] = frames[parent] @ T @ turn
+        frames[name] = frames[parent] @ T @ _turn(angle.get(name, 0.0))
     return frames
+
+
+def link_frames(robot: Robot, q: Array) -> dict[str, Array]:
+    """Pose in the world of the moving frames of a robot's joints, and of the base.
+
+    Args:
+        robot: Any robot.
+        q: Joint angles, shape (n,) in [rad].
+    """
+    T = np.eye(4)
+    frames = {"base": T}
+    for body, angle in zip(robot.bodies, q.tolist(), strict=True):
+        frames[body["joint"]] = T = T @ np.array(body["T_parent"]) @ _turn(angle)
+    return frames
+
+
+def _turn(angle: float) -> Array:
+    """A turn about z."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 
 
 @cache
 def pieces() -> tuple[Piece, ...]:
-    """All the robot's pieces."""
+    """All of Baxter's pieces."""
     return tuple(
         Piece(p["parent"], _placed(p), tuple(p["rgba"]), DATA / p["mesh"]) for p in _table("pieces")
     )
 
 
-@cache
-def _balls() -> tuple[Array, Array]:
-    centres = np.array([[*piece.ball[0], 1.0] for piece in pieces()])
-    return centres, np.array([piece.ball[1] for piece in pieces()])
+@lru_cache(maxsize=8)
+def capsules(robot: Robot) -> tuple[Capsule, ...]:
+    """A capsule for each link of a robot, from one joint to the next, and to the tip."""
+    ends = [*(np.array(body["T_parent"])[:3, 3] for body in robot.bodies), robot.T_hand_tip[:3, 3]]
+    radius = THICK * float(sum(np.linalg.norm(end) for end in ends))
+    names = ("base", *robot.joint_names)
+    return tuple(Capsule(*link, radius) for link in zip(names, ends, strict=True))
+
+
+@lru_cache(maxsize=8)
+def _balls(parts: tuple[_Part, ...]) -> tuple[Array, Array]:
+    centres = np.array([[*part.ball[0], 1.0] for part in parts])
+    return centres, np.array([part.ball[1] for part in parts])
 
 
 @cache

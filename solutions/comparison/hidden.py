@@ -71,7 +71,7 @@ def drawn_log(
         command_type=lk.JointVelocity,
         controller="drawn",
         plant=lk.IDEAL,
-        side=model.robot.side,
+        robot=model.robot,
     )
 
 

@@ -147,5 +147,5 @@ def lift(way: float, duration: float, kp: float, hand: float = 0.0, rows: int = 
         command_type=lk.JointTorque,
         controller="lift",
         plant=ROUGH,
-        side="left",
+        robot=lk.robot("left"),
     )

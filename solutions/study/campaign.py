@@ -159,7 +159,7 @@ def measured(log: Log, wanted: Any) -> dict[str, Any]:
         The fields of `metrics.Summary`; the error of tracking alone, after the first second; the
         last error; the joints' RMS error; and a digest of the motion, to compare bit for bit.
     """
-    model = Model(log.side, log.plant)
+    model = Model(log.robot, log.plant)
     e, late = metrics.tip_error(log, model), log.t >= 1.0
     off = np.array([wanted(t).position for t in log.t]) - log.q
     told = asdict(metrics.summary(log, model)) | {

@@ -47,7 +47,7 @@ def frames(
     wanted = metrics.target_poses(log)[:, :3, 3]
     pictures = []
     with World(things=(Table(),)) as world:
-        arm = Arm(log.side, log.plant, world=world)
+        arm = Arm(log.robot, log.plant, world=world)
         if stage is not None:
             stage(world)
         camera = Camera(world, looking_at(EYE, AT), lens, samples=1)

@@ -37,9 +37,9 @@ class JointImpedance:
 
     Attributes:
         model: Of the arm.
-        K: Stiffness, shape (7,) or one number, in [N m/rad].
-        D: Damping, shape (7,) or one number, in [N m s/rad].
-        inertia: M_d, shape (7,) or (7, 7) in [kg m^2]; None keeps the arm's own.
+        K: Stiffness, shape (n,) or one number, in [N m/rad].
+        D: Damping, shape (n,) or one number, in [N m s/rad].
+        inertia: M_d, shape (n,) or (n, n) in [kg m^2]; None keeps the arm's own.
         gravity: Add g(q); False for an arm that carries its own weight, as Baxter does.
     """
 
@@ -50,10 +50,10 @@ class JointImpedance:
     gravity: bool = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "K", as_gains(self.K, 7, "K"))
-        object.__setattr__(self, "D", as_gains(self.D, 7, "D"))
+        object.__setattr__(self, "K", as_gains(self.K, self.model.robot.n, "K"))
+        object.__setattr__(self, "D", as_gains(self.D, self.model.robot.n, "D"))
         if self.inertia is not None:
-            object.__setattr__(self, "inertia", as_inertia(self.inertia, 7))
+            object.__setattr__(self, "inertia", as_inertia(self.inertia, self.model.robot.n))
 
     def __call__(self, state: State, target: Sample) -> JointTorque:
         """The command at this tick; the target's samples are joint angles."""

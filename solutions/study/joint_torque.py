@@ -26,8 +26,8 @@ class ComputedTorque:
 
     Attributes:
         model: Of the arm.
-        Kp: Gains, shape (7,) or one number, in [1/s^2].
-        Kd: Gains, shape (7,) or one number, in [1/s].
+        Kp: Gains, shape (n,) or one number, in [1/s^2].
+        Kd: Gains, shape (n,) or one number, in [1/s].
         gravity: Add g(q); False for an arm that carries its own weight, as Baxter does.
     """
 
@@ -37,8 +37,8 @@ class ComputedTorque:
     gravity: bool = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "Kp", as_gains(self.Kp, 7, "Kp"))
-        object.__setattr__(self, "Kd", as_gains(self.Kd, 7, "Kd"))
+        object.__setattr__(self, "Kp", as_gains(self.Kp, self.model.robot.n, "Kp"))
+        object.__setattr__(self, "Kd", as_gains(self.Kd, self.model.robot.n, "Kd"))
 
     def __call__(self, state: State, target: Sample) -> JointTorque:
         """The command at this tick; the target's samples are joint angles."""
@@ -54,8 +54,8 @@ class AugmentedPD:
 
     Attributes:
         model: Of the arm.
-        Kp: Gains, shape (7,) or one number, in [N m/rad].
-        Kd: Gains, shape (7,) or one number, in [N m s/rad].
+        Kp: Gains, shape (n,) or one number, in [N m/rad].
+        Kd: Gains, shape (n,) or one number, in [N m s/rad].
         gravity: Add g(q); False for an arm that carries its own weight, as Baxter does.
     """
 
@@ -65,8 +65,8 @@ class AugmentedPD:
     gravity: bool = True
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "Kp", as_gains(self.Kp, 7, "Kp"))
-        object.__setattr__(self, "Kd", as_gains(self.Kd, 7, "Kd"))
+        object.__setattr__(self, "Kp", as_gains(self.Kp, self.model.robot.n, "Kp"))
+        object.__setattr__(self, "Kd", as_gains(self.Kd, self.model.robot.n, "Kd"))
 
     def __call__(self, state: State, target: Sample) -> JointTorque:
         """The command at this tick; the target's samples are joint angles."""

@@ -19,16 +19,16 @@ class JointVelocityPD:
     """Speeds that follow a joint trajectory.
 
     Attributes:
-        Kp: Position gains, shape (7,) or one number, in [1/s].
-        Kd: Velocity gains, shape (7,) or one number, without unit.
+        Kp: Position gains, shape (n,) or one number, in [1/s].
+        Kd: Velocity gains, shape (n,) or one number, without unit.
     """
 
     Kp: Any = 5.0
     Kd: Any = 0.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "Kp", as_gains(self.Kp, 7, "Kp"))
-        object.__setattr__(self, "Kd", as_gains(self.Kd, 7, "Kd"))
+        object.__setattr__(self, "Kp", as_gains(self.Kp, None, "Kp"))
+        object.__setattr__(self, "Kd", as_gains(self.Kd, None, "Kd"))
 
     def __call__(self, state: State, target: Sample) -> JointVelocity:
         """The command at this tick; the target's samples are joint angles."""

@@ -79,7 +79,7 @@ def overview(
     from matplotlib import pyplot as plt
 
     figure = plt.figure(figsize=(13, 10), layout="constrained")
-    figure.suptitle(title or f"{log.controller} on the {log.plant.name} {log.side} arm")
+    figure.suptitle(title or f"{log.controller} on the {log.plant.name} {log.robot.name} arm")
     columns = figure.add_gridspec(1, 3, width_ratios=(1.35, 1, 1))
     left, middle, right = (columns[k].subgridspec(n, 1) for k, n in enumerate((4, 7, 7)))
     e = metrics.tip_error(log, model)

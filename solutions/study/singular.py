@@ -35,7 +35,7 @@ class Watch:
         """How much of the largest damping is due: 0 away from singularities, 1 at one.
 
         Args:
-            J: Tip Jacobian, shape (6, 7).
+            J: Tip Jacobian, shape (6, n).
         """
         sigma = np.linalg.svd(J, compute_uv=False)
         if sigma[-1] >= self.threshold:

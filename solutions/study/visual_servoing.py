@@ -23,7 +23,7 @@ from labkit import (
     Trajectory,
     se3,
 )
-from labkit.control import Command, still
+from labkit.control import Command
 from labkit.errors import ControllerError
 from labkit.run import Controller
 from labkit.shapes import as_vector
@@ -92,7 +92,7 @@ def stalled(controller: Controller, busy: Callable[[], bool], timeout: float = 0
         command = latest
         if state.t - since <= timeout or not isinstance(command, JointVelocity):
             return command
-        return still()
+        return JointVelocity(0.0 * state.q)
 
     stalled.__name__ = f"stalled {getattr(controller, '__name__', type(controller).__name__)}"
     return stalled

@@ -54,7 +54,7 @@ class WorkspaceImpedance:
         zeta: Damping ratio, where D is None.
         inertia: M_d, shape (6,) or (6, 6) in [kg] and [kg m^2]; None keeps the arm's own.
         gravity: Add g(q); False for an arm that carries its own weight, as Baxter does.
-        posture: Joint angles to stay near, shape (7,) in [rad]; None is `Robot.ready`.
+        posture: Joint angles to stay near, shape (n,) in [rad]; None is `Robot.ready`.
         pull: Stiffness of the posture for each unit of inertia, in [1/s^2]; critically damped.
         damping: The largest lambda squared by which the inverse of Lambda grows near a
             singularity, in [1/kg].

@@ -32,7 +32,7 @@ class WorkspaceVelocityPD:
         model: Of the arm.
         Kp: Gains on the position [1/s] and orientation [1/s] error, shape (6,) or one number.
         Kd: Gains on the error of the twist, shape (6,) or one number, without unit.
-        posture: Joint angles to stay near, shape (7,) in [rad]; None is `Robot.ready`.
+        posture: Joint angles to stay near, shape (n,) in [rad]; None is `Robot.ready`.
         pull: How fast the free motion goes there, in [1/s].
         damping: The largest lambda squared.
         watch: Decides when to damp.

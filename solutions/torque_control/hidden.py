@@ -182,7 +182,7 @@ def back(model: lk.Model, off: Any) -> Loop:
     """Back to a place from ``off``, (7,) in [rad]."""
     q = model.robot.ready
     return Loop(
-        lk.Hold(q, 2.0), side=model.robot.side, plant=lk.BAXTER, q0=q + off, settle=0.8, seed=1
+        lk.Hold(q, 2.0), side=model.robot.name, plant=lk.BAXTER, q0=q + off, settle=0.8, seed=1
     )
 
 

@@ -21,7 +21,7 @@ def motion():
             lk.Trajectory(lk.Line(q, goal), lk.Quintic(5.0)),
             lambda s, x: lk.JointPosition(x.position),
         )
-    return Motion(side="left", t=log.t, q=log.q, title="Turn", label="position mode")
+    return Motion(robot="left", t=log.t, q=log.q, title="Turn", label="position mode")
 
 
 def page(folder):

@@ -131,7 +131,7 @@ def test_what_cannot_travel_is_a_sentence(value):
         {"no": "kind"},
         {"$": "array", "shape": [3], "numbers": [1.0]},
         {"$": "array", "shape": [1], "numbers": [{"$": "float", "value": "spam"}]},
-        {"$": "JointVelocity", "value": [1.0]},
+        {"$": "JointVelocity", "value": 1.0},
         {"$": "tuple", "items": 3},
         {"$": "dict", "items": 3},
         {"$": "array", "shape": [float("inf")], "numbers": [1.0]},

@@ -39,5 +39,5 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
 def test_the_line_is_the_students():
     """The last line outside labkit is quoted, not the one in labkit that raised."""
     with pytest.raises(lk.LabkitError) as caught:
-        lk.JointVelocity(np.zeros(3))
-    assert "in the line `lk.JointVelocity(np.zeros(3))`" in told(caught.value)
+        lk.JointVelocity(np.zeros((3, 1)))
+    assert "in the line `lk.JointVelocity(np.zeros((3, 1)))`" in told(caught.value)

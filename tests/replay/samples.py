@@ -22,7 +22,7 @@ def swing(
                      [0 * t, 0 * t, 0 * t + 1]]).transpose(2, 0, 1)  # fmt: skip
     names = ["joint torque PD", "workspace PD", "impedance", "MoveIt"]
     return Motion(
-        side=side,
+        robot=side,
         t=t,
         q=q,
         title="Circle with the joint velocity PD controller",

@@ -83,7 +83,7 @@ def test_arrays_are_frozen_copies():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"side": "up"}, "no side 'up'"),
+        ({"robot": "up"}, "no arm 'up'"),
         ({"q": np.zeros((5, 6))}, "q has shape"),
         ({"t": np.zeros(5)}, "does not increase"),
         ({"tau": np.full((5, 7), np.nan)}, "tau holds nan"),
@@ -91,7 +91,7 @@ def test_arrays_are_frozen_copies():
     ],
 )
 def test_wrong_input_is_named(change, sentence):
-    good = {"side": "left", "t": np.linspace(0, 1, 5), "q": np.zeros((5, 7))}
+    good = {"robot": "left", "t": np.linspace(0, 1, 5), "q": np.zeros((5, 7))}
     with pytest.raises(LabkitError, match=sentence):
         Motion(**(good | change))
 

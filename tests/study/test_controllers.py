@@ -311,7 +311,6 @@ def test_impossible_gains_are_refused(gains, error):
 @pytest.mark.parametrize(
     "make",
     [
-        lambda x: JointVelocityPD(Kp=x),
         lambda x: WorkspaceVelocityPD(MODEL, Kp=x),
         lambda x: ComputedTorque(MODEL, Kp=x),
         lambda x: AugmentedPD(MODEL, x, 1.0),
@@ -324,6 +323,8 @@ def test_every_controller_checks_its_gains(make):
         make([1.0, 2.0])
     with pytest.raises(OutOfRange, match="at least 0"):
         make(-1.0)
+    with pytest.raises(OutOfRange, match="at least 0"):
+        JointVelocityPD(Kp=-1.0)
 
 
 @pytest.mark.parametrize("make", [WorkspaceVelocityPD, lambda m: WorkspaceImpedance(m, K6)])

@@ -1,4 +1,4 @@
-// Baxter as three.js objects: one set of geometries for the page, a group per joint.
+// A robot as three.js objects: a group per joint; Baxter's geometries are made once for the page.
 import * as THREE from "three";
 import { frames, posture } from "./kinematics.js";
 
@@ -29,6 +29,34 @@ function parts(robot) {
   return shared;
 }
 
+/** How long an arm without meshes is, stretched, in metres. */
+export const span = (robot) => [...robot.joints, ...Object.values(robot.tips)]
+  .reduce((sum, { position }) => sum + Math.hypot(...position), 0);
+
+/** The links of an arm without meshes: a capsule from each joint to the next, and to the tip. */
+function capsules(robot) {
+  const links = [...robot.joints, ...Object.values(robot.tips)];
+  const ends = links.map(({ position }) => new THREE.Vector3(...position));
+  const radius = 0.035 * span(robot);
+  return links.map(({ parent }, k) => {
+    const mesh = new THREE.Mesh(new THREE.CapsuleGeometry(radius, ends[k].length(), 6, 18));
+    mesh.position.copy(ends[k]).multiplyScalar(0.5);
+    mesh.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), ends[k].clone().normalize());
+    return { parent, mesh };
+  });
+}
+
+/** Baxter's pieces, or with a side those of one arm. */
+function pieces(robot, side) {
+  const { geometries, materials } = parts(robot);
+  return robot.pieces.filter(({ parent }) => !side || parent.startsWith(side)).map((piece) => {
+    const mesh = new THREE.Mesh(geometries[piece.mesh], materials[robot.meshes[piece.mesh].colour]);
+    mesh.position.fromArray(piece.position);
+    mesh.quaternion.fromArray(piece.quaternion);
+    return { parent: piece.parent, mesh };
+  });
+}
+
 /** The whole robot, or with `ghost` {side, colour} one see-through arm. */
 export class Body {
   constructor(robot, ghost) {
@@ -36,24 +64,21 @@ export class Body {
     this.root = new THREE.Group();
     this.groups = { base: new THREE.Group() };
     for (const joint of robot.joints) this.groups[joint.name] = new THREE.Group();
-    const { geometries, materials } = parts(robot);
     this.own = ghost && new THREE.MeshStandardMaterial({ // set back a few mm: the arm itself stays red
       color: ghost.colour, transparent: true, opacity: 0.38, roughness: 0.8, depthWrite: false,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 400 });
-    for (const piece of robot.pieces) {
-      if (ghost && !piece.parent.startsWith(ghost.side)) continue;
-      const mesh = new THREE.Mesh(geometries[piece.mesh], this.own ?? materials[robot.meshes[piece.mesh].colour]);
-      mesh.position.fromArray(piece.position);
-      mesh.quaternion.fromArray(piece.quaternion);
+    if (robot.arm) this.own ??= new THREE.MeshStandardMaterial({ color: 0x8a9099, roughness: 0.5 });
+    for (const { parent, mesh } of robot.arm ? capsules(robot) : pieces(robot, ghost?.side)) {
+      if (this.own) mesh.material = this.own;
       if (ghost) mesh.renderOrder = 1;
-      this.groups[piece.parent].add(mesh);
+      this.groups[parent].add(mesh);
     }
     this.root.add(...Object.values(this.groups));
   }
 
   /** Move one arm to q. */
   pose(side, q) {
-    const found = frames(this.robot, posture(side, q));
+    const found = frames(this.robot, posture(this.robot, side, q));
     for (const [name, { R, p }] of Object.entries(found)) {
       const group = this.groups[name];
       group.matrixAutoUpdate = false;

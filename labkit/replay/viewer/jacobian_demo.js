@@ -53,7 +53,7 @@ export class JacobianDemo {
     if (this.stage.works) {
       this.body.pose(this.side, q);
       place(this.tool, { R, p });
-      place(this.axis, frames(this.robot, posture(this.side, q))[`${this.side}_${ARM[k]}`]);
+      place(this.axis, frames(this.robot, posture(this.robot, this.side, q))[`${this.side}_${ARM[k]}`]);
       const [v, w] = [columns[k].slice(0, 3), columns[k].slice(3)].map((x) => x.map((c) => SEEN * c));
       this.linear.lay(p, v);
       this.angular.lay(p, w);

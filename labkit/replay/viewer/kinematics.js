@@ -4,14 +4,15 @@ import { IDENTITY, aboutZ, add, apply, cross, fromQuaternion, multiply, subtract
 export const ARM = ["s0", "s1", "e0", "e1", "w0", "w1", "w2"];
 export const NEUTRAL = [0, -0.55, 0, 0.75, 0, 1.26, 0];
 
-/** Joint angles by name: one arm at q, the other at rest, the head straight. */
-export function posture(side, q) {
-  const other = side === "left" ? "right" : "left";
-  const angles = { head_pan: 0 };
-  ARM.forEach((joint, i) => {
-    angles[`${side}_${joint}`] = q[i];
-    angles[`${other}_${joint}`] = NEUTRAL[i];
-  });
+/** Names of the joints that q belongs to: one of Baxter's sides, or a reader's own arm. */
+export const joints = (robot, side) => robot.arm ?? ARM.map((joint) => `${side}_${joint}`);
+
+/** Joint angles by name: one arm at q, Baxter's other at rest, the head straight. */
+export function posture(robot, side, q) {
+  const angles = {};
+  const put = (arm, values) => joints(robot, arm).forEach((joint, i) => { angles[joint] = values[i]; });
+  if (!robot.arm) for (const arm of ["left", "right"]) put(arm, NEUTRAL);
+  put(side, q);
   return angles;
 }
 
@@ -31,15 +32,15 @@ export function frames(robot, angles) {
 /** The tool's pose {R, p} in the base. */
 export function tip(robot, side, q) {
   const tool = robot.tips[side];
-  return compose(frames(robot, posture(side, q))[tool.parent], placed(tool));
+  return compose(frames(robot, posture(robot, side, q))[tool.parent], placed(tool));
 }
 
-/** Seven columns (v, w): the tip's twist per unit joint speed, at the tip, in the base's axes. */
+/** A column (v, w) for each joint: the tip's twist per unit joint speed, at the tip, in the base's axes. */
 export function tipJacobian(robot, side, q) {
-  const all = frames(robot, posture(side, q));
+  const all = frames(robot, posture(robot, side, q));
   const end = compose(all[robot.tips[side].parent], placed(robot.tips[side]));
-  return ARM.map((joint) => {
-    const { R, p } = all[`${side}_${joint}`];
+  return joints(robot, side).map((joint) => {
+    const { R, p } = all[joint];
     const axis = [R[2], R[5], R[8]];
     return [...cross(axis, subtract(end.p, p)), ...axis];
   });

@@ -1,6 +1,6 @@
 // The replay of one motion: the robot, its controls, and plots that share one time cursor.
-import { Body } from "./body.js";
-import { ARM, frames, posture, tip } from "./kinematics.js";
+import { Body, span } from "./body.js";
+import { frames, joints, posture, tip } from "./kinematics.js";
 import { axes, board, dispose, line } from "./marks.js";
 import { DASHES, letters, Plot } from "./plots.js";
 import { at, read } from "./recording.js";
@@ -13,7 +13,7 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 
 export class Player {
   constructor(host, json, robot) {
-    Object.assign(this, { host, robot, speed: 1, playing: false, plots: [] });
+    Object.assign(this, { host, baxter: robot, speed: 1, playing: false, plots: [] });
     this.element = h("div", { class: "lk-player", role: "group" });
     this.stagebox = h("div", { class: "lk-stage" });
     this.plotbox = h("div", { class: "lk-plots" });
@@ -67,10 +67,9 @@ export class Player {
 
   /** What does not depend on the motion. */
   furnish() {
-    this.body = new Body(this.robot);
     this.target = axes();
     this.board = board();
-    this.stage.scene.add(this.body.root, this.target, this.board);
+    this.stage.scene.add(this.target, this.board);
     this.stage.drawn = () => { this.host.dataset.ready = "1"; };
     this.stage.themed = () => { this.dress(); this.arrange(); };
   }
@@ -79,6 +78,7 @@ export class Player {
   show(json) {
     this.play(false);
     const motion = this.motion = read(json);
+    this.embody(motion.robot ?? this.baxter);
     this.tips = motion.q.map((q) => tip(this.robot, motion.side, q).p);
     this.element.setAttribute("aria-label", `Replay: ${motion.title}`);
     this.stage.canvas.setAttribute("aria-label", `${motion.title}. ${motion.alt} Arrow keys turn the view, plus and minus zoom, 1 to 4 choose a view.`);
@@ -94,6 +94,23 @@ export class Player {
     this.plotbox.replaceChildren(...this.plots.map((p) => p.element));
     this.seek(Math.min(Math.max(this.time ?? motion.start, motion.start), motion.end));
     if (!this.stage.works) this.host.dataset.ready = "1";
+  }
+
+  /** Draw another robot from now on. */
+  embody(robot) {
+    if (robot === this.robot) return;
+    this.robot = robot;
+    if (!this.stage.works) return;
+    if (this.body) { this.stage.scene.remove(this.body.root); this.body.dispose(); }
+    this.body = new Body(robot);
+    this.stage.scene.add(this.body.root);
+    this.stage.floor.position.z = robot.arm ? 0 : -0.925; // Baxter's base is its waist
+    this.stage.rig.size = robot.arm ? Math.min(1, 0.5 * span(robot)) : 1;
+  }
+
+  /** What plots and sentences call the joints. */
+  names() {
+    return joints(this.robot, this.motion.side).map((name) => name.replace(`${this.motion.side}_`, ""));
   }
 
   /** Lines and ghosts of this motion. */
@@ -114,7 +131,7 @@ export class Player {
       this.marks.push(line(tips, { colour: GHOSTS[k % GHOSTS.length], width: 2.5, dash: 0.006, gap: 0.008 * (k + 1) }));
     }
     stage.scene.add(...this.marks, ...this.ghosts.map(({ body }) => body.root));
-    const mirror = motion.side === "left" ? 1 : -1;
+    const mirror = motion.side === "right" ? -1 : 1;
     if (stage.rig.mirror !== mirror) { // else the reader's own view stays
       stage.rig.mirror = mirror;
       stage.rig.use(stage.rig.view);
@@ -162,7 +179,7 @@ export class Player {
     } else this.error = null;
     if (motion.tau) found.push({
       title: "Joint torque [N m]",
-      series: ARM.map((name, k) => ({ name, values: motion.tau.map((row) => row[k]) })) });
+      series: this.names().map((name, k) => ({ name, values: motion.tau.map((row) => row[k]) })) });
     return found;
   }
 
@@ -204,7 +221,7 @@ export class Player {
     if (motion.tau) {
       const tau = at(motion, motion.tau, this.time);
       const k = tau.reduce((b, x, i) => (Math.abs(x) > Math.abs(tau[b]) ? i : b), 0);
-      words.push(`largest torque ${tau[k].toFixed(1)} N m at ${ARM[k]}`);
+      words.push(`largest torque ${tau[k].toFixed(1)} N m at ${this.names()[k]}`);
     }
     return words.join(" · ");
   }
@@ -217,7 +234,7 @@ export class Player {
 
   /** Joint positions in the base now, for tests. */
   joints() {
-    return frames(this.robot, posture(this.motion.side, at(this.motion, this.motion.q, this.time)));
+    return frames(this.robot, posture(this.robot, this.motion.side, at(this.motion, this.motion.q, this.time)));
   }
 
   play(on) {

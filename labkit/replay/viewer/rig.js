@@ -10,7 +10,7 @@ export const VIEWS = {
 
 export class Rig {
   constructor(canvas, camera, changed) {
-    Object.assign(this, { camera, changed, hand: [0.7, 0, 0.2], mirror: 1 });
+    Object.assign(this, { camera, changed, hand: [0.7, 0, 0.2], mirror: 1, size: 1 });
     this.use("Front");
     this.listen(canvas);
   }
@@ -38,7 +38,7 @@ export class Rig {
   frame(aspect) {
     const c = Math.cos(this.elevation);
     const target = this.follow ? this.hand : this.target;
-    const reach = this.distance * Math.max(1, 1.15 / aspect);
+    const reach = this.size * this.distance * Math.max(1, 1.15 / aspect);
     this.camera.position.set(
       target[0] + reach * c * Math.cos(this.azimuth), target[1] + reach * c * Math.sin(this.azimuth),
       target[2] + reach * Math.sin(this.elevation));

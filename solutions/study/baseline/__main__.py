@@ -14,7 +14,6 @@ from labkit.scene import Table
 from labkit.trajectory import Chain, Hold
 
 from .. import tasks
-from ..recording import save
 from ..tasks import Task
 from . import RATE, PlanningScene, PositionServer, VelocityServer, along, plan, quickest
 
@@ -39,7 +38,7 @@ def main() -> None:
     logs["baseline_line_velocity"] = drive(tasks.line(), velocity)[1]
     for name, log in logs.items():
         path = DATA / "recorded" / f"{name}.npz"
-        save(log, path)
+        log.save(path, single=True)
         print(f"{path.name}: {path.stat().st_size / 1024:.0f} kB, {log}, {summary(log)}")
 
 

@@ -1,0 +1,154 @@
+"""Reading an arm from a URDF file: what is fixed is lumped, and each joint turns about its z."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import pi
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pinocchio as pin
+
+from .errors import JointLimitExceeded, LabkitError, UnknownName
+from .quiet import quiet
+from .shapes import as_vector
+
+_Element = ElementTree.Element
+
+
+def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, Any]:
+    """What a `Robot` is made of; see `Robot.from_urdf`."""
+    path = Path(file)
+    root = _parsed(path)
+    name = name or root.get("name") or path.stem
+    chain = [joint for joint in _chain(root, tip, path.name) if joint.get("type") != "fixed"]
+    limits = [_limits(joint, path.name) for joint in chain]
+    if len(chain) < 2:
+        many = "one joint that moves" if chain else "no joint that moves"
+        raise LabkitError(
+            f"{path.name} has {many} the link {tip!r}, and an arm has at least two; take another "
+            "tip"
+        )
+    for joint in root.iter("joint"):
+        if joint not in chain:
+            joint.set("type", "fixed")
+    try:
+        with quiet():
+            model = pin.buildModelFromXML(ElementTree.tostring(root, encoding="unicode"))
+    except (ValueError, RuntimeError) as error:
+        raise LabkitError(f"Pinocchio cannot read {path.name}: {error}") from None
+    hand = model.frames[model.getFrameId(tip, pin.FrameType.BODY)].placement
+    bodies, turn = _bodies(model, limits, path.name)
+    q = as_vector(ready, len(bodies), "ready")
+    for body, angle in zip(bodies, q.tolist(), strict=True):
+        low, high = body["lower"], body["upper"]
+        if not low <= angle <= high:
+            raise JointLimitExceeded("ready", body["joint"], angle, low, high)
+    T = (turn.inverse() * hand).homogeneous
+    return {"name": name, "bodies": bodies, "T_hand_tip": T, "ready": q, "neutral": q}
+
+
+def _parsed(path: Path) -> _Element:
+    try:
+        root = ElementTree.parse(path).getroot()
+    except OSError as error:
+        raise LabkitError(f"{path} cannot be read: {error.strerror}") from None
+    except ElementTree.ParseError as error:
+        raise LabkitError(
+            f"{path.name} is not XML ({error}); from a .xacro, the command xacro makes a URDF"
+        ) from None
+    if root.tag != "robot":
+        raise LabkitError(f"{path.name} holds a <{root.tag}>, expected the <robot> of a URDF")
+    return root
+
+
+def _chain(root: _Element, tip: str, file: str) -> list[_Element]:
+    """The joints from the root of the tree to the tip."""
+    links = {str(link.get("name")) for link in root.iter("link")}
+    if tip not in links:
+        raise UnknownName(f"link in {file}", tip, sorted(links))
+    above = {child.get("link"): joint for joint, child in _ends(root, "child")}
+    parent = {joint: end.get("link") for joint, end in _ends(root, "parent")}
+    found: list[_Element] = []
+    link: str | None = tip
+    while link in above:
+        joint = above[link]
+        if joint in found or joint not in parent:
+            raise LabkitError(f"{file} has no chain of joints from a base to the link {tip!r}")
+        found.append(joint)
+        link = parent[joint]
+    return found[::-1]
+
+
+def _ends(root: _Element, which: str) -> Iterator[tuple[_Element, _Element]]:
+    for joint in root.findall("joint"):
+        for end in joint.findall(which):
+            yield joint, end
+
+
+def _limits(joint: _Element, file: str) -> dict[str, Any]:
+    """Name and limits of a joint of the arm; a continuous one is made revolute."""
+    what, kind = f"joint {joint.get('name')} of {file}", joint.get("type")
+    if kind not in ("revolute", "continuous"):
+        raise LabkitError(
+            f"{what} is {kind}, and an arm here has joints that turn; take a tip before it, or "
+            'make it type="fixed"'
+        )
+    if joint.find("mimic") is not None:
+        raise LabkitError(
+            f"{what} mimics another joint, and an arm here has a motor at each; take a tip before "
+            "it, or remove its <mimic>"
+        )
+    limit = joint.find("limit")
+    if limit is None:
+        limit = ElementTree.SubElement(joint, "limit")
+    if kind == "continuous":
+        joint.set("type", "revolute")
+        limit.attrib |= {"lower": str(-2.0 * pi), "upper": str(2.0 * pi)}
+    try:
+        lower, upper, speed, effort = (
+            float(limit.get(name, 0.0)) for name in ("lower", "upper", "velocity", "effort")
+        )
+    except ValueError as error:
+        raise LabkitError(f"a limit of {what} is not a number: {error}") from None
+    if not (-np.inf < lower < upper < np.inf and 0.0 < speed < np.inf and 0.0 < effort < np.inf):
+        raise LabkitError(
+            f"{what} needs limits, and has a range from {lower:g} to {upper:g} rad, {speed:g} "
+            f"rad/s and {effort:g} N m; write its own numbers into it, such as "
+            '<limit lower="-3" upper="3" velocity="2" effort="50"/>'
+        )
+    name = joint.get("name")
+    return {"joint": name, "lower": lower, "upper": upper, "speed": speed, "effort": effort}
+
+
+def _bodies(
+    model: Any, limits: list[dict[str, Any]], file: str
+) -> tuple[list[dict[str, Any]], pin.SE3]:
+    """The bodies in frames whose z axis is the joint's; and the last frame in Pinocchio's."""
+    data = model.createData()
+    pin.computeJointJacobians(model, data, pin.neutral(model))
+    bodies, before = [], pin.SE3.Identity()
+    for i, limit in enumerate(limits, start=1):
+        axis = pin.getJointJacobian(model, data, i, pin.LOCAL)[3:, i - 1]
+        to_axis = pin.Quaternion.FromTwoVectors(np.array([0.0, 0.0, 1.0]), axis)
+        turn = pin.SE3(to_axis.matrix(), np.zeros(3))
+        body = turn.actInv(model.inertias[i])
+        if not (body.mass > 0.0 and np.linalg.eigvalsh(body.inertia)[0] > 0.0):
+            raise LabkitError(
+                f"the links that joint {limit['joint']} of {file} moves have a mass of "
+                f"{body.mass:g} kg and no inertia; nothing can move without: write <inertial> "
+                "with a mass and moments greater than 0 into one of them"
+            )
+        place = before.inverse() * model.jointPlacements[i] * turn
+        bodies.append({
+            "joint": limit["joint"],
+            "T_parent": place.homogeneous.tolist(),
+            "mass": body.mass,
+            "com": body.lever.tolist(),
+            "inertia": body.inertia.tolist(),
+            **limit,
+        })  # fmt: skip
+        before = turn
+    return bodies, before
