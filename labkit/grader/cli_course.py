@@ -71,15 +71,18 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
 @verb("00_warmup 01_paths --to week1.zip")
 @names
 @click.option("--to", type=PATH, metavar="FILE", help="Default: dist/baxter-lab.zip.")
+@click.option("--book", metavar="ADDRESS", help="Of the book; by default it is put in, if built.")
 @of_course
-def student_bundle(course: Course, names: tuple[str, ...], to: Path | None) -> int:
-    """Write a zip for students: labkit and notebooks.
+def student_bundle(
+    course: Course, names: tuple[str, ...], to: Path | None, book: str | None
+) -> int:
+    """Write a zip for students: labkit, notebooks, the book, and how to start.
 
     Without a NAME it takes all assignments that are released.
     """
     from .student_bundle import student_bundle
 
-    path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip")
+    path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip", book)
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
     return 0
 
