@@ -141,11 +141,19 @@ def _functions(of: str) -> Option:
 @click.option(
     "--seed", type=SEED, default=PUBLIC_SEED, help=f"Of the first draw; {PUBLIC_SEED} by default."
 )
+@click.option("--draws", type=click.IntRange(1), default=20, help="How many; 20 by default.")
+@click.option("--to", type=PATH, metavar="DIR", help="Where to write it; default: build.")
 @_functions("mistakes")
 @_functions("variants")
 @of_course
 def report_card(
-    course: Course, names: tuple[str, ...], seed: int, mistakes: Path | None, variants: Path | None
+    course: Course,
+    names: tuple[str, ...],
+    seed: int,
+    draws: int,
+    to: Path | None,
+    mistakes: Path | None,
+    variants: Path | None,
 ) -> int:
     """Say how well the checks tell right from wrong.
 
@@ -164,8 +172,9 @@ def report_card(
             f"{row.accepted} of {row.variants} right answers accepted",
             flush=True,
         ),
+        draws=draws,
     )
-    table, page = write(card, course.root / "build")
+    table, page = write(card, to or course.root / "build")
     print(page.read_text(encoding="utf-8"))
     print(f"written: {table} and {page}")
     return int(any(row.failures for row in card.rows))

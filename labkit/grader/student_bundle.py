@@ -21,11 +21,13 @@ import nbformat
 
 from ..course.layout import Course
 from ..errors import LabkitError
-from .pages import TEMPLATES, render
+from .pages import render
 from .release import FORBIDDEN
 
 GRADER = "labkit/grader"
 """What students' labkit comes without."""
+STUDENT = ".ci/student"
+"""What they get besides labkit and notebooks."""
 PICTURE = "book/static/baxter.png"
 BOOK = "book/_build/html"
 """Where a book that was built lies."""
@@ -34,7 +36,7 @@ PLACES = {
     "postBuild": "binder/postBuild",
     "runtime.txt": "binder/runtime.txt",
 }
-"""Where files of ``templates/student`` belong that do not lie at the top."""
+"""Where files of that folder belong that do not lie at the top."""
 
 
 def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | None = None) -> Path:
@@ -77,7 +79,7 @@ def student_folder(
         text = (top / "assignments" / name / f"{name}.ipynb").read_text(encoding="utf-8")
         if leak := next((word for word in FORBIDDEN if word in text), None):
             raise LabkitError(f"{name} holds {leak!r}; first run: labkit release {name}")
-    for path in (TEMPLATES / "student").iterdir():
+    for path in (course.root / STUDENT).iterdir():
         place = top / PLACES.get(path.name, path.name)
         place.parent.mkdir(exist_ok=True)
         shutil.copy(path, place)

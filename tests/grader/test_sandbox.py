@@ -48,7 +48,7 @@ def test_containers_state_the_same_options():
     """Dockerfile, dev container and doctor agree on what a container that grades is given."""
     text = " ".join((ROOT / "Dockerfile").read_text().replace("\n#", " ").split())
     assert " ".join(DOCKER) in text
-    given = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())["runArgs"]
+    given = json.loads((ROOT / ".devcontainer/course/devcontainer.json").read_text())["runArgs"]
     assert tuple(given) == DOCKER
     assert all(option in elsewhere() for option in DOCKER)
 

@@ -10,7 +10,7 @@ from subprocess import CalledProcessError
 import pytest
 from handmade import ROOT
 
-FILE = ROOT / "labkit/grader/templates/student/start.py"
+FILE = ROOT / ".ci/student/start.py"
 
 
 @pytest.fixture

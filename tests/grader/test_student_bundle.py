@@ -29,7 +29,15 @@ def unpacked(released, tmp_path_factory):
     """The students' zip, unpacked, with its wheel unpacked beside it."""
     folder = tmp_path_factory.mktemp("handout")
     course = released
-    for name in ("labkit", "book", "constraints.txt", "pyproject.toml", "README.md", "LICENSE"):
+    for name in (
+        "labkit",
+        "book",
+        ".ci",
+        "constraints.txt",
+        "pyproject.toml",
+        "README.md",
+        "LICENSE",
+    ):
         (course.root / name).symlink_to(ROOT / name)
     stale = course.root / "build" / "lib" / "labkit" / "gone.py"
     stale.parent.mkdir(parents=True)
