@@ -19,7 +19,7 @@ ON_SECOND := -m "not slow and not soak and not pybullet"
 .PHONY: help demo test test-313 wheels zip quick soak count record lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
 
 demo: for-grading .venv/.course ## release, grade a small class, build the book, say where to look
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/demo.py

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import re
 import sys
 from subprocess import CalledProcessError
 
@@ -120,3 +121,25 @@ def test_each_obstacle_is_a_sentence_with_the_way_out(start, monkeypatch):
 def test_what_pip_says_is_told_in_a_sentence(start, said, sentence):
     """The commonest causes by name, any other in pip's words."""
     assert start.why(said).startswith(sentence)
+
+
+def test_the_guide_quotes_what_is_printed():
+    """Each message of start.py in the students' table of troubles is one that it can print."""
+    guide = (ROOT / "book/student_guide.md").read_text()
+    table = guide.partition("## When it does not start")[2].partition("\n## ")[0]
+    quoted = re.findall(r"^\| `(.*?)` \|", table, re.MULTILINE)
+    said = [
+        node.value
+        for node in ast.walk(ast.parse(FILE.read_text()))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    values = r"3\.9\.6|Darwin|x86_64|0\.9|1\.6|\.\.\."
+    known = [
+        message
+        for message in quoted
+        if all(
+            any(part in text for text in said)
+            for part in (part.strip(" ()") for part in re.split(values, message))
+        )
+    ]
+    assert len(known) >= 9, set(quoted) - set(known)
