@@ -13,10 +13,6 @@ from textwrap import wrap
 
 from ..sim import installed
 from .pages import render
-from .sandbox import seccomp
-from .sandbox.launch import Sandbox, SandboxLost
-from .sandbox.limits import Limits, slowness
-from .sandbox.mounts import NoIsolation
 
 _APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
 _SWITCHES = (
@@ -65,6 +61,14 @@ def examine() -> Iterator[Finding]:
         yield Finding("system", False, says)
         return
     yield Finding("system", True, says)
+    yield from _linux()
+
+
+def _linux() -> Iterator[Finding]:
+    """Look at a Linux machine."""
+    from .sandbox import seccomp  # not every system has what these import
+    from .sandbox.limits import slowness
+
     yield Finding("Python", True, f"{platform.python_version()}, {' and '.join(installed())}")
     missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
     says = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
@@ -82,6 +86,10 @@ def examine() -> Iterator[Finding]:
 
 def sandbox() -> Iterator[Finding]:
     """Make a sandbox and try to get out of it."""
+    from .sandbox.launch import Sandbox, SandboxLost
+    from .sandbox.limits import Limits
+    from .sandbox.mounts import NoIsolation
+
     try:
         with Sandbox() as made, made.spawn("student", Limits()) as process:
             process.connection.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})

@@ -34,6 +34,14 @@ def test_doctor_finds_a_working_sandbox():
     assert [x for x in found if x.what == "sandbox"]
 
 
+def test_where_there_is_no_linux_doctor_names_the_container_and_looks_no_further(monkeypatch):
+    """A Mac or Windows: students work there, grading is done in the container."""
+    monkeypatch.setattr("platform.system", lambda: "Darwin")
+    (found,) = examine()
+    assert found.needed and not found.fine
+    assert "grading needs Linux" in found.says and "docker run" in found.says
+
+
 def test_no_two_sandboxes_share_a_user():
     """Two graders on one machine have two users, as the kernel counts processes by user."""
     with Sandbox() as one, Sandbox() as other:
