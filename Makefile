@@ -28,7 +28,7 @@ test: for-tests .venv/.dev browser lint types test-313 ## everything: style, typ
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --ignore tests/soak
 
 test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, a report card
-	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags tests/course
+	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags
 	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/notebooks/test_always_runs.py -k "all or none"
 	@$(SECOND)/python -m labkit report-card --draws 1 --to build/report-card-313
 

@@ -76,7 +76,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
 def student_bundle(
     course: Course, names: tuple[str, ...], to: Path | None, book: str | None
 ) -> int:
-    """Write a zip for students: labkit, notebooks, the book, and how to start.
+    """Write a zip for students, ready to start.
 
     Without a NAME it takes all assignments that are released.
     """
