@@ -54,10 +54,11 @@ def main(words):
     if words == ["install"]:
         return 0
     os.environ["PATH"] = str(python.parent) + os.pathsep + os.environ.get("PATH", "")
-    first = HERE / "assignments" / "START_HERE.ipynb"
-    as_root = ["--allow-root"] if is_root() else []
-    print("opening JupyterLab at {}; to end it, press Ctrl-C here".format(first.name), flush=True)
-    return become([python, "-m", "jupyterlab", "--log-level=ERROR", first] + as_root)
+    words = ["--log-level=ERROR", "--notebook-dir=" + str(HERE / "assignments")]
+    words += ["--LabApp.default_url=/lab/tree/START_HERE.ipynb"]
+    words += ["--allow-root"] if is_root() else []
+    print("opening JupyterLab at START_HERE; to end it, press Ctrl-C here", flush=True)
+    return become([python, "-m", "jupyterlab"] + words)
 
 
 def in_conda():
@@ -188,7 +189,7 @@ def why(said):
 
 
 def tidy(python):
-    """Drop what only compilers read, and keep one of equal libraries: together a third of it."""
+    """Drop what only compilers read, and other robots; keep one of equal libraries."""
     for prefix in ENV.glob("lib/python*/site-packages/cmeel.prefix"):
         for folder in ("include", "lib/cmake", "share/doc"):
             shutil.rmtree(str(prefix / folder), ignore_errors=True)
@@ -201,6 +202,8 @@ def tidy(python):
                 if first is not path and path.stat().st_size > 100000:
                     path.unlink()
                     os.link(str(first), str(path))
+    for data in ENV.glob("lib/python*/site-packages/pybullet_data"):  # other robots
+        shutil.rmtree(str(data))
     settings = ENV / "etc" / "jupyter" / "labconfig"
     settings.mkdir(parents=True, exist_ok=True)
     no_news = {"disabledExtensions": {"@jupyterlab/apputils-extension:announcements": True}}

@@ -48,7 +48,7 @@ def test_the_second_start_installs_nothing(start, monkeypatch):
     monkeypatch.setattr(start, "make", lambda python: pytest.fail("made twice"))
     start.main([])
     assert "jupyterlab" in start.said[-1]
-    assert str(start.said[-1][4]).endswith("assignments/START_HERE.ipynb")
+    assert start.said[-1][-1 - start.is_root()].endswith("/lab/tree/START_HERE.ipynb")
 
 
 def test_root_may_start_it(start, monkeypatch):
