@@ -12,17 +12,28 @@ FOR_TESTS += $(shell grep -qs '^ID=debian' /etc/os-release && echo chromium,goog
 AS_ROOT = $(filter 0,$(shell id -u))
 SEED ?= 2019
 ASSIGNMENT ?= 01_paths
+# A newer Python, on which PyBullet has no wheels: MuJoCo moves the arm there.
+SECOND := .venv-313/bin
+ON_SECOND := -m "not slow and not soak and not pybullet"
 
-.PHONY: help demo test quick soak count record lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test test-313 wheels zip quick soak count record lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
 
 demo: for-grading .venv/.course ## release, grade a small class, build the book, say where to look
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/demo.py
 
-test: for-tests .venv/.dev browser lint types ## everything: style, types, all tests
+test: for-tests .venv/.dev browser lint types test-313 ## everything: style, types, all tests, a second Python
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --ignore tests/soak
+
+test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, a report card
+	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags
+	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/notebooks/test_always_runs.py -k "all or none"
+	@$(SECOND)/python -m labkit report-card --draws 1 --to build/report-card-313
+
+wheels: .venv/.dev ## on which systems pip can install what a student needs
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/wheels.py
 
 quick: for-tests .venv/.dev ## the quick tests, under two minutes
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
@@ -30,8 +41,11 @@ quick: for-tests .venv/.dev ## the quick tests, under two minutes
 soak: for-tests .venv/.dev ## the long suites, whole: fuzz, attacks, kills, large classes
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup -m "soak or not soak" tests/soak
 
-lab: .venv/.student ## open the students' notebooks
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments
+lab: .venv/.student ## open the notebooks of this checkout; students start theirs from the zip
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/jupyter lab --notebook-dir assignments $(if $(AS_ROOT),--allow-root)
+
+zip: .venv/.course ## what students get: dist/baxter-lab.zip
+	@$(BIN)/labkit student-bundle
 
 release: .venv/.course ## make the students' notebooks; SEED=n for hidden cases of your own
 	@$(BIN)/labkit release $(if $(filter command line environment,$(origin SEED)),--seed $(SEED))
@@ -86,7 +100,7 @@ format: .venv/.dev ## put the code in order
 	@$(BIN)/ruff check --fix . && $(BIN)/ruff format .
 
 clean: ## forget everything that was made
-	rm -rf .venv build dist book/_build book/generated autograded feedback results gradebook.db
+	rm -rf .venv .venv-313 build dist book/_build book/generated autograded feedback results gradebook.db
 
 # Environments: a student's, an instructor's, a developer's, each one more than the one before.
 
@@ -118,3 +132,8 @@ browser: .venv/.dev
 .venv/.dev: .venv/.course
 	@echo "installing what a developer needs"
 	@$(INSTALL) -e '.[dev]' && touch $@
+
+.venv-313/.made: .venv/.dev pyproject.toml constraints.txt
+	@echo "making .venv-313 with Python 3.13"
+	@python=$$(PATH="$$PATH:$(CURDIR)/$(BIN)" sh .ci/find_python.sh 3.13) && "$$python" -m venv --clear .venv-313
+	@$(SECOND)/pip install --quiet --disable-pip-version-check --constraint constraints.txt -e '.[test]' && touch $@

@@ -1,18 +1,26 @@
 #!/bin/sh
-# Print a Python 3.11, or say how to get one.
-for name in "${PYTHON:-}" python3.11 python3 python "$(uv python find --system 3.11 2>/dev/null)"; do
-  [ -n "$name" ] || continue
-  if "$name" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 11))' 2>/dev/null; then
-    command -v "$name"
-    exit 0
-  fi
+# Print a Python, or say how to get one: sh .ci/find_python.sh [VERSION], 3.11 by default.
+# Where uv is, it fetches one.
+version=${1:-3.11}
+pyenv=${PYENV_ROOT:-$HOME/.pyenv}/versions
+
+is_it() {
+  [ -n "$1" ] && "$1" -c "import ssl, sys; sys.exit('%d.%d' % sys.version_info[:2] != '$version')" 2>/dev/null
+}
+
+for name in "${PYTHON:-}" "python$version" python3 python "$pyenv/$version".*/bin/python3 \
+  "$(uv python find --system "$version" 2>/dev/null)"; do
+  is_it "$name" && command -v "$name" && exit 0
 done
-cat >&2 <<'END'
-This course needs Python 3.11, for which PyBullet's newest wheels are made. Get it with one of these, then
-try again:
-  Debian 12                     sudo apt-get install -y python3.11-venv
-  anywhere                      uv python install 3.11           (uv comes with: pipx install uv)
-  with conda or micromamba      micromamba create -f .ci/environment.yml && micromamba activate baxter-lab
-  one that you have already     export PYTHON=/path/to/python3.11
+if command -v uv >/dev/null 2>&1 && uv python install --quiet "$version" >&2; then
+  name=$(uv python find --system "$version" 2>/dev/null)
+  is_it "$name" && echo "$name" && exit 0
+fi
+cat >&2 <<END
+Python $version is needed and was not found. Get it with one of these, then try again:
+  Debian, Ubuntu                sudo apt-get install -y python$version-venv   (Debian 12 has 3.11, 13 has 3.13)
+  anywhere                      uv python install $version           (uv comes with: pipx install uv)
+  with pyenv                    pyenv install $version
+  one that you have already     export PYTHON=/path/to/python$version
 END
 exit 1

@@ -3,9 +3,9 @@
 # run the command given; "lab" is Jupyter, a hub's where a hub started us, else one with a token.
 # WITHOUT_NOTEBOOKS=1 is for a hub that hands them out by itself.
 set -eu
-[ -n "${WITHOUT_NOTEBOOKS:-}" ] || for folder in "$(dirname "$0")"/assignments/*/; do
-  here="$HOME/assignments/$(basename "$folder")"
-  [ -e "$here" ] || { mkdir -p "$here" && cp -r "$folder." "$here"; }
+[ -n "${WITHOUT_NOTEBOOKS:-}" ] || for each in "$(dirname "$0")"/assignments/*; do
+  here="$HOME/assignments/$(basename "$each")"
+  [ -e "$here" ] || { mkdir -p "$HOME/assignments" && cp -r "$each" "$here"; }
 done
 [ "$1" = lab ] || exec "$@"
 shift

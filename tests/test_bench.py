@@ -12,6 +12,8 @@ import labkit as lk
 from tests.bench import __main__ as bench
 from tests.bench import closed_loop, hand_loop
 
+pytestmark = pytest.mark.pybullet
+
 
 def test_the_plain_loop_does_the_same_work_bit_for_bit():
     target, controller = closed_loop.task()

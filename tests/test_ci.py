@@ -10,6 +10,8 @@ import chromium
 import pytest
 from handmade import ROOT
 
+HERE = "{}.{}".format(*sys.version_info)
+
 
 @pytest.fixture
 def machine(tmp_path):
@@ -26,7 +28,7 @@ def machine(tmp_path):
     def run(tool, *arguments):
         return subprocess.run(
             ["sh", str(ROOT / ".ci" / tool), *arguments],
-            env={"PATH": str(programs)},
+            env={"PATH": str(programs), "HOME": str(tmp_path)},
             cwd=tmp_path,
             capture_output=True,
             text=True,
@@ -45,15 +47,34 @@ def test_a_newer_python_is_said_before_anything_is_installed(machine):
     done = machine("need.sh", "ensurepip.py:python3.11-venv", "bwrap:bubblewrap")
     assert done.returncode == 1
     assert not machine.calls.exists()
-    assert done.stderr.count("needs Python 3.11") == 1
-    for way in ("python3.11-venv", "uv python install 3.11", "environment.yml", "PYTHON="):
+    assert done.stderr.count("Python 3.11 is needed") == 1
+    for way in ("python3.11-venv", "uv python install 3.11", "pyenv install 3.11", "PYTHON="):
         assert way in done.stderr
 
 
 def test_a_python_that_uv_brought_is_found(machine):
-    """After `uv python install 3.11` there is nothing else to set."""
-    machine.put("uv", f'[ "$*" = "python find --system 3.11" ] && echo {sys.executable}')
-    assert machine("find_python.sh").stdout.strip() == sys.executable
+    """After `uv python install` there is nothing else to set."""
+    machine.put("uv", f'[ "$*" = "python find --system {HERE}" ] && echo {sys.executable}')
+    assert machine("find_python.sh", HERE).stdout.strip() == sys.executable
+
+
+def test_a_python_of_pyenv_is_found(machine, tmp_path):
+    """Though its shim says that it is not chosen."""
+    machine.put(f"python{HERE}", "exit 127")
+    own = tmp_path / ".pyenv/versions" / f"{HERE}.9" / "bin"
+    own.mkdir(parents=True)
+    (own / "python3").symlink_to(sys.executable)
+    assert machine("find_python.sh", HERE).stdout.strip() == str(own / "python3")
+
+
+def test_uv_fetches_a_python_that_is_not_there(machine, tmp_path):
+    """What it cannot fetch is said as where there is no uv."""
+    found = f"test -e {tmp_path}/got && echo {sys.executable}"
+    machine.put("uv", f'case "$*" in *install*) : > {tmp_path}/got;; *) {found};; esac')
+    assert machine("find_python.sh", HERE).stdout.strip() == sys.executable
+    machine.put("uv", "exit 1")
+    done = machine("find_python.sh", HERE)
+    assert done.returncode == 1 and f"Python {HERE} is needed" in done.stderr
 
 
 def test_what_is_missing_is_installed_for_root_and_named_for_others(machine):

@@ -20,6 +20,7 @@ def begin(tmp_path):
     for name in ("00_warmup", "01_paths"):
         (lab / "assignments" / name).mkdir(parents=True)
         (lab / "assignments" / name / f"{name}.ipynb").write_text("released")
+    (lab / "assignments" / "START_HERE.ipynb").write_text("released")
     home.mkdir()
     programs.mkdir()
     (lab / "start.sh").write_text((ROOT / ".ci/start_container.sh").read_text())
@@ -60,8 +61,19 @@ def test_a_students_container_is_no_roots():
 
 def test_the_dev_container_is_the_whole_course():
     """An engineer's container is made of the stage that has everything."""
-    build = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())["build"]
+    build = json.loads((ROOT / ".devcontainer/course/devcontainer.json").read_text())["build"]
     assert [stage.split()[0] for stage in STAGES] == ["python", build["target"], "student"]
+
+
+def test_students_dev_container_and_binder_install_what_start_installs():
+    """Both let pip install the students' folder, in a Python that the lab runs on."""
+    folder = ROOT / ".ci/student"
+    container = json.loads((folder / "devcontainer.json").read_text())
+    command = "pip install --constraint constraints.txt ."
+    assert container["postCreateCommand"] == command
+    assert command in (folder / "postBuild").read_text()
+    assert container["image"].startswith("python:3.12")
+    assert (folder / "runtime.txt").read_text() == "python-3.12\n"
 
 
 def test_a_new_home_gets_the_notebooks_and_an_old_one_keeps_its_work(begin):
@@ -69,6 +81,7 @@ def test_a_new_home_gets_the_notebooks_and_an_old_one_keeps_its_work(begin):
     begin("true")
     own = begin.home / "assignments" / "00_warmup" / "00_warmup.ipynb"
     assert own.read_text() == "released"
+    assert (begin.home / "assignments" / "START_HERE.ipynb").exists()
     own.write_text("mine")
     (begin.home / "assignments" / "01_paths" / "01_paths.ipynb").unlink()
     (begin.home / "assignments" / "01_paths").rmdir()

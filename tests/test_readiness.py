@@ -6,6 +6,7 @@ import pytest
 
 import labkit as lk
 from labkit.errors import LabkitError
+from labkit.sim import chosen
 
 
 def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(capsys):
@@ -18,7 +19,7 @@ def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(caps
         "the arm moved",
         "mm",
         "Python 3",
-        "pybullet 3",
+        f"{chosen()} ",
         "pin ",
         "GB free",
     ):

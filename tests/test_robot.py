@@ -5,7 +5,6 @@ import dataclasses
 import mujoco
 import numpy as np
 import pinocchio as pin
-import pybullet as bullet
 import pytest
 from make_urdf import JOINTS, full_model
 from numpy.testing import assert_allclose
@@ -26,11 +25,12 @@ def plant(request):
 
 @pytest.fixture
 def body(side):
-    """The arm of the URDF text alone in PyBullet, without motors: its client and its body."""
-    from tests.bench.hand_loop import open_arm
+    """The arm of the URDF text alone in PyBullet, without motors: engine, client and body."""
+    from tests.bench.hand_loop import open_arm, pybullet
 
     client, body = open_arm(lk.robot(side).urdf())
-    yield client, body
+    bullet = pybullet()
+    yield bullet, client, body
     bullet.disconnect(client)
 
 
@@ -90,9 +90,10 @@ def test_named_poses_lie_inside_the_limits(side, pose):
     assert (q < r.upper).all()
 
 
+@pytest.mark.pybullet
 def test_pybullets_dynamics_are_pinocchios(side, body, states, random):
     """Torque and mass matrix over 1,000 random states inside the limits."""
-    client, number = body
+    bullet, client, number = body
     model = lk.Model(side)
     for q, dq in states(side, 1000):
         ddq = random.uniform(-10.0, 10.0, 7)
@@ -104,11 +105,12 @@ def test_pybullets_dynamics_are_pinocchios(side, body, states, random):
         assert_allclose(inertia, M, atol=1e-6)
 
 
+@pytest.mark.pybullet
 def test_one_physics_step_gives_the_acceleration_of_the_equations_of_motion(
     side, body, states, random
 ):
     """What the simulator does, not what it says: speeds after 1 ms over 1,000 random states."""
-    client, number = body
+    bullet, client, number = body
     model, r = lk.Model(side), lk.robot(side)
     for q, dq in states(side, 1000):
         q = r.lower + (0.01 + 0.98 * (q - r.lower) / (r.upper - r.lower)) * (r.upper - r.lower)

@@ -9,6 +9,7 @@ import json
 import re
 import sys
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 import yaml
@@ -26,7 +27,10 @@ DATA = (
     "solutions/study/baseline/baxter_collision.json",
     "labkit/data/campaign.json",
 )
-ENGINES = ("numpy", "scipy", "pybullet", "pin", "matplotlib", "opencv-python-headless")
+ENGINES = (
+    *filter(find_spec, ("pybullet", "mujoco")),
+    *("numpy", "scipy", "pin", "matplotlib", "opencv-python-headless"),
+)
 FIGURES = re.compile(r"^from (figures(?:\.\w+)?) import (\w+)", re.M)
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
+from ..sim import chosen
 from .messages import head
 from .notebook import about, check_id, checks, defines, grade_id, last_verdict, read_cells
 from .serialize import decode
@@ -66,7 +67,7 @@ class HandIn:
     def for_the_forum(self) -> str:
         """A block to copy into a question to others: verdicts and versions, and no answer."""
         tools = ", ".join(
-            f"{name} {version(name)}" for name in ("labkit", "numpy", "pybullet", "pin")
+            f"{name} {version(name)}" for name in ("labkit", "numpy", chosen(), "pin")
         )
         lines = [f"{self.assignment}; {tools}; Python {platform.python_version()}"]
         return "\n".join(["```", *lines, *self.lines, "```"])

@@ -98,6 +98,7 @@ def make(
     mistakes: Functions | None = None,
     variants: Functions | None = None,
     progress: Callable[[Row], None] = lambda row: None,
+    draws: int = DRAWS,
 ) -> Card:
     """Mark everything that is known of some assignments.
 
@@ -108,6 +109,7 @@ def make(
         mistakes: More wrong answers, from outside; these have no name to be called by.
         variants: More right answers, from outside.
         progress: Told each row when it is done.
+        draws: How many draws of the hidden cases.
 
     Raises:
         UnknownName: No such assignment, or an answer to a question that nobody asks.
@@ -123,9 +125,9 @@ def make(
             [f for question in _names(name, problem) for f in (given or {}).get(question, ())]
             for given in (mistakes, variants)
         )
-        rows.append(_row(name, problem, seed, *more))
+        rows.append(_row(name, problem, seed, draws, *more))
         progress(rows[-1])
-    return Card(seed, DRAWS, tuple(rows))
+    return Card(seed, draws, tuple(rows))
 
 
 def _names(assignment: str, problem: Problem) -> tuple[str, str]:
@@ -136,10 +138,11 @@ def _row(
     name: str,
     problem: Problem,
     seed: int,
+    draws: int,
     mistakes: Sequence[Callable[..., Any]],
     variants: Sequence[Callable[..., Any]],
 ) -> Row:
-    questions = remembering([problem.question(seed + k) for k in range(DRAWS)])
+    questions = remembering([problem.question(seed + k) for k in range(draws)])
     own = {w.name: w.function for w in problem.wrong}
     wrong = own | _labelled("from outside: ", mistakes)
     right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])
@@ -165,7 +168,7 @@ def _row(
             accepted += 1
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
-    agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(DRAWS))
+    agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(draws))
     margin, nearest = least(questions, problem, right, wrong)
     return Row(
         name,

@@ -71,15 +71,18 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
 @verb("00_warmup 01_paths --to week1.zip")
 @names
 @click.option("--to", type=PATH, metavar="FILE", help="Default: dist/baxter-lab.zip.")
+@click.option("--book", metavar="ADDRESS", help="Of the book; by default it is put in, if built.")
 @of_course
-def student_bundle(course: Course, names: tuple[str, ...], to: Path | None) -> int:
-    """Write a zip for students: labkit and notebooks.
+def student_bundle(
+    course: Course, names: tuple[str, ...], to: Path | None, book: str | None
+) -> int:
+    """Write a zip for students, ready to start.
 
     Without a NAME it takes all assignments that are released.
     """
     from .student_bundle import student_bundle
 
-    path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip")
+    path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip", book)
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
     return 0
 
@@ -138,11 +141,19 @@ def _functions(of: str) -> Option:
 @click.option(
     "--seed", type=SEED, default=PUBLIC_SEED, help=f"Of the first draw; {PUBLIC_SEED} by default."
 )
+@click.option("--draws", type=click.IntRange(1), default=20, help="How many; 20 by default.")
+@click.option("--to", type=PATH, metavar="DIR", help="Where to write it; default: build.")
 @_functions("mistakes")
 @_functions("variants")
 @of_course
 def report_card(
-    course: Course, names: tuple[str, ...], seed: int, mistakes: Path | None, variants: Path | None
+    course: Course,
+    names: tuple[str, ...],
+    seed: int,
+    draws: int,
+    to: Path | None,
+    mistakes: Path | None,
+    variants: Path | None,
 ) -> int:
     """Say how well the checks tell right from wrong.
 
@@ -161,8 +172,9 @@ def report_card(
             f"{row.accepted} of {row.variants} right answers accepted",
             flush=True,
         ),
+        draws=draws,
     )
-    table, page = write(card, course.root / "build")
+    table, page = write(card, to or course.root / "build")
     print(page.read_text(encoding="utf-8"))
     print(f"written: {table} and {page}")
     return int(any(row.failures for row in card.rows))

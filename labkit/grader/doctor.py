@@ -5,18 +5,14 @@ from __future__ import annotations
 import os
 import platform
 import shutil
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from textwrap import wrap
 
+from ..sim import installed
 from .pages import render
-from .sandbox import seccomp
-from .sandbox.launch import Sandbox, SandboxLost
-from .sandbox.limits import Limits, slowness
-from .sandbox.mounts import NoIsolation
 
 _APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
 _SWITCHES = (
@@ -58,9 +54,22 @@ class Finding:
 
 def examine() -> Iterator[Finding]:
     """Look at everything that grading needs, the sandbox last, by making one and trying it."""
-    fine = sys.version_info[:2] == (3, 11)
-    says = platform.python_version() if fine else "PyBullet's newest wheels are for Python 3.11"
-    yield Finding("Python", fine, says)
+    system = platform.system()
+    says = f"{system} {platform.machine()}"
+    if system != "Linux":
+        says += f"; students can work here, and grading needs Linux: the container\n\n{elsewhere()}"
+        yield Finding("system", False, says)
+        return
+    yield Finding("system", True, says)
+    yield from _linux()
+
+
+def _linux() -> Iterator[Finding]:
+    """Look at a Linux machine."""
+    from .sandbox import seccomp  # not every system has what these import
+    from .sandbox.limits import slowness
+
+    yield Finding("Python", True, f"{platform.python_version()}, {' and '.join(installed())}")
     missing = [x for x in ("nbgrader", "jupytext") if find_spec(x) is None]
     says = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
     yield Finding("instructor's packages", not missing, says if missing else "installed")
@@ -77,6 +86,10 @@ def examine() -> Iterator[Finding]:
 
 def sandbox() -> Iterator[Finding]:
     """Make a sandbox and try to get out of it."""
+    from .sandbox.launch import Sandbox, SandboxLost
+    from .sandbox.limits import Limits
+    from .sandbox.mounts import NoIsolation
+
     try:
         with Sandbox() as made, made.spawn("student", Limits()) as process:
             process.connection.send({"cell": 0, "source": _TRY, "answers": [], "seconds": 10.0})
@@ -156,7 +169,7 @@ def _install() -> str:
     ):
         if shutil.which(tool):
             return f"type: {line}"
-    return "grade on Linux; macOS and Windows have no bubblewrap, so use the container"
+    return "your system's packages have it"
 
 
 def elsewhere() -> str:

@@ -22,6 +22,7 @@ from ..course.serialize import read_record, record_data
 from ..course.verdict import Points, Verdict
 from ..errors import LabkitError
 from ..formats import check_stamp, stamp
+from ..sim import ENGINES
 from .clean import clean_data, clean_line
 
 
@@ -295,7 +296,7 @@ def engine() -> str:
 def versions() -> Mapping[str, str]:
     """Of Python and of what marks depend on."""
     found = {"labkit": labkit.__version__, "python": platform.python_version()}
-    for name in ("numpy", "scipy", "pybullet", "pin"):
+    for name in ("numpy", "scipy", *ENGINES, "pin"):
         try:
             found[name] = version(name)
         except PackageNotFoundError:

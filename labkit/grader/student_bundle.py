@@ -1,4 +1,4 @@
-"""What students are given: a zip with labkit and notebooks, or a repository without answers.
+"""What students are given: one folder without answers, as a zip or beside a private repository.
 
 The answers are public in this repository; hidden cases stop hard-coding, not copying.  A course
 that cares gives its students a repository without them.
@@ -6,6 +6,8 @@ that cares gives its students a repository without them.
 
 from __future__ import annotations
 
+import base64
+import re
 import shutil
 import subprocess
 import sys
@@ -14,63 +16,104 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
+import jupytext
+import nbformat
+
 from ..course.layout import Course
 from ..errors import LabkitError
-from .pages import TEMPLATES, render
+from .pages import render
 from .release import FORBIDDEN
 
-STUDENT_TOOLS = ("environment.yml", "find_python.sh", "need.sh")
-"""What ``.ci/start.sh`` calls."""
 GRADER = "labkit/grader"
 """What students' labkit comes without."""
+STUDENT = ".ci/student"
+"""What they get besides labkit and notebooks."""
+PICTURE = "book/static/baxter.png"
+BOOK = "book/_build/html"
+"""Where a book that was built lies."""
+PLACES = {
+    "devcontainer.json": ".devcontainer/devcontainer.json",
+    "postBuild": "binder/postBuild",
+    "runtime.txt": "binder/runtime.txt",
+}
+"""Where files of that folder belong that do not lie at the top."""
 
-FOR_STUDENTS = (
-    "labkit/",
-    "assignments/",
-    *(f".ci/{tool}" for tool in STUDENT_TOOLS),
-    "LICENSE",
-    "constraints.txt",
-    "pyproject.toml",
-)
 
-
-def student_bundle(course: Course, names: Sequence[str], to: Path) -> Path:
+def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | None = None) -> Path:
     """Write the zip that students get.
 
     Args:
         course: The course; its assignments must be released.
         names: Which assignments go in; none means all that are released.
         to: The file to write.
+        book: The address of the book; None puts the book in, if it is built.
 
     Returns:
         ``to``.
 
     Raises:
-        LabkitError: An assignment is not released, or the wheel could not be built.
+        LabkitError: An assignment is not released, or holds an answer, or the wheel could not be
+            built.
     """
-    names = names or sorted(path.name for path in course.release.iterdir() if path.is_dir())
-    for name in names:
-        course.notebook_source(name)
-        if not (course.release / name).is_dir():
-            raise LabkitError(f"{name} is not released; first run: labkit release {name}")
     with tempfile.TemporaryDirectory() as folder:
         top = Path(folder) / "baxter-lab"
-        for name in names:
-            shutil.copytree(course.release / name, top / "assignments" / name)
-        _wheel(course.root, top)
-        shutil.copy(course.root / "constraints.txt", top)
-        (top / ".ci").mkdir()
-        for tool in STUDENT_TOOLS:
-            shutil.copy(course.root / ".ci" / tool, top / ".ci")
-        shutil.copy(course.root / ".ci" / "start.sh", top)
-        start = render("start.html.j2", names=names)
-        (top / "START.html").write_text(start, encoding="utf-8")
+        student_folder(course, names, top, book)
         to.parent.mkdir(parents=True, exist_ok=True)
         with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
             for path in sorted(top.rglob("*")):
                 if path.is_file():
                     archive.write(path, path.relative_to(folder))
     return to
+
+
+def student_folder(
+    course: Course, names: Sequence[str], top: Path, book: str | None = None
+) -> None:
+    """Lay what students get into the new folder ``top``; the rest as for `student_bundle`."""
+    names = names or sorted(path.name for path in course.release.iterdir() if path.is_dir())
+    for name in names:
+        course.notebook_source(name)
+        if not (course.release / name).is_dir():
+            raise LabkitError(f"{name} is not released; first run: labkit release {name}")
+        shutil.copytree(course.release / name, top / "assignments" / name)
+        text = (top / "assignments" / name / f"{name}.ipynb").read_text(encoding="utf-8")
+        if leak := next((word for word in FORBIDDEN if word in text), None):
+            raise LabkitError(f"{name} holds {leak!r}; first run: labkit release {name}")
+    for path in (course.root / STUDENT).iterdir():
+        place = top / PLACES.get(path.name, path.name)
+        place.parent.mkdir(exist_ok=True)
+        shutil.copy(path, place)
+    for name in ("constraints.txt", "LICENSE"):
+        shutil.copy(course.root / name, top)
+    if book is None and (course.root / BOOK / "index.html").exists():
+        shutil.copytree(course.root / BOOK, top / "book")
+        book = "book/index.html"
+    _wheel(course.root, top)
+    (top / "START.html").write_text(
+        render("start.html.j2", names=names, book=book), encoding="utf-8"
+    )
+    _start_here(top / "assignments", names, course.root / PICTURE, book)
+
+
+def _start_here(folder: Path, names: Sequence[str], picture: Path, book: str | None) -> None:
+    """The notebook that JupyterLab opens first."""
+    notebooks = [(name, *_about(folder / name / f"{name}.ipynb")) for name in names]
+    text = render("start_here.py.j2", notebooks=notebooks, book=book)
+    notebook = jupytext.reads(text, fmt="py:percent")
+    image = base64.b64encode(picture.read_bytes()).decode()
+    notebook.cells[0]["attachments"] = {picture.name: {"image/png": image}}
+    notebook.metadata = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
+    for number, cell in enumerate(notebook.cells):
+        cell["id"] = f"start-{number}"
+    nbformat.write(notebook, folder / "START_HERE.ipynb")
+
+
+def _about(path: Path) -> tuple[str, str]:
+    """A notebook's title and how long it takes, from its first cell."""
+    first = nbformat.read(path, as_version=4).cells[0].source
+    title = re.search(r"^# (?:\d+ · )?(.*)$", first, re.MULTILINE)
+    time = re.search(r"\*\*Time\*\* \| (.*?) \|", first)
+    return (title[1] if title else path.stem), (time[1] if time else "")
 
 
 def _wheel(root: Path, to: Path) -> None:
@@ -108,17 +151,11 @@ def export_course(course: Course, to: Path) -> tuple[Path, Path]:
         raise LabkitError(f"{to} is there already; give a folder that is not")
     files = _tracked(course.root)
     student, private = to / "student", to / "private"
+    student_folder(course, (), student)
     for name in files:
-        if name.startswith(FOR_STUDENTS) and not name.startswith(f"{GRADER}/"):
-            _copy(course.root / name, student / name)
-        _copy(course.root / name, private / name)
-    shutil.copy(TEMPLATES / "student_readme.md", student / "README.md")
-    _copy(course.root / ".ci/start.sh", student / "start.sh")
-    for path in student.rglob("*.ipynb"):
-        text = path.read_text(encoding="utf-8")
-        if leak := next((word for word in FORBIDDEN if word in text), None):
-            shutil.rmtree(to)
-            raise LabkitError(f"{path.name} holds {leak!r}; release it again before exporting")
+        target = private / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(course.root / name, target)
     return student, private
 
 
@@ -128,8 +165,3 @@ def _tracked(root: Path) -> list[str]:
     if done.returncode:
         raise LabkitError(f"{root} is not a git checkout: {done.stderr.strip()}")
     return [name for name in done.stdout.split("\0") if name and (root / name).is_file()]
-
-
-def _copy(source: Path, target: Path) -> None:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    shutil.copy2(source, target)

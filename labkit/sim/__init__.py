@@ -15,6 +15,11 @@ ENGINES = {"pybullet": "PyBullet", "mujoco": "MuJoCo"}
 """Their modules and classes; the first that is installed is the default."""
 
 
+def installed() -> list[str]:
+    """The engines that are there."""
+    return [name for name in ENGINES if find_spec(name)]
+
+
 def chosen(name: str | None = None) -> str:
     """The engine that a world asks for; None is that of LABKIT_ENGINE, or the first installed.
 
@@ -22,11 +27,11 @@ def chosen(name: str | None = None) -> str:
         UnknownName: There is no such engine.
         LabkitError: It is not installed.
     """
-    name = name or os.environ.get("LABKIT_ENGINE") or next(filter(find_spec, ENGINES), "mujoco")
+    name = name or os.environ.get("LABKIT_ENGINE") or next(iter(installed()), "mujoco")
     if name not in ENGINES:
         raise UnknownName("engine", name, ENGINES)
     if find_spec(name) is None:
-        others = ", ".join(filter(find_spec, ENGINES)) or "none"
+        others = ", ".join(installed()) or "none"
         raise LabkitError(
             f"the engine {ENGINES[name]} is not installed here: pip install {name}; "
             f"installed: {others}"

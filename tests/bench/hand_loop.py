@@ -8,14 +8,19 @@ import numpy as np
 import labkit as lk
 from labkit.quiet import quiet
 
-with quiet():
-    import pybullet as bullet
-
 JOINTS = range(7)
+
+
+def pybullet():
+    """The engine, imported when it is asked for: it has wheels for few machines."""
+    with quiet():
+        import pybullet
+    return pybullet
 
 
 def open_arm(urdf):
     """Load the arm of a URDF text into a world of its own; its client and its body."""
+    bullet = pybullet()
     client = bullet.connect(bullet.DIRECT)
     with quiet(), tempfile.NamedTemporaryFile("w", suffix=".urdf") as file:
         file.write(urdf)
@@ -34,6 +39,7 @@ def open_arm(urdf):
 
 def hand_loop(client, body, target, controller, seconds):
     """Drive the arm after the target from its start, a thousand times a second; the last q."""
+    bullet = pybullet()
     q = target(0.0).position
     for j in JOINTS:
         bullet.resetJointState(body, j, q[j], 0.0, physicsClientId=client)

@@ -104,9 +104,8 @@ def test_the_students_repository_holds_no_answer(tmp_path):
     """The export for students has the notebooks and labkit, and nothing of the solutions."""
     student, private = export_course(Course(ROOT), tmp_path / "out")
     assert (student / "assignments/01_paths/01_paths.ipynb").exists()
-    assert (student / "labkit/run.py").exists()
+    assert list(student.glob("labkit-*.whl"))
     assert not (student / "solutions").exists()
-    assert not (student / "labkit/grader").exists()
     assert (private / "solutions/paths/answers.py").exists()
     for path in student.rglob("*.ipynb"):
         assert not any(word in path.read_text() for word in FORBIDDEN)

@@ -34,6 +34,14 @@ def test_doctor_finds_a_working_sandbox():
     assert [x for x in found if x.what == "sandbox"]
 
 
+def test_where_there_is_no_linux_doctor_names_the_container_and_looks_no_further(monkeypatch):
+    """A Mac or Windows: students work there, grading is done in the container."""
+    monkeypatch.setattr("platform.system", lambda: "Darwin")
+    (found,) = examine()
+    assert found.needed and not found.fine
+    assert "grading needs Linux" in found.says and "docker run" in found.says
+
+
 def test_no_two_sandboxes_share_a_user():
     """Two graders on one machine have two users, as the kernel counts processes by user."""
     with Sandbox() as one, Sandbox() as other:
@@ -48,7 +56,7 @@ def test_containers_state_the_same_options():
     """Dockerfile, dev container and doctor agree on what a container that grades is given."""
     text = " ".join((ROOT / "Dockerfile").read_text().replace("\n#", " ").split())
     assert " ".join(DOCKER) in text
-    given = json.loads((ROOT / ".devcontainer" / "devcontainer.json").read_text())["runArgs"]
+    given = json.loads((ROOT / ".devcontainer/course/devcontainer.json").read_text())["runArgs"]
     assert tuple(given) == DOCKER
     assert all(option in elsewhere() for option in DOCKER)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import subprocess
 import sys
 import zipfile
@@ -27,12 +29,20 @@ def unpacked(released, tmp_path_factory):
     """The students' zip, unpacked, with its wheel unpacked beside it."""
     folder = tmp_path_factory.mktemp("handout")
     course = released
-    for name in ("labkit", ".ci", "constraints.txt", "pyproject.toml", "README.md", "LICENSE"):
+    for name in (
+        "labkit",
+        "book",
+        ".ci",
+        "constraints.txt",
+        "pyproject.toml",
+        "README.md",
+        "LICENSE",
+    ):
         (course.root / name).symlink_to(ROOT / name)
     stale = course.root / "build" / "lib" / "labkit" / "gone.py"
     stale.parent.mkdir(parents=True)
     stale.write_text("what an earlier build left")
-    with zipfile.ZipFile(student_bundle(course, (), folder / "lab.zip")) as archive:
+    with zipfile.ZipFile(student_bundle(course, (), folder / "lab.zip", "book.org")) as archive:
         archive.extractall(folder)
     (wheel,) = (folder / "baxter-lab").glob("*.whl")
     with zipfile.ZipFile(wheel) as archive:
@@ -76,12 +86,43 @@ def test_the_zip_holds_what_a_student_needs_and_no_more(unpacked):
     assert found == {
         *(
             "START.html",
-            "start.sh",
+            "README.md",
+            "LICENSE",
+            "start.py",
             "constraints.txt",
-            ".ci/environment.yml",
-            ".ci/find_python.sh",
-            ".ci/need.sh",
+            "pyproject.toml",
+            "environment.yml",
+            ".devcontainer/devcontainer.json",
+            "binder/postBuild",
+            "binder/runtime.txt",
         ),
-        *(".ci/environment.yml", ".ci/find_python.sh", ".ci/need.sh"),
         *("assignments/01_paths/01_paths.ipynb", "assignments/01_paths/checks.json"),
+        "assignments/START_HERE.ipynb",
     }
+
+
+@pytest.mark.slow
+def test_pip_takes_the_zip_as_it_is(unpacked, tmp_path):
+    """Without a compiler, without a network, and nothing is left in the folder."""
+    words = ["install", "--quiet", "--no-deps", "--no-index", "--target", str(tmp_path / "there")]
+    command = [sys.executable, "-m", "pip", *words, str(unpacked / "lab.zip")]
+    subprocess.run(command, check=True, cwd=tmp_path)
+    assert (tmp_path / "there/labkit/run.py").exists()
+    assert not (tmp_path / "there/labkit/grader").exists()
+
+
+@pytest.mark.slow
+def test_the_first_notebook_has_a_picture_the_order_and_the_book_and_runs(unpacked):
+    """All that it links to is there; its code moves the arm."""
+    folder = unpacked / "baxter-lab/assignments"
+    notebook = json.loads((folder / "START_HERE.ipynb").read_text())
+    text = "\n".join("".join(cell["source"]) for cell in notebook["cells"])
+    links = re.findall(r"\]\(([^)]*)\)", text)
+    assert links == ["attachment:baxter.png", "01_paths/01_paths.ipynb", "book.org"]
+    assert notebook["cells"][0]["attachments"]["baxter.png"]["image/png"]
+    assert (folder / links[1]).exists()
+    names = {}
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            exec("".join(cell["source"]), names)
+    assert len(names["log"].t) > 1000

@@ -121,7 +121,7 @@ def test_the_environment_or_the_world_chooses_the_engine(monkeypatch, capsys):
     assert lk.World(engine="mujoco").engine == "mujoco"
 
 
-def test_without_pybullet_mujoco_moves_the_arm(monkeypatch):
+def test_without_pybullet_mujoco_moves_the_arm_and_asking_for_it_says_how_to_get_it(monkeypatch):
     monkeypatch.delenv("LABKIT_ENGINE", raising=False)
     monkeypatch.setattr("labkit.sim.find_spec", lambda name: name == "mujoco" or None)
     with lk.World() as world:

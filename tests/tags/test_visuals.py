@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import numpy as np
-import pybullet
+import pytest
 
 DATA = Path(__file__).parents[2] / "labkit/data"
 TABLE = json.loads((DATA / "baxter_visual.json").read_text())
@@ -16,7 +16,7 @@ def placed(thing):
     return thing["position"], thing["quaternion"]
 
 
-def frames():
+def frames(pybullet):
     """Pose of every joint in the base at rest."""
     found = {"base": ([0, 0, 0], [0, 0, 0, 1])}
     for joint in TABLE["joints"]:
@@ -50,10 +50,13 @@ def test_the_triangles_drawn_are_few():
     assert sum(count[p["mesh"]] for p in TABLE["pieces"]) < 50_000
 
 
+@pytest.mark.pybullet
 def test_the_camera_sees_a_red_and_dark_robot():
+    import pybullet
+
     client = pybullet.connect(pybullet.DIRECT)
     try:
-        where = frames()
+        where = frames(pybullet)
         for piece in TABLE["pieces"]:
             shape = pybullet.createVisualShape(
                 pybullet.GEOM_MESH, fileName=str(DATA / piece["mesh"]), rgbaColor=piece["rgba"]
