@@ -65,14 +65,14 @@ def kp_for_margin(lag: float, delay: float, margin_deg: float) -> float:
 
 
 def choose_gains(runner: Callable[..., float]) -> tuple[float, float]:
-    """Raise Kp until some seed's arm is about to be lost, then step well back."""
+    """Raise Kp until some seed's arm is about to be lost, then take a third of it."""
     stable, error = 4.0, runner(4.0, 0.0, 0)
     for Kp in (8.0, 14.0, 22.0, 34.0, 50.0, 70.0, 100.0):
         now = runner(Kp, 0.0, 0)
         if max(now, runner(Kp, 0.0, 1)) > 1.5 * error:
             break
         stable, error = Kp, now
-    return stable / 2.0, 0.0
+    return stable / 3.0, 0.0
 
 
 def paired_difference(a: Any, b: Any) -> tuple[float, float]:

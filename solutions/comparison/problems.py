@@ -330,11 +330,11 @@ CHOOSE_GAINS = Problem(
     "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
     f"where you could not try them, and so is {hidden.RESERVE:g} times your Kp, your margin: at most "
     f"{hidden.UNSEEN_LIMIT:g} mm on the worst seed there. And you are asked twice: the second arm is "
-    "about a third as quick as the first, so other gains are right for it.",
+    "about a quarter as quick as the first, so other gains are right for it.",
     answer=answers.choose_gains,
     trials=(
         Trial(
-            "on the line, on its worst seed: at most 6 mm; the same on an arm a third as quick",
+            "on the line, on its worst seed: at most 6 mm; the same on an arm a quarter as quick",
             (
                 Choice(hidden.ON_THE_LINE, {"worst_mm": 6.0}),
                 Choice(hidden.stiffer(hidden.ON_THE_LINE, hidden.SLOW), {"worst_mm": 6.0}),
@@ -360,7 +360,7 @@ CHOOSE_GAINS = Problem(
         "The best place on the map is close to the edge.",
         "Raise Kp in steps and look at more than one seed. As soon as the error jumps on one of them, "
         "you have found the edge.",
-        "Take half of the largest Kp that was safe on the seeds you tried. It costs a few tenths of a "
+        "Take a third of the largest Kp that was safe on the seeds you tried. It costs a few tenths of a "
         "millimetre and buys a robot that may be loaded, hurried and late.",
     ),
     wrong=(
@@ -380,20 +380,20 @@ CHOOSE_GAINS = Problem(
         Wrong(
             "the lowest error of all seeds, and no step back",
             "The lowest point of the curve lies beside the cliff: a little more gain, or a state a little "
-            "older, and the arm is lost. Take half of the largest Kp that was safe.",
+            "older, and the arm is lost. Take a third of the largest Kp that was safe.",
             mistakes.Lowest(),
             "The best gain on one path is the most fragile one.",
         ),
         Wrong(
             "a tenth off the lowest point",
-            "A tenth is no margin: a state that is a little older takes more. Take half of the largest "
+            "A tenth is no margin: a state that is a little older takes more. Take a third of the largest "
             "Kp that was safe.",
             mistakes.Lowest(0.9),
             "Say how large your margin is, and against what.",
         ),
         Wrong(
             "gains without a try",
-            "The same gains for an arm that is a third as quick: what was typed once cannot be right for "
+            "The same gains for an arm that is a quarter as quick: what was typed once cannot be right for "
             "both. Ask the runner.",
             mistakes.Typed(20.0, 1.0),
             "A procedure can be carried to another arm; a number cannot.",
