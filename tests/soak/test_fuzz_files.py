@@ -7,7 +7,7 @@ import shutil
 
 import pytest
 from soak import laws
-from soak.classes import HEAD, NAME, kinds, put, released
+from soak.classes import HEAD, NAME, copied, kinds, put
 from soak.commands import typed
 from soak.examined import guilty
 from soak.test_fuzz import cases, chosen
@@ -18,9 +18,9 @@ QUESTION = "joint_error"
 
 
 @pytest.fixture(scope="module")
-def course(tmp_path_factory):
+def course(released, tmp_path_factory):
     """A course with an assignment released."""
-    return released(tmp_path_factory.mktemp("files") / "course", NAME)
+    return copied(released.root, tmp_path_factory.mktemp("files") / "course")
 
 
 @pytest.mark.xdist_group("fuzz: files")
