@@ -30,7 +30,9 @@ from labkit.grader import batch
 from labkit.grader.executor import LocalExecutor
 
 IDLE = 60.0
-"""Seconds in which a command, what it started and the worker compute next to nothing: it hangs."""
+"""Seconds in which a command, what it started and the worker compute next to nothing, and none of
+them waits for a processor: it hangs, on a machine as busy as any."""
+_AT_WORK = (psutil.STATUS_RUNNING, psutil.STATUS_DISK_SLEEP)
 MOST_MEMORY = 4 * 2**30
 MOST_COMPUTING = 900
 """Bytes and seconds of a processor for each process: guards against what never ends."""
@@ -112,7 +114,7 @@ class _Kept(ThreadPoolExecutor):
 def _modules() -> list[str]:
     found = [m.name for m in pkgutil.walk_packages(labkit.__path__, "labkit.")]
     nbgrader = ["apps.nbgraderapp", "apps.autogradeapp", "converters", "plugins"]
-    return [*found, *(f"nbgrader.{name}" for name in nbgrader)]
+    return [*found, *(f"nbgrader.{name}" for name in nbgrader), "psutil", "pytest"]
 
 
 def _run(words: tuple[str, ...], folder: str, out: str, err: str, line: Connection) -> None:
@@ -143,10 +145,12 @@ def _wait(process) -> bool:
             return True
         try:
             mine = psutil.Process(process.pid)
-            now = sum(sum(x.cpu_times()[:2]) for x in psutil.Process().children(recursive=True))
+            family = psutil.Process().children(recursive=True)
+            now = sum(sum(x.cpu_times()[:2]) for x in family)
+            waits = all(x.status() not in _AT_WORK for x in family)
         except psutil.NoSuchProcess:
             continue
-        if now > spent + 0.5:
+        if now > spent + 0.5 or not waits:
             spent, since = now, time.monotonic()
         elif time.monotonic() > since + IDLE:
             for one in (*mine.children(recursive=True), mine):

@@ -62,6 +62,8 @@ LABKIT = (
     REGRADE,
     EXPORTS[0],
 )
+BRIEFLY = (*LABKIT[:4], LABKIT[5], EXPORTS[0], REPORT)
+"""What the gate's sample goes through."""
 NBGRADER = (Step("autograde --create", needed=True), Step("generate_feedback"), EXPORTS[0])
 OTHERS = (GRADE, FEEDBACK, EXPORTS[0], REPORT)
 """For assignments other than the first."""

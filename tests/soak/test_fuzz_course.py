@@ -10,12 +10,11 @@ from pathlib import Path
 
 import pytest
 from soak import laws
-from soak.classes import NAME, copied, hand_in_honest, write_downloads
+from soak.classes import NAME, copied, hand_in_honest, kinds, write_downloads
 from soak.commands import typed
 from soak.examined import EXPORTS, FEEDBACK, GRADE, LABKIT, REGRADE, REPORT, Step
-from soak.test_fuzz import cases
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("fuzz: course")]
+pytestmark = [pytest.mark.soak, pytest.mark.xdist_group("fuzz: course")]
 
 COLLECT = LABKIT[0]
 STEPS = (GRADE, FEEDBACK, *EXPORTS, REPORT, REGRADE, COLLECT, Step("release"))
@@ -67,7 +66,7 @@ def handed_in(course):
     return {str(x.relative_to(course)): x.read_bytes() for x in files if x.is_file()}
 
 
-@pytest.mark.parametrize("kind", cases("STATES"))
+@pytest.mark.parametrize("kind", kinds("STATES"), ids=str)
 def test_state(fresh, clean, kind):
     """Each command ends with a sentence or does its work; no mark is lost, none made up."""
     wrong = []
@@ -108,7 +107,7 @@ def _due(key, mine, code):
     return mine and code == 1 and not key.startswith(VICTIM)
 
 
-@pytest.mark.parametrize("kind", cases("DOWNLOADS"))
+@pytest.mark.parametrize("kind", kinds("DOWNLOADS"), ids=str)
 def test_download(fresh, kind):
     """A download that is damaged is refused in a sentence; nobody's earlier work changes."""
     course = fresh()
@@ -138,7 +137,6 @@ def small_disk(tmp_path):
     subprocess.run(["umount", "--lazy", place], check=True)
 
 
-@pytest.mark.soak
 @pytest.mark.parametrize("room", (0, 4, 12, 40) if may_mount() else ())
 def test_full_disk(graded, clean, small_disk, room):
     """Each command ends with a sentence where so many kB are left; with room all is made good."""
