@@ -34,8 +34,6 @@ ANEW = "import sys\nfor name in list(sys.modules):\n    if name.partition('.')[0
 OTHER_NAME = "import importlib.util as u\nspec = u.spec_from_file_location('labkit.mine', lk.paths.__file__)\nmine = u.module_from_spec(spec)\nimport sys\nsys.modules['labkit.mine'] = mine\nspec.loader.exec_module(mine)"
 
 KIND = "import operator\nkind = operator.attrgetter('Bang' + 'Bang')(lk)"
-SERVER = "import subprocess, sys\nhelper = None\nprogram = '''import labkit as lk\\nwhile True:\\n    t, T = map(float, input().split())\\n    print(*lk.BangBang(T)(t), flush=True)'''"
-ASKED = "global helper\nhelper = helper or subprocess.Popen([sys.executable, '-c', program], stdin=-1, stdout=-1, text=True)\nprint(t, duration, file=helper.stdin, flush=True)\nreturn tuple(map(float, helper.stdout.readline().split()))"
 
 WAYS = {
     "by name": Way("return lk.BangBang(duration)(t)"),
@@ -59,8 +57,6 @@ WAYS = {
     "gc": Way("return kind(duration)(t)", "import gc\nbase = type(lk.Cubic(1.0)).__mro__[1]\nkind = next(x for x in gc.get_referrers(base) if getattr(x, '__name__', '') == 'BangBang')", fails=True),
     "a thread": Way("import threading\nout = []\nf = lambda: out.append(getattr(lk, 'Bang' + 'Bang')(duration)(t))\nx = threading.Thread(target=f)\nx.start(); x.join()\nreturn out[0]"),
     "a pool of threads": Way("from concurrent.futures import ThreadPoolExecutor as Pool\nreturn Pool(1).submit(Pool(1).submit(kind, duration).result(), t).result()", KIND),
-    "another Python": Way(ASKED, SERVER, counted=True),
-    "another Python, by the shell": Way("said = os.popen(f'{sys.executable} -c \"import labkit as lk; print(*lk.BangBang({duration})({t}))\"').read()\nreturn tuple(map(float, said.split()))", "import os, sys", counted=True),
     "codec.decode": Way("from labkit.course.serialize import decode\nreturn decode({'$': 'BangBang', 'duration': duration})(t)"),
     "exec with another name": Way("return f(t, duration)", "names = {'__name__': 'numpy', 'lk': lk}\nexec('def f(t, T): return lk.BangBang(T)(t)', names)\nf = names['f']"),
     "exec with labkit's file": Way("return f(t, duration)", "names = {'lk': lk}\nexec(compile('def f(t, T): return lk.BangBang(T)(t)', lk.__file__, 'exec'), names)\nf = names['f']", counted=True),
