@@ -25,7 +25,7 @@ demo: for-grading .venv/.course ## release, grade a small class, build the book,
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/demo.py
 
 test: for-tests .venv/.dev browser lint types test-313 ## everything: style, types, all tests, a second Python
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup --ignore tests/soak
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
 
 test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, a report card
 	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags

@@ -78,6 +78,8 @@ def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blan
         "import pinocchio as pin\npin.rnea(model, data, q, dq, ddq)",
         "np.testing.assert_allclose(a, b)\nwith open('notes.txt') as file: text = file.read()",
         "evaluate = 1; execute = 2; compiled = 'eval(x)'  # exec(y)",
+        "import os, operator\nos.path.join('a', 'b')\nsorted(x, key=operator.itemgetter(1))",
+        "from concurrent.futures import ThreadPoolExecutor\nThreadPoolExecutor(2).map(f, x)",
         "%load_ext autoreload\n%autoreload 2\n!pip install x\nplt?",
     ],
 )  # fmt: skip
@@ -106,6 +108,12 @@ def test_what_students_do_is_no_trick(source):
         ("vars(lk)['BangBang']", "reaches into labkit by vars"),
         ("getattr(lk, 'Bang' + 'Bang')", "reaches into labkit by getattr"),
         ("exec('x')", "calls exec"),
+        ("import subprocess, sys\nsubprocess.run([sys.executable])", "imports subprocess"),
+        ("from multiprocessing import Pool", "imports multiprocessing.Pool"),
+        ("import os\nos.popen('python')", "uses os.popen"),
+        ("from os import execv", "uses os.execv"),
+        ("from asyncio import create_subprocess_exec", "uses asyncio.create_subprocess_exec"),
+        ("import operator\nf = operator.attrgetter(name)(lk)", "uses operator.attrgetter"),
     ],
 )  # fmt: skip
 def test_a_trick_is_told_in_words(source, says):

@@ -33,6 +33,8 @@ SCALED = "s, ds, dds = {}\nreturn s, ds / duration, dds / duration**2"
 ANEW = "import sys\nfor name in list(sys.modules):\n    if name.partition('.')[0] == 'labkit': del sys.modules[name]\nimport labkit as anew"
 OTHER_NAME = "import importlib.util as u\nspec = u.spec_from_file_location('labkit.mine', lk.paths.__file__)\nmine = u.module_from_spec(spec)\nimport sys\nsys.modules['labkit.mine'] = mine\nspec.loader.exec_module(mine)"
 
+KIND = "import operator\nkind = operator.attrgetter('Bang' + 'Bang')(lk)"
+
 WAYS = {
     "by name": Way("return lk.BangBang(duration)(t)"),
     "in a library's name": Way("return lk.BangBang(duration)(t)", "__name__ = 'numpy'"),
@@ -54,6 +56,7 @@ WAYS = {
     "sys.modules": Way("import sys\nreturn sys.modules['labkit.paths'].BangBang(duration)(t)"),
     "gc": Way("return kind(duration)(t)", "import gc\nbase = type(lk.Cubic(1.0)).__mro__[1]\nkind = next(x for x in gc.get_referrers(base) if getattr(x, '__name__', '') == 'BangBang')", fails=True),
     "a thread": Way("import threading\nout = []\nf = lambda: out.append(getattr(lk, 'Bang' + 'Bang')(duration)(t))\nx = threading.Thread(target=f)\nx.start(); x.join()\nreturn out[0]"),
+    "a pool of threads": Way("from concurrent.futures import ThreadPoolExecutor as Pool\nreturn Pool(1).submit(Pool(1).submit(kind, duration).result(), t).result()", KIND),
     "codec.decode": Way("from labkit.course.serialize import decode\nreturn decode({'$': 'BangBang', 'duration': duration})(t)"),
     "exec with another name": Way("return f(t, duration)", "names = {'__name__': 'numpy', 'lk': lk}\nexec('def f(t, T): return lk.BangBang(T)(t)', names)\nf = names['f']"),
     "exec with labkit's file": Way("return f(t, duration)", "names = {'lk': lk}\nexec(compile('def f(t, T): return lk.BangBang(T)(t)', lk.__file__, 'exec'), names)\nf = names['f']", counted=True),

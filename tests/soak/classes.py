@@ -14,11 +14,8 @@ from pathlib import Path
 from typing import Any
 
 from . import hostile
-from .commands import typed
 
-ROOT = Path(__file__).parents[2]
 NAME = "01_paths"
-SEED = "7"
 SECRET = 1000
 """Moodle's number of the first hostile participant."""
 HONEST = ("ada", "kim", "zoe", "carl")
@@ -94,16 +91,6 @@ class Kind:
 def kinds(*tables: str) -> list[Kind]:
     """All kinds of some tables."""
     return [Kind(table, name) for table in tables for name in getattr(hostile, table)]
-
-
-def released(root: Path, *names: str) -> Path:
-    """A course in a folder, with assignments released; returns the folder."""
-    root.mkdir()
-    (root / "solutions").symlink_to(ROOT / "solutions")
-    shutil.copy(ROOT / "nbgrader_config.py", root)
-    ended = typed(root, "labkit", "release", *names, "--seed", SEED)
-    assert ended.code == 0, ended.text
-    return root
 
 
 def copied(course: Path, root: Path) -> Path:

@@ -13,7 +13,6 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -63,6 +62,8 @@ LABKIT = (
     REGRADE,
     EXPORTS[0],
 )
+BRIEFLY = (*LABKIT[:4], LABKIT[5], EXPORTS[0], REPORT)
+"""What the gate's sample goes through."""
 NBGRADER = (Step("autograde --create", needed=True), Step("generate_feedback"), EXPORTS[0])
 OTHERS = (GRADE, FEEDBACK, EXPORTS[0], REPORT)
 """For assignments other than the first."""
@@ -101,7 +102,6 @@ class Examined:
     steps: Sequence[Step]
     name: str = NAME
     clean: list[dict[str, Any]] = field(default_factory=list)
-    _numbers: Iterator[int] = field(default_factory=count)
 
     def __post_init__(self) -> None:
         course = self._course(())
@@ -120,7 +120,7 @@ class Examined:
             number, faults = self._through(course, left, told, graded)
             if not faults:
                 return told
-            graded = graded or course
+            graded = graded or self._results_of(course)
             breaks = partial(self._alone, number=number, graded=graded)
             culprits = {left[0]: faults} if len(left) == 1 else guilty(left, breaks)
             for kind, says in culprits.items() or [(None, faults)]:
@@ -130,7 +130,10 @@ class Examined:
             left = [kind for kind in left if kind not in culprits]
 
     def _course(self, kinds: Sequence[Kind]) -> Path:
-        course = copied(self.released, self.folder / str(next(self._numbers)) / "course")
+        """A class, where the one before was: the worker keeps its sandbox."""
+        course = self.folder / "course"
+        shutil.rmtree(course, ignore_errors=True)
+        copied(self.released, course)
         (course / "aside").mkdir()
         hand_in_honest(course, self.name)
         for kind in kinds:
@@ -139,6 +142,12 @@ class Examined:
         if self.steps[0].line.startswith("collect"):
             write_downloads(course, kinds)
         return course
+
+    def _results_of(self, course: Path) -> Path:
+        """A copy of a class's results."""
+        folder = course / "results" / self.name
+        folder.mkdir(parents=True, exist_ok=True)
+        return Path(shutil.copytree(folder, self.folder / "graded"))
 
     def _through(
         self, course: Path, kinds: Sequence[Kind], told: Told, graded: Path | None
@@ -163,15 +172,14 @@ class Examined:
             if step.needed and step is not self.steps[number]:
                 typed(course, *step.words(self.name))
         _, faults = self._do(course, number, kinds)
-        shutil.rmtree(course)
         return faults
 
     def _as_before(self, course: Path, graded: Path) -> None:
-        """Give a class the results that it has in another course, for grading takes long."""
+        """Give a class the results that it had before, for grading takes long."""
         folder = course / "results" / self.name
         folder.mkdir(parents=True)
         for student in os.listdir(course / "submitted"):
-            result = graded / "results" / self.name / f"{student}.json"
+            result = graded / f"{student}.json"
             if len(os.fsencode(result.name)) < 256 and result.is_file():
                 shutil.copy(result, folder)
 

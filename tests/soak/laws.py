@@ -49,7 +49,8 @@ def told(ended: Ended, codes: Sequence[int] = (0, 1)) -> Iterator[tuple[str, str
             yield "", f"{typed}: exit code 2 without a sentence: {_last(ended.err)}"
     before, *raised = ended.text.split(_TRACEBACK)
     for text in raised:
-        yield _blamed(before), f"{typed}: a traceback: {_raised(text)}"
+        if ended.words[0] != "nbgrader" or not _is_refusal(before, text):
+            yield _blamed(before), f"{typed}: a traceback: {_raised(text)}"
         before = text
     if ended.words[0] == "labkit" and (found := _WARNING.search(ended.text)):
         yield "", f"{typed}: a warning of Python's: {found.group()}"
@@ -64,6 +65,15 @@ def _blamed(before: str) -> str:
     return said[-1] if said else ""
 
 
+def _is_refusal(before: str, text: str) -> bool:
+    """Whether nbgrader so refuses one submission, and goes on: it has no other way to say why.
+
+    Where labkit takes part in it, it is a sentence of labkit's.
+    """
+    said = re.search(r"^\s*labkit\.[\w.]+: \w", text, re.MULTILINE)
+    return bool(_blamed(before)) and ("/labkit/" not in text or said is not None)
+
+
 def _last(text: bytes) -> str:
     lines = text.decode("utf-8", "replace").strip().split("\n")
     return ascii(lines[-1][:300])[1:-1]
@@ -72,7 +82,7 @@ def _last(text: bytes) -> str:
 def _raised(text: str) -> str:
     """The line of a traceback that says what was raised."""
     lines = text.split("\n")[1:]
-    ends = [line for line in lines if re.match(r"[\w.]+(Error|Exception|Exit)\b", line)]
+    ends = [line for line in lines if re.match(r"\s*[\w.]+(Error|Exception|Exit)\b", line)]
     return ascii((ends or lines or [""])[0][:300])[1:-1]
 
 

@@ -6,16 +6,15 @@ import csv
 import io
 import json
 import re
-import shutil
 
 import pytest
 from soak.attacks.identity import ADA, IMPOSTORS, MOODLE, write_zip
-from soak.attacks.place import NAME, released
+from soak.attacks.place import NAME
 from soak.attacks.undefended import COMMANDS
 
 from labkit.__main__ import main
-from labkit.course.layout import Course
 
+pytestmark = pytest.mark.usefixtures("kept_worker")
 GATE = (
     "a number in the file's name",
     "another's folder in the exchange",
@@ -31,17 +30,6 @@ FIRST = {
     "canvas": f"lovelaceada_{ADA}_900_{NAME}.ipynb",
 }
 TWIN = f"Ada Lovelace_43{MOODLE}{NAME}.ipynb"
-
-
-@pytest.fixture(scope="module")
-def _released(tmp_path_factory):
-    return released(tmp_path_factory.mktemp("identity") / "course")
-
-
-@pytest.fixture
-def course(_released, tmp_path):
-    shutil.copytree(_released.root, tmp_path / "course", symlinks=True)
-    return Course(tmp_path / "course")
 
 
 def work(course, who, *, solved):

@@ -49,8 +49,8 @@ def root(tmp_path_factory):
     return root
 
 
-@pytest.fixture(params=CASES)
-def graded(request, root):
+@pytest.fixture(scope="module", params=CASES)
+def graded(request, root, kept_worker):
     """What both notebooks earn, question by question, and what may be earned without work."""
     course, name = Course(root), request.param
     release(course, name, 7)

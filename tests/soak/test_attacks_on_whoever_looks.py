@@ -13,25 +13,15 @@ from tempfile import mkdtemp
 import pytest
 from bs4 import BeautifulSoup
 from soak.attacks.attack import CANARY, markdown_cell
-from soak.attacks.place import NAME, ROOT, place, released
+from soak.attacks.place import NAME, ROOT, place
 from soak.attacks.shown import MARKUP
 
 from labkit.__main__ import main
 from labkit.course.layout import Course
 
+pytestmark = pytest.mark.usefixtures("kept_worker")
 soak = pytest.mark.soak
 WRITES = "open({loot!r}, 'w').write('it ran')\n"
-
-
-@pytest.fixture(scope="module")
-def _released(tmp_path_factory):
-    return released(tmp_path_factory.mktemp("looks") / "course")
-
-
-@pytest.fixture
-def course(_released, tmp_path):
-    shutil.copytree(_released.root, tmp_path / "course", symlinks=True)
-    return Course(tmp_path / "course")
 
 
 def formgrader(course, path, **settings):
@@ -68,10 +58,10 @@ def live(page):
 
 
 @pytest.fixture(scope="module", params=["script", pytest.param("all", marks=soak)])
-def shown(request, _released, tmp_path_factory):
+def shown(request, released, tmp_path_factory):
     """Pages of formgrader's, of what was handed in and of what the grader has made of it."""
     course = Course(tmp_path_factory.mktemp("shown") / "course")
-    shutil.copytree(_released.root, course.root, symlinks=True)
+    shutil.copytree(released.root, course.root, symlinks=True)
     names = list(MARKUP) if request.param == "all" else ["script", "picture"]
     released_one = json.loads((course.release / NAME / f"{NAME}.ipynb").read_text())
     paths = {}
@@ -108,9 +98,7 @@ FILES = {
     "dataclasses.py": WRITES,
     "nbgrader_config.py": WRITES,
 }
-CASES = [
-    pytest.param(n, marks=() if n in ("json.py", "nbgrader_config.py") else soak) for n in FILES
-]
+CASES = [pytest.param(n, marks=() if n == "nbgrader_config.py" else soak) for n in FILES]
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -153,12 +141,12 @@ SHOWN = {
 @pytest.mark.parametrize(
     "where", [pytest.param(n, marks=() if n == "beside Python" else soak) for n in SHOWN]
 )
-def test_a_course_in_a_shown_place_is_safe_or_refused(_released, where, capsys):
+def test_a_course_in_a_shown_place_is_safe_or_refused(released, where, capsys):
     """Where the sandbox shows the place of the course, one sentence says so, or it is kept."""
     folder = SHOWN[where] if os.access(SHOWN[where], os.W_OK) else SHOWN["beside Python"]
     root = Path(mkdtemp(prefix="labkit-test-", dir=folder))
     try:
-        shutil.copytree(_released.root, root / "course", symlinks=True)
+        shutil.copytree(released.root, root / "course", symlinks=True)
         course = Course(root / "course")
         path = course.bundle / f"{NAME}.json"
         path.write_text(json.dumps(json.loads(path.read_text()) | {"canary": CANARY}))
@@ -188,9 +176,9 @@ def test_a_course_in_a_shown_place_is_safe_or_refused(_released, where, capsys):
 
 
 @soak
-def test_nothing_that_links_lead_to_comes_back(_released, tmp_path):
+def test_nothing_that_links_lead_to_comes_back(released, tmp_path):
     """By nbgrader's own commands too: a link beside a notebook is not followed into feedback."""
-    with place(tmp_path / "course", _released) as here:
+    with place(tmp_path / "course", released) as here:
         course = here.course
         folder = course.submitted / "mallory" / NAME
         here.hand_in("mallory", here.notebook())

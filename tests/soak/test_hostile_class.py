@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from soak.attacks.defended import wins_of
 from soak.attacks.family import Family
-from soak.attacks.place import NAME, place, released
+from soak.attacks.place import NAME, place
 from soak.attacks.sets import ATTACKS
 from soak.attacks.undefended import COMMANDS
 
@@ -74,14 +74,14 @@ FILES = (_another_name, _a_folder, _a_pipe, _nothing, _a_list, _a_link, _deep)
 
 @pytest.fixture(
     scope="module",
-    params=[(12, 4), pytest.param((150, 40), marks=pytest.mark.soak)],
-    ids=["12 of which 4", "150 of which 40"],
+    params=[(8, 4), pytest.param((150, 40), marks=pytest.mark.soak)],
+    ids=["8 of which 4", "150 of which 40"],
 )
-def graded(request, tmp_path_factory):
+def graded(request, released, tmp_path_factory):
     """A class after all verbs: what they printed, how they ended, what they wrote."""
     count, hostile = request.param
     folder = tmp_path_factory.mktemp("hostile")
-    with place(folder / "course", released(folder / "released")) as here, Family() as family:
+    with place(folder / "course", released) as here, Family() as family:
         make_class(here.course, NAME, seed=16, count=count - hostile)
         attackers = {}
         for number, name in enumerate(_drawn(hostile - hostile // 8)):

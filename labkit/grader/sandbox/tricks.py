@@ -14,25 +14,30 @@ from collections.abc import Iterable, Iterator, Mapping
 from ...course.source import dotted, imported, plain
 
 MODULES = {
-    "builtins", "ctypes", "dill", "gc", "imp", "importlib", "marshal", "pickle", "pkgutil", "runpy",
-    "solutions", "zipimport",
+    "builtins", "code", "codeop", "ctypes", "dill", "gc", "imp", "importlib", "marshal",
+    "multiprocessing", "pickle", "pkgutil", "runpy", "solutions", "subprocess", "zipimport",
 }  # fmt: skip
-"""Modules that load, rebuild or find things that have a name of their own."""
+"""Modules that load, rebuild or find things that have a name of their own, or start a Python."""
 CALLS = {"__import__", "compile", "eval", "exec"}
 ATTRIBUTES = {
     "__bases__", "__closure__", "__code__", "__dict__", "__getattribute__", "__globals__",
     "__init__", "__loader__", "__mro__", "__new__", "__reduce__", "__reduce_ex__", "__setattr__",
-    "__spec__", "__subclasses__", "__wrapped__", "_getframe", "_pin",
+    "__spec__", "__subclasses__", "__wrapped__", "_getframe", "_pin", "attrgetter", "methodcaller",
 }  # fmt: skip
 """Attributes by which one gets at what has been put away."""
-INSIDE = ("labkit.course.", "labkit.grader.", "sys.modules.", "sys.meta_path.", "sys.path_hooks.")
+INSIDE = (
+    *("labkit.course.", "labkit.grader.", "sys.modules.", "sys.meta_path.", "sys.path_hooks."),
+    *("os.exec", "os.popen.", "os.posix_spawn", "os.spawn", "os.system.", "operator.attrgetter."),
+    *("operator.methodcaller.", "asyncio.create_subprocess_", "concurrent.futures.ProcessPool"),
+)
 OURS = ("labkit", "numpy", "pinocchio", "builtins", "sys")
 """Modules that no answer changes."""
 STUDENTS = {"labkit.course"} | {f"labkit.course.{name}" for name in ("check", "hint", "use")}
 
 _WORTH_A_LOOK = re.compile(
-    r"__|\b(_\w|eval|exec|compile|getattr|setattr|vars|sys|labkit|pinocchio)"
-    rf"|\b({'|'.join(MODULES)})\b|\b(lk|np|numpy)(\.\w+)+\s*(=[^=]|,)"
+    r"__|\b(_\w|eval|exec|compile|getattr|setattr|vars|sys|os|operator|labkit|pinocchio)"
+    rf"|\b({'|'.join(MODULES)}|asyncio|concurrent)\b"
+    r"|(?<![\w.])(lk|np|numpy)(\.\w+)++\s*+(=[^=]|,)"  # what is passed is not read again
 )
 """What every cell with a trick has; with it a look at a notebook takes half the time."""
 

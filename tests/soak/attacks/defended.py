@@ -84,7 +84,7 @@ def defended(attacks: Mapping[str, Attack], here: Place) -> Class:
     pairs = [s for s in made.attackers if f"{s}-then" in made.accomplices]
     with patch.dict(os.environ, LABKIT_CANARY=CANARY), Family() as family:
         _grade(here, [who for student in pairs for who in (student, f"{student}-then")], 1, made)
-        _grade(here, sorted({*made.attackers, *HONEST} - set(pairs)), 2, made)
+        _grade(here, sorted({*made.attackers, *HONEST} - set(pairs)), 1 + (len(attacks) > 50), made)
         for verb in ("grade", "feedback", "export", "class-report"):
             _run(verb, here, made)
         made.left = family.left()

@@ -10,9 +10,11 @@ from contextlib import suppress
 from multiprocessing import resource_tracker
 from pathlib import Path
 
+from labkit.grader.sandbox.limits import slowness
+
 _ADOPTS = 36  # PR_SET_CHILD_SUBREAPER: orphans become this process's children, not init's
 PATIENT = 60.0
-"""A guard against waiting for ever, in [s]; nothing is measured by it."""
+"""A guard against waiting for ever, in [s] on a quick machine; nothing is measured by it."""
 
 
 class Family:
@@ -41,7 +43,7 @@ class Family:
 
     def left(self) -> list[str]:
         """What still runs once it had its time to end; dead children are buried."""
-        until = time.monotonic() + PATIENT
+        until = time.monotonic() + PATIENT * slowness()
         while found := self.now():
             for pid, _ in found:
                 with suppress(ChildProcessError):

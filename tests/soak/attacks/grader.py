@@ -39,6 +39,9 @@ PROCESSES = cells(
     "if os.getppid() == 1 or os.getsid(0) == os.getpid(): time.sleep(600)",
     another_program="import subprocess\nsubprocess.Popen(['/usr/bin/sleep', '600'], start_new_session=True)",
     a_daemon_of_the_answer="import threading",
+    pipes_full_in_twenty_processes="import os, time\nfor _ in range(20):\n    if not os.fork():\n"
+    "        for _ in range(50):\n            end = os.pipe()[1]\n            os.set_blocking(end, False)\n"
+    "            try:\n                while True: os.write(end, b'x' * 65536)\n            except OSError: pass\n        time.sleep(600)",
 )  # fmt: skip
 PROCESSES["a daemon of the answer"] = Attack(
     "leaves",
@@ -59,6 +62,8 @@ ENDS = cells(
 ) | answers(
     "dies",
     the_answer_exits="import os\nos._exit(0)",
+    alarms_for_process_1="import os, signal\nfor s in (signal.SIGALRM, signal.SIGPROF): os.kill(1, s)\n"
+    "os.kill(os.getppid(), signal.SIGALRM)\nos.kill(os.getpid(), signal.SIGALRM)",
     the_answer_crashes="import ctypes\nctypes.string_at(0)",
     an_exception_that_cannot_be_said="class E(BaseException):\n    def __str__(self):\n        import os\n        os._exit(1)\nraise E",
 )  # fmt: skip
@@ -198,6 +203,7 @@ FILES = {
     "a text of two million emoji": Attack("fills", shape=_own_text),
     "900 cells that fail": Attack("hangs", shape=_failing),
     "900 cells that lean on one another": Attack("fills", shape=_chained),
+    "a line that is long to read": Attack("hangs", ("%lsmagic\n" + "x." * 8_000 + "a ?",)),
     "20,000 lines of magic": Attack("hangs", shape=_magics),
     "480,000 statements": Attack("fills", shape=_statements),
     "pictures": Attack("fills", shape=_pictures),

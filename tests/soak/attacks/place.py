@@ -58,14 +58,14 @@ class Place:
         (folder / f"{assignment}.ipynb").write_text(json.dumps(notebook))
 
 
-def released(root: Path, seed: int = SEED) -> Course:
-    """A course with the assignment released."""
+def release_into(root: Path, assignment: str = NAME, seed: int = SEED) -> Course:
+    """A course with an assignment released."""
     root.mkdir(parents=True, exist_ok=True)
     if not (root / "solutions").exists():
         (root / "solutions").symlink_to(ROOT / "solutions")
         shutil.copy(ROOT / "nbgrader_config.py", root)
     course = Course(root)
-    release(course, NAME, seed)
+    release(course, assignment, seed)
     return course
 
 

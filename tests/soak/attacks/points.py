@@ -244,4 +244,15 @@ LINES = lines(
     pickle="b'cos\\nsystem\\n(S\"true\"\\ntR.\\n'",
 )  # fmt: skip
 
+_DESCRIPTORS = (
+    "import array, os, socket, stat\ndef shout():\n    for f in range(3, 128):\n        try:\n"
+    "            if stat.S_ISSOCK(os.fstat(f).st_mode): socket.socket(fileno=os.dup(f)).sendmsg(\n"
+    "                [b'x\\n'] * 3, [(socket.SOL_SOCKET, socket.SCM_RIGHTS, array.array('i', [0] * 200))])\n"
+    "        except OSError: pass\n"
+)
+LINES["line: descriptors"] = Attack(
+    "forges", (_DESCRIPTORS + "shout()",), function("shout()\nreturn 0.0, 0.0, 0.0")
+)
+"""Whoever takes in what comes with the bytes has soon no descriptors left."""
+
 POINTS = {**PATCHES, **SHELL, **OBJECTS, **FRAMES, **BOOKS, **CLAIMS, **LINES}

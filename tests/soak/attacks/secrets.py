@@ -243,6 +243,9 @@ RESTARTS = {
         "os.utime('/dev/pts/ptmx')",
         "found = time.time() - os.stat('/dev/pts/ptmx').st_mtime if os.path.exists('/dev/pts/ptmx') else 99\n"
         f"if 0 < found < 20: {_GOT}"),
+    "after a restart, by the numbers of pipes": restarts(  # the kernel counts them for everybody
+        "kept = [os.pipe() for _ in range(5 * digits[1])]",
+        "print('count', os.fstat(os.pipe()[0]).st_ino)"),
     "after a restart, by the clock on the wall": restarts(
         "while int(time.time() * 4) % 10 != digits[1]: time.sleep(0.01)"),
 }  # fmt: skip

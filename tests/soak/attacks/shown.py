@@ -30,6 +30,7 @@ MARKUP = {
     "frame": "<iframe srcdoc=\"<script>parent.GOT=1</script>\"></iframe>",
     "link": "<a href=\"javascript:window.GOT=1\">marks</a>",
     "link in markdown": "[marks](javascript:window.GOT=1)",
+    "link by reference": "[marks][a]\n\n[a]: javascript:window.GOT=1",
     "link with white space": "<a href=\"java&#10;script:window.GOT=1\">marks</a>",
     "form": "<form action=\"http://x\"><button formaction=\"javascript:window.GOT=1\">Save</button></form>",
     "style": "<style>body { background: url(http://x/?got) }</style>",

@@ -23,6 +23,8 @@ from soak.attacks.attack import Attack, Notebook, code_cell
 from soak.attacks.others import VICTIM
 from soak.attacks.place import NAME, ROOT, Place, copied
 
+from labkit.grader.sandbox.limits import slowness
+
 BARE = Path(__file__).with_name("bare.py")
 HIDDEN = "got 5.816534"
 """What the bare grader says of an answer that is what it asked."""
@@ -160,7 +162,9 @@ def plainly(here: Place) -> Place:
     """The same course with "plain": one question with tests as many are written."""
     course = here.course
     with (course.root / "nbgrader_config.py").open("a") as file:
-        file.write("c.pop('Autograde')\nc.Execute.timeout = 15\n")  # nbgrader's own steps
+        file.write(
+            f"c.pop('Autograde')\nc.Execute.timeout = {15 * slowness():.0f}\n"
+        )  # nbgrader's own steps
     marks = {"schema_version": 3, "locked": False, "task": False, "grade": False, "solution": False}
     cells = [
         code_cell(
@@ -242,7 +246,7 @@ def _job(here: Place, name: str, attack: Attack, notebook: Notebook) -> dict[str
         "then": attack.then.replace("GOT", r"G\x4fT"),
         "again": attack.wins == "tells",
         "folder": str(here.course.root / "autograded" / "mallory" / NAME),
-        "seconds": 2.5 if attack.wins == "hangs" else 20.0,
+        "seconds": slowness() * (2.5 if attack.wins == "hangs" else 20.0),
     }
 
 
@@ -256,7 +260,7 @@ def run_bare(here: Place, jobs: Iterable[Mapping[str, Any]], scratch: Path) -> d
         [*harmless(here, init=True), *words],
         env=environment(here),
         capture_output=True,
-        timeout=1800,
+        timeout=1800 * slowness(),
     )
     assert out.exists(), done.stderr.decode()[-2000:]
     found = json.loads(out.read_text())
@@ -331,7 +335,7 @@ def nbgrader(here: Place, *words: str) -> str:
             stdout=out,
             stderr=subprocess.STDOUT,
             check=False,
-            timeout=900,
+            timeout=900 * slowness(),
         )
     return log.read_text(errors="replace")
 

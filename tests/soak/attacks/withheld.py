@@ -87,4 +87,21 @@ WITHHELD = {
     "out of its family": way(
         "import labkit as lk\nkind = [c for c in lk.Cubic.__mro__[1].__subclasses__() if c.PEAK_ACCELERATION == 4.0][0]",
         "x(t)", "    x = object.__new__(kind)\n    x.__dict__['duration'] = duration\n"),
+    "another Python": way(
+        "import subprocess, sys\nhelper = None\n"
+        "program = 'import labkit as lk\\nwhile True:\\n    t, T = map(float, input().split())\\n    print(*lk.BangBang(T)(t), flush=True)'",
+        "tuple(map(float, helper.stdout.readline().split()))",
+        "    global helper\n    helper = helper or subprocess.Popen([sys.executable, '-c', program], stdin=-1, stdout=-1, text=True)\n"
+        "    print(t, duration, file=helper.stdin, flush=True)\n"),
+    "another Python, by the shell": way(
+        "import os, sys", "tuple(map(float, said.split()))",
+        "    said = os.popen(f'{sys.executable} -c \"import labkit as lk; print(*lk.BangBang({duration})({t}))\"').read()\n"),
+    "another Python, by a pool": way(
+        "import labkit as lk, multiprocessing, operator, sys\nkind, pool = operator.attrgetter('Bang' + 'Bang')(lk), None",
+        "pool.apply(pool.apply(kind, (duration,)), (t,))",
+        "    global pool\n    pool = pool or multiprocessing.get_context('spawn').Pool(1)\n"),
+    "in a pool of threads": way(
+        "import operator, labkit as lk\nfrom concurrent.futures import ThreadPoolExecutor as Pool\n"
+        "kind = operator.attrgetter('Bang' + 'Bang')(lk)",
+        "Pool(1).submit(Pool(1).submit(kind, duration).result(), t).result()"),
 }  # fmt: skip
