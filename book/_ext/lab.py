@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import citations
 import excerpts
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
@@ -207,6 +208,7 @@ def _search_tools(page: BeautifulSoup) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register with Sphinx."""
+    citations.register()
     app.connect("config-inited", settings, priority=100)
     app.connect("autodoc-skip-member", told_already)
     app.connect("autodoc-process-docstring", hide_colon, priority=400)
