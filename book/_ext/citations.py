@@ -21,7 +21,7 @@ class AuthorYear(BaseLabelStyle):
             names = [" ".join(x.render_as("text") for x in person.rich_last_names)
                      for person in entry.persons["author"]]  # fmt: skip
             who = f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
-            yield f"{who}, {entry.rich_fields['year'].render_as('text')}"
+            yield f"{who}, {entry.fields['year'].replace('--', '-')}"
 
 
 class Labelled(Style):
