@@ -110,6 +110,7 @@ def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
         _hidden_inputs,
         _repeated_ids,
         _search_tools,
+        _preview,
     ):
         rule(page)
 
@@ -196,6 +197,22 @@ def _repeated_ids(page: BeautifulSoup) -> None:
     """Every exercise's box is given the same id, which nothing uses."""
     for box in page.select("#exercise-content, #solution-content, #proof-content"):
         del box["id"]
+
+
+def _preview(page: BeautifulSoup) -> None:
+    """What a chat or a forum shows of a link: the title, the first paragraph and the arm."""
+    first = page.select_one("article.bd-article section > p")
+    icon = page.select_one('link[rel*="icon"]')
+    if not page.head or not first or not icon:
+        return
+    said = {
+        "og:type": "article",
+        "og:title": page.title.get_text(strip=True) if page.title else "",
+        "og:description": " ".join(first.get_text(" ").split())[:200],
+        "og:image": str(icon["href"]).replace("favicon.svg", "baxter.png"),
+    }
+    for name, text in said.items():
+        page.head.append(page.new_tag("meta", attrs={"property": name, "content": text}))
 
 
 def _search_tools(page: BeautifulSoup) -> None:
