@@ -92,6 +92,7 @@ doctor: .venv/.course ## what isolation this machine can give to submissions
 
 lint: .venv/.dev
 	@$(BIN)/ruff check --quiet . && $(BIN)/ruff format --quiet --check . || { $(BIN)/ruff format --diff . ; exit 1; }
+	@$(BIN)/codespell *.md book labkit solutions tests .ci
 
 types: .venv/.dev
 	@$(BIN)/mypy --no-error-summary

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import citations
 import excerpts
 from bs4 import BeautifulSoup
 from sphinx.application import Sphinx
@@ -109,6 +110,7 @@ def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
         _hidden_inputs,
         _repeated_ids,
         _search_tools,
+        _preview,
     ):
         rule(page)
 
@@ -197,6 +199,22 @@ def _repeated_ids(page: BeautifulSoup) -> None:
         del box["id"]
 
 
+def _preview(page: BeautifulSoup) -> None:
+    """What a chat or a forum shows of a link: the title, the first paragraph and the arm."""
+    first = page.select_one("article.bd-article section > p")
+    icon = page.select_one('link[rel*="icon"]')
+    if not page.head or not first or not icon:
+        return
+    said = {
+        "og:type": "article",
+        "og:title": page.title.get_text(strip=True) if page.title else "",
+        "og:description": " ".join(first.get_text(" ").split())[:200],
+        "og:image": str(icon["href"]).replace("favicon.svg", "baxter.png"),
+    }
+    for name, text in said.items():
+        page.head.append(page.new_tag("meta", attrs={"property": name, "content": text}))
+
+
 def _search_tools(page: BeautifulSoup) -> None:
     """The theme loads the search's index on every page; only the one that searches needs it."""
     if not page.select_one("#search-results"):
@@ -207,6 +225,7 @@ def _search_tools(page: BeautifulSoup) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register with Sphinx."""
+    citations.register()
     app.connect("config-inited", settings, priority=100)
     app.connect("autodoc-skip-member", told_already)
     app.connect("autodoc-process-docstring", hide_colon, priority=400)

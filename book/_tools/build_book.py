@@ -198,6 +198,8 @@ def build(*, answers: bool) -> int:
     for path in (BOOK / "static").rglob("*"):  # Sphinx leaves these where no page has changed
         if path.is_file():
             _copy(path, HTML / "_static" / path.relative_to(BOOK / "static"))
+    for path in HTML.rglob("*.map"):  # 3 MB that only the themes' own developers need
+        path.unlink()
     stamp.write_text(json.dumps(state))
     return 0
 

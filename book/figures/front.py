@@ -2,16 +2,40 @@
 
 from __future__ import annotations
 
+import inspect
+from html import escape
+from pathlib import Path
+
 import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
 from labkit import metrics
+from labkit.course.layout import Course
+from labkit.course.marking import mark
+from labkit.course.messages import tell
+from labkit.course.student import Desk
+from solutions.study import campaign
+from solutions.study.grid import pick
 from solutions.study.joint_velocity import JointVelocityPD
+from solutions.velocity_control import mistakes
 
-from .page import holds, numbers, replay
+from . import comparison
+from .page import holds, numbers, replay, table
 
 SEED = 1
+COURSE = Course(Path(__file__).parents[2])
+NOTEBOOKS = {
+    "00_warmup": ("vectors, rotations and orientation errors in numpy", 2),
+    "01_paths": ("lines, circles and polylines; when to be where", 4),
+    "02_model": ("the Jacobian, inverse kinematics, inertia at the tip", 5),
+    "03_velocity_control": ("joint and workspace velocity control", 4),
+    "04_torque_control": ("torques from a model; gains; sampling", 4),
+    "05_impedance": ("an arm that behaves like a spring, and what it touches", 4),
+    "06_tags": ("from a picture to a pose; following a tag that moves", 5),
+    "07_comparison": ("margins, tuning, and a comparison that means something", 5),
+}
+"""What a student writes in each notebook, and the hours that it takes."""
 
 
 def welcome() -> HTML:
@@ -38,4 +62,59 @@ def welcome() -> HTML:
         "Baxter's left arm draws a line and a circle",
         "A recorded run on the realistic arm, with the error and the motor torques.",
         label="joint velocity PD",
+    )
+
+
+def picked() -> HTML:
+    """The tracking error of each method on each task, on the realistic arm."""
+    rows = [
+        (way, *(_error(way, task) for task in campaign.TASKS))
+        for way in (*campaign.FIVE, campaign.BASELINE)
+    ]
+    return table(
+        ("Method", *campaign.TASKS),
+        rows,
+        "RMS error of the tip in mm after the first second, mean over the seeds, on the arm with "
+        "friction, lag and noise. The baseline plans for a goal at rest: it cannot follow the tag.",
+    )
+
+
+def _error(way: str, task: str) -> str:
+    if (way, task) == (campaign.BASELINE, "tag"):
+        return "\N{EN DASH}"
+    rows = pick(comparison.found()["rows"], way=way, task=task, plant="baxter")
+    return f"{np.mean([row['late_rms_mm'] for row in rows]):.2g}"
+
+
+def a_mistake() -> HTML:
+    """A wrong answer of a student, and what the check says to it."""
+    wrong = mistakes.no_feedforward
+    folder = COURSE.root / "assignments" / "03_velocity_control"
+    question = Desk.beside(folder).question("joint_velocity_pd")
+    verdict = mark(question, wrong)
+    holds(verdict.mistake is not None, "the check knows this mistake")
+    code = inspect.getsource(wrong).replace(wrong.__name__, question.name)
+    code = code.replace(f'    """{wrong.__doc__}"""\n', "")
+    return HTML(_typed(code, "A student's answer") + _typed(tell(question, verdict), "The check's"))
+
+
+def _typed(text: str, label: str) -> str:
+    return (
+        f'<div class="highlight" role="group" tabindex="0" aria-label="{label}">'
+        f"<pre>{escape(text)}</pre></div>"
+    )
+
+
+def notebooks() -> HTML:
+    """What each notebook is about, how long it takes and what it earns."""
+    rows = []
+    for name, (about, hours) in NOTEBOOKS.items():
+        problems = COURSE.problems(name)
+        points = sum(problem.points for problem in problems)
+        rows.append((name, about, hours, len(problems), f"{points:g}"))
+    return table(
+        ("Notebook", "Students write", "Hours", "Questions", "Points"),
+        rows,
+        f"{len(rows)} notebooks, {sum(r[2] for r in rows)} hours, "
+        f"{sum(float(r[4]) for r in rows):g} points",
     )

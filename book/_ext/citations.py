@@ -1,0 +1,36 @@
+"""Labels of the bibliography, the same as in the text: Hogan, 1985; Pham and Pham, 2018."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from pybtex.plugin import register_plugin
+from pybtex.style.formatting.plain import Style
+from pybtex.style.labels import BaseLabelStyle
+
+NAME = "author-year"
+
+
+class AuthorYear(BaseLabelStyle):
+    """Last names and year."""
+
+    def format_labels(self, entries: Iterable[Any]) -> Iterator[str]:
+        """One label for each entry."""
+        for entry in entries:
+            names = [" ".join(x.render_as("text") for x in person.rich_last_names)
+                     for person in entry.persons["author"]]  # fmt: skip
+            who = f"{names[0]} et al." if len(names) > 2 else " and ".join(names)
+            yield f"{who}, {entry.fields['year'].replace('--', '-')}"
+
+
+class Labelled(Style):
+    """The plain style with these labels."""
+
+    default_label_style = NAME
+
+
+def register() -> None:
+    """Make the style known under its name."""
+    register_plugin("pybtex.style.labels", NAME, AuthorYear)
+    register_plugin("pybtex.style.formatting", NAME, Labelled)
