@@ -6,7 +6,7 @@ import { Model } from "./model.js";
 import { Motors } from "./motors.js";
 
 export class Arm {
-  /** `lab` is {mujoco, robot, plant constants}; `random` gives normal numbers for the noise. */
+  /** `things` are {act, place}: see scene.js; `random` gives normal numbers for the noise. */
   constructor(mujoco, robot, plant, constants, random = null) {
     Object.assign(this, { robot, plant, random, dt: constants.dt, steps: 0, things: [] });
     this.model = new Model(robot, plant);
@@ -19,10 +19,11 @@ export class Arm {
     this.reset(robot.ready);
   }
 
-  reset(q) {
-    this.engine.place(q);
+  /** Put the arm at q, at rest or with the speeds dq. */
+  reset(q, dq = zeros(q.length)) {
+    this.engine.place(q, dq);
     this.joints.reset();
-    Object.assign(this, { q: [...q], dq: zeros(q.length), torque: zeros(q.length), forces: [], reported: -1 });
+    Object.assign(this, { q: [...q], dq: [...dq], torque: zeros(q.length), forces: [], reported: -1 });
     this.mail = [{ t: this.t, q: this.q, dq: this.dq }];
     this.motors.kind = null;
     this.stop();
@@ -42,20 +43,21 @@ export class Arm {
     return this.newest();
   }
 
-  tip() {
-    const J = this.model.tipJacobian(this.q);
-    return { p: this.model.pose(this.q).p, v: apply(J.slice(0, 3), this.dq) };
+  /** What a thing does to the point of the arm that it acts on; null where it does not reach it. */
+  touch(thing) {
+    const { p, J } = this.model.point(this.q, thing.place ?? null);
+    const touch = thing.act({ p, v: apply(J, this.dq) }, this.dt);
+    return touch && { ...touch, J, p, thing };
   }
 
   /** One physics step. */
   step() {
     const { q, dq } = this;
-    const tip = this.things.length ? this.tip() : null;
-    const touches = this.things.map((thing) => ({ ...thing(tip, this.dt), thing })).filter((touch) => touch.force);
+    const touches = this.things.map((thing) => this.touch(thing)).filter(Boolean);
     if (this.every) this.report();
     const drive = this.motors.drive(q, dq);
     const given = this.joints.solve(q, dq, drive, touches);
-    this.forces = (given.touches ?? []).map(({ thing }, i) => ({ thing, force: this.joints.felt[i] }));
+    this.forces = (given.touches ?? []).map(({ thing, p }, i) => ({ thing, p, force: this.joints.felt[i] }));
     this.torque = this.motors.kind === "torque" ? drive.tau : given.held;
     this.engine.step(given.tau);
     [this.q, this.dq] = this.engine.state();

@@ -29,9 +29,9 @@ export class Engine {
   /** Windows on MuJoCo's memory; they close when that memory grows. */
   view() { Object.assign(this, { q: this.data.qpos, dq: this.data.qvel, tau: this.data.qfrc_applied }); }
 
-  place(q) {
+  place(q, dq) {
     this.q.set(q);
-    this.dq.fill(0);
+    this.dq.set(dq);
   }
 
   state() {

@@ -1,5 +1,5 @@
 // The joints: what motors, dry friction and stops give in one physics step; `labkit/joints.py`.
-import { add, apply, applyTransposed, cut, dot, identity, inverse, scale, solve, subtract, zeros } from "./algebra.js";
+import { add, apply, applyTransposed, cut, dot, identity, inverse, scale, solve, subtract, timesTransposed, transpose, zeros } from "./algebra.js";
 
 // Where a joint stands: at its lower stop, given all there is upwards, at its target, given all there
 // is downwards, at its upper stop.
@@ -56,8 +56,8 @@ export class Joints {
     const inside = q.every((x, i) => x > this.lower[i] + this.reach && x < this.upper[i] - this.reach);
     if (inside && !touches.length && drive.bound.every((b) => b === 0)) return { held: drive.bound, tau };
     const h = model.bias(q, dq), M = model.massMatrix(q).map((row) => scale(1 / dt, row));
-    const none = { D: null, push: tau };
-    const { J, D, push } = touches.length ? pressed(model.tipJacobian(q), dq, tau, touches) : none;
+    const touched = touches.length ? pressed(dq, tau, touches) : { push: tau };
+    const { D, push } = touched;
     const G = inverse(D ? M.map((row, i) => add(row, D[i])) : M);
     const u = add(dq, apply(G, subtract(push, h)));
     const stops = [this.lower, this.upper].map((end) => end.map((x, i) => (x - q[i]) / dt));
@@ -65,25 +65,26 @@ export class Joints {
     let force = push;
     if (D) {
       const a = apply(G, add(subtract(push, h), y));
-      const v = apply(J.slice(0, 3), add(dq, a));
-      const kept = touches.filter((touch) => pushes(touch, v));
+      const speeds = add(dq, a);
+      const kept = touches.filter((touch) => pushes(touch, apply(touch.J, speeds)));
       if (kept.length < touches.length) return this.solve(q, dq, drive, kept); // the tip has left the others
       force = subtract(push, apply(D, a));
-      this.felt = touches.map((touch) => subtract(touch.force, apply(touch.damping, v)));
+      this.felt = touches.map((touch) => subtract(touch.force, apply(touch.damping, apply(touch.J, speeds))));
     }
     this.stands = stands;
     return { held: cut(y, drive.bound), tau: add(force, y), touches };
   }
 }
 
-/** Forces f = f0 - D v on the tip, v at the end of the step, as torques and damping of the joints. */
-function pressed(J, dq, tau, touches) {
-  const linear = J.slice(0, 3);
-  const damping = touches.map((t) => t.damping).reduce((A, B) => A.map((row, i) => add(row, B[i])));
-  const force = touches.map((t) => t.force).reduce(add);
-  const columns = linear[0].map((_, j) => linear.map((row) => row[j]));
-  const D = columns.map((a) => columns.map((b) => dot(a, apply(damping, b))));
-  return { J, D, push: subtract(add(tau, applyTransposed(linear, force)), apply(D, dq)) };
+/** Forces f = f0 - D v, v at the end of the step and v = J dq, as torques and damping of the joints. */
+function pressed(dq, tau, touches) {
+  let push = tau, D = null;
+  for (const { J, force, damping } of touches) {
+    const columns = transpose(J), own = timesTransposed(columns, timesTransposed(columns, damping));
+    push = add(push, applyTransposed(J, force));
+    D = D ? D.map((row, i) => add(row, own[i])) : own;
+  }
+  return { D, push: subtract(push, apply(D, dq)) };
 }
 
 /** A face pushes and never pulls. */

@@ -36,7 +36,7 @@ export class Model {
     const joints = this.bodies.map((body, i) => {
       p = plus(p, rotated(R, body.p));
       R = spun(product(R, body.R), q[i]);
-      return { p, axis: [R[2], R[5], R[8]], mass: body.mass, com: plus(p, rotated(R, body.com)),
+      return { p, R, axis: [R[2], R[5], R[8]], mass: body.mass, com: plus(p, rotated(R, body.com)),
         inertia: product(product(R, body.inertia), reverse(R)) };
     });
     const { tip } = this.robot;
@@ -52,6 +52,15 @@ export class Model {
     const { joints, tip } = this.frames(q);
     const columns = joints.map(({ p, axis }) => cross(axis, minus(tip.p, p)).concat(axis));
     return [0, 1, 2, 3, 4, 5].map((k) => columns.map((c) => c[k]));
+  }
+
+  /** A point of a link {link, local}: where it is, and its velocity's Jacobian, three rows; null is the tip. */
+  point(q, place) {
+    const { joints, tip } = this.frames(q);
+    const p = place ? plus(joints[place.link].p, rotated(joints[place.link].R, place.local)) : tip.p;
+    const moved = place ? place.link : this.n - 1;
+    const columns = joints.map((joint, i) => (i <= moved ? cross(joint.axis, minus(p, joint.p)) : ZERO));
+    return { p, J: [0, 1, 2].map((k) => columns.map((c) => c[k])) };
   }
 
   /** Velocities and accelerations from the base outwards: per joint w, dw and the origin's a. */
