@@ -13,7 +13,6 @@ export class Engine {
     model.dof_armature.set(plant.armature);
     if (plant.payload > 0) this.carry(bodiesOf(robot, plant.payload).at(-1));
     this.data = new mujoco.MjData(model);
-    this.view();
   }
 
   /** Give the last body another mass, centre and inertia. */
@@ -26,21 +25,24 @@ export class Engine {
     model.body_iquat.set(quaternion, 4 * last);
   }
 
-  /** Windows on MuJoCo's memory; they close when that memory grows. */
-  view() { Object.assign(this, { q: this.data.qpos, dq: this.data.qvel, tau: this.data.qfrc_applied }); }
+  /** Windows on MuJoCo's memory, opened anew where that memory has grown. */
+  view() {
+    if (this.q?.length) return this;
+    return Object.assign(this, { q: this.data.qpos, dq: this.data.qvel, tau: this.data.qfrc_applied });
+  }
 
   place(q, dq) {
-    this.q.set(q);
+    this.view().q.set(q);
     this.dq.set(dq);
   }
 
   state() {
-    if (!this.q.length) this.view();
-    return [Array.from(this.q), Array.from(this.dq)];
+    const { q, dq } = this.view();
+    return [Array.from(q), Array.from(dq)];
   }
 
   step(tau) {
-    this.tau.set(tau);
+    this.view().tau.set(tau);
     this.mujoco.mj_step(this.model, this.data);
   }
 
