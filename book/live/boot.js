@@ -42,7 +42,7 @@ function start() {
     Object.assign(button, { type: "button", className: "lk-load", textContent: host.dataset.offer });
     status.setAttribute("role", "status");
     button.addEventListener("click", () => open(host, button, status));
-    host.querySelector(".lk-offer").append(button, status);
+    host.querySelector(".lk-offer").replaceChildren(button, status);
   }
 }
 

@@ -2,14 +2,15 @@
 import { ARM_DIALS, gainDials } from "./controls.js";
 import { dial } from "./dial.js";
 import { AXES, hold, pushTips, tire } from "./hands.js";
-import { Curves } from "./curves.js";
+import { Curves, ERROR } from "./curves.js";
 import { NAMES, PRESETS, READY, wallAt } from "./settings.js";
 import { SCALINGS } from "./paths.js";
 import { Session } from "./session.js";
-import { TASK } from "./numbers.js";
+import { TAG, TASK } from "./numbers.js";
+import { subtract } from "./algebra.js";
 
 const GHOST = 0x1f77d0, NEWTON = 0.01; // metres of arrow for a newton
-const PATHS = ["line", "circle", "square", "stay"];
+const PATHS = ["line", "circle", "square", "tag", "stay"];
 const ARMS = { ideal: "ideal arm", baxter: "realistic arm" };
 const key = (names, label) => Object.keys(names).find((k) => names[k] === label);
 
@@ -17,6 +18,7 @@ export class Panel {
   constructor(host, config, mujoco, viewer, robot, began) {
     Object.assign(this, { host, config, mujoco, viewer, h: viewer.h, began, playing: true, alone: false });
     const plant = config.plant ?? "ideal";
+    this.armdials = {};
     this.settings = { ...PRESETS[plant], controller: "workspaceImpedance", path: "circle", shape: "quintic",
       speed: TASK.speed, gains: {}, ...config.settings };
     this.session = new Session(mujoco, this.settings);
@@ -36,15 +38,28 @@ export class Panel {
     this.status = h("p", { class: "lk-hidden", role: "status" });
     this.said = h("p", { class: "lk-kept" });
     this.gainbox = h("div", { class: "lk-dials" });
-    this.curves = new Curves(viewer, (t) => this.say(`At ${t.toFixed(2)} s: ${this.curves.at(t)}`));
-    this.element.append(stagebox, this.buttons(), this.choices(), this.fieldset("Gains", this.gainbox), this.hands(),
-      this.details(), this.numbers, this.status, this.curves.element, this.said);
+    this.curves = new Curves(viewer, this.quantities(), (t) => this.say(`At ${t.toFixed(2)} s: ${this.curves.at(t)}`));
+    this.element.append(stagebox, ...this.parts(), this.status);
     host.append(this.element);
     this.picture = new viewer.Picture(stagebox, "Baxter, live");
-    if (this.picture.works) this.draw3d(robot);
+    if (this.picture.works) {
+      this.draw3d(robot);
+      const { element } = viewer.sight(this.picture);
+      stagebox.after(element);
+      element.querySelectorAll("input[type=checkbox]")[1].click(); // the arm alone
+    }
     else stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The arm is simulated all the same: push it by the buttons; numbers and curve follow."));
     this.showGains();
   }
+
+  /** What stands under the picture, in order. */
+  parts() {
+    return [this.buttons(), this.choices(), this.fieldset("Gains", this.gainbox), this.hands(), this.details(), this.numbers,
+      this.curves.element, this.said];
+  }
+
+  /** What is plotted of a run. */
+  quantities() { return [ERROR]; }
 
   fieldset(name, ...children) { return this.h("fieldset", {}, this.h("legend", {}, name), ...children); }
 
@@ -73,7 +88,7 @@ export class Panel {
     return h("div", { class: "lk-livebar" }, Object.values(this.selects).map((c) => c.element));
   }
 
-  dial(spec, oninput) { return dial({ h: this.h, unique: (stem) => `${stem}-${++Panel.count}` }, { ...spec, oninput }); }
+  dial(spec, oninput) { return dial({ h: this.h, unique: this.viewer.unique }, { ...spec, oninput }); }
 
   showGains() {
     const { plant, controller, gains } = this.settings;
@@ -112,12 +127,29 @@ export class Panel {
     const { rig } = picture.stage;
     const reach = 0.17;
     rig.around([READY.p.map((x) => x - reach), READY.p.map((x) => x + reach)]);
+    Object.assign(rig.motion, this.config.view);
     rig.use("Motion");
     hold(picture, () => this.sessions, {
       wall: { move: (p) => { const at = p[0] - READY.p[0]; this.walldial.set(1000 * at); this.change({ wall: at }); } },
-      target: { move: (p) => this.change({ place: p.map((x, k) => x - READY.p[k]), path: "stay" }, true) },
+      tag: { move: (p) => { for (const { chase } of this.sessions) chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); } },
+      target: { move: (p) => {
+        if (this.settings.path !== "stay") return;
+        this.change({ place: p.map((x, k) => Math.max(-0.15, Math.min(0.15, x - READY.p[k]))) });
+      } },
     }, () => this.pause(false));
-    this.sight?.(picture);
+    this.drawPath();
+  }
+
+  /** The path of the target, dashed. */
+  drawPath() {
+    const { viewer, picture, session } = this;
+    if (!picture.works) return;
+    if (this.path) { picture.stage.scene.remove(this.path); viewer.dispose(this.path); }
+    const rows = Array.from({ length: 121 }, (_, k) => session.goal((k / 120.001) * session.lap));
+    this.path = viewer.line(rows, { colour: 0xc77700, width: 2.5, dash: 0.012, gap: 0.008 });
+    this.path.visible = this.settings.path !== "stay";
+    picture.stage.scene.add(this.path);
+    picture.stage.draw();
   }
 
   /** New settings: the arm goes on under them at once, the curve is made again. */
@@ -126,6 +158,7 @@ export class Panel {
     try {
       this.session.change(this.settings);
     } catch (problem) { this.lost(problem); return; }
+    if (what.path || what.place) this.drawPath();
     this.recompute();
     this.changed?.();
   }
@@ -215,6 +248,7 @@ export class Panel {
 
   furnish(now) {
     const things = { target: { kind: "target", position: now.goal } };
+    if (this.session.chase) things.tag = { kind: "tag", position: subtract(now.goal, TAG.offset), size: TAG.size };
     if (this.settings.wall !== undefined) {
       const { point, size } = wallAt(this.settings.wall);
       things.wall = { kind: "face", position: point, quaternion: [0, -Math.SQRT1_2, 0, Math.SQRT1_2], size };
@@ -259,5 +293,4 @@ export class Panel {
     this.element.remove();
   }
 }
-Panel.count = 0;
 

@@ -1,11 +1,12 @@
 // One arm at work: it follows its target again and again, is touched, and takes new settings as it goes.
 import { length, subtract } from "./algebra.js";
 import { Arm } from "./arm.js";
+import { Chase, LAP } from "./chase.js";
 import { Model } from "./model.js";
 import { CONSTANTS, ROBOT } from "./numbers.js";
 import { gaussian, uniform } from "./random.js";
 import { Loop } from "./run.js";
-import { lawOf, plantOf, targetOf, thingsOf } from "./settings.js";
+import { READY, lawOf, plantOf, targetOf, thingsOf } from "./settings.js";
 
 export class Session {
   constructor(mujoco, settings, seed = 1) {
@@ -20,22 +21,33 @@ export class Session {
     const plant = plantOf(settings), { law, rate, joints } = lawOf(settings);
     const chance = uniform(this.seed);
     this.arm = new Arm(this.mujoco, ROBOT, plant, CONSTANTS, gaussian(this.seed + 1));
-    const target = targetOf(settings, joints), { duration } = target;
-    const again = (t) => target(t % duration);
-    this.poses = targetOf(settings, false);
-    this.loop = new Loop(this.arm, again, law, {
+    this.follow(settings, joints);
+    this.loop = new Loop(this.arm, this.target, law, {
       rate, runaway: CONSTANTS.runaway, late: () => chance() < plant.lost_ticks });
     this.loop.k = Math.round(time / this.loop.period);
     this.arm.steps = this.loop.k * this.loop.steps;
     this.arm.reset(before?.q ?? settings.start ?? ROBOT.ready, before?.dq);
     before?.close();
     this.solid = thingsOf(settings);
-    this.lap = duration;
+  }
+
+  /** What the law is told to follow, and what counts: a known motion, again and again, or a tag. */
+  follow(settings, joints) {
+    if (settings.path === "tag") {
+      const { dragged = null } = this.chase ?? {};
+      this.chase = Object.assign(new Chase(settings, READY, joints, this.seed + 2), { dragged });
+      Object.assign(this, { lap: LAP, target: (t) => this.chase.target(t), goal: (t) => this.chase.goal(t) });
+      return;
+    }
+    const target = targetOf(settings, joints), poses = targetOf(settings, false);
+    this.chase = null;
+    Object.assign(this, { lap: target.duration, target: (t) => target(t % this.lap), goal: (t) => poses(t % this.lap).pose.p });
   }
 
   /** Put everything back to the start. */
   restart() {
     this.loop.k = this.arm.steps = 0;
+    if (this.chase) this.change(this.settings);
     this.arm.reset(this.settings.start ?? ROBOT.ready);
   }
 
@@ -55,10 +67,10 @@ export class Session {
   }
 
   /** A tick in numbers: place of the tip and of its target, error, joint speed, forces. */
-  measured({ t, q, dq, tau }) {
-    const p = this.arm.own.pose(q).p, goal = this.poses(t % this.lap).pose.p;
+  measured({ t, q, dq, tau, command }) {
+    const p = this.arm.own.pose(q).p, goal = this.goal(t);
     const off = subtract(goal, p);
-    return { t, q, dq, tau, p, goal, off, error: length(off), speed: Math.max(...dq.map(Math.abs)),
+    return { t, q, dq, tau, asked: command.value, aimed: this.chase?.aimed, p, goal, off, error: length(off), speed: Math.max(...dq.map(Math.abs)),
       forces: this.arm.forces.map(({ thing, p: at, force }) => ({ name: thing.name ?? "hand", at, force, size: length(force) })) };
   }
 
