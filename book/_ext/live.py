@@ -23,7 +23,8 @@ from sphinx.util.docutils import SphinxDirective
 
 PIECES = ("open", "stiffness", "age", "singular")
 OFFER = "Load the live arm (4 MB, from this book's folder)"
-WITHOUT = "On paper and without JavaScript: the recorded runs and the numbers in the text tell the same."
+SETTINGS = ("controller", "path")
+WITHOUT = "On paper and without JavaScript, the recorded runs and the text tell the same."
 
 
 def names(text: str) -> list[str]:
@@ -49,19 +50,21 @@ class LiveArm(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """The figure, and the script that makes its button work."""
         piece = directives.choice(self.arguments[0], PIECES)
-        own = {k: v for k, v in self.options.items() if k in ("title", "plant", "controllers", "paths", "seconds")}
-        settings = {k: v for k, v in self.options.items() if k in ("controller", "path")}
-        caption = " ".join(self.content)
+        own = {k: v for k, v in self.options.items() if k not in SETTINGS}
+        settings = {k: v for k, v in self.options.items() if k in SETTINGS}
+        title = own.setdefault("title", "The live arm")
         data = json.dumps({"piece": piece, **own, "settings": settings}).replace("<", "\\u003c")
         root = "../" * self.env.docname.count("/") + "_static/live/"
         html = (
-            f'<figure class="lk-live" data-offer="{escape(OFFER)}">'
+            f'<figure class="lk-live" role="group" aria-label="{escape(title)}" '
+            f'data-offer="{escape(OFFER)}">'
             f'<script type="application/json">{data}</script>'
-            f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div>'
-            f"<figcaption>{escape(caption)}</figcaption></figure>"
+            f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div></figure>'
             f'<script defer src="{root}boot.js"></script>'
         )
-        return [nodes.raw("", html, format="html")]
+        caption = nodes.container(classes=["lk-caption"])
+        self.state.nested_parse(self.content, self.content_offset, caption)
+        return [nodes.raw("", html, format="html"), caption]
 
 
 def setup(app: Sphinx) -> dict[str, Any]:

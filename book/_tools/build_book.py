@@ -74,7 +74,7 @@ def prepare() -> None:
 
 
 def _live(bundle: Path, folder: Path) -> None:
-    """The live arm's scripts; MuJoCo's WebAssembly becomes one, for a page from the disk fetches nothing."""
+    """The live arm's scripts; MuJoCo's WebAssembly becomes one, since file:// cannot fetch."""
     for path in bundle.iterdir():
         if path.suffix != ".gz":
             _copy(path, folder / path.name)

@@ -9,7 +9,7 @@ export function predictBox(h, { question, unit, commit, found }) {
     if (said === null) return;
     const now = found();
     answer.textContent = now === null ? `You said ${said} ${unit}. Watch.`
-      : `You said ${said} ${unit}; the arm: ${now.toFixed(1)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`;
+      : `You said ${said} ${unit}; the arm: ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`;
   };
   const go = () => {
     if (!Number.isFinite(number.valueAsNumber)) { answer.textContent = "Say a number first; a guess will do."; return; }

@@ -35,7 +35,7 @@ export function worstElbow() {
 /** From the shoulder to the wrist: it depends on the elbow alone, and is longest where the speed is worst. */
 const span = (e1) => { const { joints } = model.frames(posed(e1)); return length(subtract(joints[5].p, joints[1].p)); };
 
-const FROM = 0.7, TO = 0.2; // elbow angles at the two ends of the path, the hand's orientation kept
+const FROM = 1.0, TO = 0.2; // elbow angles at the two ends of the path, the hand's orientation kept
 const READY = model.pose(ROBOT.ready), OUT = outwards(ROBOT.ready);
 const at = (e1) => add(READY.p, scale(span(e1) - span(ROBOT.ready[ELBOW]), OUT));
 const START = inverseKinematics(model, { R: READY.R, p: at(FROM) }, ROBOT.ready, ROBOT.ready);

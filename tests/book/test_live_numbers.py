@@ -68,9 +68,13 @@ def test_commands_equal_those_of_the_solutions():
             asked = [(s, joint if own.joints else pose) for s, pose, joint in moments(40, seed=5)]
             cases.append([own.controller(*case).value for case in asked])
             states = [plain(*case) for case in asked]
-            requests.append({"ask": "commands", "plant": plant, "controller": name, "states": states})
+            requests.append(
+                {"ask": "commands", "plant": plant, "controller": name, "states": states}
+            )
     for request, expected, found in zip(requests, cases, javascript(*requests), strict=True):
-        worst = np.abs(np.array(found) - expected).max(axis=1) / np.maximum(1.0, np.abs(expected).max(axis=1))
+        worst = np.abs(np.array(found) - expected).max(axis=1) / np.maximum(
+            1.0, np.abs(expected).max(axis=1)
+        )
         assert worst.max() < EXACT, (request["plant"], request["controller"], worst.max())
 
 
@@ -94,7 +98,7 @@ def test_the_equations_of_motion_equal_pinocchios():
 
 @pytest.mark.parametrize("plant", PLANTS)
 def test_runs_equal_pythons_on_mujoco(plant):
-    """Five seconds of line and circle, all six ways, end to end within 1e-6 rad of the lab's run."""
+    """Five seconds of line and circle, all six ways, within 1e-6 rad of the lab's run."""
     requests = [
         {"plant": plant, "controller": name, "task": task, "duration": 5.0}
         for name in [*LAWS, "baxtersOwn"] for task in ("line", "circle")
@@ -105,9 +109,13 @@ def test_runs_equal_pythons_on_mujoco(plant):
 
 
 def test_contact_payload_and_stops_equal_pythons():
-    """A wall with friction in the line's way, a spring, a payload and a joint stop: within 1e-6 rad."""
+    """A wall with friction, a spring, a payload and a joint stop: within 1e-6 rad."""
     ready = lk.Model("left").pose(lk.robot("left").ready)[:3, 3]
-    face = {"point": (ready + [0.03, 0.0, 0.0]).tolist(), "normal": [-1.0, 0.2, 0.0], "friction": 0.3}
+    face = {
+        "point": (ready + [0.03, 0.0, 0.0]).tolist(),
+        "normal": [-1.0, 0.2, 0.0],
+        "friction": 0.3,
+    }
     band = {"anchor": (ready + [0.0, 0.2, 0.1]).tolist(), "stiffness": 150.0, "damping": 5.0}
     near = np.array(lk.robot("left").ready)
     near[3] = lk.robot("left").lower[3] + 0.01
