@@ -65,11 +65,21 @@ def prepare() -> None:
 
     for name, path in shared_files().items():
         _copy(path, BOOK / "static/viewer" / name)
+    _live(BOOK / "live/bundle", BOOK / "static/live")
     _write(MADE / "parts/symbols.md", _symbols())
     _notebooks(MADE / "notebooks")
     for made in (ROOT / "build/campaign").glob("*.mp4"):
         for path in (made, made.with_suffix(".png")):
             _copy(path, BOOK / "static/films" / path.name)
+
+
+def _live(bundle: Path, folder: Path) -> None:
+    """The live arm's scripts; MuJoCo's WebAssembly becomes one, since file:// cannot fetch."""
+    for path in bundle.iterdir():
+        if path.suffix != ".gz":
+            _copy(path, folder / path.name)
+    packed = base64.b64encode((bundle / "mujoco.wasm.gz").read_bytes()).decode()
+    _write(folder / "mujoco-wasm.js", f'globalThis.labkitMuJoCoPacked="{packed}";\n')
 
 
 def _symbols() -> str:

@@ -128,12 +128,12 @@ def test_every_control_is_reached_and_named(chromium, visit):
     page.wait_for_selector("[data-ready]")
     names = []
     page.evaluate("document.body.focus()")
-    for _ in range(25):
+    for _ in range(29):
         page.keyboard.press("Tab")
         names.append(
             page.evaluate("document.activeElement.ariaLabel || document.activeElement.textContent")
         )
-    for wanted in ("Play", "Time", "Time in seconds, typed", "Front", "Side", "Top", "Hand",
+    for wanted in ("Play", "Time", "Time in seconds, typed", "Motion", "Front", "Side", "Top", "Hand",
                    "Turn left", "Zoom out", "Description in words"):  # fmt: skip
         assert wanted in names
 
@@ -149,7 +149,7 @@ def test_arrow_keys_turn_the_view(chromium, visit):
     turned, nearer = page.evaluate(f"[{rig}.azimuth, {rig}.distance]")
     assert turned != azimuth
     assert nearer < distance
-    page.keyboard.press("3")
+    page.keyboard.press("4")
     assert page.evaluate(f"{rig}.view") == "Top"
 
 

@@ -1,13 +1,14 @@
 // Bundles the viewer and copies what the book needs from npm; writes the manifest of hashes.
 // Run by book/_tools/vendor.sh, which brings the packages: 
-// node build.mjs <node_modules> <anywidget's index.js> <anywidget's licence> <ipywidgets' licence>
+// node build.mjs <node_modules> <anywidget's index.js> <the licences of anywidget, ipywidgets, mujoco>
 import { createHash } from "node:crypto";
 import { createRequire } from "node:module";
 import { cpSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { basename, dirname, join, relative } from "node:path";
+import { gzipSync } from "node:zlib";
 import { fileURLToPath } from "node:url";
 
-const [modules, anywidget, anywidgetLicence, ipywidgetsLicence] = process.argv.slice(2);
+const [modules, anywidget, anywidgetLicence, ipywidgetsLicence, mujocoLicence] = process.argv.slice(2);
 const here = dirname(fileURLToPath(import.meta.url));
 const root = join(here, "../../..");
 const source = join(root, "labkit/replay/viewer");
@@ -29,6 +30,22 @@ for (const [name, more] of [
 }
 cpSync(join(source, "widget.js"), join(viewer, "widget.js"));
 cpSync(join(modules, "three/LICENSE"), join(viewer, "LICENSE-three"));
+
+// The live arm of the book.  Its scripts are classic ones, for file://; MuJoCo's WebAssembly lies here
+// packed, and build_book.py writes it into a script.
+const live = join(root, "book/live"), bundle = join(live, "bundle");
+rmSync(bundle, { recursive: true, force: true });
+mkdirSync(bundle, { recursive: true });
+const script = { ...common, external: ["module", "fs", "path", "url"],
+  define: { process: "undefined", "import.meta.url": '"file:///mujoco.js"' } };
+const mujoco = join(modules, "@mujoco/mujoco/mujoco.js");
+await esbuild.build({ ...script, outfile: join(bundle, "mujoco.js"), banner: { js: `/* MuJoCo ${wanted["@mujoco/mujoco"]}, Apache-2.0, see LICENSE-mujoco */` },
+  stdin: { contents: `import load from ${JSON.stringify(mujoco)}; globalThis.labkitLoadMuJoCo = load;`, resolveDir: modules } });
+await esbuild.build({ ...common, entryPoints: [join(live, "page.js")], outfile: join(bundle, "live.js") });
+await esbuild.build({ ...common, entryPoints: [join(live, "boot.js")], outfile: join(bundle, "boot.js") });
+writeFileSync(join(bundle, "mujoco.wasm.gz"), gzipSync(readFileSync(join(modules, "@mujoco/mujoco/mujoco.wasm")), { level: 9 }));
+cpSync(mujocoLicence, join(bundle, "LICENSE-mujoco")); // its package brings none; the wheel of the same source does
+cpSync(join(dirname(mujocoLicence), "LICENSES_THIRD_PARTY.md"), join(bundle, "NOTICE-mujoco.md"));
 
 rmSync(vendor, { recursive: true, force: true });
 const fonts = join(vendor, "npm/@jupyter-widgets/html-manager/dist");
@@ -60,6 +77,6 @@ const hashes = (files) => Object.fromEntries(files.map((f) => [relative(root, f)
 const built = walk(viewer).filter((f) => basename(f) !== "robot.js"); // that one is make_robot.py's
 writeFileSync(join(vendor, "MANIFEST.json"), `${JSON.stringify({
   made_by: "sh book/_tools/vendor.sh", packages: wanted,
-  files: hashes([...walk(vendor), ...built, ...walk(tests)]),
-  sources: hashes([...walk(source), ...walk(here)]),
+  files: hashes([...walk(vendor), ...built, ...walk(bundle), ...walk(tests)]),
+  sources: hashes([...walk(source), ...walk(live).filter((f) => !f.startsWith(bundle)), ...walk(here)]),
 }, null, 1)}\n`);

@@ -87,5 +87,11 @@ export class Body {
     }
   }
 
+  /** Show only one arm, without body, head and the other arm; or all again. */
+  alone(side, on) {
+    if (this.robot.arm) return;
+    for (const [name, group] of Object.entries(this.groups)) group.visible = !on || name.startsWith(side);
+  }
+
   dispose() { this.own?.dispose(); }
 }

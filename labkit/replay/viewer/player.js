@@ -1,14 +1,15 @@
 // The replay of one motion: the robot, its controls, and plots that share one time cursor.
-import { Body, span } from "./body.js";
 import { frames, joints, posture, tip } from "./kinematics.js";
-import { axes, board, dispose, line } from "./marks.js";
+import { dispose, line } from "./marks.js";
+import { Picture } from "./picture.js";
 import { DASHES, letters, Plot } from "./plots.js";
 import { at, read } from "./recording.js";
-import { Stage } from "./stage.js";
-import { VIEWS } from "./rig.js";
+import { sight } from "./sight.js";
 import { h, reducedMotion, unique } from "./dom.js";
 
 const GHOSTS = [0x1f77d0, 0xc77700, 0x2a9d66, 0x9a5bc4];
+const hex = (k) => `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}`;
+const NEWTON = 0.01; // metres of arrow
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 
 export class Player {
@@ -20,9 +21,12 @@ export class Player {
     this.legend = h("ul", { class: "lk-legend", "aria-label": "What is drawn" });
     this.readout = h("p", { class: "lk-readout" });
     this.status = h("p", { class: "lk-hidden", role: "status" });
-    this.element.append(this.stagebox, this.timebar(), this.viewbar(), this.legend, this.readout, this.status, this.plotbox);
+    this.picture = new Picture(this.stagebox, "Baxter");
+    this.stage = this.picture.stage;
+    this.times = 1; // the error is drawn this many times as large
+    this.sight = sight(this.picture, { magnify: (k) => { this.times = k; this.dress(); this.explain(); this.arrange(); } });
+    this.element.append(this.stagebox, this.timebar(), this.sight.element, this.legend, this.readout, this.status, this.plotbox);
     host.append(this.element);
-    this.stage = new Stage(this.stagebox, "Baxter");
     if (this.stage.works) this.furnish();
     else this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The picture, the plots and the numbers still follow the time slider."));
     this.show(json);
@@ -51,25 +55,8 @@ export class Player {
       h("span", { class: "lk-speed" }, h("label", { for: id }, "Speed"), speed));
   }
 
-  viewbar() {
-    const views = Object.keys(VIEWS).map((name) => h("button", {
-      type: "button", onclick: () => this.stage.rig?.use(name) }, name));
-    const moves = [
-      ["←", "Turn left", (r) => r.turn(-0.2, 0)], ["→", "Turn right", (r) => r.turn(0.2, 0)],
-      ["↑", "Turn up", (r) => r.turn(0, 0.15)], ["↓", "Turn down", (r) => r.turn(0, -0.15)],
-      ["+", "Zoom in", (r) => r.zoom(0.85)], ["−", "Zoom out", (r) => r.zoom(1 / 0.85)],
-    ].map(([sign, name, act]) => h("button", {
-      type: "button", class: "lk-icon", "aria-label": name, title: name, onclick: () => act(this.stage.rig) }, sign));
-    this.views = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
-      h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, h("span", { class: "lk-gap" }), moves);
-    return this.views;
-  }
-
   /** What does not depend on the motion. */
   furnish() {
-    this.target = axes();
-    this.board = board();
-    this.stage.scene.add(this.target, this.board);
     this.stage.drawn = () => { this.host.dataset.ready = "1"; };
     this.stage.themed = () => { this.dress(); this.arrange(); };
   }
@@ -78,13 +65,18 @@ export class Player {
   show(json) {
     this.play(false);
     const motion = this.motion = read(json);
-    this.embody(motion.robot ?? this.baxter);
+    this.robot = motion.robot ?? this.baxter;
+    if (this.stage.works) this.picture.embody(this.robot);
     this.tips = motion.q.map((q) => tip(this.robot, motion.side, q).p);
     this.element.setAttribute("aria-label", `Replay: ${motion.title}`);
-    this.stage.canvas.setAttribute("aria-label", `${motion.title}. ${motion.alt} Arrow keys turn the view, plus and minus zoom, 1 to 4 choose a view.`);
+    this.stage.canvas.setAttribute("aria-label", `${motion.title}. ${motion.alt} Arrow keys turn the view, plus and minus zoom, 1 to 5 choose a view.`);
     for (const input of [this.range, this.number]) Object.assign(input, { min: motion.start, max: motion.end });
-    this.views.hidden = !this.stage.works;
-    if (this.stage.works) this.dress();
+    this.sight.element.hidden = !this.stage.works;
+    this.sight.magnifier.hidden = !motion.target;
+    if (this.stage.works) {
+      this.stage.rig.around([...this.tips, ...(motion.target ?? []), ...(motion.board ?? [])]);
+      this.dress();
+    }
     this.explain();
     this.plots.forEach((p) => p.dispose());
     const curves = this.curves();
@@ -96,18 +88,6 @@ export class Player {
     if (!this.stage.works) this.host.dataset.ready = "1";
   }
 
-  /** Draw another robot from now on. */
-  embody(robot) {
-    if (robot === this.robot) return;
-    this.robot = robot;
-    if (!this.stage.works) return;
-    if (this.body) { this.stage.scene.remove(this.body.root); this.body.dispose(); }
-    this.body = new Body(robot);
-    this.stage.scene.add(this.body.root);
-    this.stage.floor.position.z = robot.arm ? 0 : -0.925; // Baxter's base is its waist
-    this.stage.rig.size = robot.arm ? Math.min(1, 0.5 * span(robot)) : 1;
-  }
-
   /** What plots and sentences call the joints. */
   names() {
     return joints(this.robot, this.motion.side).map((name) => name.replace(`${this.motion.side}_`, ""));
@@ -117,31 +97,36 @@ export class Player {
   dress() {
     const { motion, stage } = this;
     this.marks?.forEach((mark) => { stage.scene.remove(mark); dispose(mark); });
-    this.ghosts?.forEach(({ body }) => { stage.scene.remove(body.root); body.dispose(); });
-    stage.overlay.replaceChildren();
-    stage.labels = [];
+    this.ghosts?.forEach(({ arm }) => arm.remove());
+    this.labels?.forEach((label) => stage.unlabel(label));
     const style = getComputedStyle(this.element);
-    const colour = (name) => style.getPropertyValue(name).trim();
-    this.marks = [line(this.tips, { colour: colour("--lk-trace"), width: 3 })];
-    if (motion.path) this.marks.push(line(motion.path, { colour: colour("--lk-path"), width: 3.5, dash: 0.025, gap: 0.014 }));
+    const colour = (name, fallback) => style.getPropertyValue(name).trim() || fallback; // before the first paint
+    this.trace = this.magnified(this.tips);
+    this.marks = [line(this.trace, { colour: colour("--lk-trace", "#b3001b"), width: 3 })];
+    if (motion.path) this.marks.push(line(motion.path, { colour: colour("--lk-path", "#1f2328"), width: 3.5, dash: 0.025, gap: 0.014 }));
     this.ghosts = Object.entries(motion.ghosts).map(([name, q], k) => ({
-      name, q, k, body: new Body(this.robot, { side: motion.side, colour: GHOSTS[k % GHOSTS.length] }),
-      tips: q.map((row) => tip(this.robot, motion.side, row).p) }));
+      name, q, k, arm: this.picture.ghost(motion.side, GHOSTS[k % GHOSTS.length]),
+      tips: this.magnified(q.map((row) => tip(this.robot, motion.side, row).p)) }));
     for (const { tips, k } of this.ghosts) {
       this.marks.push(line(tips, { colour: GHOSTS[k % GHOSTS.length], width: 2.5, dash: 0.006, gap: 0.008 * (k + 1) }));
     }
-    stage.scene.add(...this.marks, ...this.ghosts.map(({ body }) => body.root));
+    stage.scene.add(...this.marks);
     const mirror = motion.side === "right" ? -1 : 1;
-    if (stage.rig.mirror !== mirror) { // else the reader's own view stays
+    if (stage.rig.mirror !== mirror || !this.seen) { // else the reader's own view stays
       stage.rig.mirror = mirror;
       stage.rig.use(stage.rig.view);
     }
-    if (this.ghosts.length) {
-      stage.label(motion.label, () => at(motion, this.tips, this.time));
-      for (const { name, tips } of this.ghosts) stage.label(name, () => at(motion, tips, this.time));
-    }
-    this.target.visible = !!motion.target;
-    this.board.visible = !!motion.board;
+    this.seen = true;
+    this.labels = this.ghosts.length ? [
+      stage.label(motion.label, () => at(motion, this.trace, this.time), colour("--lk-trace", "#b3001b")),
+      ...this.ghosts.map(({ name, tips, k }) => stage.label(name, () => at(motion, tips, this.time), hex(k)))] : [];
+  }
+
+  /** Where these tips would be if they were `times` as far from the target. */
+  magnified(tips) {
+    const { motion, times } = this;
+    if (times === 1 || !motion.target) return tips;
+    return tips.map((p, i) => p.map((x, k) => motion.target[i][k] + times * (x - motion.target[i][k])));
   }
 
   /** The key to lines and arms. */
@@ -152,8 +137,7 @@ export class Player {
       s.style.borderTopColor = colour;
       return s;
     };
-    const hex = (k) => `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}`;
-    const rows = [["lk-solid", "var(--lk-trace)", `tip of ${motion.label}`]];
+    const rows = [["lk-solid", "var(--lk-trace)", `tip of ${motion.label}${this.times > 1 ? `, its error drawn ${this.times} times as large` : ""}`]];
     if (motion.path) rows.push(["lk-dashed", "var(--lk-path)", "desired path"]);
     Object.keys(motion.ghosts).forEach((name, k) => rows.push(["lk-dotted", hex(k), `${name} (see-through arm)`]));
     if (motion.target) rows.push([null, null, "target: frame with x, y, z marked by one, two, three rings"]);
@@ -172,7 +156,7 @@ export class Player {
     if (main) {
       const series = [{ name: motion.label, values: main, colour: "var(--lk-trace)", width: 2.4 }];
       if (motion.target) Object.entries(motion.ghosts).forEach(([name, q], k) => series.push({
-        name, values: away(q), dash: DASHES[1 + k], colour: `#${GHOSTS[k % GHOSTS.length].toString(16).padStart(6, "0")}` }));
+        name, values: away(q), dash: DASHES[1 + k], colour: hex(k) }));
       this.error = series[0].values;
       // At least 0.2 mm high: a perfect run shows as a flat line, not as its rounding.
       found.push({ title: "Tip error [mm]", series, zero: Math.min(...main) >= 0, least: 0.2 });
@@ -198,16 +182,23 @@ export class Player {
   arrange() {
     const { motion } = this;
     const q = at(motion, motion.q, this.time);
-    this.body.pose(motion.side, q);
-    this.ghosts.forEach((g) => g.body.pose(motion.side, at(motion, g.q, this.time)));
-    for (const [mark, name] of [[this.target, "target"], [this.board, "board"]]) {
-      if (!motion[name]) continue;
-      mark.position.fromArray(at(motion, motion[name], this.time));
-      const turn = motion[`${name}_quaternion`];
-      if (turn) mark.quaternion.fromArray(at(motion, turn, this.time)).normalize();
+    const here = (rows) => at(motion, rows, this.time);
+    this.ghosts.forEach((g) => g.arm.pose(here(g.q)));
+    this.picture.pose(motion.side, q);
+    const around = { ...motion.things };
+    for (const [name, kind] of [["target", "target"], ["board", "tag"]]) {
+      if (motion[name]) around[name] = { kind, position: here(motion[name]),
+        quaternion: motion[`${name}_quaternion`] && here(motion[`${name}_quaternion`]) };
     }
-    this.stage.rig.hand = tip(this.robot, motion.side, q).p;
-    this.stage.draw();
+    this.picture.furnish(around);
+    if (motion.target) {
+      const from = here(motion.target), to = here(this.trace);
+      this.picture.arrow("error", from, to.map((x, k) => x - from[k]), this.times > 1 ? `error × ${this.times}` : "", 0xb3001b);
+    }
+    if (motion.force) {
+      const f = here(motion.force), size = Math.hypot(...f);
+      this.picture.arrow("force", this.picture.tip.p, f.map((x) => NEWTON * x), size > 0.05 ? `${size.toFixed(1)} N` : "");
+    }
   }
 
   /** The current numbers as a sentence. */
@@ -263,7 +254,7 @@ export class Player {
     this.play(false);
     clearTimeout(this.spoken);
     this.plots.forEach((p) => p.dispose());
-    this.stage.dispose();
+    this.picture.dispose();
     this.element.remove();
   }
 }

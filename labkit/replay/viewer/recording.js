@@ -21,7 +21,7 @@ export function unpack(channel) {
 export function read(json) {
   const raw = typeof json === "string" ? JSON.parse(json) : json;
   const motion = { ...raw, ghosts: {} };
-  for (const name of ["q", "target", "target_quaternion", "board", "board_quaternion", "path", "error", "tau"]) {
+  for (const name of ["q", "target", "target_quaternion", "board", "board_quaternion", "path", "error", "tau", "force"]) {
     motion[name] = unpack(raw[name]);
   }
   for (const [name, channel] of Object.entries(raw.ghosts ?? {})) motion.ghosts[name] = unpack(channel);

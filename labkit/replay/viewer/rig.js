@@ -1,7 +1,18 @@
 // The camera's stand: turns about a point by mouse, finger or keys; no inertia.
 import * as THREE from "three";
 
+export const FIELD = 35; // of view, upwards, in degrees
+
+/** Where to look, and from how far, to see all of these points, with room for a hand around them. */
+export function framing(points) {
+  const low = [0, 1, 2].map((k) => Math.min(...points.map((p) => p[k])));
+  const high = [0, 1, 2].map((k) => Math.max(...points.map((p) => p[k])));
+  const radius = 0.5 * Math.hypot(...high.map((x, k) => x - low[k])) + 0.12;
+  return { target: high.map((x, k) => (x + low[k]) / 2), distance: radius / Math.sin((0.5 * FIELD * Math.PI) / 180) };
+}
+
 export const VIEWS = {
+  Motion: { azimuth: 0.75, elevation: 0.32, distance: 1.6, target: [0.7, 0, 0.2] },
   Front: { azimuth: 0.5, elevation: 0.22, distance: 3.1, target: [0.3, 0, -0.02] },
   Side: { azimuth: 1.5708, elevation: 0.12, distance: 3.4, target: [0.4, 0, -0.06] },
   Top: { azimuth: 0, elevation: 1.5, distance: 3.0, target: [0.5, 0, 0] },
@@ -9,18 +20,25 @@ export const VIEWS = {
 };
 
 export class Rig {
+  // `grab(event)`, where somebody sets it, is asked first what a pointer takes hold of: it returns
+  // {move(event), end(event)}, or nothing, and then the pointer turns the view.
   constructor(canvas, camera, changed) {
-    Object.assign(this, { camera, changed, hand: [0.7, 0, 0.2], mirror: 1, size: 1 });
-    this.use("Front");
+    Object.assign(this, { camera, changed, hand: [0.7, 0, 0.2], mirror: 1, size: 1, motion: VIEWS.Motion });
+    this.use("Motion");
     this.listen(canvas);
   }
 
   /** Go to a named view; for the right arm it is mirrored. */
   use(name) {
-    Object.assign(this, { follow: false }, VIEWS[name]);
+    Object.assign(this, { follow: false }, name === "Motion" ? this.motion : VIEWS[name]);
     if (name !== "Top") this.azimuth *= this.mirror;
     this.view = name;
     this.changed();
+  }
+
+  /** Let the view "Motion" show all of these points [x, y, z]. */
+  around(points) {
+    this.motion = { ...VIEWS.Motion, ...framing(points) };
   }
 
   turn(dx, dy) {
@@ -38,7 +56,7 @@ export class Rig {
   frame(aspect) {
     const c = Math.cos(this.elevation);
     const target = this.follow ? this.hand : this.target;
-    const reach = this.size * this.distance * Math.max(1, 1.15 / aspect);
+    const reach = (this.view === "Motion" ? 1 : this.size) * this.distance * Math.max(1, 1.15 / aspect);
     this.camera.position.set(
       target[0] + reach * c * Math.cos(this.azimuth), target[1] + reach * c * Math.sin(this.azimuth),
       target[2] + reach * Math.sin(this.elevation));
@@ -50,11 +68,15 @@ export class Rig {
 
   listen(canvas) {
     const held = new Map(); // pointers down, by id
+    let grip = null; // what `grab` gave for the pointer that took hold of something
     canvas.addEventListener("pointerdown", (e) => {
-      held.set(e.pointerId, [e.clientX, e.clientY]);
       canvas.setPointerCapture(e.pointerId);
+      const taken = grip ? null : this.grab?.(e);
+      if (taken) grip = { id: e.pointerId, ...taken };
+      else held.set(e.pointerId, [e.clientX, e.clientY]);
     });
     canvas.addEventListener("pointermove", (e) => {
+      if (grip?.id === e.pointerId) { grip.move(e); return; }
       const before = held.get(e.pointerId);
       if (!before) return;
       if (held.size === 2) {
@@ -65,7 +87,10 @@ export class Rig {
       held.set(e.pointerId, [e.clientX, e.clientY]);
     });
     for (const name of ["pointerup", "pointercancel"]) {
-      canvas.addEventListener(name, (e) => held.delete(e.pointerId));
+      canvas.addEventListener(name, (e) => {
+        if (grip?.id === e.pointerId) { grip.end(e); grip = null; }
+        held.delete(e.pointerId);
+      });
     }
     canvas.addEventListener("wheel", (e) => { // only when chosen: the page keeps its own scroll
       if (document.activeElement !== canvas) return;

@@ -1,7 +1,7 @@
 // A 3-D view in the page.  All stages share one WebGL context: each frame is drawn by the one
 // renderer and copied to the stage's own 2-D canvas, so any number of viewers fits a page.
 import * as THREE from "three";
-import { Rig } from "./rig.js";
+import { FIELD, Rig } from "./rig.js";
 import { h } from "./dom.js";
 
 let renderer; // undefined: not tried, null: this browser has no WebGL
@@ -32,14 +32,14 @@ export class Stage {
     this.works = context() !== null;
     this.canvas = h("canvas", {
       class: "lk-canvas", tabindex: 0, role: "application", "aria-roledescription": "3-D view",
-      "aria-label": `${label}. Arrow keys turn the view, plus and minus zoom, 1 to 4 choose a view.` });
+      "aria-label": `${label}. Arrow keys turn the view, plus and minus zoom, 1 to 5 choose a view.` });
     this.overlay = h("div", { class: "lk-overlay", "aria-hidden": "true" });
     this.host = host;
     if (!this.works) return;
     host.append(this.canvas, this.overlay);
     this.paper = this.canvas.getContext("2d");
     this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(35, 4 / 3, 0.05, 30);
+    this.camera = new THREE.PerspectiveCamera(FIELD, 4 / 3, 0.05, 30);
     this.camera.up.set(0, 0, 1);
     this.rig = new Rig(this.canvas, this.camera, () => this.draw());
     this.light();
@@ -59,22 +59,42 @@ export class Stage {
   }
 
   light() {
-    const key = new THREE.DirectionalLight(0xffffff, 2.2);
+    const key = new THREE.DirectionalLight(0xffffff, 2.6);
     key.position.set(2.5, -1.5, 4);
-    const rim = new THREE.DirectionalLight(0xdfe8ff, 1.3);
+    const rim = new THREE.DirectionalLight(0xdfe8ff, 2.6);
     rim.position.set(-3, 2, 2.5);
+    const side = new THREE.DirectionalLight(0xfff1e0, 1.2); // draws the edge of a dark arm before a dark body
+    side.position.set(1, 4, 0.5);
     this.floor = new THREE.GridHelper(4, 16);
     this.floor.material.vertexColors = false;
     this.floor.rotation.x = Math.PI / 2;
     this.floor.position.z = -0.925;
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9ca3, 2.4), key, rim, this.floor);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x9a9ca3, 2.4), key, rim, side, this.floor);
   }
 
-  /** A text that follows a point; `place()` gives [x, y, z]. */
-  label(text, place) {
+  /** A text that follows a point; `place()` gives [x, y, z], or nothing where there is none now. */
+  label(text, place, colour) {
     const element = h("span", { class: "lk-tag" }, text);
+    if (colour) element.style.borderColor = colour;
     this.overlay.append(element);
-    this.labels.push({ element, place });
+    const made = { element, place };
+    this.labels.push(made);
+    return made;
+  }
+
+  /** Take a text away. */
+  unlabel(label) {
+    label.element.remove();
+    this.labels = this.labels.filter((other) => other !== label);
+  }
+
+  /** A second, smaller picture of the same scene from another place; `from()` gives {eye, at}. */
+  inset(from) {
+    this.small = h("canvas", { class: "lk-inset", "aria-hidden": "true" });
+    this.canvas.after(this.small);
+    this.closely = from;
+    this.near = new THREE.PerspectiveCamera(FIELD, 1, 0.02, 10);
+    this.near.up.set(0, 0, 1);
   }
 
   /** Ask for a frame; many calls make one. */
@@ -99,21 +119,52 @@ export class Stage {
     this.rig.frame(width / height);
     renderer.render(this.scene, this.camera);
     this.paper.drawImage(renderer.domElement, 0, 0);
+    if (this.small && !this.small.hidden) this.closeUp(fine);
     this.settle(width, height);
     this.drawn?.();
+  }
+
+  /** Draw the inset, with the upper left corner of the one context. */
+  closeUp(fine) {
+    const side = Math.min(renderer.domElement.width, renderer.domElement.height, Math.round(this.small.clientWidth * fine));
+    if (!side) return;
+    if (this.small.width !== side) Object.assign(this.small, { width: side, height: side });
+    const { eye, at } = this.closely();
+    this.near.position.set(...eye);
+    this.near.lookAt(...at);
+    const top = renderer.domElement.height - side;
+    renderer.setViewport(0, top, side, side);
+    renderer.setScissor(0, top, side, side);
+    renderer.setScissorTest(true);
+    renderer.render(this.scene, this.near);
+    renderer.setScissorTest(false);
+    renderer.setViewport(0, 0, renderer.domElement.width, renderer.domElement.height);
+    this.small.getContext("2d").drawImage(renderer.domElement, 0, 0, side, side, 0, 0, side, side);
+  }
+
+  /** The line of sight through a pointer's place in the page: a Raycaster. */
+  ray({ clientX, clientY }) {
+    const box = this.canvas.getBoundingClientRect();
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(new THREE.Vector2(
+      2 * (clientX - box.left) / box.width - 1, 1 - 2 * (clientY - box.top) / box.height), this.camera);
+    return caster;
   }
 
   /** Lay the labels over their points, pushed apart where they would overlap. */
   settle(width, height) {
     const spots = this.labels.map(({ element, place }) => {
-      const p = new THREE.Vector3(...place()).project(this.camera);
+      const at = place();
+      if (!at) return { element, x: 0, y: -Infinity, behind: true };
+      const p = new THREE.Vector3(...at).project(this.camera);
       return { element, x: (p.x + 1) * width / 2, y: (1 - p.y) * height / 2, behind: p.z > 1 };
     }).sort((a, b) => a.y - b.y);
     let last = -Infinity;
     for (const { element, x, y, behind } of spots) {
+      element.hidden = behind;
+      if (behind) continue;
       last = Math.max(y - 10, last + 22);
       element.style.transform = `translate(${Math.round(Math.min(x + 14, width - element.offsetWidth - 4))}px, ${Math.round(last)}px)`;
-      element.hidden = behind;
     }
   }
 

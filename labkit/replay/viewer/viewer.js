@@ -6,6 +6,16 @@ import { RotationDemo } from "./rotation_demo.js";
 import { ScalingDemo } from "./scaling_demo.js";
 import { dress } from "./style.js";
 
+// For pages that bring their own loop, such as the book's live arm.
+export { choice, dial, h, unique } from "./dom.js";
+export * as kinematics from "./kinematics.js";
+export { Picture } from "./picture.js";
+export { dispose, line } from "./marks.js";
+export { Plot } from "./plots.js";
+export { sight } from "./sight.js";
+export * as so3 from "./so3.js";
+export { dress };
+
 const KINDS = {
   motion: (host, data, robot) => new Player(host, data, robot),
   explorer: (host, data, robot, load) => new Explorer(host, data, robot, load),

@@ -1,0 +1,73 @@
+"""The directive ``live-arm``: a live panel in a page, loaded on a click.
+
+Its argument is the kind of panel, its options are settings, its text is the caption::
+
+    :::{live-arm} open
+    :plant: ideal
+    :controller: workspaceImpedance
+    :path: circle
+    Drag the arm.
+    :::
+"""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from typing import Any, ClassVar
+
+from docutils import nodes
+from docutils.parsers.rst import directives
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+PIECES = ("open", "stiffness", "age", "singular")
+OFFER = "Load the live arm (4 MB, from this book's folder)"
+SETTINGS = ("controller", "path")
+WITHOUT = "On paper and without JavaScript, the recorded runs and the text tell the same."
+
+
+def names(text: str) -> list[str]:
+    """Names with commas between them."""
+    return [name.strip() for name in text.split(",")]
+
+
+class LiveArm(SphinxDirective):
+    """A live panel."""
+
+    required_arguments = 1
+    has_content = True
+    option_spec: ClassVar[dict[str, Any]] = {
+        "title": directives.unchanged_required,
+        "plant": lambda x: directives.choice(x, ("ideal", "baxter")),
+        "controller": directives.unchanged_required,
+        "controllers": names,
+        "path": directives.unchanged_required,
+        "paths": names,
+        "seconds": float,
+    }
+
+    def run(self) -> list[nodes.Node]:
+        """The figure, and the script that makes its button work."""
+        piece = directives.choice(self.arguments[0], PIECES)
+        own = {k: v for k, v in self.options.items() if k not in SETTINGS}
+        settings = {k: v for k, v in self.options.items() if k in SETTINGS}
+        title = own.setdefault("title", "The live arm")
+        data = json.dumps({"piece": piece, **own, "settings": settings}).replace("<", "\\u003c")
+        root = "../" * self.env.docname.count("/") + "_static/live/"
+        html = (
+            f'<figure class="lk-live" role="group" aria-label="{escape(title)}" '
+            f'data-offer="{escape(OFFER)}">'
+            f'<script type="application/json">{data}</script>'
+            f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div></figure>'
+            f'<script defer src="{root}boot.js"></script>'
+        )
+        caption = nodes.container(classes=["lk-caption"])
+        self.state.nested_parse(self.content, self.content_offset, caption)
+        return [nodes.raw("", html, format="html"), caption]
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register with Sphinx."""
+    app.add_directive("live-arm", LiveArm)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

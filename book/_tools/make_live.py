@@ -1,0 +1,145 @@
+"""Write the numbers of the live arm in the book: `python book/_tools/make_live.py`.
+
+Robot, plants, gains and tasks are Python's; `book/live/numbers.js` is made from them, so that the
+page's JavaScript holds none of its own.  A test says when it has to be made again.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(ROOT)]
+OUT = ROOT / "book/live/numbers.js"
+HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; never edited.\n"
+
+import labkit as lk  # noqa: E402
+from labkit import joints, motors, scene  # noqa: E402
+from labkit.run import RUNAWAY  # noqa: E402
+from labkit.tags.tag import Tag  # noqa: E402
+from solutions.study import gains, tag_task, tasks  # noqa: E402
+from solutions.study.baseline import server  # noqa: E402
+from solutions.tags.following import TagFollower  # noqa: E402
+
+NAMES = {
+    "workspace velocity": "workspaceVelocity",
+    "joint velocity": "jointVelocity",
+    "joint torque": "jointTorque",
+    "workspace impedance": "workspaceImpedance",
+    "joint impedance": "jointImpedance",
+}
+"""What the page's JavaScript calls the five controllers."""
+
+
+def numbers() -> dict[str, Any]:
+    """Everything that the page needs to know, as plain data."""
+    robot = lk.robot("left")
+    return {
+        "robot": robot_data(robot),
+        "plants": {p.name: plant_data(p, robot.n) for p in (lk.IDEAL, lk.BAXTER)},
+        "controllers": {p.name: controllers(p) for p in (lk.IDEAL, lk.BAXTER)},
+        "constants": {
+            "dt": 1e-3,
+            "quick": joints.QUICK,
+            "braking": motors.BRAKING,
+            "runaway": RUNAWAY,
+            "pad": {
+                "radius": scene.TIP_RADIUS,
+                "stiffness": scene.TIP_STIFFNESS,
+                "damping": scene.TIP_DAMPING,
+                "face": scene.FACE,
+                "creep": scene.CREEP,
+            },
+            "wall": material(lk.Wall([0, 0, 0], [0, 0, 1])),
+        },
+        "task": {
+            "speed": tasks.V_MAX,
+            "acceleration": tasks.A_MAX,
+            "rest": tasks.HOLD,
+            **{name: geometry(name) for name in ("line", "circle", "square")},
+        },
+        "tag": tag_data(),
+    }
+
+
+def robot_data(robot: lk.Robot) -> dict[str, Any]:
+    """The arm: the model file that MuJoCo reads, and the same bodies as numbers."""
+    T = robot.T_hand_tip
+    return {
+        "name": robot.name,
+        "urdf": robot.urdf(),
+        "bodies": robot.data()["bodies"],
+        "tip": {"R": T[:3, :3].ravel().tolist(), "p": T[:3, 3].tolist()},
+        "ready": robot.ready.tolist(),
+    }
+
+
+def plant_data(plant: lk.Plant, n: int) -> dict[str, Any]:
+    """A plant, what belongs to each joint as n numbers."""
+    made = asdict(plant)
+    return {k: plant.each(k, n).tolist() if isinstance(v, tuple) else v for k, v in made.items()}
+
+
+def controllers(plant: lk.Plant) -> dict[str, Any]:
+    """The five controllers as they are compared on a plant, and Baxter's own way."""
+    found = {}
+    for name, candidate in gains.five(lk.Model("left", plant), plant).items():
+        law = candidate.controller
+        kept = {k: plain(v) for k, v in vars(law).items() if k not in ("model", "watch")}
+        if watch := getattr(law, "watch", None):
+            kept["threshold"] = watch.threshold
+        found[NAMES[name]] = {
+            "gains": {k: v for k, v in kept.items() if v is not None},
+            "rate": candidate.rate,
+            "joints": candidate.joints,
+        }
+    return found | {"baxtersOwn": {"gains": {}, "rate": server.RATE, "joints": True}}
+
+
+def material(wall: lk.Wall) -> dict[str, Any]:
+    """What a wall is made of, if nothing else is said."""
+    return {k: plain(getattr(wall, k)) for k in ("size", "stiffness", "damping", "friction")}
+
+
+def geometry(name: str) -> Any:
+    """A task's defining points, seen from the tip's ready place."""
+    return getattr(tasks, name).__defaults__[0]
+
+
+def tag_data() -> dict[str, Any]:
+    """The tag's circle and the follower's numbers."""
+    follower = TagFollower(np.eye(4), np.zeros(3))
+    names = ("horizon", "coast", "acceleration", "accel_noise", "speed")
+    return {
+        "duration": tag_task.DURATION,
+        "rate": tag_task.RATE,
+        "lap": tag_task.LAP,
+        "radius": tag_task.RADIUS,
+        "offset": tag_task.OFFSET.tolist(),
+        "size": Tag().size,
+        "follower": {name: getattr(follower, name) for name in names},
+    }
+
+
+def plain(value: Any) -> Any:
+    """Arrays as lists, one number for all as a number."""
+    if isinstance(value, np.ndarray):
+        return value.tolist() if value.size > 1 else value.item()
+    return value
+
+
+def text() -> str:
+    """The JavaScript that holds them."""
+    return HEAD + "".join(
+        f"export const {name.upper()} = {json.dumps(value)};\n" for name, value in numbers().items()
+    )
+
+
+if __name__ == "__main__":
+    OUT.write_text(text())

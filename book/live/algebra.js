@@ -1,0 +1,141 @@
+// Vectors as arrays of numbers, matrices as arrays of rows.
+
+export const zeros = (n) => new Array(n).fill(0);
+
+/** A vector made entry by entry; plain loops, for a physics step makes hundreds of vectors. */
+function made(n, entry) {
+  const out = new Array(n);
+  for (let i = 0; i < n; i++) out[i] = entry(i);
+  return out;
+}
+
+export function add(a, b) {
+  const out = new Array(a.length);
+  for (let i = 0; i < a.length; i++) out[i] = a[i] + b[i];
+  return out;
+}
+
+export function subtract(a, b) {
+  const out = new Array(a.length);
+  for (let i = 0; i < a.length; i++) out[i] = a[i] - b[i];
+  return out;
+}
+
+export function scale(s, a) {
+  const out = new Array(a.length);
+  for (let i = 0; i < a.length; i++) out[i] = s * a[i];
+  return out;
+}
+
+export function dot(a, b) {
+  let sum = 0;
+  for (let i = 0; i < a.length; i++) sum += a[i] * b[i];
+  return sum;
+}
+
+/** Element by element; a gain may be one number for all. */
+export const times = (gain, a) => made(a.length, (i) => (Array.isArray(gain) ? gain[i] : gain) * a[i]);
+export const cut = (a, most) => made(a.length, (i) => Math.min(Math.max(a[i], -most[i]), most[i]));
+export const length = (a) => Math.sqrt(dot(a, a));
+export const apply = (A, v) => made(A.length, (i) => dot(A[i], v));
+export const transpose = (A) => made(A[0].length, (j) => made(A.length, (i) => A[i][j]));
+
+/** A^T v. */
+export function applyTransposed(A, v) {
+  const sum = zeros(A[0].length);
+  for (let i = 0; i < A.length; i++) for (let j = 0; j < sum.length; j++) sum[j] += A[i][j] * v[i];
+  return sum;
+}
+
+/** A B^T: each entry is a product of two rows. */
+export const timesTransposed = (A, B) => made(A.length, (i) => made(B.length, (j) => dot(A[i], B[j])));
+export const multiply = (A, B) => timesTransposed(A, transpose(B));
+export const identity = (n) => made(n, (i) => made(n, (j) => +(i === j)));
+
+export function addDiagonal(A, d) {
+  const out = A.map((row) => row.slice());
+  for (let i = 0; i < out.length; i++) out[i][i] += typeof d === "number" ? d : d[i];
+  return out;
+}
+
+/** X of A X = B, B a matrix, by Gauss and Jordan with pivots. */
+export function solveMatrix(A, B) {
+  const n = A.length, rows = made(n, (i) => A[i].concat(B[i])), wide = rows[0].length;
+  for (let k = 0; k < n; k++) {
+    let best = k;
+    for (let i = k + 1; i < n; i++) if (Math.abs(rows[i][k]) > Math.abs(rows[best][k])) best = i;
+    const pivot = rows[best];
+    rows[best] = rows[k];
+    rows[k] = pivot;
+    for (let i = 0; i < n; i++) {
+      if (i === k) continue;
+      const row = rows[i], share = row[k] / pivot[k];
+      if (share !== 0) for (let j = k; j < wide; j++) row[j] -= share * pivot[j];
+    }
+  }
+  return made(n, (i) => scale(1 / rows[i][i], rows[i].slice(n)));
+}
+
+export const solve = (A, b) => solveMatrix(A, made(b.length, (i) => [b[i]])).map((row) => row[0]);
+export const inverse = (A) => solveMatrix(A, identity(A.length));
+
+/** Whether a symmetric matrix is positive definite: Cholesky finds no root of a negative number. */
+export function isPositive(S) {
+  const L = S.map((row) => row.slice());
+  for (let j = 0; j < L.length; j++) {
+    for (let k = 0; k < j; k++) for (let i = j; i < L.length; i++) L[i][j] -= L[i][k] * L[j][k];
+    if (!(L[j][j] > 0)) return false;
+    const pivot = Math.sqrt(L[j][j]);
+    for (let i = j; i < L.length; i++) L[i][j] /= pivot;
+  }
+  return true;
+}
+
+/** Eigenvalues, rising, and eigenvectors as rows, of a symmetric matrix: Jacobi's rotations. */
+export function eigen(S) {
+  const n = S.length, A = S.map((row) => row.slice()), V = identity(n);
+  for (let sweep = 0; sweep < 60; sweep++) {
+    let off = 0, on = 0;
+    for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) if (i === j) on += A[i][i] ** 2; else off += A[i][j] ** 2;
+    if (off <= 1e-26 * on) break;
+    for (let p = 0; p < n; p++) for (let q = p + 1; q < n; q++) rotate(A, V, p, q);
+  }
+  const order = made(n, (i) => i).sort((i, j) => A[i][i] - A[j][j]);
+  return { values: order.map((i) => A[i][i]), axes: order.map((i) => V[i]) };
+}
+
+/** Turn rows and columns p and q of A, and the rows of V, so that A[p][q] vanishes. */
+function rotate(A, V, p, q) {
+  if (A[p][q] === 0) return;
+  const theta = (A[q][q] - A[p][p]) / (2 * A[p][q]);
+  const t = (theta < 0 ? -1 : 1) / (Math.abs(theta) + Math.sqrt(theta * theta + 1));
+  const c = 1 / Math.sqrt(t * t + 1), s = t * c;
+  for (let k = 0; k < A.length; k++) {
+    const row = A[k], x = row[p], y = row[q];
+    row[p] = c * x - s * y;
+    row[q] = s * x + c * y;
+  }
+  turn(A[p], A[q], c, s);
+  turn(V[p], V[q], c, s);
+}
+
+function turn(a, b, c, s) {
+  for (let k = 0; k < a.length; k++) {
+    const x = a[k], y = b[k];
+    a[k] = c * x - s * y;
+    b[k] = s * x + c * y;
+  }
+}
+
+/** The symmetric root of a symmetric matrix without negative eigenvalues. */
+export function root(S) {
+  const { values, axes } = eigen(S), columns = transpose(axes);
+  const roots = values.map((x) => Math.sqrt(Math.max(x, 0)));
+  return timesTransposed(columns.map((row) => times(roots, row)), columns);
+}
+
+/** The smallest singular value of a wide matrix. */
+export const smallestSingularValue = (J) => Math.sqrt(Math.max(0, eigen(timesTransposed(J, J)).values[0]));
+
+/** J^T (J J^T + lambda^2 I)^-1; with lambda 0 the pseudo-inverse. */
+export const dampedInverse = (J, damping) => transpose(solveMatrix(addDiagonal(timesTransposed(J, J), damping), J));

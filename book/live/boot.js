@@ -1,0 +1,50 @@
+// In a page with live panels: a button each; the first click loads the viewer, MuJoCo and the panel.
+
+const base = document.currentScript.src.split("?")[0].replace(/[^/]*$/, "");
+const asked = {};
+
+/** A classic script, once: works from a file, where fetch and modules do not. */
+function script(name) {
+  return (asked[name] ??= new Promise((done, failed) => {
+    const element = document.createElement("script");
+    element.src = base + name;
+    element.addEventListener("load", done);
+    element.addEventListener("error", () => failed(new Error(`${name} is missing beside this page`)));
+    document.head.append(element);
+  }));
+}
+
+async function open(host, button, status) {
+  button.disabled = true;
+  status.textContent = "Loading the arm and its physics…";
+  const began = performance.now();
+  try {
+    const [viewer] = await Promise.all([
+      globalThis.labkitLoad(), script("mujoco.js"), script("mujoco-wasm.js"), script("live.js")]);
+    const config = JSON.parse(host.querySelector('script[type="application/json"]').textContent);
+    const place = document.createElement("div");
+    host.querySelector(".lk-offer").replaceWith(place);
+    host.live = await globalThis.labkitLive.mount(place, config, viewer, globalThis.labkitRobot, began);
+    place.querySelector("button, input, select")?.focus({ preventScroll: true });
+  } catch (problem) {
+    button.disabled = false;
+    status.textContent = `The live arm could not be loaded: ${problem.message}`;
+    console.error(problem);
+  }
+}
+
+function start() {
+  for (const host of document.querySelectorAll(".lk-live")) {
+    if (host.dataset.offered) continue;
+    host.dataset.offered = "1";
+    const button = document.createElement("button");
+    const status = document.createElement("span");
+    Object.assign(button, { type: "button", className: "lk-load", textContent: host.dataset.offer });
+    status.setAttribute("role", "status");
+    button.addEventListener("click", () => open(host, button, status));
+    host.querySelector(".lk-offer").replaceChildren(button, status);
+  }
+}
+
+if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", start);
+else start();

@@ -1,0 +1,76 @@
+// The plots of a panel: a whole run, the run before it faint, the kept one dashed, on axes that stay.
+import { wholeRun } from "./session.js";
+
+const POINTS = 160;
+const rest = () => new Promise((go) => setTimeout(go, 0));
+
+/** What can be plotted of a run's ticks; `top` is the least height of its axis. */
+export const ERROR = { title: "Tip error of a run from the start [mm]", unit: "mm", top: 10, value: (tick) => 1000 * tick.error };
+export const ASKED = { title: "Largest joint speed that the law asks for [rad/s]", unit: "rad/s", top: 5, most: 20,
+  value: (tick) => Math.max(...tick.asked.map(Math.abs)) };
+
+/** Numbers of a run: root mean square and largest error in mm, quickest joint in rad/s. */
+export function summary(ticks) {
+  const errors = ticks.map((tick) => 1000 * tick.error);
+  const rms = Math.sqrt(errors.reduce((sum, x) => sum + x * x, 0) / errors.length);
+  return { rms, most: Math.max(...errors), speed: Math.max(...ticks.map((tick) => tick.speed)) };
+}
+
+export class Curves {
+  constructor(viewer, quantities, scrub) {
+    this.element = viewer.h("div", { class: "lk-plots" });
+    this.plots = quantities.map((of) => ({ of, top: of.top, plot: new viewer.Plot({
+      title: of.title, series: [], x: [0, 1], zero: true, least: of.top, scrub }) }));
+    this.element.append(...this.plots.map(({ plot }) => plot.element));
+  }
+
+  /** Simulate a run and draw it; returns its numbers in words. */
+  async run(mujoco, settings, seconds, stopped) {
+    const ticks = await wholeRun(mujoco, settings, seconds, { rest, stopped });
+    if (stopped()) return "";
+    this.show(ticks);
+    this.numbers = summary(ticks);
+    const { rms, most, speed } = this.numbers;
+    return `error ${rms.toFixed(2)} mm (root mean square), ${most.toFixed(1)} mm at most; quickest joint ${speed.toFixed(2)} rad/s.`;
+  }
+
+  /** Draw these ticks as the present run; the one before stays behind them. */
+  show(ticks) {
+    const step = Math.max(1, Math.floor(ticks.length / POINTS)), few = ticks.filter((_, k) => k % step === 0);
+    [this.before, this.last] = [this.last, few];
+    this.draw();
+  }
+
+  draw() {
+    if (!this.last) return;
+    const x = this.last.map((tick) => tick.t);
+    for (const one of this.plots) {
+      const { value, most = Infinity } = one.of;
+      const fit = (ticks) => x.map((_, i) => Math.min(most, value(ticks[Math.min(i, ticks.length - 1)])));
+      const series = [];
+      if (this.before) series.push({ name: "before", values: fit(this.before), colour: "var(--lk-edge)", dash: "" });
+      if (this.kept) series.push({ name: "kept", values: fit(this.kept), colour: "#1f77d0", dash: "7 3" });
+      series.push({ name: "now", values: fit(this.last), colour: "var(--lk-trace)", dash: "", width: 2.4 });
+      const high = Math.max(...series.flatMap((s) => s.values));
+      while (high > one.top) one.top *= /^2/.test(String(one.top)) ? 2.5 : 2; // never shrinks under the reader's eyes
+      one.plot.least = one.top;
+      one.plot.set(series, x);
+    }
+  }
+
+  keep() { this.kept = this.last; this.draw(); }
+  drop() { this.kept = null; this.draw(); }
+  time(t) { this.plots.forEach(({ plot }) => plot.time(t)); }
+
+  /** The numbers at a time, in words. */
+  at(t) {
+    if (!this.last) return "not there yet";
+    const i = Math.max(0, this.last.findIndex((tick) => tick.t >= t));
+    return this.plots.map(({ of }) => {
+      const told = (ticks) => `${of.value(ticks[Math.min(i, ticks.length - 1)]).toFixed(1)} ${of.unit}`;
+      return `now ${told(this.last)}${this.kept ? `, kept ${told(this.kept)}` : ""}`;
+    }).join("; ");
+  }
+
+  dispose() { this.plots.forEach(({ plot }) => plot.dispose()); }
+}

@@ -1,0 +1,18 @@
+// Chance that repeats itself: numbers from a seed (Mulberry32), and normal ones by Box and Muller.
+
+/** Numbers evenly from 0 to 1. */
+export function uniform(seed) {
+  let state = seed >>> 0;
+  return () => {
+    state = (state + 0x6d2b79f5) | 0;
+    let t = Math.imul(state ^ (state >>> 15), 1 | state);
+    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
+    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
+  };
+}
+
+/** Normal numbers, mean 0 and deviation 1. */
+export function gaussian(seed) {
+  const draw = uniform(seed);
+  return () => Math.sqrt(-2 * Math.log(1 - draw())) * Math.cos(2 * Math.PI * draw());
+}

@@ -1,0 +1,83 @@
+// "Stiffness has a direction": a hand before a wall, with a weight in it, and one dial or three.
+import { Panel } from "./panel.js";
+import { predictBox } from "./predict.js";
+
+const LIMITS = { wall: 12, sag: 5 }; // N and mm
+const BEHIND = 0.03; // how far the target lies behind the wall's face, in [m]
+const SETTINGS = { controller: "workspaceImpedance", path: "stay", place: [BEHIND, 0, 0], wall: 0, payload: 0.3,
+  viscous: 1, gains: { K: 300 } };
+const MODES = { one: "one K for all directions", three: "Kx, Ky, Kz", position: "position mode" };
+
+class Stiffness extends Panel {
+  parts() {
+    const { h, viewer } = this;
+    this.mode = "one";
+    this.predicted = predictBox(h, {
+      question: "The target lies 3 cm behind the wall's face. With K = 1000 N/m in all directions, how hard does the hand press on the wall?",
+      unit: "N", commit: () => this.gains({ K: 1000 }, "one"), found: () => (this.settled() && this.settings.gains.K === 1000 ? this.wallForce : null) });
+    this.choose = viewer.choice({ label: "Hold by", values: Object.values(MODES), value: MODES.one,
+      onchange: (label) => this.gains({}, Object.keys(MODES).find((k) => MODES[k] === label)) });
+    this.bars = { wall: bar(h, "Wall force", LIMITS.wall, 45, "N"), sag: bar(h, "Sag", LIMITS.sag, 20, "mm") };
+    this.verdict = h("p", { class: "lk-kept", role: "status" });
+    const weight = this.dial({ label: "Weight", unit: "kg", min: 0, max: 1, value: 0.3 }, (payload) => this.change({ payload }));
+    this.walldial = this.dial({ label: "Wall at", unit: "mm", min: -40, max: 60, value: 0 }, (x) => this.change({ wall: x / 1000 }));
+    return [this.predicted.element, this.buttons(), this.fieldset("Stiffness", this.choose.element, this.gainbox),
+      h("div", { class: "lk-bars" }, this.bars.wall.element, this.bars.sag.element), this.verdict, this.numbers,
+      this.fieldset("Weight in the hand, wall", h("div", { class: "lk-dials" }, weight.element, this.walldial.element)), this.hands(), this.said];
+  }
+
+  /** Other gains: one dial, three, or none. */
+  gains(gains, mode) {
+    this.mode = mode;
+    this.choose.set(MODES[mode]);
+    const had = this.settings.gains.K ?? 300;
+    const next = mode === "three" ? { Kx: had, Ky: had, Kz: had, ...gains } : { K: had, ...gains };
+    this.change({ controller: mode === "position" ? "baxtersOwn" : "workspaceImpedance", gains: mode === "position" ? {} : next });
+    this.showGains();
+    this.say(`Held by ${MODES[mode]}.`);
+  }
+
+  showGains() {
+    const { gains } = this.settings, keys = { one: ["K"], three: ["Kx", "Ky", "Kz"], position: [] }[this.mode];
+    this.gainbox.replaceChildren(...keys.map((key) => this.dial(
+      { label: key, unit: "N/m", min: 30, max: 3000, ratio: true, value: gains[key] ?? 300 },
+      (x) => { this.change({ gains: { ...this.settings.gains, [key]: x } }); this.since = this.session.loop.t; }).element));
+  }
+
+  change(what) { super.change(what); this.since = this.session.loop.t; }
+  recompute() {} // what counts here is where the arm comes to rest
+  settled() { return this.session.loop.t - (this.since ?? 0) > 2; }
+
+  shown(now) {
+    const wall = now.forces.find((f) => f.name === "wall");
+    this.wallForce = wall?.size ?? 0;
+    this.sag = 1000 * now.off[2];
+    this.bars.wall.set(this.wallForce);
+    this.bars.sag.set(this.sag);
+    this.predicted.tell();
+    if (!this.settled()) { this.verdict.textContent = "Coming to rest…"; this.told = false; return; }
+    if (this.told) return;
+    this.told = true; // once it is at rest, once for a screen reader
+    const both = this.wallForce <= LIMITS.wall && this.sag <= LIMITS.sag;
+    this.verdict.textContent = `At rest: ${this.wallForce.toFixed(1)} N on the wall (at most ${LIMITS.wall}), ${this.sag.toFixed(1)} mm of sag (at most ${LIMITS.sag}). ${both ? "Both limits are kept." : "Not both limits are kept."}`;
+    this.host.dataset.wall = this.wallForce.toFixed(2);
+    this.host.dataset.sag = this.sag.toFixed(2);
+  }
+}
+
+/** A bar with a limit and its number. */
+function bar(h, name, limit, most, unit) {
+  const fill = h("span", { class: "lk-fill" }), mark = h("span", { class: "lk-limit" }), words = h("span", {});
+  mark.style.left = `${(100 * limit) / most}%`;
+  const element = h("div", { class: "lk-barrow" }, h("span", {}, name), h("span", { class: "lk-track", "aria-hidden": "true" }, fill, mark), words);
+  const set = (x) => {
+    fill.style.width = `${Math.min(100, Math.max(0, (100 * x) / most))}%`;
+    fill.classList.toggle("lk-over", x > limit);
+    words.textContent = `${x.toFixed(1)} ${unit}, limit ${limit} ${unit}`;
+  };
+  return { element, set };
+}
+
+export function stiffnessPiece(host, config, ...given) {
+  return new Stiffness(host, { title: "Stiffness has a direction", view: { azimuth: 1.35, elevation: 0.2 }, ...config, settings: { ...SETTINGS, ...config.settings } }, ...given);
+}

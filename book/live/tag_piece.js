@@ -1,0 +1,102 @@
+// "Age, not noise": a tag that moves or is dragged, a camera that is slow, and a prediction that can harm.
+import { add, length, subtract } from "./algebra.js";
+import { CAMERA, Chase } from "./chase.js";
+import { TAG } from "./numbers.js";
+import { Panel } from "./panel.js";
+import { predictBox } from "./predict.js";
+import { READY } from "./settings.js";
+
+const MOVES = { conveyor: "a conveyor", circle: "a circle", hand: "a hand with sudden stops" };
+const SECONDS = 8, TICK = 0.005;
+const SETTINGS = { controller: "workspaceVelocity", path: "tag", move: "conveyor", tagSpeed: 0.06,
+  camera: { ...CAMERA, age: 0.2, rate: 20, sigma: 0.0005, predict: false }, gains: {} };
+const AIM = { title: "From the point aimed at to the tag [mm]", unit: "mm", top: 20, value: (tick) => tick.miss };
+const AGE = { title: "Speed of the tag times age of the reading [mm]", unit: "mm", top: 20, value: (tick) => tick.due };
+
+/** What the camera makes of the tag for some seconds, without the arm: a tick each 5 ms. */
+export function watched(settings, seconds = SECONDS) {
+  const chase = new Chase(settings, READY, false, 3), ticks = [];
+  let before = chase.goal(0);
+  for (let k = 0; k * TICK < seconds; k++) {
+    const t = k * TICK, goal = chase.goal(t), { pose } = chase.target(t);
+    const speed = length(subtract(goal, before)) / TICK;
+    before = goal;
+    if (chase.sight.readings.length === 2) {
+      ticks.push({ t, miss: 1000 * length(subtract(goal, pose.p)), due: 1000 * speed * chase.aimed.old });
+    }
+  }
+  return ticks;
+}
+
+/** Root mean square of the miss, in [mm]. */
+export const miss = (settings) => {
+  const ticks = watched(settings);
+  return Math.sqrt(ticks.reduce((sum, tick) => sum + tick.miss ** 2, 0) / ticks.length);
+};
+
+class Age extends Panel {
+  quantities() { return [AIM, AGE]; }
+
+  parts() {
+    const { h, viewer } = this;
+    const camera = (what) => this.change({ camera: { ...this.settings.camera, ...what } });
+    const { camera: now, tagSpeed } = this.settings;
+    this.predicted = predictBox(h, {
+      question: "The tag rides on a conveyor at 60 mm/s; what the camera says is 200 ms old. How far beside the tag does the hand aim? And if the noise is tripled?",
+      unit: "mm", commit: () => this.change({ ...this.settings, ...SETTINGS }), found: () => miss({ ...this.settings, ...SETTINGS }) });
+    const move = viewer.choice({ label: "The tag on", values: Object.values(MOVES), value: MOVES[this.settings.move],
+      onchange: (label) => { this.release(); this.change({ move: Object.keys(MOVES).find((k) => MOVES[k] === label) }); } });
+    const box = h("input", { type: "checkbox", onchange: () => camera({ predict: box.checked }) });
+    const dials = [
+      this.dial({ label: "Age", unit: "ms", min: 0, max: 800, value: 1000 * now.age }, (x) => camera({ age: x / 1000 })),
+      this.dial({ label: "Pictures", unit: "1/s", min: 2, max: 60, value: now.rate }, (rate) => camera({ rate })),
+      this.dial({ label: "Noise", unit: "mm", min: 0, max: 5, value: 1000 * now.sigma }, (x) => camera({ sigma: x / 1000 })),
+      this.dial({ label: "Tag's speed", unit: "mm/s", min: 10, max: 300, value: 1000 * tagSpeed }, (x) => this.change({ tagSpeed: x / 1000 }))];
+    const steps = Object.entries({ "left": [0, 0.02, 0], "right": [0, -0.02, 0], "away": [0.02, 0, 0], "near": [-0.02, 0, 0] });
+    const keys = steps.map(([name, by]) => h("button", { type: "button", onclick: () => this.drag(add(this.session.chase.dragged ?? [0, 0, 0], by)) }, `${name} 2 cm`));
+    this.table = h("table", { class: "lk-table" });
+    return [this.predicted.element, this.buttons(), this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys)),
+      this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)), h("label", { class: "lk-check" }, box, "predict: go on as in the last two pictures")),
+      this.numbers, this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table)];
+  }
+
+  showGains() {}
+  release() { for (const { chase } of this.sessions) chase.dragged = null; }
+  drag(place) { for (const { chase } of this.sessions) chase.dragged = place.map((x) => Math.max(-0.15, Math.min(0.15, x))); }
+
+  /** Three dots: the tag now, the tag as seen, the point aimed at. */
+  more(now) {
+    const at = (p) => add(subtract(add(READY.p, p), TAG.offset), [0, 0, 0.004]);
+    const seen = now.aimed ?? { seen: [0, 0, 0], p: [0, 0, 0] };
+    const low = subtract(now.goal, TAG.offset);
+    this.picture.arrow("seen", at(seen.seen), subtract(low, at(seen.seen)), "as seen", 0x7b3fa0);
+    this.picture.arrow("aim", add(READY.p, seen.p), [0, 0, -0.12], "aimed at", 0x0a5aa6);
+    return {};
+  }
+
+  shown(now) {
+    if (!now.aimed) return;
+    const off = 1000 * length(subtract(now.goal, add(READY.p, now.aimed.p)));
+    this.numbers.textContent = `t = ${now.t.toFixed(2)} s · aimed ${off.toFixed(1)} mm beside the tag · reading ${(1000 * now.aimed.old).toFixed(0)} ms old · hand ${(1000 * now.error).toFixed(1)} mm beside`;
+  }
+
+  /** The camera alone decides this curve, so it needs no arm and is there at once. */
+  recompute() {
+    const { h } = this, { settings } = this, began = performance.now();
+    this.curves.show(watched(settings));
+    const row = (predict) => Object.keys(MOVES).map((move) => miss({ ...settings, move, camera: { ...settings.camera, predict } }).toFixed(1));
+    const lines = [["as seen", row(false)], ["predicted", row(true)]];
+    this.table?.replaceChildren(h("caption", {}, "Root mean square of the miss [mm] with these dials"),
+      h("thead", {}, h("tr", {}, h("td", {}, ""), Object.values(MOVES).map((name) => h("th", { scope: "col" }, name)))),
+      h("tbody", {}, lines.map(([name, cells]) => h("tr", {}, h("th", { scope: "row" }, name), cells.map((x) => h("td", {}, x))))));
+    const rms = miss(settings), { age, rate, predict } = settings.camera;
+    const turn = settings.move === "circle" ? ` The circle turns by ω T = ${((settings.tagSpeed / TAG.radius) * age).toFixed(2)} in the age of a picture.` : "";
+    this.said.textContent = `Aims ${rms.toFixed(1)} mm beside the tag; speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
+    this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`);
+    this.host.dataset.rerun = String(Math.round(performance.now() - began));
+  }
+}
+
+export function tagPiece(host, config, ...given) {
+  return new Age(host, { title: "Age, not noise", view: { azimuth: 0, elevation: 1.2 }, ...config, settings: { ...SETTINGS, ...config.settings } }, ...given);
+}

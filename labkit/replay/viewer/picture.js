@@ -1,0 +1,178 @@
+// A robot and what is around it, drawn: the part of the viewer that knows neither time nor kernel.
+// The replay, the live arm of the notebook and the live arm of the book all draw with it.
+import * as THREE from "three";
+import { Body, span } from "./body.js";
+import { frames, joints, posture, tip } from "./kinematics.js";
+import { arrow, axes, dispose } from "./marks.js";
+import { Stage } from "./stage.js";
+import { place, thing } from "./things.js";
+import { apply, subtract, transpose } from "./so3.js";
+
+export class Picture {
+  /** A picture inside `host`; `this.works` is false without WebGL, and then nothing else may be asked. */
+  constructor(host, label) {
+    this.stage = new Stage(host, label);
+    this.works = this.stage.works;
+    this.arrows = {};
+    this.things = {};
+    this.side = "left";
+  }
+
+  /** Draw this robot from now on. */
+  embody(robot) {
+    if (robot === this.robot) return;
+    this.robot = robot;
+    if (this.body) { this.stage.scene.remove(this.body.root); this.body.dispose(); }
+    this.body = new Body(robot);
+    this.stage.scene.add(this.body.root);
+    this.stage.floor.position.z = robot.arm ? 0 : -0.925; // Baxter's base is its waist
+    this.stage.rig.size = robot.arm ? Math.min(1, 0.5 * span(robot)) : 1;
+  }
+
+  /** Put the arm's joints, n numbers in rad, where they are now. */
+  pose(side, q) {
+    Object.assign(this, { side, q });
+    this.body.pose(side, q);
+    this.frames = frames(this.robot, posture(this.robot, side, q));
+    this.tip = tip(this.robot, side, q);
+    this.stage.rig.hand = this.tip.p;
+    this.stage.draw();
+  }
+
+  /** Hide the robot's body and its idle arm, or show them. */
+  alone(on) {
+    this.body.alone(this.side, on);
+    this.stage.floor.visible = !on;
+    this.stage.draw();
+  }
+
+  /** A see-through arm: {pose(q), remove()}. */
+  ghost(side, colour) {
+    const body = new Body(this.robot, { side, colour });
+    this.stage.scene.add(body.root);
+    return { pose: (q) => body.pose(side, q), remove: () => { this.stage.scene.remove(body.root); body.dispose(); } };
+  }
+
+  /**
+   * Lay the arrow `name` from a point along a vector, both in metres, with a text at its end; a
+   * vector of no length hides it.
+   */
+  arrow(name, origin, vector, text = "", colour = 0xc77700) {
+    this.arrows[name] ??= this.made(name, colour);
+    const a = this.arrows[name];
+    a.mark.lay(origin, vector);
+    a.end = Math.hypot(...vector) > 1e-4 ? origin.map((x, k) => x + vector[k]) : null;
+    if (a.label.element.textContent !== text) a.label.element.textContent = text;
+    this.stage.draw();
+  }
+
+  made(name, colour) {
+    const mark = arrow(colour);
+    this.stage.scene.add(mark);
+    const made = { mark, end: null };
+    made.label = this.stage.label("", () => made.end && made.label.element.textContent ? made.end : null,
+      `#${colour.toString(16).padStart(6, "0")}`);
+    return made;
+  }
+
+  /**
+   * Draw what stands around the arm: {name: {kind, position, quaternion, size, colour, to}}, with
+   * the kinds of things.js.  What is left out goes; what only moved is moved.
+   */
+  furnish(given) {
+    for (const name of Object.keys(this.things)) if (!given[name]) this.drop(name);
+    for (const [name, data] of Object.entries(given)) {
+      const key = JSON.stringify([data.kind, data.size, data.colour]);
+      if (this.things[name]?.key !== key) {
+        this.drop(name);
+        const mark = thing(data);
+        mark.traverse((part) => { part.userData.thing = name; });
+        this.stage.scene.add(mark);
+        this.things[name] = { key, mark };
+      }
+      place(this.things[name].mark, data, this.tip?.p);
+    }
+    this.stage.draw();
+  }
+
+  drop(name) {
+    if (!this.things[name]) return;
+    this.stage.scene.remove(this.things[name].mark);
+    dispose(this.things[name].mark);
+    delete this.things[name];
+  }
+
+  /**
+   * What a pointer points at: {thing, at}, or {link, local, at}, where `link` is the joint's number
+   * that the link turns with, `local` the point in the link's frame, `at` the point in the base; or
+   * null.  The tip is a link of its own, with the number n.
+   */
+  pick(event) {
+    const caster = this.stage.ray(event);
+    const names = joints(this.robot, this.side);
+    const solid = [...Object.values(this.things).map((t) => t.mark), ...names.map((n) => this.body.groups[n])];
+    const hit = caster.intersectObjects(solid.filter((part) => part.visible), true)
+      .find(({ object }) => object.userData.thing !== undefined || linkOf(object, this.body, names) >= 0);
+    if (!hit) return null;
+    const at = hit.point.toArray();
+    if (hit.object.userData.thing !== undefined) return { thing: hit.object.userData.thing, at };
+    const link = linkOf(hit.object, this.body, names);
+    if (link === names.length - 1 && Math.hypot(...subtract(at, this.tip.p)) < 0.06) return this.atTip();
+    return { link, local: this.inLink(link, at), at };
+  }
+
+  /** The tip, as `pick` gives it. */
+  atTip() { return { link: joints(this.robot, this.side).length, local: [0, 0, 0], at: this.tip.p }; }
+
+  /** The middle of a joint, as `pick` gives it: for keys. */
+  atJoint(link) { return { link, local: [0, 0, 0], at: this.where(link, [0, 0, 0]) }; }
+
+  frame(link) { return link >= joints(this.robot, this.side).length ? this.tip : this.frames[joints(this.robot, this.side)[link]]; }
+
+  inLink(link, at) {
+    const { R, p } = this.frame(link);
+    return apply(transpose(R), subtract(at, p));
+  }
+
+  /** Where a point of a link, in the link's frame, is now, in the base. */
+  where(link, local) {
+    const { R, p } = this.frame(link);
+    return apply(R, local).map((x, k) => x + p[k]);
+  }
+
+  /** The point under the pointer on the plane through `at` that faces the camera. */
+  dragged(event, at) {
+    const { ray } = this.stage.ray(event);
+    const facing = this.stage.camera.getWorldDirection(new THREE.Vector3());
+    const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(facing, new THREE.Vector3(...at));
+    return ray.intersectPlane(plane, new THREE.Vector3())?.toArray() ?? at;
+  }
+
+  /** Give pointers to `take(picked, event)` first; it returns {move, end}, or nothing to turn the view. */
+  grab(take) {
+    this.stage.canvas.classList.add("lk-grab"); // a finger on it no longer scrolls the page
+    this.stage.rig.grab = (event) => {
+      if (event.button) return null;
+      const picked = this.pick(event);
+      return picked && take(picked, event);
+    };
+  }
+
+  /** A frame with x, y and z marked by one, two and three rings, where {R, p} or [x, y, z] is. */
+  axes(length) {
+    const mark = axes(length);
+    this.stage.scene.add(mark);
+    return mark;
+  }
+
+  dispose() { this.stage.dispose(); }
+}
+
+/** The number of the joint that an object turns with; -1 for none of this arm's. */
+function linkOf(object, body, names) {
+  for (let part = object; part; part = part.parent) {
+    const k = names.findIndex((name) => body.groups[name] === part);
+    if (k >= 0) return k;
+  }
+  return -1;
+}

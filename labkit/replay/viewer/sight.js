@@ -1,0 +1,48 @@
+// How the picture is seen: named views, turns for the keyboard, the close-up, the magnified error.
+import { VIEWS } from "./rig.js";
+import { choice, h } from "./dom.js";
+
+const NEAR = 0.42; // metres from the hand to the close-up's eye
+
+/** A check box with its name. */
+export function check(label, value, onchange) {
+  const box = h("input", { type: "checkbox", checked: value, onchange: () => onchange(box.checked) });
+  return h("label", { class: "lk-check" }, box, label);
+}
+
+/**
+ * The bar under a picture: {element, magnifier}.
+ * @param magnify  called with 1, 10 or 50; without it there is no such choice
+ */
+export function sight(picture, { magnify } = {}) {
+  const { stage } = picture;
+  const views = Object.keys(VIEWS).map((name) => h("button", { type: "button", onclick: () => stage.rig?.use(name) }, name));
+  const moves = [
+    ["←", "Turn left", (r) => r.turn(-0.2, 0)], ["→", "Turn right", (r) => r.turn(0.2, 0)],
+    ["↑", "Turn up", (r) => r.turn(0, 0.15)], ["↓", "Turn down", (r) => r.turn(0, -0.15)],
+    ["+", "Zoom in", (r) => r.zoom(0.85)], ["−", "Zoom out", (r) => r.zoom(1 / 0.85)],
+  ].map(([sign, name, act]) => h("button", {
+    type: "button", class: "lk-icon", "aria-label": name, title: name, onclick: () => act(stage.rig) }, sign));
+  const boxes = [check("Close-up", false, (on) => {
+    if (!stage.small) stage.inset(() => closely(picture));
+    stage.small.hidden = !on;
+    stage.draw();
+  }), check("Arm alone", false, (on) => picture.alone(on))];
+  const sizes = ["× 1", "× 10", "× 50"];
+  const magnifier = choice({ label: "Error", values: sizes, value: sizes[0],
+    onchange: (shown) => magnify?.(+shown.slice(2)) }).element;
+  magnifier.hidden = !magnify;
+  magnifier.classList.add("lk-magnify");
+  const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
+    h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, h("span", { class: "lk-gap" }), moves,
+    h("span", { class: "lk-gap" }), boxes, magnifier);
+  return { element, magnifier };
+}
+
+/** Where the close-up looks from: beside the hand, as the picture's own camera is turned. */
+function closely({ stage, tip }) {
+  const { camera } = stage;
+  const away = camera.position.toArray().map((x, k) => x - tip.p[k]);
+  const size = Math.hypot(...away);
+  return { eye: away.map((x, k) => tip.p[k] + (NEAR * x) / size), at: tip.p };
+}

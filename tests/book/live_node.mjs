@@ -1,0 +1,53 @@
+// The book's live arm under node: a list of requests on stdin, the list of answers on stdout.
+import { readFileSync } from "node:fs";
+import { runInThisContext } from "node:vm";
+import { gunzipSync } from "node:zlib";
+import { Arm } from "../../book/live/arm.js";
+import * as laws from "../../book/live/controllers.js";
+import { jointTrajectory } from "../../book/live/inverse.js";
+import { Model } from "../../book/live/model.js";
+import * as numbers from "../../book/live/numbers.js";
+import { run } from "../../book/live/run.js";
+import { spring, wall } from "../../book/live/scene.js";
+import { taskTarget } from "../../book/live/tasks.js";
+
+const { ROBOT, PLANTS, CONTROLLERS, CONSTANTS, TASK } = numbers;
+const bundle = new URL("../../book/live/bundle/", import.meta.url);
+
+async function engine() {
+  globalThis.window = globalThis; // MuJoCo's script is the page's
+  runInThisContext(readFileSync(new URL("mujoco.js", bundle), "utf8"));
+  return globalThis.labkitLoadMuJoCo({ wasmBinary: gunzipSync(readFileSync(new URL("mujoco.wasm.gz", bundle))) });
+}
+
+/** A plant by name without chance in it, with what a test changes. */
+const quiet = ({ plant, change }) => ({ ...PLANTS[plant], velocity_noise: ROBOT.ready.map(() => 0), lost_ticks: 0, ...change });
+
+const ASK = {
+  numbers: () => numbers,
+  model: ({ q, dq, ddq, payload, armature }) => {
+    const model = new Model(ROBOT, { payload, armature });
+    return { M: model.massMatrix(q), h: model.bias(q, dq), tau: model.inverseDynamics(q, dq, ddq), drift: model.drift(q, dq),
+      J: model.tipJacobian(q), pose: model.pose(q), Cd: model.coriolisTimes(q, dq, ddq) };
+  },
+  commands: ({ plant, controller, states }) => {
+    const law = laws[controller](new Model(ROBOT, PLANTS[plant]), CONTROLLERS[plant][controller].gains);
+    return states.map(([state, target]) => law(state, target).value);
+  },
+  run: (request) => {
+    const { controller, task, duration, things = [], start } = request;
+    const plant = quiet(request), model = new Model(ROBOT, plant), { gains, rate, joints } = CONTROLLERS[request.plant][controller];
+    const q0 = start ?? ROBOT.ready;
+    const poses = taskTarget(task, new Model(ROBOT).pose(ROBOT.ready), TASK);
+    const target = joints ? jointTrajectory(new Model(ROBOT), poses, ROBOT.ready, 101) : poses;
+    const arm = new Arm(mujoco, ROBOT, plant, CONSTANTS);
+    arm.reset(q0);
+    arm.things = things.map((thing) => (thing.anchor ? spring(thing) : wall({ ...CONSTANTS.wall, ...thing }, CONSTANTS.pad)));
+    const log = run(arm, target, laws[controller](model, gains), { rate, runaway: CONSTANTS.runaway, duration });
+    arm.close();
+    return log.map(({ q }) => q);
+  },
+};
+
+const mujoco = await engine();
+console.log(JSON.stringify(JSON.parse(readFileSync(0, "utf8")).map((request) => ASK[request.ask](request))));

@@ -1,0 +1,133 @@
+"""The live arm in the book computes what the lab computes, with the lab's own numbers."""
+
+import importlib.metadata
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from live_reference import LAWS, PLANTS, apart, candidate, javascript
+
+import labkit as lk
+from labkit import se3
+
+ROOT = Path(__file__).parents[2]
+sys.path[:0] = [str(ROOT / "book/_tools")]
+PAIR = ("3.14.0", "4.0.0")
+"""MuJoCo on npm and on PyPI; the runs below show that both compute the same."""
+EXACT, EQUAL = 1e-9, 1e-6  # a command's numbers; a run's joint angles, in [rad]
+
+
+def test_the_pages_numbers_are_the_labs():
+    """`book/live/numbers.js` is what `python book/_tools/make_live.py` would write now."""
+    import make_live
+
+    assert make_live.OUT.read_text() == make_live.text(), "run python book/_tools/make_live.py"
+
+
+def test_mujoco_on_npm_and_on_pypi_are_the_tested_pair():
+    """Whoever raises one version has to look at both, and at the runs that compare them."""
+    wanted = json.loads((ROOT / "book/_tools/vendor/package.json").read_text())["dependencies"]
+    assert (wanted["@mujoco/mujoco"], importlib.metadata.version("mujoco")) == PAIR
+
+
+def moments(count, seed):
+    """Random states away from singularities, and targets near them, of poses and of joints."""
+    rng, model = np.random.default_rng(seed), lk.Model("left")
+    low, high = model.robot.lower, model.robot.upper
+    while count:
+        q = rng.uniform(low, high)
+        if model.nearness_to_singularity(q) < 0.02:
+            continue
+        state = lk.State(0.0, q, rng.normal(0.0, 0.5, 7))
+        turn = se3.pose(se3.rotation(rng.normal(0.0, 0.1, 3)), rng.normal(0.0, 0.05, 3))
+        pose = lk.PoseSample(model.pose(q) @ turn, rng.normal(0, 0.3, 6), rng.normal(0, 0.5, 6))
+        joint = lk.Sample(q + rng.normal(0, 0.1, 7), rng.normal(0, 0.3, 7), rng.normal(0, 0.5, 7))
+        yield state, pose, joint
+        count -= 1
+
+
+def plain(state, target):
+    """A state and a target as JavaScript has them."""
+    if isinstance(target, lk.PoseSample):
+        pose = {"R": target.pose[:3, :3].ravel().tolist(), "p": target.pose[:3, 3].tolist()}
+        told = {"pose": pose, "twist": target.twist.tolist(), "dtwist": target.dtwist.tolist()}
+    else:
+        told = {k: x.tolist() for k, x in target._asdict().items()}
+    return [{"t": 0.0, "q": state.q.tolist(), "dq": state.dq.tolist()}, told]
+
+
+@pytest.mark.filterwarnings("ignore:near a singularity")
+def test_commands_equal_those_of_the_solutions():
+    """Each law gives the command of `solutions`, to 1e-9 of the largest number in it."""
+    cases, requests = [], []
+    for plant in PLANTS:
+        for name in LAWS:
+            own = candidate(PLANTS[plant], name)
+            asked = [(s, joint if own.joints else pose) for s, pose, joint in moments(40, seed=5)]
+            cases.append([own.controller(*case).value for case in asked])
+            states = [plain(*case) for case in asked]
+            requests.append(
+                {"ask": "commands", "plant": plant, "controller": name, "states": states}
+            )
+    for request, expected, found in zip(requests, cases, javascript(*requests), strict=True):
+        worst = np.abs(np.array(found) - expected).max(axis=1) / np.maximum(
+            1.0, np.abs(expected).max(axis=1)
+        )
+        assert worst.max() < EXACT, (request["plant"], request["controller"], worst.max())
+
+
+def test_the_equations_of_motion_equal_pinocchios():
+    """M, C, g, J and dJ/dt dq of the page are the lab's to 1e-11, with a payload and rotors."""
+    plant = lk.Plant(payload=0.7, armature=lk.BAXTER.armature)
+    model, rng, requests = lk.Model("left", plant), np.random.default_rng(3), []
+    for state, *_ in moments(20, seed=4):
+        requests.append({"ask": "model", "payload": 0.7, "armature": list(lk.BAXTER.armature),
+                         "q": state.q.tolist(), "dq": state.dq.tolist(),
+                         "ddq": rng.normal(size=7).tolist()})  # fmt: skip
+    for asked, found in zip(requests, javascript(*requests), strict=True):
+        q, dq, ddq = (np.array(asked[k]) for k in ("q", "dq", "ddq"))
+        terms = model.terms(q, dq)
+        for name, expected in {
+            "M": terms.M, "h": terms.c + terms.g, "J": terms.J, "drift": terms.drift,
+            "tau": model.inverse_dynamics(q, dq, ddq), "Cd": model.coriolis(q, dq) @ ddq,
+        }.items():  # fmt: skip
+            np.testing.assert_allclose(found[name], expected, atol=1e-11, err_msg=name)
+
+
+@pytest.mark.parametrize("plant", PLANTS)
+def test_runs_equal_pythons_on_mujoco(plant):
+    """Five seconds of line and circle, all six ways, within 1e-6 rad of the lab's run."""
+    requests = [
+        {"plant": plant, "controller": name, "task": task, "duration": 5.0}
+        for name in [*LAWS, "baxtersOwn"] for task in ("line", "circle")
+    ]  # fmt: skip
+    worst = apart(requests)
+    told = {(r["controller"], r["task"]): x for r, x in zip(requests, worst, strict=True)}
+    assert max(worst) < EQUAL, told
+
+
+def test_contact_payload_and_stops_equal_pythons():
+    """A wall with friction, a spring, a payload and a joint stop: within 1e-6 rad."""
+    ready = lk.Model("left").pose(lk.robot("left").ready)[:3, 3]
+    face = {
+        "point": (ready + [0.03, 0.0, 0.0]).tolist(),
+        "normal": [-1.0, 0.2, 0.0],
+        "friction": 0.3,
+    }
+    band = {"anchor": (ready + [0.0, 0.2, 0.1]).tolist(), "stiffness": 150.0, "damping": 5.0}
+    near = np.array(lk.robot("left").ready)
+    near[3] = lk.robot("left").lower[3] + 0.01
+    line = {"task": "line", "duration": 2.5}
+    requests = [
+        {**line, "plant": "ideal", "controller": "workspaceImpedance", "things": [face],
+         "scene": [lk.Wall(**face)]},
+        {**line, "plant": "baxter", "controller": "jointImpedance", "things": [face, band],
+         "scene": [lk.Wall(**face), lk.Spring(**band)]},
+        {**line, "plant": "baxter", "controller": "jointVelocity", "things": [face],
+         "scene": [lk.Wall(**face)], "change": {"payload": 0.5}},
+        {**line, "plant": "baxter", "controller": "jointImpedance", "start": near.tolist()},
+    ]  # fmt: skip
+    worst = apart(requests)
+    assert max(worst) < EQUAL, worst

@@ -1,0 +1,161 @@
+"""The live arm in the book, used by mouse, finger and keys, light, dark and small."""
+
+import json
+
+import pytest
+from test_pages import too_wide, violations
+
+pytestmark = pytest.mark.slow
+PAGES = ("live", "live_stiffness", "live_age", "live_singular")
+ERROR = "document.querySelector('.lk-live').live.now.error"  # of the tip, in [m]
+OFF, BACK = f"{ERROR} > 0.01", f"{ERROR} < 0.003"
+
+
+@pytest.fixture
+def live(visit, open_chromium):
+    """Open a page and load its live arm."""
+
+    def go(name, **options):
+        page = visit(f"{name}.html", browser=open_chromium, **options)
+        page.locator(".lk-live .lk-load").first.click()
+        page.wait_for_selector(".lk-live [data-ready]")
+        return page
+
+    return go
+
+
+def type_into(page, label, value):
+    """Type a number into a dial."""
+    field = page.get_by_label(f"{label}, typed").first
+    field.fill(str(value))
+    field.press("Enter")
+
+
+def choose(page, label, words):
+    """Choose from a list by its label."""
+    page.get_by_label(label, exact=True).select_option(words)
+
+
+def tip_on_screen(page):
+    """Where the tip is in the window, in [px]."""
+    return page.evaluate("""() => {
+        const { picture } = document.querySelector('.lk-live').live, { stage } = picture;
+        stage.canvas.scrollIntoView({ block: 'center' });
+        stage.rig.frame(stage.canvas.clientWidth / stage.canvas.clientHeight);
+        const box = stage.canvas.getBoundingClientRect();
+        const p = stage.camera.position.clone().fromArray(picture.tip.p).project(stage.camera);
+        return [box.left + (p.x + 1) * box.width / 2, box.top + (1 - p.y) * box.height / 2];
+    }""")
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_a_live_page_is_quiet_accessible_and_fits(live, name):
+    """Loaded and running: on a phone, on a desk in light and dark; no request, no complaint."""
+    page = live(name, phone=True, reduced_motion="reduce")
+    assert not too_wide(page, 390)
+    assert violations(page) == [], "phone"
+    page.set_viewport_size({"width": 1280, "height": 900})
+    assert violations(page) == [], "light"
+    page.evaluate("document.documentElement.dataset.theme = 'dark'")
+    assert violations(page) == [], "dark"
+
+
+def test_a_page_that_nobody_clicked_loads_no_physics(visit):
+    """Before the click there is neither MuJoCo nor the live arm's bundle."""
+    page = visit("live.html")
+    loaded = page.evaluate("performance.getEntriesByType('resource').map(e => e.name).join(' ')")
+    assert "mujoco" not in loaded
+    assert "live.js" not in loaded
+
+
+def test_a_mouse_pulls_the_hand_and_lets_it_go(live):
+    """Dragged, the hand leaves its target and the force is shown; let go, it returns."""
+    page = live("live")
+    choose(page, "Path", "stay")
+    x, y = tip_on_screen(page)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y + 10, steps=4)
+    page.wait_for_function("/hand \\d/.test(document.querySelector('.lk-readout').textContent)")
+    page.wait_for_function(OFF)
+    page.mouse.up()
+    page.wait_for_function(BACK)
+
+
+def test_a_finger_pulls_the_hand(live):
+    """The same by touch."""
+    page = live("live", phone=True, has_touch=True)
+    choose(page, "Path", "stay")
+    x, y = tip_on_screen(page)
+    touch = page.context.new_cdp_session(page)
+
+    def finger(kind, *at):
+        points = [{"x": at[0], "y": at[1]}] if at else []
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+
+    finger("touchStart", x, y)
+    finger("touchMove", x + 20, y)
+    finger("touchMove", x + 50, y)
+    page.wait_for_function(OFF)
+    finger("touchEnd")
+    page.wait_for_function(BACK)
+
+
+def test_keys_push_the_tip_and_a_screen_reader_is_told(live):
+    """The button, pressed by a key, pushes with 10 N for a second, and that is said."""
+    page = live("live")
+    choose(page, "Path", "stay")
+    page.get_by_label("Push along +y").press("Enter")
+    page.wait_for_function(f"{ERROR} > 0.025")
+    told = page.locator(".lk-player > [role=status]").inner_text()
+    assert "10 N along +y" in told or "mm from its target" in told
+
+
+def test_a_dial_makes_a_new_curve_and_the_old_one_stays(live):
+    """The same axes, the run before it faint; two gains side by side once a run is kept."""
+    page = live("live")
+    choose(page, "Arm", "realistic arm")
+    choose(page, "Controller", "joint velocity")
+    said = page.locator(".lk-kept").last
+    page.wait_for_function("document.querySelector('.lk-live').live.curves.last")
+    page.wait_for_function(
+        "document.querySelector('.lk-live .lk-plot').querySelectorAll('polyline').length === 2"
+    )
+    page.get_by_role("button", name="Keep this run").click()
+    before = said.inner_text()
+    type_into(page, "Kp", 9)
+    page.wait_for_function(
+        "document.querySelector('.lk-live .lk-plot').querySelectorAll('polyline').length === 3"
+    )
+    page.wait_for_function(
+        "before => document.querySelector('.lk-live').live.said.textContent !== before", arg=before
+    )
+    assert "Kp 9" in said.inner_text()
+    assert page.evaluate("document.querySelector('.lk-live').live.sessions.length") == 2
+
+
+def test_no_single_stiffness_keeps_both_limits_and_two_do(live):
+    """K = 1000 N/m presses with 23.1 N as the page says; Kx = 300 with Kz = 1000 N/m keeps both."""
+    page = live("live_stiffness")
+    page.get_by_label("Your prediction in N").fill("30")
+    page.get_by_role("button", name="Try it").click()
+    verdict = page.locator(".lk-kept", has_text="At rest")
+
+    def settled():
+        page.wait_for_function("document.querySelector('.lk-live').live.told === false")
+        page.wait_for_function("document.querySelector('.lk-live').live.told === true")
+        return json.loads(
+            page.evaluate(
+                "JSON.stringify({...document.querySelector('.lk-live [data-ready]').dataset})"
+            )
+        )
+
+    found = settled()
+    assert float(found["wall"]) == pytest.approx(0.03 / (1 / 1000 + 1 / 3333.3), rel=0.02)
+    assert float(found["sag"]) == pytest.approx(1000 * 0.3 * 9.81 / 1000, rel=0.05)
+    assert "the arm: 23" in page.locator(".lk-predict").inner_text()
+    choose(page, "Hold by", "Kx, Ky, Kz")
+    for name, value in {"Kx": 300, "Kz": 1000}.items():
+        type_into(page, name, value)
+    settled()
+    assert "Both limits are kept" in verdict.inner_text()
