@@ -116,7 +116,9 @@ def interval(of: str, differences: Sequence[float], claims: int, least: float = 
     """
     d = np.asarray(differences, dtype=float)
     if len(d) < 2:
-        raise OutOfRange(f"{len(d)} pair cannot show a spread, so {of!r} cannot be judged; take two")
+        raise OutOfRange(
+            f"{len(d)} pair cannot show a spread, so {of!r} cannot be judged; take two"
+        )
     t = student.ppf(1.0 - 0.025 / claims, len(d) - 1)
     half = float(t * d.std(ddof=1) / np.sqrt(len(d)))
     return Interval(of, float(d.mean()), max(half, least), len(d))
