@@ -1,4 +1,4 @@
-"""The report's own gains (Table 1) and its tuning procedure, run: ``... solutions.study.report_gains``.
+"""The gains and procedure of the report, run: ``python -m solutions.study.report_gains``.
 
 On `BAXTER` and on the same arm with the springs in its joints.  The gains are taken as printed, the
 torque gains in N m/rad; the seventh entry that is missing from two rows is 1.  Of the workspace

@@ -1,4 +1,4 @@
-r"""The derivative gain of the compared velocity controllers: ``python -m solutions.study.speed_gains``.
+r"""The derivative gain of the velocity controllers: ``python -m solutions.study.speed_gains``.
 
 A drive that follows its command with a lag :math:`\tau` makes of
 :math:`u = \dot q_d + K_p e + K_d \dot e` the error equation
