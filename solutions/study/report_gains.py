@@ -87,7 +87,7 @@ def table_1(way: str, task: str, plant: str) -> Mapping[str, Any]:
 
 def procedure(plant: str, joint: int) -> Mapping[str, Any]:
     """The job: the report's procedure on one joint."""
-    found = tune(joint, PLANTS[plant], seed=0)
+    found = tune(joint, PLANTS[plant])
     steps = [[s.Kp, s.Kd, s.decay, s.why] for s in found.steps if np.isfinite(s.decay)]
     return asdict(replace(found, steps=())) | {"steps": steps}
 
