@@ -18,6 +18,7 @@ from .robot import Robot
 from .sensors import Reports, TorqueSensors
 from .shapes import Array, as_array, locked, shown
 from .sim import new_arm
+from .springs import Springs
 from .world import World
 
 
@@ -71,13 +72,20 @@ class Arm:
         if q0 is not None:
             self.model.within_limits(q0, "q")
         dt = self.world.dt
-        self._engine = new_arm(self.world.engine, self.robot, plant, dt)
+        elastic = any(plant.joint_stiffness)
+        self._springs = Springs(plant, robot.n, dt) if elastic else None
+        # Behind springs there are rotors and friction; the links have neither.
+        links = replace(plant, armature=0.0, viscous=0.0, joint_stiffness=0.0)
+        links = links if elastic else plant
+        self._engine = new_arm(self.world.engine, self.robot, links, dt)
         own = Model(robot, replace(plant, payload=0.0))  # the arm does not know what it carries
-        self._viscous = plant.each("viscous", robot.n)
+        self._viscous = links.each("viscous", robot.n)
         self._patience = round(plant.command_timeout / dt)  # in physics steps
-        self._motors, self._joints = Motors(dt, plant, own), Joints(self.model, dt)
+        self._motors = Motors(dt, plant, own)
+        self._joints = Joints(Model(robot, links) if elastic else self.model, dt)
         self._reports = Reports(plant, robot.n, dt, self._random)
-        self._sensors = TorqueSensors(own, plant, dt)
+        felt = Model(robot, replace(links, payload=0.0)) if elastic else own
+        self._sensors = TorqueSensors(felt, plant, dt)
         self.reset(q0)
         self.world.arms.append(self)
 
@@ -145,11 +153,14 @@ class Arm:
         self.check_open()
         self._engine.place(q)
         self._joints.reset()
+        if self._springs is not None:
+            self._springs.reset(q, self.model.gravity(q))
         self._known: tuple[Array, Array] | None = None
         self._torque: Array = self.robot.zeros
         self._touches: list[Touch] = []
         self._sensors.reset()
-        self._reports.reset(State(self.world.t, locked(np.array(q)), self.robot.zeros))
+        seen = locked(self._reports.read(np.array(q)))
+        self._reports.reset(State(self.world.t, seen, self.robot.zeros))
         self._motors.kind = type(None)
         self.stop()
 
@@ -225,12 +236,16 @@ class Arm:
         if self._reports.every and self._reports.due(self.world.steps):
             self._report()
         q, dq = self._read()
-        drive = self._motors.drive(q, dq)
+        drive = self._motors.drive(self._reports.read(q), dq)
+        motors = drive.tau
+        if self._springs is not None:
+            motors, drive = self._springs.pull(q, dq, drive)
         given = self._joints.solve(q, dq, drive, self._touches)
         if self.world.things or self.plant.payload:  # else no torque comes from outside
             joint = drive.tau + given.held - self._viscous * dq
             self._sensors.begin(q, dq, joint, self.world.steps)
-        self._torque = drive.tau if self._motors.kind is JointTorque else given.held
+        gives = self._springs is not None or self._motors.kind is JointTorque
+        self._torque = motors if gives else given.held
         self._engine.step(given.tau, given.ddq)
         self._known, self._touches = None, []
 
@@ -246,8 +261,8 @@ class Arm:
         if self._motors.kind is JointPosition:
             self._deadline = self.world.steps + self._patience
             return
-        q = np.clip(self.truth().q, self.robot.lower, self.robot.upper)
-        self.apply(JointPosition(q))
+        q = self._reports.read(self.truth().q)
+        self.apply(JointPosition(np.clip(q, self.robot.lower, self.robot.upper)))
 
     def _read(self) -> tuple[Array, Array]:
         """Angles and speeds as they really are, read-only."""

@@ -1,13 +1,17 @@
 """The plant: how the simulated arm differs from the textbook's, as one frozen value.
 
 `IDEAL` is the textbook: exact state, no friction, commands obeyed at once, and gravity left to the
-controller.  `BAXTER` behaves as the real arm is known to (sources beside each number).
+controller.  `BAXTER` has the effects of the real arm, in sizes of which some are published and the
+others assumed: nobody identified them on a machine.  `EVIDENCE` says which is which, and how far
+each may be off.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from .errors import OutOfRange
 from .shapes import Array, as_each, as_number
@@ -29,11 +33,17 @@ class Plant:
         viscous: Viscous friction, shape (n,) in [N m s/rad].
         stiction: Dry friction that a joint must overcome, shape (n,) in [N m].
         payload: A point mass held at the tip, unknown to the arm's gravity compensation, in [kg].
+        joint_stiffness: Of the spring between each motor and its joint, shape (n,) in [N m/rad];
+            0 is a stiff shaft.  Motor friction and rotor are then before the spring.
+        joint_damping: Of the same spring, shape (n,) in [N m s/rad].
         velocity_lag: Time constant with which the velocity mode follows its command, in [s].
         position_gain: How fast the position mode closes a gap, in [1/s]; 0 closes it as fast as
             speed and torque allow, the torque to brake before it included.
         state_rate: How often the arm publishes its state, in [Hz]; 0 is every physics step.
         state_delay: Age of a state when it arrives, in [s].
+        encoder_offset: What each joint's encoder reads too much, shape (n,) in [rad]: the error of
+            calibration that no controller sees.
+        encoder_step: Resolution of the encoders, shape (n,) in [rad]; 0 is exact.
         velocity_noise: Standard deviation of the measured joint speeds, shape (n,) in [rad/s].
         torque_noise: Standard deviation of the external torque that the arm estimates, shape (n,)
             in [N m].
@@ -48,10 +58,14 @@ class Plant:
     viscous: Any = 0.0
     stiction: Any = 0.0
     payload: float = 0.0
+    joint_stiffness: Any = 0.0
+    joint_damping: Any = 0.0
     velocity_lag: float = 0.0
     position_gain: float = 0.0
     state_rate: float = 0.0
     state_delay: float = 0.0
+    encoder_offset: Any = 0.0
+    encoder_step: Any = 0.0
     velocity_noise: Any = 0.0
     torque_noise: Any = 0.0
     torque_lag: float = 0.0
@@ -65,11 +79,16 @@ class Plant:
                 value = tuple(as_each(value, None, field.name).tolist())  # hashable, comparable
                 value = value[:1] if len(set(value)) == 1 else value
                 object.__setattr__(self, field.name, value)
-                as_number(min(value), field.name, least=0.0)
+                if field.name != "encoder_offset":
+                    as_number(min(value), field.name, least=0.0)
             elif field.name not in ("name", "gravity_compensation"):
                 as_number(value, field.name, least=0.0)
         if self.lost_ticks > 1.0:
             raise OutOfRange(f"lost_ticks is {self.lost_ticks:g}; it is a share, at most 1")
+        if any(self.joint_stiffness) and not all(self.armature):
+            raise OutOfRange(
+                "joint_stiffness is given, but armature has a 0: a spring needs a rotor behind it"
+            )
 
     def each(self, name: str, n: int) -> Array:
         """What belongs to each of ``n`` joints, such as "stiction", shape (n,).
@@ -81,7 +100,17 @@ class Plant:
         return as_each(numbers if len(numbers) > 1 else numbers[0], n, f"the plant's {name}")
 
 
-_PER_JOINT = ("armature", "viscous", "stiction", "velocity_noise", "torque_noise")
+_PER_JOINT = (
+    "armature",
+    "viscous",
+    "stiction",
+    "joint_stiffness",
+    "joint_damping",
+    "encoder_offset",
+    "encoder_step",
+    "velocity_noise",
+    "torque_noise",
+)
 
 
 IDEAL = Plant(name="ideal")
@@ -89,17 +118,121 @@ IDEAL = Plant(name="ideal")
 
 BAXTER = Plant(
     name="baxter",
-    gravity_compensation=True,  # Rethink, "Gravity compensation": a channel of its own, always on
-    armature=(0.1, 0.1, 0.08, 0.08, 0.05, 0.05, 0.05),  # not published; the least that is stable
-    viscous=0.7,  # the URDF's <dynamics damping>
-    stiction=(1.0, 1.0, 0.8, 0.8, 0.3, 0.3, 0.3),  # plateaus of the report's torque figures
+    gravity_compensation=True,
+    armature=(0.1, 0.1, 0.08, 0.08, 0.05, 0.05, 0.05),
+    viscous=0.7,
+    stiction=(1.0, 1.0, 0.8, 0.8, 0.3, 0.3, 0.3),
     velocity_lag=0.03,
     position_gain=20.0,
-    state_rate=100.0,  # Rethink's default joint_state_publish_rate
-    state_delay=0.004,  # four hops of a millisecond each
-    velocity_noise=(0.01, 0.01, 0.01, 0.01, 0.03, 0.03, 0.03),  # read off the report's figures
-    torque_noise=(0.3, 0.3, 0.3, 0.3, 0.1, 0.1, 0.1),  # not published; a spring's deflection sensor
+    state_rate=100.0,
+    state_delay=0.004,
+    velocity_noise=(0.01, 0.01, 0.01, 0.01, 0.03, 0.03, 0.03),
+    torque_noise=(0.3, 0.3, 0.3, 0.3, 0.1, 0.1, 0.1),
     torque_lag=0.01,
     lost_ticks=0.02,
 )
-"""The arm as its users found it."""
+"""Baxter's arm as far as it is known; see `EVIDENCE`."""
+
+
+class Evidence(NamedTuple):
+    """What one number of `BAXTER` rests on.
+
+    Attributes:
+        unit: Of the number.
+        source: Where it comes from; of a number that nobody measured, why it was assumed.
+        assumed: Whether nobody measured it, here or in print.
+        least: The least that is plausible, for each joint or one number for all.
+        most: The most.
+    """
+
+    unit: str
+    source: str
+    assumed: bool
+    least: Any
+    most: Any
+
+
+SPRINGS = {
+    "joint_stiffness": (843.0, 843.0, 843.0, 843.0, 250.0, 250.0, 250.0),
+    "joint_damping": (4.0, 4.0, 4.0, 4.0, 0.5, 0.5, 0.5),
+}
+"""The springs in Baxter's joints, left out of `BAXTER`: ``replace(BAXTER, **SPRINGS)`` has them."""
+
+_MISSED = (0.005, -0.005, 0.005, 0.005, -0.005, -0.005, 0.005)  # 4.9 mm at the ready pose
+_FRICTION = np.array(BAXTER.stiction)
+_ROTORS = np.array(BAXTER.armature)
+
+EVIDENCE = {
+    "gravity_compensation": Evidence(
+        "", "Rethink, Gravity Compensation: a channel of its own, always on", False, True, True
+    ),
+    "armature": Evidence(
+        "kg m²",
+        "not published; the wrist needs 0.05 to be stable under the report's gains at 200 Hz",
+        True,
+        tuple(0.5 * _ROTORS),
+        tuple(2.0 * _ROTORS),
+    ),
+    "viscous": Evidence("N m s/rad", "damping in Rethink's URDF", False, 0.35, 1.4),
+    "stiction": Evidence(
+        "N m",
+        "read off the plateaus of torque in the report's figures",
+        True,
+        tuple(0.25 * _FRICTION),
+        tuple(2.0 * _FRICTION),
+    ),
+    "payload": Evidence("kg", "an empty gripper", False, 0.0, 0.0),
+    "joint_stiffness": Evidence(
+        "N m/rad",
+        "left out by default; 843 in shoulder and elbow, 250 in the wrist are what Rethink's "
+        "Hardware Specifications are remembered to say (not checked against the page)",
+        True,
+        0.0,
+        SPRINGS["joint_stiffness"],
+    ),
+    "joint_damping": Evidence(
+        "N m s/rad",
+        "left out with the springs; 4 damps the shoulder by 5 % of critical",
+        True,
+        0.0,
+        SPRINGS["joint_damping"],
+    ),
+    "velocity_lag": Evidence("s", "not published", True, 0.01, 0.06),
+    "position_gain": Evidence("1/s", "not published", True, 10.0, 100.0),
+    "state_rate": Evidence("Hz", "Rethink's default joint_state_publish_rate", False, 100.0, 100.0),
+    "state_delay": Evidence("s", "four hops of a millisecond each, estimated", True, 0.0, 0.02),
+    "encoder_offset": Evidence(
+        "rad",
+        "left out by default; about 5 mm at the tip is what users report of the real arm",
+        True,
+        0.0,
+        _MISSED,
+    ),
+    "encoder_step": Evidence(
+        "rad", "left out by default; 14 bits a turn would be 0.00038", True, 0.0, 0.00038
+    ),
+    "velocity_noise": Evidence(
+        "rad/s",
+        "read off the report's figures",
+        True,
+        0.0,
+        tuple(2.0 * np.array(BAXTER.velocity_noise)),
+    ),
+    "torque_noise": Evidence(
+        "N m",
+        "not published; what a spring's deflection sensor may give",
+        True,
+        0.0,
+        tuple(2.0 * np.array(BAXTER.torque_noise)),
+    ),
+    "torque_lag": Evidence("s", "not published", True, 0.0, 0.05),
+    "lost_ticks": Evidence("", "not published; Linux without a real-time kernel", True, 0.0, 0.1),
+    "command_timeout": Evidence(
+        "s", "Rethink's joint command timeout, 0.2 s by default", False, 0.2, 0.2
+    ),
+}
+"""What each number of `BAXTER` rests on, by the name of the field.
+
+Left out of the plant altogether: the counter-springs at s1 and their hysteresis, the bandwidth of
+the motors' own torque loops, backlash, and gravity compensation that is wrong about the arm itself.
+"""

@@ -26,10 +26,23 @@ class Reports:
         self._noise, self._torque_noise = (
             plant.each(name, n) for name in ("velocity_noise", "torque_noise")
         )
+        self._offset, self._step = (
+            plant.each(name, n) for name in ("encoder_offset", "encoder_step")
+        )
+        self._off = bool(self._offset.any() or self._step.any())
         self._noisy = bool(self._noise.any() or self._torque_noise.any())
         self.every = whole_steps(plant.state_rate, dt, "plant.state_rate")
-        if not self.every and (self._noisy or self._delay):
+        if not self.every and (self._noisy or self._delay or self._off):
             self.every = 1
+
+    def read(self, q: Array) -> Array:
+        """What the encoders make of the joints' angles ``q``, shape (n,) in [rad]."""
+        if not self._off:
+            return q
+        read: Array = q + self._offset
+        coarse = self._step > 0.0
+        read[coarse] = np.round(read[coarse] / self._step[coarse]) * self._step[coarse]
+        return read
 
     def reset(self, state: State) -> None:
         """Forget what came before ``state``."""
@@ -43,6 +56,7 @@ class Reports:
         """Send a report of the joints as they are."""
         self._last = steps
         t, q, dq, felt = truth
+        q = locked(self.read(q))
         if self._noisy:
             dq = locked(dq + self._noise * self._random.standard_normal(dq.size))
             felt = locked(felt + self._torque_noise * self._random.standard_normal(dq.size))

@@ -29,7 +29,7 @@ ORDER = [
     {"sim.pybullet", "sim.mujoco", "sim"},
     {"world"},
     {"scene"},
-    {"sensors"},
+    {"sensors", "springs"},
     {"motors"},
     {"arm"},
     {"log", "driven"},

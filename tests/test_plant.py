@@ -8,8 +8,12 @@ from numpy.testing import assert_array_equal
 
 import labkit as lk
 from labkit.errors import LabkitError
+from labkit.plant import EVIDENCE
 
-PER_JOINT = ("armature", "viscous", "stiction", "velocity_noise")
+PER_JOINT = (
+    "armature", "viscous", "stiction", "joint_stiffness", "joint_damping", "encoder_step",
+    "velocity_noise",
+)  # fmt: skip
 
 
 def test_every_effect_is_off_by_default_and_on_the_ideal_arm():
@@ -19,6 +23,32 @@ def test_every_effect_is_off_by_default_and_on_the_ideal_arm():
         value = getattr(lk.IDEAL, field.name)
         assert not np.any(value), field.name
         assert getattr(lk.Plant(), field.name) == value
+
+
+def test_every_number_of_baxter_has_evidence_and_lies_in_its_range():
+    """A source, or the word that it is assumed; and the value is one of the plausible ones."""
+    names = {field.name for field in dataclasses.fields(lk.Plant)} - {"name"}
+    assert set(EVIDENCE) == names
+    for name, evidence in EVIDENCE.items():
+        value, least, most = (
+            np.broadcast_to(np.asarray(x, dtype=float), 7)
+            for x in (getattr(lk.BAXTER, name), evidence.least, evidence.most)
+        )
+        assert evidence.source
+        if name != "encoder_offset":  # its ends have either sign
+            assert (least <= value).all() and (value <= most).all(), name
+
+
+def test_what_is_published_has_no_range_of_guesses():
+    """Only viscous friction, which the URDF gives without saying of what, is tried at others."""
+    for name, evidence in EVIDENCE.items():
+        if not evidence.assumed and name != "viscous":
+            assert evidence.least == evidence.most, name
+
+
+def test_a_spring_needs_a_rotor_behind_it():
+    with pytest.raises(LabkitError, match="joint_stiffness is given, but armature has a 0"):
+        lk.Plant(joint_stiffness=800.0)
 
 
 def test_a_plant_is_a_value():

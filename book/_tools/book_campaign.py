@@ -6,7 +6,6 @@ import json
 import math
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
 from typing import Any
 
 from book_pages import CACHE, CAMPAIGN, ROOT, key_of
@@ -92,8 +91,7 @@ def _judged(rows: list[dict[str, Any]]) -> dict[str, Any]:
     seeds = len({row["seed"] for row in rows})
     asked = [cell for cell in campaign.gain_grid(seeds) if cell["Kp"] in (3.0, 12.0)]
     gains = work_through(campaign.converge, asked, jobs=JOBS)
-    asked = [cell for cell in campaign.noise_grid(seeds) if cell["Kd"] in (0.0, 1.0)]
+    asked = [cell for cell in campaign.noise_grid(seeds) if cell["Kd"] in (0.0, 0.5, 1.0)]
     noise = work_through(campaign.derivative, asked, jobs=JOBS)
     verdicts = claims.verdicts(rows, gains, noise)
-    told = [{**asdict(v), "outcome": v.outcome.value} for v in verdicts]
-    return {"rows": rows, "verdicts": told}
+    return {"rows": rows, "verdicts": [v.told() for v in verdicts]}

@@ -26,6 +26,8 @@ DATA = (
     "labkit/data/baxter.json",
     "solutions/study/baseline/baxter_collision.json",
     "labkit/data/campaign.json",
+    "solutions/study/assumptions.json",
+    "solutions/study/report_gains.json",
 )
 ENGINES = (
     *filter(find_spec, ("pybullet", "mujoco")),

@@ -13,11 +13,13 @@ from scipy.integrate import solve_ivp
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
+from labkit.scene import contact_stiffness
 from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
-from .page import Question, figure, holds, number, numbers, quiz, replay
+from .claims import claim
+from .page import Question, figure, number, numbers, quiz, replay
 
 SEED = 7
 PUSH = 10.0
@@ -72,21 +74,31 @@ def _sideways(log: lk.Log) -> np.ndarray:
 def push() -> HTML:
     """The arm answers a push as the spring that it was told to be."""
     _, ax = plt.subplots(figsize=(6.0, 3.2))
-    told = []
+    told, shown = [], []
     for k, stiffness in enumerate((150.0, 300.0, 600.0)):
         log = push_run(stiffness)
         y = _sideways(log)
         felt = 1e3 * PUSH / float(np.interp(1.95, log.t, y))
-        holds(abs(felt / stiffness - 1.0) < 0.05, "the stiffness felt is the stiffness told")
+        shown.append(felt)
         ax.plot(log.t, y, f"C{k}{STYLES[k]}", label=f"{stiffness:g} N/m")
         told.append(f"told {stiffness:g} N/m, felt {felt:.4g} N/m")
         number(f"felt_{stiffness:.0f}", felt, ".4g")
+    claim(
+        "an arm without friction shows",
+        lambda felt: all(0.95 < x / k < 1.05 for x, k in zip(felt, (150, 300, 600), strict=True)),
+        felt=shown,
+    )
     real = push_run(300.0, lk.BAXTER)
     y = _sideways(real)
     ax.plot(real.t, y, "C4:", label="300 N/m, realistic arm")
     felt = 1e3 * PUSH / float(np.interp(1.95, real.t, y))
     left = abs(float(y[-1]))
-    holds(felt > 330.0, "dry friction makes the realistic arm feel stiffer")
+    claim(
+        "holds against small forces",
+        lambda felt, left: felt > 330.0 and left > 0.5,
+        felt=felt,
+        left=left,
+    )
     numbers({"felt_real": felt, "left_real": left})
     ax.set(xlabel="time [s]", ylabel="displacement [mm]")
     ax.legend(fontsize="small")
@@ -111,6 +123,9 @@ def push_replay() -> HTML:
 def wall() -> HTML:
     """Into a wall: what each controller presses with."""
     met = experiments.wall()
+    wrist = float(abs(met[0].log.tau[-1, 5]))  # of the position mode
+    slid = 1e3 * float(np.linalg.norm(met[0].at_rest[1:]))
+    stiff = contact_stiffness(experiments.the_wall())
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     ends = {}
     for k, one in enumerate(met):
@@ -121,9 +136,27 @@ def wall() -> HTML:
     ax.legend(fontsize="small")
     soft, hard = ends["workspace impedance"], ends["position"]
     expected = experiments.predicted_wall_force(experiments.the_wall(), TIP_SPRING[0], 0.03)
-    holds(abs(soft / expected - 1.0) < 0.05, "the spring presses as hard as springs in series do")
-    holds(hard > 4.0 * soft, "the position mode presses several times harder")
-    holds(ends["joint torque"] < soft, "computed torque is the softer spring here")
+    claim(
+        "Two springs in series, the arm's and the contact's",
+        lambda soft, expected: abs(soft / expected - 1.0) < 0.05 and soft > 0.0,
+        soft=soft,
+        expected=expected,
+    )
+    claim(
+        "its wrist w1 has reached its limit of torque",
+        lambda wrist, hard, rigid: abs(wrist - 15.0) < 0.01 and 0.0 < hard < 0.5 * rigid,
+        wrist=wrist,
+        hard=hard,
+        rigid=0.03 * stiff,
+    )
+    claim(
+        "Computed torque is soft as well",
+        lambda torque, soft: 0.0 < torque < soft,
+        torque=ends["joint torque"],
+        soft=soft,
+    )
+    numbers({"contact": stiff, "wall_rigid": 0.03 * stiff}, ".4g")
+    number("wall_slid", slid, ".2g")
     numbers(
         {"wall_soft": soft, "wall_expected": expected, "wall_hard": hard,
          "wall_torque": ends["joint torque"]},

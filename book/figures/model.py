@@ -7,13 +7,15 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.replay.motion import JOINT_NAMES
 
+from .claims import claim
 from .embed import demo_html
-from .page import Question, figure, holds, numbers, picture, quiz, table
+from .page import Question, figure, holds, number, numbers, picture, quiz, table
 
 SEED = 2
 STEP = 1e-6
+LIMIT = 1.5
+"""Speed limit of Baxter's shoulder and elbow joints, in [rad/s]."""
 
 
 def jacobian_demo() -> HTML:
@@ -67,35 +69,55 @@ def checks() -> HTML:
 
 
 def singular() -> HTML:
-    """How fast e1 must turn for a modest tip speed, as the elbow straightens."""
+    """How fast the joints must turn to pull the tip towards the shoulder, through a singularity."""
     model = lk.Model("left")
-    angles = np.linspace(0.02, 1.2, 200)
-    v = np.array((0.0, 0.0, 0.2, 0.0, 0.0, 0.0))
+    angles = np.linspace(0.02, 1.2, 1181)
     sigma, speed = [], []
     for e1 in angles:
         q = np.array(model.robot.neutral)
         q[3] = e1
         J = model.tip_jacobian(q)
         radial = model.pose(q)[:3, 3] - np.array(model.links(q)[1].T_wl[:3, 3])
-        v[:3] = -0.2 * radial / np.linalg.norm(radial)
-        sigma.append(np.linalg.svd(J[:3], compute_uv=False)[-1])
-        speed.append(np.abs(np.linalg.pinv(J) @ v).max())
-    _, (left, right) = plt.subplots(1, 2, figsize=(6.2, 2.8))
+        pull = np.append(-0.2 * radial / np.linalg.norm(radial), np.zeros(3))
+        sigma.append(np.linalg.svd(J, compute_uv=False)[-1])
+        speed.append(np.abs(np.linalg.pinv(J) @ pull).max())
+    at, top = float(angles[int(np.argmin(sigma))]), float(np.max(speed))
+    fast = [float(np.interp(x, angles, speed)) for x in (1.0, 0.3, 0.02)]
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.0))
     left.plot(angles, sigma, "C1-")
-    left.set(xlabel="elbow e1 [rad]", ylabel="smallest singular value [m/rad]", ylim=(0, None))
-    right.plot(angles, speed, "C0--")
-    right.axhline(1.5, color="C5", linestyle=":")
-    right.text(0.55, 1.6, "limit of the shoulder and elbow", fontsize="small")
-    right.set(xlabel="elbow e1 [rad]", ylabel="largest joint speed [rad/s]", ylim=(0, 6))
-    slow, fast = float(np.interp(1.0, angles, speed)), speed[0]
-    holds(fast > 3.0 * slow, "joint speeds grow without bound near the straight elbow")
-    numbers({"bent": slow, "straight": fast}, ".2g")
+    left.axvline(at, color="C5", linestyle=":")
+    left.set(xlabel="elbow e1 [rad]", ylabel="smallest singular value", ylim=(0, None))
+    right.semilogy(angles, speed, "C0-")
+    right.axhline(LIMIT, color="C5", linestyle="--")
+    right.axvline(at, color="C5", linestyle=":")
+    right.text(0.5, 1.08 * LIMIT, "limit of s0 to e1", fontsize="small")
+    right.set(xlabel="elbow e1 [rad]", ylabel="largest joint speed [rad/s]", ylim=(0.2, 200))
+    claim(
+        "it vanishes at a bent elbow, not at a straight one",
+        lambda at, least: abs(at - 0.16) < 0.01 and 0.0 < least < 2e-3,
+        at=at,
+        least=float(np.min(sigma)),
+    )
+    claim(
+        "on both sides of it the joint speeds fall again",
+        lambda far, near, peak, beyond: (
+            peak > 10.0 * near > 10.0 * far > 0.0 and peak > 10.0 * beyond > 0.0
+        ),
+        far=fast[0],
+        near=fast[1],
+        peak=top,
+        beyond=fast[2],
+    )
+    number("singular_at", at, ".2f")
+    numbers({"bent": fast[0], "straight": fast[2], "singular_peak": top}, ".2g")
     return figure(
         "Pulling the tip towards the shoulder at 0.2 m/s, position and orientation held by the "
-        "pseudo-inverse: the straighter the elbow, the faster some joint must turn.",
-        f"Left: the smallest singular value of the linear Jacobian falls towards zero as the "
-        f"elbow straightens. Right: the largest joint speed needed rises from {slow:.2g} rad/s "
-        f"at e1 = 1 to {fast:.2g} rad/s at e1 = 0.02, above the limit of 1.5 rad/s.",
+        "pseudo-inverse. Both panels are of the same Jacobian, all six rows of it.",
+        f"Left: the smallest singular value of the tip Jacobian over the elbow's angle; it falls "
+        f"to zero at e1 = {at:.2f} rad and rises again towards the straight elbow. Right, on a "
+        f"logarithmic scale: the largest joint speed, {fast[0]:.2g} rad/s at e1 = 1, a peak of "
+        f"{top:.2g} rad/s at the singularity, {fast[2]:.2g} rad/s at e1 = 0.02; the limit is "
+        f"{LIMIT:g} rad/s.",
     )
 
 
@@ -111,13 +133,17 @@ def gravity() -> HTML:
     rows = np.array(torque)
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, style in ((1, "-"), (3, "--"), (5, "-.")):
-        ax.plot(angles, rows[:, k], f"C{k}{style}", label=JOINT_NAMES[k])
+        ax.plot(angles, rows[:, k], f"C{k}{style}", label=lk.robot("left").joint_names[k])
     ax.set(xlabel="shoulder s1 [rad]", ylabel="g(q) [N m]")
     ax.legend(ncols=3)
     most = rows[np.abs(rows[:, 1]).argmax(), 1]
     neutral = model.gravity(model.robot.neutral)[1]
     numbers({"g_neutral": abs(neutral), "g_most": abs(most)}, ".3g")
-    holds(abs(most) > 50.0, "the shoulder carries more than 50 N m, the limit of the URDF")
+    claim(
+        "more than the 50 N m that its motor gives",
+        lambda held: held > 50.0,
+        held=float(abs(most)),
+    )
     return figure(
         "The torque that holds the arm, as the shoulder s1 turns and the rest stays neutral.",
         f"Three curves over the range of s1. The shoulder's own torque is the largest, "
@@ -154,7 +180,12 @@ def power() -> HTML:
     ax.legend()
     off = float(np.abs(gained - given)[2:-2].max())
     peak = float(np.abs(given).max())
-    holds(off < 0.01 * peak, "the two powers agree to one per cent of the peak")
+    claim(
+        "the two curves differ by at most",
+        lambda off, peak: 0.0 < off < 0.01 * peak,
+        off=off,
+        peak=peak,
+    )
     numbers({"power_peak": peak, "power_off": off}, ".2g")
     return figure(
         "Power during a swing of the arm, 1 kHz control on the ideal arm.",

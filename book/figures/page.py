@@ -25,6 +25,7 @@ from labkit.tags.camera import Camera, looking_at
 from labkit.tags.intrinsics import Intrinsics
 from solutions.study.film import AT, EYE
 
+from .claims import ConclusionFails, told
 from .embed import motion_html
 
 INKS = ("#b3001b", "#0a5aa6", "#a35200", "#1a7f4b", "#7b3fa0", "#57606a", "#00737d")
@@ -66,10 +67,6 @@ mpl.rcParams.update(
 )
 
 
-class ConclusionFails(AssertionError):
-    """The runs no longer show what the prose says; the build stops here."""
-
-
 def holds(fact: Any, conclusion: str) -> None:
     """Stop the build unless a conclusion of the prose holds in the runs that it speaks of."""
     if not bool(fact):
@@ -78,6 +75,7 @@ def holds(fact: Any, conclusion: str) -> None:
 
 def number(name: str, value: float, form: str = ".3g") -> None:
     """Give the prose a number: it writes {glue:text}`name`."""
+    told(name, value)
     glue(name, format(float(value), form), display=False)
 
 

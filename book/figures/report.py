@@ -10,6 +10,7 @@ import labkit as lk
 from labkit import metrics
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
+from .claims import claim
 from .page import holds, number, numbers
 
 SEED = 6
@@ -108,9 +109,19 @@ def impedance() -> None:
     # Equation 19 in one dimension, 2 kg, M_d = M, at rest on the target, pushed by 5 N
     mass, push = 2.0, 5.0
     desired = push / mass
-    printed = (push + mass * push + push) / mass  # the law's force, and the push itself
-    holds(abs(printed - desired) > 1.0, "with M_d = M the printed law keeps F_ext")
-    numbers({"a19_right": desired, "a19_printed": printed})
+    law = push + mass * push  # its two terms of F_ext; all others vanish here
+    printed = (law + push) / mass  # the push is on the arm
+    turned = (law - push) / mass  # F_ext is what the arm does to the world
+    claim(
+        "Neither is what it should be",
+        lambda right, as_push, as_reaction: (
+            abs(as_push - right) > 1.0 and abs(as_reaction + right) > 1.0 and as_push > 0.0
+        ),
+        right=desired,
+        as_push=printed,
+        as_reaction=turned,
+    )
+    numbers({"a19_right": desired, "a19_printed": printed, "a19_turned": turned})
 
     plant = replace(lk.IDEAL, name="ideal with rotors", armature=lk.BAXTER.armature)
     model = lk.Model("left", plant)

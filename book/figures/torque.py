@@ -11,9 +11,9 @@ from IPython.display import HTML
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
-from labkit.replay.motion import JOINT_NAMES
 from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 
+from .claims import claim
 from .page import Question, figure, holds, number, numbers, quiz, replay, table, tracking
 from .velocity import circle_task
 
@@ -39,7 +39,7 @@ def responses() -> HTML:
         with lk.Arm("left", lk.IDEAL, q0=q0 - 0.1) as arm:
             log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)
         e = metrics.joint_error(log) / 0.1
-        for k, joint in enumerate(JOINT_NAMES):
+        for k, joint in enumerate(lk.robot("left").joint_names):
             ax.plot(log.t, e[:, k], f"C{k}{STYLES[k % 4]}", label=joint, linewidth=1.4)
         ax.set(xlabel="time [s]", title=name)
         spread[name] = float(np.ptp(e, axis=1).max())
@@ -49,7 +49,11 @@ def responses() -> HTML:
     axes[1].legend(ncols=2, fontsize="small")
     same, different = spread.values()
     holds(same < 1e-6, "under computed torque all joints answer alike")
-    holds(different > 0.3, "under augmented PD they do not")
+    claim(
+        "Under augmented PD each joint is its own oscillator",
+        lambda spread: spread > 0.3,
+        spread=different,
+    )
     number("spread_apd", 100.0 * different, ".2g")
     return figure(
         "Seven joints, each 0.1 rad away, ideal arm at 1 kHz. Behind the left curves, in grey, the "
@@ -87,8 +91,13 @@ def sampled() -> HTML:
         "bare_1000": radius(bare, REPORT_KP, REPORT_KD, 1 / 1000),
         "real_200": radius(real, REPORT_KP, REPORT_KD, 1 / 200),
     }
-    holds(values["bare_200"] > 1.0 > values["real_200"], "the rotor makes the wrist controllable")
-    holds(values["bare_1000"] < 1.0, "at 1 kHz the bare wrist is stable")
+    claim(
+        "the error is several times larger after every tick",
+        lambda bare, quick, real: bare > 2.0 and 0.0 < quick < 1.0 and 0.0 < real < 1.0,
+        bare=values["bare_200"],
+        quick=values["bare_1000"],
+        real=values["real_200"],
+    )
     numbers(values, ".3g")
     number("bare", bare, ".5f")
     number("real", real, ".2g")
@@ -126,7 +135,7 @@ def weight() -> HTML:
     ax.legend()
     once, twice = ends.values()
     holds(abs(once) < 0.1, "left to the arm, the hand stays within 0.1 mm of its height")
-    holds(twice > 50.0, "compensating gravity twice lifts the hand")
+    claim("Added a second time it lifts the arm", lambda up: up > 50.0, up=twice)
     number("twice", twice, ".0f")
     return figure(
         "Holding still on an arm that carries its own weight, as Baxter does.",

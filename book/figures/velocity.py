@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from functools import cache
+from itertools import pairwise
 
 import control
 import matplotlib.pyplot as plt
@@ -13,12 +15,14 @@ from IPython.display import HTML
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
+from solutions.study import speed_gains
 from solutions.study.joint_velocity import JointVelocityPD
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
+from .claims import claim
 from .embed import demo_html
 from .gains import explorer as recorded
-from .page import Question, figure, holds, number, numbers, picture, quiz, replay, still, tracking
+from .page import Question, figure, number, numbers, picture, quiz, replay, still, tracking
 
 SEED = 3
 OFFSET = 0.1
@@ -44,21 +48,33 @@ def _error(log: lk.Log) -> np.ndarray:
 def damping() -> HTML:
     """The D term slows a velocity-commanded joint, and beyond one it breaks the loop."""
     _, ax = plt.subplots(figsize=(6.0, 3.4))
-    told = []
+    told, rates = [], []
     for k, kd in enumerate((0.0, 0.5, 0.9)):
         log = step_run(2.0, kd)
         e = _error(log)
         rate = -np.log(e[200] / e[0]) / log.t[200]
-        holds(abs(rate - 2.0 / (1.0 + kd)) < 0.02, "the error decays at Kp / (1 + Kd)")
         ax.plot(log.t, e, f"C{k}{STYLES[k]}", label=f"Kd = {kd:g}")
         told.append(f"Kd = {kd:g}: {rate:.2f} per second")
         number(f"rate_{k}", rate, ".2f")
+        rates.append(float(rate))
+    claim(
+        "as $2/(1+K_d)$ says",
+        lambda r: all(
+            abs(x - 2.0 / (1.0 + kd)) < 0.02 for x, kd in zip(r, (0.0, 0.5, 0.9), strict=True)
+        ),
+        r=rates,
+    )
     wild = step_run(2.0, 1.1)
     e = _error(wild)
     ax.plot(wild.t, e, "C4:", linewidth=1.2, label="Kd = 1.1")
     swing = np.abs(np.diff(wild.command[:, 0]))[100:].mean()
     calm = np.abs(np.diff(step_run(2.0, 0.9).command[:, 0]))[100:].mean()
-    holds(swing > 50.0 * calm, "with Kd above one the command hammers from tick to tick")
+    claim(
+        "a sequence that grows if $K_d > 1$",
+        lambda swing, calm: swing > 50.0 * calm > 0.0,
+        swing=float(swing),
+        calm=float(calm),
+    )
     ax.set(xlabel="time [s]", ylabel="error of s0 [rad]")
     ax.legend()
     return figure(
@@ -66,6 +82,64 @@ def damping() -> HTML:
         "and above 1 the command jumps from limit to limit.",
         f"Error of joint s0 over two seconds. Measured decay: {'; '.join(told)}. With Kd = 1.1 the "
         f"error leaves the exponential and the command changes by {swing:.2g} rad/s every tick.",
+    )
+
+
+def derivative() -> HTML:
+    """What the D term does to the error on a curve, and what it costs, on the realistic arm."""
+    kds = (0.0, 0.3, 0.6, 0.9)
+    found = [speed_gains.trial("joint velocity", "circle", kd, 0) for kd in kds]
+    error, shake = ([float(x[name]) for x in found] for name in ("late_rms_mm", "shake_mm_s"))
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.2, 2.8))
+    left.plot(kds, error, "C0o-", markersize=4)
+    left.set(xlabel="Kd", ylabel="RMS error on the circle [mm]", ylim=(0, None))
+    right.plot(kds, shake, "C1s--", markersize=4)
+    right.set(xlabel="Kd", ylabel="RMS speed at rest [mm/s]", ylim=(0, None))
+    claim(
+        "the same D that slows the return makes the error on a curve smaller",
+        lambda e: all(b < a for a, b in pairwise(e)) and 0.0 < e[2] < 0.9 * e[0],
+        e=error,
+    )
+    claim(
+        "each step of it makes the hand at rest shake more",
+        lambda v: all(b > a for a, b in pairwise(v)) and v[0] > 0.0,
+        v=shake,
+    )
+    numbers({f"curve_{k}": x for k, x in enumerate(error)}, ".3g")
+    numbers({f"shake_{k}": x for k, x in enumerate(shake)}, ".2g")
+    rows = "; ".join(
+        f"Kd = {kd:g}: {e:.3g} mm, {v:.2g} mm/s" for kd, e, v in zip(kds, error, shake, strict=True)
+    )
+    return figure(
+        "The joint velocity PD on a circle, Kp = 3 1/s, realistic arm. Left: the error after the "
+        "first second. Right: how fast the hand still moves when it should stand.",
+        f"The error falls with Kd while the jitter at rest grows: {rows}.",
+    )
+
+
+def reach() -> None:
+    """Told to go 75 cm forwards, out of reach: where the arm comes to rest."""
+    model = lk.Model("left")
+    T = model.pose(model.robot.ready)
+    R, goal = T[:3, :3], T[:3, 3] + np.array((0.75, 0.0, 0.0))
+    path = lk.PosePath(lk.Line(T[:3, 3], goal), R)
+    target = lk.Chain([lk.Trajectory(path, lk.Quintic(5.0)), lk.Hold(lk.se3.pose(R, goal), 4.0)])
+    ends = []
+    for lever in (0.26, 1.0):
+        law = WorkspaceVelocityPD(model, Kp=3.0, lever=lever)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", lk.errors.LabkitWarning)  # it says that it is singular
+            with lk.Arm("left", lk.BAXTER, SEED, q0=model.robot.ready) as arm:
+                e = metrics.tip_error(lk.run(arm, target, law), model)[-1]
+        ends += [1e3 * np.linalg.norm(e[:3]), np.degrees(np.linalg.norm(e[3:]))]
+    number("reach_mm", ends[0], ".0f")
+    number("reach_deg", ends[1], ".0f")
+    number("reach_metre_mm", ends[2], ".0f")
+    number("reach_metre_deg", ends[3], ".0f")
+    claim(
+        "the hand ends nearer to the goal, and more turned",
+        lambda e: 0.0 < e[0] < 0.7 * e[2] and e[1] > 2.0 * e[3] > 0.0,
+        e=ends,
     )
 
 
@@ -81,8 +155,12 @@ def gains() -> HTML:
     right.axhline(60.0, color="C5", linestyle=":")
     right.set(xlabel="Kp [1/s]", ylabel="phase margin [degrees]", ylim=(0, 95))
     first = float(kps[np.argmax(over > 0.05)])
-    holds(over[kps <= 8.0].max() < 0.05, "up to Kp = 8 1/s there is next to no overshoot")
-    holds(over[-1] > 0.15, "at Kp = 30 1/s the overshoot is large")
+    claim(
+        "first exceeds 5 %",
+        lambda small, large: 0.0 <= small < 0.05 and large > 0.15,
+        small=float(over[kps <= 8.0].max()),
+        large=float(over[-1]),
+    )
     numbers({"kp_first": first, "over_last": 100.0 * over[-1], "margin_5": phase_margin(5.0)})
     return figure(
         "The realistic arm: overshoot of a 0.1 rad step, measured, and phase margin of the loop, "
@@ -146,7 +224,12 @@ def euler() -> HTML:
     ax.set(xlabel="time [s]", ylabel="orientation error [degrees]", ylim=(0, None))
     ax.legend()
     right, wrong = (a[-1] for a in angles.values())
-    holds(right < 0.5 < 8.0 < wrong, "the logarithm converges, subtraction drives the hand away")
+    claim(
+        "With the logarithm the error ends at",
+        lambda right, wrong: 0.0 < right < 0.5 < 8.0 < wrong,
+        right=float(right),
+        wrong=float(wrong),
+    )
     numbers({"log_end": right, "euler_end": wrong}, ".2g")
     return figure(
         "The hand points down and starts 5 degrees off about the world's x axis. Gain 1 1/s, ideal "
@@ -203,7 +286,11 @@ def circle_replay() -> HTML:
     """Both on the circle, in 3-D."""
     runs = circle_runs()
     found = {name: metrics.summary(log).rms_mm for name, log in runs.items()}
-    holds(max(found.values()) < 6.0, "both velocity controllers keep the circle within 6 mm RMS")
+    claim(
+        "That they agree is no accident",
+        lambda e: all(0.0 < x < 6.0 for x in e) and abs(e[0] - e[1]) < 0.1 * e[0],
+        e=list(found.values()),
+    )
     numbers({f"circle_{name}": value for name, value in found.items()}, ".2g")
     return replay(
         runs["workspace"],

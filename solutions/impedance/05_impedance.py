@@ -176,15 +176,16 @@ for axis, name in enumerate("xyz"):
 # $$ \Lambda\,\ddot e + D\,\dot e + K\,e = -F_{ext} . $$
 #
 # $e$ holds the position error and the rotation from the tip to the target, in world axes:
-# `lk.se3.pose_error(target.pose, model.pose(q))`. $F_{ext}$ is the wrench of the hand on the arm. Its rate is $\dot e = V_d - J\dot q$. Put the joints'
+# `lk.se3.pose_error(target.pose, model.pose(q))`. $F_{ext}$ is the wrench of the hand on the arm. The rate
+# of the error is $\dot e = V_d - J\dot q$: of its rotation only nearly, while the hand is turned little. Put the joints'
 # equation of motion and this one together, and see what the motors have to do. Two things to watch:
 #
 # - The tip's acceleration is $J\ddot q + \dot J\dot q$. The second part comes by itself when the joints
 #   turn evenly; the motors only have to bring up the rest.
 # - A force $F$ at the tip takes the joint torques $J^T F$. No inverse, no pseudo-inverse.
 #
-# There are seven joints and six springs: nothing holds the elbow, and here nothing needs to, for its
-# friction brakes it. On an arm with less of it one adds a damper that the tip does not feel. You may, too:
+# There are seven joints and six springs, so nothing holds or damps the elbow. Here its friction brakes it; do not
+# count on that elsewhere, but add a damper that the tip does not feel, as all do who build such arms. You may, too:
 # many torques make the tip move alike, and yours is judged by that.
 #
 # No force is measured. This is often told the other way, in the report too ("impedance needs a force

@@ -319,7 +319,8 @@ def coriolis(mass_matrix, q, dq):
 # $C\dot q$ takes is just what the changing $M$ stores, and no energy is made or lost. Try it on
 # $C = \dot M / 2$, a bold guess, and it passes, for $\dot M - 2C$ is then zero, and zero is skew. So a
 # second test is needed, of the torque itself: Lagrange's equation gives
-# $C\dot q = \dot M \dot q - \nabla T$. A matrix that passes only one of the two is wrong.
+# $C\dot q = \dot M \dot q - \nabla T$. A matrix that fails the second is wrong. One
+# that fails only the first gives the right torque, and is of no use in the proofs, which need it skew.
 
 # %%
 def coriolis_at(q, dq):

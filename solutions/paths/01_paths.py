@@ -278,8 +278,8 @@ lk.plotting.show(
 # ## Several segments
 #
 # A square is four lines in a row, each with its own schedule. Somebody must say which of them is on, and
-# for how long. It sounds too easy to go wrong; the report's program sent the arm to the last corner
-# first, because Python takes index -1 for an answer.
+# for how long. It sounds too easy to go wrong; a program that takes index -1 for
+# an answer, as Python does, begins with the last line.
 
 # %% question="segment_at"
 def segment_at(durations, t):

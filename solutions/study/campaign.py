@@ -305,7 +305,7 @@ def main() -> None:
         "rows": rows,
         "gains": gains,
         "noise": noise,
-        "verdicts": [{**asdict(v), "outcome": v.outcome.value} for v in judged],
+        "verdicts": [v.told() for v in judged],
         "figures": [_without(row, "folder") for row in drawn],
         "films": [_without(row, "folder") for row in shot],
     }

@@ -2,7 +2,8 @@
 
 Two sets: one for arms whose state is exact and fresh, one for arms that publish it late and noisy,
 as Baxter does.  There a loop must be slower than the age of what it knows: the state is up to 14 ms
-old and a command acts for 5 ms, so bandwidths stay below about 20 rad/s.
+old and a command acts for 5 ms, so bandwidths stay below about 20 rad/s.  The derivative gain of
+the velocity controllers is tuned by `speed_gains`; an ideal drive has no lag, and there it is 0.
 """
 
 from __future__ import annotations
@@ -51,8 +52,8 @@ def five(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     fast = 200.0 if slow else 1000.0
     K, D = _JOINT_SPRING[slow], _JOINT_DAMPER[slow]
     return {
-        "workspace velocity": Candidate(WorkspaceVelocityPD(model, Kp=_SPEED[slow]), 200.0, False),
-        "joint velocity": Candidate(JointVelocityPD(Kp=_SPEED[slow]), 200.0, True),
+        "workspace velocity": Candidate(WorkspaceVelocityPD(model, *_SPEED[slow]), 200.0, False),
+        "joint velocity": Candidate(JointVelocityPD(*_SPEED[slow]), 200.0, True),
         "joint torque": Candidate(ComputedTorque(model, *_COMPUTED[slow], gravity), fast, True),
         "workspace impedance": Candidate(
             WorkspaceImpedance(model, K=TIP_SPRING, gravity=gravity), fast, False
@@ -90,9 +91,14 @@ def _slow(plant: Plant) -> bool:
     return bool(plant.state_rate or plant.state_delay or any(plant.velocity_noise))
 
 
+KP = 3.0
+"""Proportional gain of the velocity controllers on the realistic arm, in [1/s]: the report's."""
+KD = 0.6
+"""Derivative gain beside it: what `speed_gains` finds."""
+
 # Each pair: for fresh states, for late ones.  Stiffness falls towards the wrist with the inertia,
 # which without rotors is below 0.001 kg m^2 at w2.
-_SPEED = (10.0, 3.0)  # 1/s
+_SPEED = ((10.0, 0.0), (KP, KD))  # 1/s, no unit
 _COMPUTED = ((400.0, 40.0), (225.0, 30.0))  # 1/s^2, 1/s
 _AUGMENTED = (
     ((400.0, 400.0, 200.0, 200.0, 10.0, 10.0, 1.0), (80.0, 80.0, 20.0, 20.0, 2.0, 2.0, 0.2)),

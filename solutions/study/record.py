@@ -31,6 +31,8 @@ MAKERS = (
     ("solutions.study.maps",),
     ("solutions.study.trials",),
     ("solutions.study.campaign", "--seeds", "5", "--no-pictures", "--keep"),
+    ("solutions.study.assumptions",),
+    ("solutions.study.report_gains",),
 )
 """Modules that record runs; ``labkit release`` comes after them."""
 

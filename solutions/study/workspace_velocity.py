@@ -9,6 +9,10 @@ r"""Workspace velocity PD with feed-forward, the elbow's freedom spent on a post
 Lynch & Park, section 11.3.3; Siciliano, sections 3.5 and 3.7.  J is the tip Jacobian in world axes,
 J^+ its inverse damped near singularities; the null space takes the undamped one, or the posture
 would push the tip.
+
+Where the tip cannot follow, out of reach or at a singularity, the damped inverse takes the speeds
+that lessen :math:`|e_p|^2 + \ell^2 |e_o|^2`, and the arm comes to rest at the least of it: a radian
+of turning counts as much there as the lever :math:`\ell` in metres.
 """
 
 from __future__ import annotations
@@ -35,6 +39,8 @@ class WorkspaceVelocityPD:
         posture: Joint angles to stay near, shape (n,) in [rad]; None is `Robot.ready`.
         pull: How fast the free motion goes there, in [1/s].
         damping: The largest lambda squared.
+        lever: What a radian counts where place and orientation cannot both be had, in [m]; the
+            default is that of the compared impedance, the root of 20 N m/rad over 300 N/m.
         watch: Decides when to damp.
     """
 
@@ -44,6 +50,7 @@ class WorkspaceVelocityPD:
     posture: Any = None
     pull: float = 1.0
     damping: float = 4e-3
+    lever: float = 0.26
     watch: Watch = field(default_factory=Watch)
 
     def __post_init__(self) -> None:
@@ -53,6 +60,7 @@ class WorkspaceVelocityPD:
         object.__setattr__(self, "posture", self.model.within_limits(posture, "posture"))
         as_number(self.pull, "pull", least=0.0)
         as_number(self.damping, "damping", least=0.0)
+        as_number(self.lever, "lever", above=0.0)
 
     def __call__(self, state: State, target: PoseSample) -> JointVelocity:
         """The command at this tick; the target's samples are poses."""
@@ -64,4 +72,5 @@ class WorkspaceVelocityPD:
         if damping == 0.0:
             return JointVelocity(free + damped_inverse(J, 0.0) @ (V - J @ free))
         free = free - np.linalg.pinv(J) @ (J @ free)
-        return JointVelocity(damped_inverse(J, damping) @ V + free)
+        counts = np.repeat((1.0, self.lever), 3)
+        return JointVelocity(damped_inverse(counts[:, None] * J, damping) @ (counts * V) + free)

@@ -96,9 +96,10 @@ for name, log in loose.items():
 # $$ \tau = M(q)\,\ddot q_d + C(q, \dot q)\,\dot q_d + g(q) + K_d\,\dot e + K_p\,e . $$
 #
 # This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
-# Note whose speed stands behind $C$: with the target's, the energy in springs and error can only fall,
-# and that is a proof that the arm arrives. The report that this lab grew out of printed the arm's own
-# speed there, and no theorem covers that.
+# Note whose speed stands behind $C$: with the target's, the energy in springs and error never grows. That
+# alone is no proof that the arm arrives, for the energy also stays wherever the error stands still; Murray,
+# Li and Sastry close the gap (proposition 4.10). The report that this lab grew out of printed the arm's own
+# speed there: then their proof does not apply, and it takes enough damping, $K_d > \dot M / 2$.
 
 # %% question="augmented_pd"
 def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
@@ -316,7 +317,8 @@ dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping
 # A computer looks, computes a torque, and then the motor keeps that torque until the next look: 5 ms at
 # 200 Hz. For a heavy joint that is no time at all. For a light one it can be too long: the torque that
 # was to stop it drives it past and on. Whether it swings in or blows up, the *eigenvalues* of the step
-# from one sample to the next tell. If all lie inside the unit circle, the error shrinks with each step.
+# from one sample to the next tell. If all lie inside the unit circle, the error dies out in the end, though
+# it may grow at first.
 #
 # During one step the torque is constant. So is, then, the acceleration of a joint on its own, and you
 # can say exactly where it will be. Take the target as zero:

@@ -137,7 +137,7 @@ AUGMENTED_PD = Problem(
         Wrong(
             "C times the arm's own speed",
             "The law that is proven stable has C times the *target's* speed; with the arm's own speed, "
-            "as in the report's equation 18, no theorem covers it. At low speed nobody notices.",
+            "as in the report's equation 18, it takes more damping to be stable. At low speed nobody notices.",
             mistakes.own_speed_in_coriolis,
             "MLS 4.53: C(q, dq) dq_d, so that the skew symmetry of dM - 2C does its work.",
         ),

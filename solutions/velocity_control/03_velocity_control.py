@@ -144,8 +144,8 @@ def decay_rate(kp, kd):
 # %% [markdown]
 # Compare with an arm whose motors take 50 ms to follow a command. (Motors that obey at once would make
 # the loop bite its own tail: the speed measured now *is* the last command, so with kd above 1 the
-# commands would grow from tick to tick. The authors of the report found that Baxter "does not like"
-# more than a trace of D.) The thick lines are the arm, the thin dotted ones your rate.
+# commands would grow from tick to tick. The report's authors ended with a kd of 0.0001.) A kd has its use
+# on a moving target, where the motors' lag makes an error that kd divides; here the target rests. The thick lines are the arm, the thin dotted ones your rate.
 
 # %%
 def nobody_knows(kp, kd):

@@ -12,6 +12,7 @@ from pathlib import Path
 from . import (
     camera,
     campaign,
+    claims,
     closed_loop,
     drake,
     engines,
@@ -36,6 +37,7 @@ MEASUREMENTS = (
     viewer,
     notebooks,
     grading,
+    claims,
 )
 OUT = Path("build/bench.json")
 

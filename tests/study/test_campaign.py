@@ -9,10 +9,9 @@ from scipy import stats
 
 import labkit as lk
 from labkit import recordings
-from solutions.comparison.answers import paired_difference
 from solutions.study import campaign as report
 from solutions.study import pictures
-from solutions.study.claims import Outcome, judge, verdicts
+from solutions.study.claims import Outcome, interval, judge, verdicts
 from solutions.study.gains import five
 from solutions.study.grid import Meter, cells, pick, row_of, spread, table, work_through
 
@@ -121,13 +120,23 @@ def test_a_figure_of_the_report_is_numbered_drawn_and_put_into_words(tmp_path):
 
 
 def test_the_interval_is_that_of_a_paired_t_test():
+    """Over the seeds of one condition."""
     random = np.random.default_rng(0)
     a, b = random.normal(3.0, 1.0, 12), random.normal(2.0, 1.0, 12)
-    mean, half = paired_difference(a, b)
+    keys = [(seed, "line") for seed in range(12)]
+    found = judge("a", "mm", dict(zip(keys, a, strict=True)), dict(zip(keys, b, strict=True)))
     low, high = stats.ttest_rel(a, b).confidence_interval(0.95)
-    assert (mean - half, mean + half) == pytest.approx((low, high))
-    with pytest.raises(lk.LabkitError, match="1 pair cannot show a spread, so 'a is larger'"):
-        judge("a is larger", "mm", {(0,): 1.0}, {(0,): 0.5})
+    x = found.overall
+    assert (x.mean - x.half_width, x.mean + x.half_width) == pytest.approx((low, high))
+    assert (x.of, x.units, found.tasks) == ("seeds", 12, ())
+    with pytest.raises(lk.LabkitError, match="1 pair cannot show a spread, so 'line'"):
+        judge("a is larger", "mm", {(0, "line"): 1.0}, {(0, "line"): 0.5})
+
+
+def rows_of(by_task):
+    """Differences of a claim, and zeros to subtract, from {task: differences}."""
+    a = {(seed, task): d for task, ds in by_task.items() for seed, d in enumerate(ds)}
+    return a, dict.fromkeys(a, 0.0)
 
 
 @pytest.mark.parametrize(
@@ -139,18 +148,34 @@ def test_the_interval_is_that_of_a_paired_t_test():
     ],
 )
 def test_a_claim_is_held_refuted_or_undecided(differences, outcome):
-    a = {(seed,): 5.0 + d for seed, d in enumerate(differences)}
-    verdict = judge("a is larger", "mm", a, {(seed,): 5.0 for seed in range(3)})
-    assert verdict.outcome is outcome
-    assert ("it flips with the seed" in str(verdict)) == (outcome is Outcome.UNDECIDED)
+    found = judge("a is larger", "mm", *rows_of({"line": differences}))
+    assert found.overall.outcome is outcome
 
 
-def test_a_claim_that_flips_with_the_seed_is_undecided_however_narrow_the_interval():
-    keys = [(seed, task) for seed in (0, 1) for task in range(40)]
-    a = {key: 2.0 if key[0] == 0 else -0.1 for key in keys}
-    verdict = judge("a is larger", "mm", a, dict.fromkeys(keys, 0.0))
-    assert verdict.difference > verdict.half_width
-    assert verdict.outcome is Outcome.UNDECIDED
+def test_the_seeds_of_a_task_are_no_tasks():
+    """Each task decided over its seeds, and they differ: over the tasks it is undecided."""
+    steady = {"line": (2.0, 2.1, 1.9), "circle": (2.6, 2.5, 2.7), "tag": (-1.2, -1.3, -1.2)}
+    found = judge("a is larger", "mm", *rows_of(steady))
+    assert {t.of: t.outcome for t in found.tasks} == {
+        "line": Outcome.HELD,
+        "circle": Outcome.HELD,
+        "tag": Outcome.DID_NOT_HOLD,
+    }
+    assert found.overall.units == 3 and found.overall.outcome is Outcome.UNDECIDED
+    pooled = interval("pairs", [d for ds in steady.values() for d in ds], 1)
+    assert pooled.half_width < 0.5 * found.overall.half_width, "pooling would pretend to know"
+
+
+def test_several_claims_together_have_wider_intervals():
+    """Bonferroni: eight claims at 95 % are each judged at 1 - 0.05 / 8."""
+    one, eight = (interval("tasks", (1.0, 1.2, 1.4), claims) for claims in (1, 8))
+    t = [stats.t.ppf(1.0 - 0.025 / claims, 2) for claims in (1, 8)]
+    assert eight.half_width / one.half_width == pytest.approx(t[1] / t[0])
+
+
+def test_no_interval_is_narrower_than_the_clock_can_tell():
+    found = judge("faster", "s", *rows_of({"": (0.575, 0.575, 0.575)}), least=0.005)
+    assert found.overall.half_width == 0.005
 
 
 def test_every_claim_of_the_report_gets_a_verdict_from_rows():
@@ -164,15 +189,18 @@ def test_every_claim_of_the_report_gets_a_verdict_from_rows():
         for cell in report.gain_grid(2)
     ]
     noise = [
-        {**cell, "late_rms_mm": 1.0, "shake_mm_s": cell["Kd"] * noisy(cell), "failed": None}
+        {**cell, "late_rms_mm": 1.0 + 0.01 * cell["seed"], "shake_mm_s": cell["Kd"] * noisy(cell), "failed": None}
         for cell in report.noise_grid(2)
     ]
-    found = {v.claim: v.outcome for v in verdicts(rows, gains, noise)}
+    found = {v.claim: v.overall.outcome for v in verdicts(rows, gains, noise)}
     assert found["joint velocity tracks better than workspace velocity"] is Outcome.HELD
-    assert found["MoveIt tracks better than joint torque"] is Outcome.DID_NOT_HOLD
+    assert found["the built-in way tracks better than joint torque"] is Outcome.DID_NOT_HOLD
     assert found["four times the gain converges faster on the realistic arm"] is Outcome.HELD
     assert found["noise limits Kd: through the noise, Kd = 1 makes the arm shake"] is Outcome.HELD
-    assert len(found) == 12
+    assert len(found) == 13
+    planned = {v.claim: v for v in verdicts(rows, gains, noise)}
+    on = planned["the built-in way tracks better than joint torque"].tasks
+    assert {t.of for t in on} == {"line", "circle", "square"}, "on the tag it is told another goal"
 
 
 def noisy(cell):

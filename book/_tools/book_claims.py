@@ -1,0 +1,114 @@
+"""Which sentences of the book rest on what: ``python book/_tools/book_claims.py [--read] [PAGE]``.
+
+A sentence counts if it shows a number with a unit or compares.  It is *bound* if it shows a number
+that `figures.claims.told` was given, or holds the words of a `claim`; it is *caught* if wrong data
+of every kind stop the build.  What is left is listed: those sentences nobody checks.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from book_pages import BOOK, ROOT
+from figures.claims import FOUND, KEPT, kept, near
+
+PAGES = (
+    "index",
+    "report",
+    "plant",
+    *(f"chapters/{p.stem}" for p in (BOOK / "chapters").glob("*.md")),
+)
+OUT = ROOT / "build/book_claims.json"
+_UNIT = r"mm|cm|m/s²?|m|N m|N/m|N|rad/s|rad|1/s|Hz|ms|s|kg|%|degrees|pixels|W|°|per second|per cent"
+_NUMBER = re.compile(rf"(?<![\w.])\d[\d.,]*[\s\u00a0]?({_UNIT})(?![\w/])")
+_COMPARES = re.compile(
+    r"\b(more|less|fewer|better|worse|larger|smaller|faster|slower|stiffer|softer|quicker|higher|"
+    r"lower|easier|nearer|further|longer|shorter)\b[^.]*\bthan\b|\btwice\b|\bhalf the\b"
+)
+_GLUE = re.compile(r"\{glue:text\}`([^`]+)`")
+_CELL = re.compile(r"^```\{code-cell\}\n(?::[^\n]*\n)*(.*?)^```", re.M | re.S)
+
+
+def sentences(text: str) -> Iterator[str]:
+    """The sentences of a page that show a number with a unit, or compare."""
+    text = re.sub(r"\A---\n.*?\n---\n", "", text, flags=re.S)
+    text = re.sub(r"^(```+|:::+|\$\$).*?^\1[^\n]*$", "\n\n", text, flags=re.M | re.S)
+    for block in re.split(r"\n\s*\n|\n(?=[:|-] |\|)", text):
+        plain = " ".join(block.split())
+        for sentence in re.split(r"(?<=[.:?!])\s+(?=[A-Z*$\[{])", plain):
+            shown = re.sub(r"\$[^$]*\$|\{cite[^}]*\}`[^`]*`", "x", _GLUE.sub("0 mm", sentence))
+            if _NUMBER.search(shown) or _COMPARES.search(shown):
+                yield sentence
+
+
+def run(page: str, *, reading: bool) -> None:
+    """Run a page's cells, in a process of its own."""
+    code = "\n".join(_CELL.findall((BOOK / f"{page}.md").read_text()))
+    environment = os.environ | {
+        "PYTHONPATH": os.pathsep.join(map(str, (ROOT, BOOK, os.environ.get("PYTHONPATH", "")))),
+        "LAB_BOOK_READ": "1" if reading else "0",
+    }
+    subprocess.run([sys.executable, "-W", "ignore", "-c", code], env=environment, check=True)
+
+
+def noted() -> Mapping[str, Any]:
+    """What the pages told, by name; the last time counts."""
+    files = sorted(FOUND.glob("*.jsonl"), key=lambda p: p.stat().st_mtime)
+    lines = (json.loads(line) for path in files for line in path.read_text().splitlines())
+    return {line["name"]: line for line in lines}
+
+
+def bound(sentence: str, notes: Mapping[str, Any]) -> list[str]:
+    """The names of what a sentence rests on."""
+    plain = re.sub(r"[*`]", "", sentence)
+    claims = [name for name in notes if " " in name and name in plain]
+    return [*_GLUE.findall(sentence), *claims]
+
+
+def count(notes: Mapping[str, Any]) -> dict[str, Any]:
+    """Sentences, those caught, and the rest by page."""
+    total, caught, left = 0, 0, {}
+    for page in PAGES:
+        for sentence in sentences((BOOK / f"{page}.md").read_text()):
+            total += 1
+            names = bound(sentence, notes)
+            known = [notes[name] for name in names if name in notes]
+            if known and len(known) == len(names) and not any(x["survived"] for x in known):
+                caught += 1
+            else:
+                left.setdefault(page, []).append(sentence)
+    return {"book_claims": total, "book_claims_caught": caught, "survivors": left}
+
+
+def main() -> None:
+    """Run pages, count sentences, keep what was told."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--read", action="store_true", help="keep what the pages tell now")
+    parser.add_argument("--count", action="store_true", help="run nothing, count alone")
+    parser.add_argument("pages", nargs="*", metavar="PAGE", help="as chapters/velocity; all")
+    chosen = parser.parse_args()
+    for page in () if chosen.count else chosen.pages or PAGES:
+        run(page, reading=chosen.read)
+    notes, before = noted(), kept()
+    if chosen.read:
+        after = {**before, **{name: note["data"] for name, note in notes.items()}}
+        for name, x in sorted(after.items()):
+            if name in before and not near(tuple(x), tuple(before[name])):
+                print(f"{name}: {before[name]} before, {x} now")
+        rows = ",\n".join(f"{json.dumps(k)}: {json.dumps(x)}" for k, x in sorted(after.items()))
+        KEPT.write_text(f"{{\n{rows}\n}}\n")
+    found = count(notes)
+    OUT.parent.mkdir(exist_ok=True)
+    OUT.write_text(json.dumps(found, indent=1, ensure_ascii=False) + "\n")
+    print(f"{found['book_claims_caught']} of {found['book_claims']} sentences are caught; {OUT}")
+
+
+if __name__ == "__main__":
+    main()

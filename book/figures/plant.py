@@ -1,0 +1,173 @@
+"""Page "What is true of this arm": evidence, what hangs on it, and the report's own gains."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit.plant import EVIDENCE
+from solutions.study import assumptions, report_gains
+from solutions.study.grid import pick
+
+from .claims import claim
+from .page import figure, number, numbers, table
+
+
+def _shown(value: Any) -> str:
+    """A number of the plant as a reader wants it."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float | int):
+        return f"{value:g}"
+    parts = list(dict.fromkeys(f"{x:g}" for x in value))
+    return ", ".join(parts)
+
+
+def evidence() -> HTML:
+    """Each number of the realistic arm, its source, its range."""
+    rows = [
+        (
+            f"<code>{name}</code>",
+            f"{_shown(getattr(lk.BAXTER, name))} {e.unit}".strip(),
+            "assumed" if e.assumed else "sourced",
+            e.source,
+            _shown(e.least) if e.least == e.most else f"{_shown(e.least)} to {_shown(e.most)}",
+        )
+        for name, e in EVIDENCE.items()
+    ]
+    assumed = sum(e.assumed for e in EVIDENCE.values())
+    numbers({"assumed": assumed, "parameters": len(EVIDENCE)}, ".0f")
+    return table(
+        ("Number", "Value", "Known?", "From", "Range"), rows,
+        "Every number of lk.BAXTER; where joints differ, from shoulder to wrist",
+    )  # fmt: skip
+
+
+def hangs() -> HTML:
+    """Which verdicts on the line turn over with which assumption."""
+    rows = assumptions.kept()["assumptions"]
+    names, claims = list(assumptions.plants()), list(assumptions.CLAIMS)
+    base = [assumptions.difference(rows, c, assumption="as assumed") for c in claims]
+    _, ax = plt.subplots(figsize=(6.8, 7.2))
+    turned: dict[str, list[str]] = {c: [] for c in claims}
+    for i, name in enumerate(names):
+        for j, c in enumerate(claims):
+            d = assumptions.difference(rows, c, assumption=name)
+            over = d is None or d * (base[j] or 0.0) < 0.0
+            if over:
+                turned[c].append(name)
+                ax.add_patch(plt.Rectangle((j - 0.5, i - 0.5), 1, 1, color="#b3001b", alpha=0.25))
+            text = "lost" if d is None else f"{d:+.1f}"
+            weight = "bold" if over else "normal"
+            ax.text(j, i, text, ha="center", va="center", fontsize="x-small", weight=weight)
+    ax.set(xlim=(-0.5, len(claims) - 0.5), ylim=(len(names) - 0.5, -0.5))
+    ax.set_yticks(range(len(names)), [n.replace("_", " ") for n in names], fontsize="small")
+    ax.set_xticks(range(len(claims)), claims, rotation=60, ha="left", fontsize="small")
+    ax.xaxis.tick_top()
+    ax.tick_params(length=0)
+    ax.spines[:].set_visible(False)
+    sure = [c for c in claims if not turned[c]]
+    gains = assumptions.kept()["gains"]
+    error = {r["position_gain"]: r["late_rms_mm"] for r in gains}
+    joint, torque = (
+        pick(rows, way=way, assumption="as assumed")[0]["late_rms_mm"]
+        for way in ("joint velocity", "joint torque")
+    )
+    where = [_crosses(error, level) for level in (joint, torque)]
+    claim(
+        "Above it the built-in way is the better of the two",
+        lambda at, ends: ends[0] < at[0] < ends[1] and ends[0] < at[1] < at[0],
+        at=where,
+        ends=[min(error), max(error)],
+    )
+    claim(
+        "One verdict stands whatever is assumed",
+        lambda least: least > 3.0,
+        least=min(
+            abs(d)
+            for n in names
+            if (d := assumptions.difference(rows, sure[0], assumption=n)) is not None
+        ),
+    )
+    numbers({"flip_velocity": where[0], "flip_torque": where[1]}, ".0f")
+    numbers({"hang_low": error[10.0], "hang_high": error[100.0]}, ".2g")
+    spring = pick(rows, way="joint velocity", assumption="joint_stiffness, most")
+    number("spring_velocity", spring[0]["late_rms_mm"], ".0f")
+    words = "; ".join(f"{c}: {', '.join(t) or 'never'}" for c, t in turned.items())
+    return figure(
+        "Difference of the RMS errors on the line, in mm: positive where the claim above is true. "
+        "One assumption at a time at the end of its range; red where the verdict turns over or an "
+        "arm is lost.",
+        f"A table of {len(names)} plants and {len(claims)} claims. Verdicts turn over with: "
+        f"{words}.",
+    )
+
+
+def _crosses(error: dict[float, float], level: float) -> float:
+    """The gain at which a falling error passes a level, even in its logarithm."""
+    at = np.array(sorted(error))
+    x = np.log([error[k] for k in at])
+    return float(np.exp(np.interp(-np.log(level), -x, np.log(at))))
+
+
+def table_1() -> HTML:
+    """The report's gains as printed, run."""
+    rows = report_gains.kept()["table_1"]
+
+    def shown(way: str, task: str, plant: str) -> str:
+        (row,) = pick(rows, way=way, task=task, plant=plant)
+        return "lost" if row["failed"] else f"{row['late_rms_mm']:.3g}"
+
+    grid = [(task, plant) for plant in report_gains.PLANTS for task in ("line", "circle")]
+    body = [(way, *(shown(way, *at) for at in grid)) for way in report_gains.TABLE_1]
+    torque = [
+        pick(rows, way="joint torque", task=task, plant="realistic")[0]["late_rms_mm"]
+        for task in ("line", "circle")
+    ]
+    claim("centimetres, not millimetres", lambda e: all(x > 20.0 for x in e), e=torque)
+    numbers({"printed_line": torque[0], "printed_circle": torque[1]}, ".2g")
+    return table(
+        ("Controller", *(f"{task}, {plant}" for task, plant in grid)), body,
+        "RMS error in mm after the first second, with the gains of the report's Table 1",
+    )  # fmt: skip
+
+
+def tuning() -> HTML:
+    """The report's procedure on s0, on both arms."""
+    found = report_gains.kept()["procedure"]
+    _, ax = plt.subplots(figsize=(6.2, 3.0))
+    ends = {}
+    for k, row in enumerate(found):
+        steps = [s for s in row["steps"] if s[1] == 0.0 and s[0] > 0.0 and s[3] != "half of that"]
+        ax.semilogx(
+            [s[0] for s in steps],
+            [s[2] for s in steps],
+            f"C{k}{'os'[k]}-",
+            markersize=4,
+            label=row["plant"],
+        )
+        ax.axvline(row["Kp"], color=f"C{k}", linestyle=":")
+        ends[row["plant"]] = row
+    ax.axhline(0.9, color="C5", linewidth=1.0)
+    ax.set(xlabel="Kp [1/s]", ylabel="share of a swing left in the next")
+    ax.legend(fontsize="small")
+    stiff, soft = ends["realistic"]["Kp"], ends["with joint springs"]["Kp"]
+    claim(
+        "the springs bring the procedure to the report's order of magnitude",
+        lambda stiff, soft: stiff > 10.0 * 3.0 and 1.0 < soft < 6.0,
+        stiff=stiff,
+        soft=soft,
+    )
+    numbers({"procedure": stiff, "procedure_springs": soft, "factor": stiff / 3.0}, ".2g")
+    return figure(
+        "The report's procedure on the shoulder s0: the gain rises until the joint oscillates, and "
+        "half of that is taken (dotted).",
+        f"Swing left over against gain. The realistic arm oscillates at "
+        f"{ends['realistic']['ultimate']:.3g} 1/s, which gives {stiff:.2g}; with springs in its "
+        f"joints it does at {ends['with joint springs']['ultimate']:.2g} 1/s, which gives "
+        f"{soft:.2g}.",
+    )

@@ -1,0 +1,130 @@
+"""Which verdicts hang on which assumption: ``python -m solutions.study.assumptions``.
+
+Each number of the plant that nobody measured goes to the least and to the most that is plausible
+(`labkit.plant.EVIDENCE`), alone, the gains staying as they are; then every way follows the line
+again.  A verdict that turns over hangs on that number.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from labkit import BAXTER, Arm, Model, Plant, metrics, run
+from labkit.plant import EVIDENCE, SPRINGS
+
+from .campaign import BASELINE, FIVE, joints, task_of
+from .claims import IMPEDANCE, THREE
+from .gains import Candidate, known
+from .grid import Cell, Meter, Row, cells, pick, work_through
+
+KEPT = Path(__file__).with_name("assumptions.json")
+WAYS = (*FIVE, BASELINE)
+TOGETHER = ("joint_damping",)
+"""Belongs to another number, with which it goes."""
+GAINS = (10.0, 14.0, 20.0, 30.0, 45.0, 60.0, 100.0)
+"""Of the position mode, in [1/s]: what no source gives and much hangs on."""
+CLAIMS: Mapping[str, tuple[Sequence[str], Sequence[str]]] = {
+    "joint velocity over workspace velocity": (("workspace velocity",), ("joint velocity",)),
+    "joint impedance over workspace impedance": (("workspace impedance",), ("joint impedance",)),
+    "the three over both impedances": (IMPEDANCE, THREE),
+    **{f"built-in way over {way}": ((way,), (BASELINE,)) for way in FIVE},
+}
+"""The first way's error minus the second's: positive where the claim, "better than", is true."""
+
+
+def plants() -> dict[str, Plant]:
+    """`BAXTER`, and each plant that differs from it in one assumption, by name."""
+    made = {"as assumed": BAXTER}
+    for name, evidence in EVIDENCE.items():
+        if not evidence.assumed or name in TOGETHER:
+            continue
+        for end in ("least", "most"):
+            changed = {name: getattr(evidence, end)}
+            if name == "joint_stiffness" and end == "most":
+                changed = SPRINGS
+            plant = replace(BAXTER, **changed)
+            if plant != BAXTER:
+                made[f"{name}, {end}"] = plant
+    return made
+
+
+def trial(way: str, assumption: str, seed: int) -> Mapping[str, Any]:
+    """The job: one way along the line; its RMS error after the first second."""
+    return _line(way, plants()[assumption], seed)
+
+
+def gain(way: str, position_gain: float, seed: int) -> Mapping[str, Any]:
+    """The same with a gain of the position mode."""
+    return _line(way, replace(BAXTER, position_gain=position_gain), seed)
+
+
+def _line(way: str, plant: Plant, seed: int) -> Mapping[str, Any]:
+    goal, model = task_of("line", way, seed), Model("left", Plant(armature=BAXTER.armature))
+    if way == BASELINE:
+        from . import baseline
+
+        tuned = Candidate(baseline.PositionServer(), baseline.RATE, True)
+    else:
+        tuned = known(model, BAXTER)[way]
+    target = joints(way, "line", seed) if tuned.joints else goal.target
+    with Arm(goal.side, plant, seed, q0=goal.start(seed)) as arm:
+        log = run(arm, target, tuned.controller, rate=tuned.rate)
+    e = metrics.tip_error(log, model)[log.t >= 1.0, :3]
+    return {"late_rms_mm": float(f"{1e3 * metrics.rms(e):.4g}")}
+
+
+def grid(seeds: int) -> list[Cell]:
+    """Every way on every plant."""
+    return cells(way=WAYS, assumption=tuple(plants()), seed=range(seeds))
+
+
+def difference(rows: Sequence[Row], claim: str, **names: Any) -> float | None:
+    """What speaks for a claim, mean over the seeds, in [mm]; None if an arm was lost."""
+    sides = []
+    for ways in CLAIMS[claim]:
+        here = [row for way in ways for row in pick(rows, way=way, **names)]
+        if not here or any(row["failed"] for row in here):
+            return None
+        sides.append(float(np.mean([row["late_rms_mm"] for row in here])))
+    return sides[0] - sides[1]
+
+
+def kept() -> Mapping[str, list[Row]]:
+    """The rows that were recorded: "assumptions" and "gains"."""
+    found: Mapping[str, list[Row]] = json.loads(KEPT.read_text())
+    return found
+
+
+def main() -> None:
+    """Run the study and keep its rows."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=2, help="how many seeds (2)")
+    parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
+    chosen = parser.parse_args()
+    rows = work_through(trial, grid(chosen.seeds), jobs=chosen.jobs, progress=Meter("plants"))
+    asked = cells(way=(BASELINE,), position_gain=GAINS, seed=range(chosen.seeds))
+    gains = work_through(gain, asked, jobs=chosen.jobs, progress=Meter("gains"))
+    parts = {"assumptions": rows, "gains": gains}
+    lines = (f'"{k}": [\n' + ",\n".join(map(json.dumps, part)) + "\n]" for k, part in parts.items())
+    KEPT.write_text("{\n" + ",\n".join(lines) + "\n}\n")
+    for claim in CLAIMS:
+        base = difference(rows, claim, assumption="as assumed")
+        turned = [
+            name
+            for name in plants()
+            if (d := difference(rows, claim, assumption=name)) is None or d * (base or 0.0) < 0.0
+        ]
+        print(f"{claim}: {base:+.2f} mm; turns with {', '.join(turned) or 'none'}")
+
+
+if __name__ == "__main__":
+    from solutions.study import assumptions  # by its own name, so that workers find the jobs
+
+    assumptions.main()

@@ -1,0 +1,87 @@
+r"""The derivative gain of the velocity controllers: ``python -m solutions.study.speed_gains``.
+
+A drive that follows its command with a lag :math:`\tau` makes of
+:math:`u = \dot q_d + K_p e + K_d \dot e` the error equation
+
+.. math:: \tau\,\ddot e + (1 + K_d)\,\dot e + K_p\,e = \tau\,\ddot q_d .
+
+Its right side drives the error wherever the target accelerates, and :math:`1 + K_d` divides what
+comes of it.  The price is noise: the measured speeds enter the command times :math:`K_d`.  So at
+the report's :math:`K_p` the gain is raised, step by step, until a step no longer pays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+
+from labkit import BAXTER, Arm, Model, metrics, run
+
+from . import tasks
+from .gains import KP, Candidate
+from .grid import Meter, Row, cells, pick, table, work_through
+from .joint_velocity import JointVelocityPD
+from .tasks import Task
+from .workspace_velocity import WorkspaceVelocityPD
+
+PAYS = 0.02
+"""Share of the error that a step of the gain must take away to be worth its noise."""
+TRIED = (0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9)
+WAYS = ("joint velocity", "workspace velocity")
+
+
+@cache
+def _task(name: str) -> Task:
+    return tasks.line() if name == "line" else tasks.circle()
+
+
+def trial(way: str, task: str, Kd: float, seed: int) -> Mapping[str, float]:
+    """One run on Baxter's plant.
+
+    Returns:
+        "late_rms_mm", the RMS error after the first second, and "shake_mm_s", the RMS speed of the
+        tip in the last half second, when it should stand still.
+    """
+    goal, model = _task(task), Model("left")
+    joints = Candidate(JointVelocityPD(KP, Kd), 200.0, True)
+    poses = Candidate(WorkspaceVelocityPD(model, KP, Kd), 200.0, False)
+    tuned = joints if way == WAYS[0] else poses
+    target = goal.joints if tuned.joints else goal.target
+    with Arm(goal.side, BAXTER, seed, q0=goal.start(seed)) as arm:
+        log = run(arm, target, tuned.controller, rate=tuned.rate)
+    e, v = metrics.tip_error(log, model), metrics.tip_velocities(log, model)
+    return {
+        "late_rms_mm": 1e3 * metrics.rms(e[log.t >= 1.0, :3]),
+        "shake_mm_s": 1e3 * metrics.rms(v[log.t >= log.t[-1] - 0.5]),
+    }
+
+
+def trials(seeds: int = 2, jobs: int | None = None, progress: Meter | None = None) -> list[Row]:
+    """Every gain on two paths, by both velocity controllers."""
+    grid = cells(way=WAYS, task=("line", "circle"), Kd=TRIED, seed=range(seeds))
+    return work_through(trial, grid, jobs=jobs, progress=progress)
+
+
+def best(rows: list[Row], way: str) -> float:
+    """The largest gain to which every step took away at least `PAYS` of the mean error."""
+    errors = [np.mean([r["late_rms_mm"] for r in pick(rows, way=way, Kd=Kd)]) for Kd in TRIED]
+    pays = [after < (1.0 - PAYS) * before for before, after in pairwise(errors)]
+    return TRIED[[*pays, False].index(False)]
+
+
+def main() -> None:
+    """Try the gains, print the tables and the choice."""
+    rows = trials(progress=Meter("runs"))
+    for way in WAYS:
+        for number in ("late_rms_mm", "shake_mm_s"):
+            print(f"{way}, {number}\n\n{table(pick(rows, way=way), 'Kd', 'task', number)}\n")
+        print(f"{way}: Kd = {best(rows, way):g} at Kp = {KP:g} 1/s\n")
+
+
+if __name__ == "__main__":
+    from solutions.study import speed_gains  # by its own name, so that workers find the job
+
+    speed_gains.main()
