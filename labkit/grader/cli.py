@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import click
 
@@ -15,7 +15,10 @@ from ..course.cli import PATH, verb
 from ..course.layout import Course
 from ..errors import LabkitError
 from .cli_course import of_assignment
-from .each import Failures
+from .each import Failed, Failures
+
+if TYPE_CHECKING:
+    from .marks import Mark
 
 one_student = click.option("--student", metavar="S", help="Only this one.")
 jobs = click.option(
@@ -123,19 +126,29 @@ def regrade(
 @click.option(
     "--moodle", type=PATH, metavar="ZIP", help="Also write the feedback files that Moodle takes."
 )
-def feedback(course: Course, assignment: str, student: str | None, moodle: Path | None) -> int:
-    """Write a page for each student."""
+@click.option(
+    "--unmarked", is_flag=True, help="Do not wait until all that is marked by hand is marked."
+)
+def feedback(
+    course: Course, assignment: str, student: str | None, moodle: Path | None, unmarked: bool
+) -> int:
+    """Write a page for each student.
+
+    Pages wait until everybody's answers that a person marks are marked, in formgrader.
+    """
     from .exchange import for_exchange
     from .feedback import write_feedback
-    from .gradebook import comments
+    from .marks import marks_of
     from .return_feedback import moodle_zip
-    from .standing import standing
 
     with Failures() as failures:
-        results = list(failures.sift(standing(course, assignment, student), "no page"))
-        if not results and not failures.code:
+        everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
+        if not unmarked:
+            _wait_for_marks(everybody)
+        marks = [mark for mark in everybody if student in {None, mark.student}]
+        if not marks:
             raise _nobody(assignment, student)
-        pages = write_feedback(course, assignment, results, comments(course, assignment))
+        pages = write_feedback(course, assignment, marks)
         made = list(failures.sift(pages, "no page"))
         size = sum(path.stat().st_size for path in made) / 1e6
         print(f"pages in {course.root / 'feedback'}: {len(made)}, {size:.1f} MB")
@@ -186,19 +199,20 @@ def class_report(
 ) -> int:
     """Say what the class got right and wrong."""
     from .class_report import for_jplag, report
+    from .marks import marks_of
     from .pseudonyms import pseudonyms
-    from .standing import standing
 
     with Failures() as failures:
-        results = list(failures.sift(standing(course, assignment), "left out"))
-        if not results:
+        marks = list(marks_of(course, assignment))
+        if not any(mark.result for mark in marks):
             raise _nobody(assignment, None)
+        out = [mark for mark in marks if mark.missing and not mark.lines]
+        failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
         pseudonym = pseudonyms(course)
-        called = str if names else pseudonym
-        _write(report(assignment, results, problems, called, len(failures.sentences)), to)
+        _write(report(assignment, marks, problems, str if names else pseudonym), to)
         if jplag:
-            written = for_jplag(results, jplag, pseudonym)
+            written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)
     return failures.code
 
@@ -219,6 +233,17 @@ def _handed_in(
             "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     return who
+
+
+def _wait_for_marks(marks: Iterable[Mark]) -> None:
+    """Raise a LabkitError if a person has still something to mark."""
+    waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in marks if mark.open]
+    if waiting:
+        some = ", ".join(waiting[:5]) + (", ..." if len(waiting) > 5 else "")
+        raise LabkitError(
+            f"{len(waiting)} are not marked by hand in full: {some}; mark them in formgrader, or "
+            "add --unmarked to write the pages before"
+        )
 
 
 def _nobody(assignment: str, student: str | None) -> LabkitError:

@@ -7,12 +7,14 @@ records that it keeps; here it is only fed, and its result verified.
 from __future__ import annotations
 
 import shutil
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
 
 from ..course.layout import Course
+from ..course.notebook import manifest
 from ..course.release import prepare, write
 from ..errors import LabkitError
 from .gradebook import migrate
@@ -38,6 +40,7 @@ class Released:
         questions: How many.
         points: In all.
         hidden: How many hidden cases.
+        by_hand: What a person marks: the name of each cell, and its points.
     """
 
     name: str
@@ -45,11 +48,15 @@ class Released:
     questions: int
     points: float
     hidden: int
+    by_hand: Mapping[str, float]
 
     def __str__(self) -> str:
         return (
             f"{self.name}: {self.questions} questions, {self.points:g} points, "
             f"{self.hidden} hidden cases"
+            + "".join(
+                f"\n  to be marked by hand: {k}, {v:g} points" for k, v in self.by_hand.items()
+            )
         )
 
 
@@ -76,8 +83,9 @@ def release(course: Course, name: str, seed: int) -> Released:
     _verify(course.release / name)
     questions = made.questions.values()
     hidden = sum(case.hidden for q in questions for t in q.tests for case in t.cases)
-    points = sum(q.points for q in questions)
-    return Released(name, course.release / name, len(questions), points, hidden)
+    by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}
+    points = sum(q.points for q in questions) + sum(by_hand.values())
+    return Released(name, course.release / name, len(questions), points, hidden, by_hand)
 
 
 def generate(course: Course, name: str) -> None:

@@ -109,6 +109,7 @@ class Result:
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
         own: The student's own cells, where they stood.
+        written: What stands in each cell that a person marks, by its name.
         tricks: What may be a way around a withheld tool, for the instructor, sentences.
         isolation: What kept it apart while it ran.
         versions: Of what graded it.
@@ -126,6 +127,7 @@ class Result:
     notes: tuple[str, ...] = ()
     cells: tuple[FailedCell, ...] = ()
     own: tuple[OwnCell, ...] = ()
+    written: Mapping[str, str] = field(default_factory=dict)
     tricks: tuple[str, ...] = ()
     isolation: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)

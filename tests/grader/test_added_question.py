@@ -19,6 +19,7 @@ from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.marks import mark_of
 from labkit.grader.nbgrader_api import nbgrader_api
 from labkit.grader.release import release
 from labkit.grader.results import Results
@@ -193,4 +194,4 @@ def test_a_question_without_points_is_reported_as_void(marked):
     questions = tuple(
         replace(q, verdict=replace(q.verdict, points=0.0, earned=0.0)) for q in one.questions
     )
-    assert "| voided |" in report(NAME, [replace(one, questions=questions)], {}, str)
+    assert "| voided |" in report(NAME, [mark_of(replace(one, questions=questions))], {}, str)
