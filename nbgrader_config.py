@@ -21,6 +21,10 @@ c.HTMLExporter.filters = {
     "clean_html": "labkit.grader.markup.clean",
 }
 
+# When work is due and what late work loses stands in course.toml; name a class of your own instead,
+# in a file that lies here, if its rules are not enough.
+c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
+
 # Students' code never runs in nbgrader's own process: a submission is brought into the release's
 # form and graded in a sandbox.
 c.Autograde.pre_convert_hook = "labkit.grader.autograde.unlink_foreign"

@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
@@ -14,7 +15,7 @@ import click
 from ..course.cli import PATH, verb
 from ..course.layout import Course
 from ..errors import LabkitError
-from .cli_course import of_assignment
+from .cli_course import of_assignment, of_course
 from .each import Failed, Failures
 
 if TYPE_CHECKING:
@@ -163,7 +164,8 @@ def feedback(
 
 
 @verb("01_paths --to marks.csv")
-@of_assignment
+@click.argument("assignment", required=False)
+@of_course
 @click.option(
     "--layout",
     type=click.Choice(["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"]),
@@ -173,15 +175,41 @@ def feedback(
 @click.option(
     "--column", metavar="NAME", help="The assignment as the platform calls it: 'Paths (4711)'."
 )
+@click.option("--absent-zero", is_flag=True, help="Who handed in nothing has 0, not nothing.")
 @to_file
 def export(
-    course: Course, assignment: str, layout: str, column: str | None, to: Path | None
+    course: Course,
+    assignment: str | None,
+    layout: str,
+    column: str | None,
+    absent_zero: bool,
+    to: Path | None,
 ) -> int:
-    """Write marks as a table."""
-    from .export import LAYOUTS, as_csv, remarks
-    from .marks import marks_of
+    """Write marks as a table, of one assignment or of the term.
 
-    marks = list(marks_of(course, assignment))
+    Without ASSIGNMENT it is a table of all that were graded, with the weights of course.toml.
+    """
+    from .export import LAYOUTS, as_csv, of_term, remarks
+    from .marks import marks_of
+    from .rules import read_rules
+
+    def read(name: str) -> list[Mark]:
+        course.notebook_source(name)
+        found = list(marks_of(course, name))
+        if all(mark.absent for mark in found):
+            return []
+        return [replace(m, raw=0.0) if absent_zero and m.absent else m for m in found]
+
+    if assignment is None:
+        rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
+        term = {name: marks for name in names if (marks := read(name))}
+        if not term:
+            raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
+        for name, marks in term.items():
+            _tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
+        _write(as_csv(of_term(term, {name: rules.weight(name) for name in term})), to)
+        return int(any(mark.missing for marks in term.values() for mark in marks))
+    marks = read(assignment)
     if not marks:
         raise _nobody(assignment, None)
     _tell(remarks(layout, marks), sys.stderr)

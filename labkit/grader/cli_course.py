@@ -214,11 +214,22 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     is_flag=True,
     help="From the exchange, also take what users handed in whom this machine does not know.",
 )
-def collect(course: Course, assignment: str, sources: tuple[Path, ...], unverified: bool) -> int:
-    """Take downloads from Moodle, Canvas or the exchange.
+@click.option(
+    "--named",
+    metavar="PATTERN",
+    help="How files are named that come from no platform: 'paths-{student}/*.ipynb'.",
+)
+def collect(
+    course: Course,
+    assignment: str,
+    sources: tuple[Path, ...],
+    unverified: bool,
+    named: str | None,
+) -> int:
+    """Take downloads from Moodle, Canvas or the exchange, or files from anywhere.
 
-    The exchange is nbgrader's; give its inbound folder. Nothing that was handed in is lost: all of
-    it is under attempts/.
+    The exchange is nbgrader's; give its inbound folder. Clones of GitHub Classroom, or any folder
+    or zip of files, need --named. Nothing that was handed in is lost: all of it is under attempts/.
 
     Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
     (named at the end), 2 if nothing could be done.
@@ -228,7 +239,7 @@ def collect(course: Course, assignment: str, sources: tuple[Path, ...], unverifi
     doubtful = []
     try:
         for source in sources:
-            for taken in collect(course, assignment, source, unverified=unverified):
+            for taken in collect(course, assignment, source, unverified=unverified, named=named):
                 if taken.fine:
                     print(taken, flush=True)
                 else:

@@ -6,7 +6,6 @@ Manual grades and comments stay; formgrader finds a notebook to open for every s
 from __future__ import annotations
 
 import fcntl
-import logging
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager
@@ -27,6 +26,7 @@ from .each import Failed, for_student
 from .exchange import read_stamp, read_time
 from .nbgrader_api import nbgrader_api
 from .results import Result, write
+from .rules import settle_lateness
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
@@ -44,7 +44,7 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
         LabkitError: The gradebook does not know the assignment, or cannot be used.
     """
     said: list[str | Failed] = []
-    source, late = release_source(course, assignment), _late_rule(course)
+    source = release_source(course, assignment)
     with open_gradebook(course) as book:
         if assignment not in {known.name for known in book.assignments}:
             seed = Bundle.of(course, assignment).data["seed"]
@@ -53,15 +53,16 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
                 f"labkit release {assignment} --seed {seed}"
             )
         for result in results:
-            step = partial(_record, course, book, source, late, result)
+            step = partial(_record, course, book, source, result)
             done = for_student(result.student, step, of_all=(OperationalError,))
             if isinstance(done, Failed):
                 book.db.rollback()
             said += [done] if isinstance(done, Failed) else done
+        settle_lateness(course, book, assignment)
     return said
 
 
-def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -> list[str]:
+def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:
     """Write one student's scores, whole or not at all; nbgrader commits who the student is first.
 
     Returns:
@@ -79,9 +80,6 @@ def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -
     notes += _write_scores(
         submission, result, automatic_scores(notebook, result), _changed(path, notebook)
     )
-    submission.late_submission_penalty = None
-    for notebook in submission.notebooks:
-        notebook.late_submission_penalty = late(result.student, notebook, submission)
     book.db.flush()
     write(path, written)
     book.db.commit()
@@ -285,24 +283,3 @@ def _write_scores(
                 )
                 grade.needs_manual_grade = True
             grade.auto_score = score
-
-
-def _late_rule(course: Course) -> Any:
-    """The course's own rule for late work, from nbgrader's settings."""
-    from nbgrader.plugins import LateSubmissionPlugin
-    from traitlets.utils.importstring import import_item
-
-    config = nbgrader_api(course).config
-    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
-    plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
-    plugin.log.setLevel(logging.CRITICAL)
-
-    def late(student: str, notebook: Any, submission: Any) -> float | None:
-        if submission.total_seconds_late <= 0:
-            return None
-        penalty: float | None = plugin.late_submission_penalty(
-            student, notebook.score, submission.total_seconds_late
-        )
-        return penalty
-
-    return late

@@ -20,6 +20,7 @@ from .identity import lms_users
 from .platforms import LmsUser
 from .results import Result
 from .roster import Student, read_roster
+from .rules import settle_lateness
 from .standing import grade_again, standing
 from .submission import is_name, plain_name, students
 
@@ -164,6 +165,7 @@ def marks_of(course: Course, assignment: str) -> Iterator[Mark]:
     stand = {one.student: one for one in standing(course, assignment)}
     full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
+        settle_lateness(course, book, assignment)
         there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
         full = max((float(s.max_score) for s in there.values()), default=full)
         listed = {student.id for student in roster.students}
