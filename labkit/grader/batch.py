@@ -39,6 +39,7 @@ class GradeOptions:
         dask: Address of a scheduler, or None for this machine.
         shard: (i, n): the i-th of n parts of the class, from 1.
         again: Whether to grade again what has a result that is up to date.
+        lower: Whether the mark of an unchanged submission may fall.
         limits: What a submission may use, on a quick machine.
     """
 
@@ -47,6 +48,7 @@ class GradeOptions:
     dask: str | None = None
     shard: tuple[int, int] = WHOLE
     again: bool = False
+    lower: bool = False
     limits: Limits = field(default_factory=Limits)
 
 
@@ -96,16 +98,19 @@ def grade_class(
     with exclusive_run(results.folder, options.shard):
         for student in (x for x in students if in_shard(x, options.shard)):
             submission = Submission.of(course, assignment, student)
-            before = None if options.again else _still_good(results, submission, bundle, options)
-            if before is None:
-                todo.append(submission)
-            else:
+            before = None if options.again else still_good([results], submission, bundle, options)
+            aside = None if before else still_good([results.aside], submission, bundle, options)
+            if before is not None:
                 yield GradedSubmission(before, "as before")
+            elif aside is not None:
+                yield for_student(student, partial(_keep, results, aside, options.lower))
+            else:
+                todo.append(submission)
         for result in grade_aside(course, bundle, todo, options):
             yield (
                 result
                 if isinstance(result, LabkitError)
-                else for_student(result.student, partial(_keep, results, result))
+                else for_student(result.student, partial(_keep, results, result, options.lower))
             )
 
 
@@ -129,14 +134,12 @@ def grade_aside(
             yield for_student(students[future], future.result, of_all=(NoIsolation,))
 
 
-def _keep(results: Results, result: Result) -> GradedSubmission:
-    """Store a result, unless it would lower the mark of an unchanged submission."""
+def _keep(results: Results, result: Result, lower: bool) -> GradedSubmission:
+    """Store a result, unless it would lower the mark of an unchanged submission unasked."""
     before = results.get(result.student)
     same = before is not None and before.hashes["submission"] == result.hashes["submission"]
-    if before is not None and same and result.score < before.score:
-        return GradedSubmission(
-            before, f"kept; it would be {result.score:g} now, see `labkit regrade`"
-        )
+    if before is not None and same and result.score < before.score and not lower:
+        return GradedSubmission(before, f"kept; --lower lets it fall to {result.score:g}")
     results.keep(result)
     return GradedSubmission(result, "" if before is None else f"was {before.score:g}")
 
@@ -169,12 +172,15 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
         )
 
 
-def _still_good(
-    results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
+def still_good(
+    places: Iterable[Results], submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
-    """The result before, if it came from these very contents."""
-    before = results.get(submission.student)
-    if before is None or (options.isolated and before.isolation.startswith("none")):
-        return None
-    data, _, _ = submission.read(options.limits.notebook)
-    return before if before.hashes == hashes(data, bundle) else None
+    """A result before, if it came from these very contents."""
+    for results in places:
+        before = results.get(submission.student)
+        if before is None or (options.isolated and before.isolation.startswith("none")):
+            continue
+        data, _, _ = submission.read(options.limits.notebook)
+        if before.hashes == hashes(data, bundle):
+            return before
+    return None

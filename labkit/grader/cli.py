@@ -45,6 +45,8 @@ def _shard(text: str) -> tuple[int, int]:
 @jobs
 @click.option("--json", "as_json", is_flag=True, help="One JSON object per line, for programs.")
 @click.option("--again", is_flag=True, help="Grade anew what is graded already.")
+@click.option("--diff", is_flag=True, help="Only say whose mark would move.")
+@click.option("--lower", is_flag=True, help="Let marks fall that would, after a test has changed.")
 @click.option("--dask", metavar="ADDRESS", help="Of a Dask scheduler that shares the folder.")
 @click.option(
     "--shard", type=_shard, default="1/1", metavar="i/n", help="Only the i-th of n parts."
@@ -56,19 +58,28 @@ def _shard(text: str) -> tuple[int, int]:
     default=True,
     help="Run students' code with your own rights, able to read and delete your files.",
 )
-def grade(course: Course, assignment: str, student: str | None, as_json: bool, **how: Any) -> int:
+def grade(
+    course: Course, assignment: str, student: str | None, as_json: bool, diff: bool, **how: Any
+) -> int:
     """Grade what was handed in and is not graded yet.
 
-    Each submission is graded in a sandbox of its own.
+    Each submission is graded in a sandbox of its own. After a test has changed and was released,
+    all are graded again; no mark falls unless you say --lower.
     """
     from ..course.serialize import record_data
     from .batch import GradeOptions, common_failures, grade_class
+    from .changes import changes, summary
     from .gradebook import record
-    from .lock import WHOLE
+    from .lock import WHOLE, exclusive_run
     from .results import Result, Results
 
     with Failures() as failures:
         who = _handed_in(course, assignment, student, failures)
+        if diff:
+            with exclusive_run(Results(course, assignment).folder):
+                found = changes(course, assignment, who, GradeOptions(**how))
+                _tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
+            return failures.code
         graded: list[Result] = []
         done = failures.sift(
             grade_class(course, assignment, who, GradeOptions(**how)), "not graded"
@@ -86,38 +97,6 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             _tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
         if graded and not as_json:
             print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
-    return failures.code
-
-
-@verb("01_paths --diff")
-@of_assignment
-@one_student
-@click.option("--diff", is_flag=True, help="Only say whose mark would move.")
-@click.option("--lower", is_flag=True, help="Let marks fall too.")
-@jobs
-def regrade(
-    course: Course, assignment: str, student: str | None, diff: bool, lower: bool, jobs: int
-) -> int:
-    """Grade again after a test or its points have changed."""
-    from .batch import GradeOptions
-    from .gradebook import record
-    from .lock import exclusive_run
-    from .regrade import accept, moves, summary
-    from .results import Results
-
-    with Failures() as failures, exclusive_run(Results(course, assignment).folder):
-        who = _handed_in(course, assignment, student, failures)
-        found = moves(course, assignment, who, GradeOptions(jobs=jobs))
-        moved = list(failures.sift(found, "not graded"))
-        _tell(summary(moved), sys.stdout)
-        if not diff:
-            counts = accept(course, assignment, moved, lower=lower)
-            accepted = list(failures.sift(counts, "not kept"))
-            left = len(moved) - len(counts)
-            if left:
-                print(f"{left} marks would fall and stay as they are; --lower lets them")
-            recorded = record(course, assignment, accepted)
-            _tell(failures.sift(recorded, "not in the gradebook"), sys.stdout)
     return failures.code
 
 
@@ -245,6 +224,23 @@ def class_report(
     return failures.code
 
 
+@verb("ada bang_bang")
+@click.argument("student")
+@click.argument("question")
+@click.option("--assignment", metavar="NAME", help="If several have a question of that name.")
+@of_course
+def explain(course: Course, student: str, question: str, assignment: str | None) -> int:
+    """Say why an answer has its mark, with its numbers.
+
+    The answer runs once more in the sandbox, with the hidden case that decided laid open: that part
+    is for you, and what the student may be shown is marked.
+    """
+    from .explain import explain
+
+    print(explain(course, student, question, assignment))
+    return 0
+
+
 def _handed_in(
     course: Course, assignment: str, student: str | None, failures: Failures
 ) -> list[str]:
@@ -293,4 +289,4 @@ def _write(text: str, where: Path | None) -> None:
         print(f"written: {where}")
 
 
-COMMANDS = (grade, regrade, feedback, export, class_report)
+COMMANDS = (grade, explain, feedback, export, class_report)

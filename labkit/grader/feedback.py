@@ -29,6 +29,7 @@ from .each import Failed, for_student
 from .marks import Mark, mark_of
 from .pages import TEMPLATES, render
 from .results import Result, write
+from .rules import read_rules
 
 MEASURES = {
     "rms_mm": ("position error of the tip, RMS", "mm", 1.0),
@@ -60,12 +61,13 @@ class Measure(NamedTuple):
     over: bool
 
 
-def page(result: Result, mark: Mark | None = None) -> str:
+def page(result: Result, mark: Mark | None = None, course: str = "") -> str:
     """The page of one student.
 
     Args:
         result: What came of the submission.
         mark: What it is worth, as the gradebook has it; by default what the result says.
+        course: What the course is called.
 
     Returns:
         HTML in one piece, readable without its scripts.
@@ -78,6 +80,7 @@ def page(result: Result, mark: Mark | None = None) -> str:
         "feedback.html.j2",
         result=result,
         mark=mark,
+        course=course,
         lines=asked | {line.name: line for line in mark.lines},
         by_hand=[line for line in mark.lines if line.name not in asked],
         heads=HEADS,
@@ -105,12 +108,13 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
     Returns:
         The files; and for whom no page could be made.
     """
+    name = read_rules(course).name
 
     def make(mark: Mark) -> Path:
         if mark.result is None or (mark.missing and not mark.lines):
             raise LabkitError(mark.missing or "there is no result of theirs; grade again")
         path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
-        write(path, page(mark.result, mark))
+        write(path, page(mark.result, mark, name))
         return path
 
     return [for_student(mark.student, partial(make, mark)) for mark in marks]

@@ -158,18 +158,25 @@ class Mark:
         return self.user.number if self.user and self.user.system == system else ""
 
 
-def marks_of(course: Course, assignment: str) -> Iterator[Mark]:
-    """Everybody in the roster, and whoever else handed in or is graded, in order of name."""
+def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterator[Mark]:
+    """Everybody in the roster, and whoever else handed in or is graded, in order of name.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        only: One student; by default all.
+    """
     by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
     roster = read_roster(course)
-    stand = {one.student: one for one in standing(course, assignment)}
+    stand = {one.student: one for one in standing(course, assignment, only)}
     full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
         settle_lateness(course, book, assignment)
         there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
         full = max((float(s.max_score) for s in there.values()), default=full)
         listed = {student.id for student in roster.students}
-        for student in sorted(stand.keys() | there.keys() | listed):
+        everybody = stand.keys() | there.keys() | listed
+        for student in sorted(everybody if only is None else everybody & {only}):
             submission, one = there.get(student), stand.get(student)
             row = Mark(student, points=full, person=roster.get(student))
             row = replace(row, user=by_platform.get(student), remark="nothing was handed in")

@@ -15,8 +15,9 @@ import nbformat
 
 from ..course.layout import Course
 from ..course.notebook import manifest
-from ..course.release import prepare, write
+from ..course.release import write
 from ..errors import LabkitError
+from .authoring import prepared
 from .gradebook import migrate
 from .nbgrader_api import nbgrader_api, reason
 
@@ -76,7 +77,7 @@ def release(course: Course, name: str, seed: int) -> Released:
         LabkitError: `prepare` or nbgrader refused, an answer would have leaked, or marks given by
             hand would have been lost.
     """
-    made = prepare(course, name, seed)
+    made = prepared(course, name, seed)
     added = migrate(course, name, made.source)  # once nothing of the author's can be refused
     write(made, added)
     generate(course, name)

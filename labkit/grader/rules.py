@@ -76,6 +76,7 @@ class Rules(_Table, frozen=True):
 
     Attributes:
         name: What the course is called on pages.
+        id: What nbgrader calls it, in the exchange; in one word.
         zone: In which due dates are that state none, such as "Europe/Berlin".
         counts: Which attempt counts.
         late: What late work loses.
@@ -84,6 +85,7 @@ class Rules(_Table, frozen=True):
     """
 
     name: str = ""
+    id: Annotated[str, msgspec.Meta(pattern=r"^[\w-]+$")] = "trajectory_tracking"
     zone: str = "UTC"
     counts: Literal["latest", "latest in time"] = "latest"
     late: Late = Late()

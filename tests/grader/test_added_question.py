@@ -110,7 +110,8 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
     made = release(course, NAME, SEED)
     assert made.questions == 6
     assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
-    assert main(["regrade", NAME, "--course", str(course.root)]) == 0
+    for words in (["--diff"], []):
+        assert main(["grade", NAME, "--course", str(course.root), *words]) == 0
     said = capsys.readouterr().out
     assert "0 of 2 marks move" in said
     assert "full marks were 16 and are 20 now" in said

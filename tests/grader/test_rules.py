@@ -1,4 +1,4 @@
-"""Due dates, extensions and late rules: one file of the course, which every page and table keeps."""
+"""Due dates, extensions and late rules: one file of the course that all pages and tables keep."""
 
 from __future__ import annotations
 
