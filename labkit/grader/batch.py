@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import as_completed
+from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 
 from ..course.bundle import Bundle
 from ..course.layout import Course
@@ -20,7 +22,7 @@ from .lock import WHOLE, exclusive_run
 from .results import Result, Results, digest
 from .sandbox.limits import Limits
 from .sandbox.mounts import NoIsolation
-from .submission import Submission
+from .submission import Submission, students
 from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3
@@ -76,14 +78,14 @@ def in_shard(student: str, shard: tuple[int, int]) -> bool:
 
 
 def grade_class(
-    course: Course, assignment: str, students: Sequence[str], options: GradeOptions
+    course: Course, assignment: str, who: Sequence[str], options: GradeOptions
 ) -> Iterator[GradedSubmission | LabkitError]:
     """Grade submissions, each into a result file of its own.
 
     Args:
         course: The course.
         assignment: Its name.
-        students: Whose submissions.
+        who: Whose submissions.
         options: How to grade.
 
     Yields:
@@ -96,7 +98,7 @@ def grade_class(
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
     with exclusive_run(results.folder, options.shard):
-        for student in (x for x in students if in_shard(x, options.shard)):
+        for student in (x for x in who if in_shard(x, options.shard)):
             submission = Submission.of(course, assignment, student)
             before = None if options.again else still_good([results], submission, bundle, options)
             aside = None if before else still_good([results.aside], submission, bundle, options)
@@ -106,12 +108,53 @@ def grade_class(
                 yield for_student(student, partial(_keep, results, aside, options.lower))
             else:
                 todo.append(submission)
-        for result in grade_aside(course, bundle, todo, options):
-            yield (
-                result
-                if isinstance(result, LabkitError)
-                else for_student(result.student, partial(_keep, results, result, options.lower))
-            )
+        yield from _kept(results, grade_aside(course, bundle, todo, options), options)
+
+
+def watch(
+    course: Course, assignment: str, options: GradeOptions, pause: float = 1.0
+) -> Iterator[GradedSubmission | LabkitError]:
+    """Grade submissions as they come, in workers that stay warm, until somebody stops it.
+
+    What is handed in and has no result of its own is the queue, so a run that is killed loses
+    nothing.  One whose grading failed is tried again once something else was handed in.
+
+    Args:
+        course: The course.
+        assignment: Its name.
+        options: How to grade.
+        pause: Seconds between two looks at ``submitted/``.
+
+    Yields:
+        Each result, or what failed.
+
+    Raises:
+        LabkitError: The assignment was not released, or another run is under way.
+        NoIsolation: No sandbox can be made here.
+    """
+    results, looked = Results(course, assignment), dict[str, tuple[float, int]]()
+    with (
+        exclusive_run(results.folder, options.shard),
+        executor(options.jobs, options.dask) as pool,
+    ):
+        while True:
+            bundle, todo = Bundle.of(course, assignment), []
+            for student in students(course, assignment):
+                submission = Submission.of(course, assignment, student)
+                seen = _look(submission.folder)
+                if looked.get(student) != seen and in_shard(student, options.shard):
+                    looked[student] = seen
+                    if still_good([results], submission, bundle, options) is None:
+                        todo.append(submission)
+            yield from _kept(results, _graded(pool, course, bundle, todo, options), options)
+            if not todo:
+                time.sleep(pause)
+
+
+def _look(folder: Path) -> tuple[float, int]:
+    """What changes when something else is handed in."""
+    found = [path.lstat() for path in folder.glob("*.ipynb")]
+    return max((x.st_mtime for x in found), default=0.0), sum(x.st_size for x in found)
 
 
 def grade_aside(
@@ -126,12 +169,32 @@ def grade_aside(
         NoIsolation: No sandbox can be made here.
         LabkitError: There is no such Dask scheduler.
     """
+    with executor(options.jobs, options.dask) as pool:
+        yield from _graded(pool, course, bundle, submissions, options)
+
+
+def _graded(
+    pool: Executor,
+    course: Course,
+    bundle: Bundle,
+    submissions: Iterable[Submission],
+    options: GradeOptions,
+) -> Iterator[Result | Failed]:
     key = bundle.data["hash"]
     tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
-    with executor(options.jobs, options.dask) as pool:
-        students = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-        for future in as_completed(students):
-            yield for_student(students[future], future.result, of_all=(NoIsolation,))
+    whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
+    for future in as_completed(whose):
+        yield for_student(whose[future], future.result, of_all=(NoIsolation,))
+
+
+def _kept(
+    results: Results, graded: Iterable[Result | Failed], options: GradeOptions
+) -> Iterator[GradedSubmission | LabkitError]:
+    for result in graded:
+        if isinstance(result, LabkitError):
+            yield result
+        else:
+            yield for_student(result.student, partial(_keep, results, result, options.lower))
 
 
 def _keep(results: Results, result: Result, lower: bool) -> GradedSubmission:

@@ -1,14 +1,12 @@
-"""Commands on what was collected: grade, hand back, report, export."""
+"""Commands on what was graded: hand back, report, export."""
 
 from __future__ import annotations
 
-import json
-import os
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 import click
 
@@ -22,82 +20,7 @@ if TYPE_CHECKING:
     from .marks import Mark
 
 one_student = click.option("--student", metavar="S", help="Only this one.")
-jobs = click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    metavar="N",
-    default=lambda: len(os.sched_getaffinity(0)),
-    help="Workers; by default one per core.",
-)
 to_file = click.option("--to", type=PATH, metavar="FILE", help="Instead of the screen.")
-
-
-def _shard(text: str) -> tuple[int, int]:
-    first, _, last = text.partition("/")
-    if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
-        raise click.BadParameter(f"{text} is not a part; write 1/4, 2/4, 3/4 or 4/4")
-    return int(first), int(last)
-
-
-@verb("01_paths --student ada")
-@of_assignment
-@one_student
-@jobs
-@click.option("--json", "as_json", is_flag=True, help="One JSON object per line, for programs.")
-@click.option("--again", is_flag=True, help="Grade anew what is graded already.")
-@click.option("--diff", is_flag=True, help="Only say whose mark would move.")
-@click.option("--lower", is_flag=True, help="Let marks fall that would, after a test has changed.")
-@click.option("--dask", metavar="ADDRESS", help="Of a Dask scheduler that shares the folder.")
-@click.option(
-    "--shard", type=_shard, default="1/1", metavar="i/n", help="Only the i-th of n parts."
-)
-@click.option(
-    "--unsafe-no-isolation",
-    "isolated",
-    flag_value=False,
-    default=True,
-    help="Run students' code with your own rights, able to read and delete your files.",
-)
-def grade(
-    course: Course, assignment: str, student: str | None, as_json: bool, diff: bool, **how: Any
-) -> int:
-    """Grade what was handed in and is not graded yet.
-
-    Each submission is graded in a sandbox of its own. After a test has changed and was released,
-    all are graded again; no mark falls unless you say --lower.
-    """
-    from ..course.serialize import record_data
-    from .batch import GradeOptions, common_failures, grade_class
-    from .changes import changes, summary
-    from .gradebook import record
-    from .lock import WHOLE, exclusive_run
-    from .results import Result, Results
-
-    with Failures() as failures:
-        who = _handed_in(course, assignment, student, failures)
-        if diff:
-            with exclusive_run(Results(course, assignment).folder):
-                found = changes(course, assignment, who, GradeOptions(**how))
-                _tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
-            return failures.code
-        graded: list[Result] = []
-        done = failures.sift(
-            grade_class(course, assignment, who, GradeOptions(**how)), "not graded"
-        )
-        for number, one in enumerate(done, start=1):
-            graded.append(one.result)
-            says = f" ({one.says})" if one.says else ""
-            line = f"[{number}/{len(who)}] {one.result}{says}"
-            print(json.dumps(record_data(one.result)) if as_json else line, flush=True)
-        said = sys.stderr if as_json else sys.stdout
-        if how["shard"] == WHOLE:
-            recorded = record(course, assignment, graded)
-            _tell(failures.sift(recorded, "not in the gradebook"), said)
-            everybody = graded if student else list(Results(course, assignment))
-            _tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
-        if graded and not as_json:
-            print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
-    return failures.code
 
 
 @verb("01_paths --student ada")
@@ -185,13 +108,13 @@ def export(
         if not term:
             raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
         for name, marks in term.items():
-            _tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
+            tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
         _write(as_csv(of_term(term, {name: rules.weight(name) for name in term})), to)
         return int(any(mark.missing for marks in term.values() for mark in marks))
     marks = read(assignment)
     if not marks:
         raise _nobody(assignment, None)
-    _tell(remarks(layout, marks), sys.stderr)
+    tell(remarks(layout, marks), sys.stderr)
     _write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
     return int(any(mark.missing for mark in marks))
 
@@ -224,41 +147,6 @@ def class_report(
     return failures.code
 
 
-@verb("ada bang_bang")
-@click.argument("student")
-@click.argument("question")
-@click.option("--assignment", metavar="NAME", help="If several have a question of that name.")
-@of_course
-def explain(course: Course, student: str, question: str, assignment: str | None) -> int:
-    """Say why an answer has its mark, with its numbers.
-
-    The answer runs once more in the sandbox, with the hidden case that decided laid open: that part
-    is for you, and what the student may be shown is marked.
-    """
-    from .explain import explain
-
-    print(explain(course, student, question, assignment))
-    return 0
-
-
-def _handed_in(
-    course: Course, assignment: str, student: str | None, failures: Failures
-) -> list[str]:
-    """Who handed in, or the one asked for; folders with a name that is not fit are failures."""
-    from .submission import misnamed, students
-
-    found = students(course, assignment)
-    who = [student] if student else found
-    if student is None:
-        failures.add("not graded", misnamed(course, assignment))
-    if set(who) - set(found) or not (who or failures.code):
-        raise LabkitError(
-            f"nothing of {student or 'anybody'} lies in submitted/*/{assignment}; "
-            "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
-        )
-    return who
-
-
 def _wait_for_marks(marks: Iterable[Mark]) -> None:
     """Raise a LabkitError if a person has still something to mark."""
     waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in marks if mark.open]
@@ -276,7 +164,8 @@ def _nobody(assignment: str, student: str | None) -> LabkitError:
     return LabkitError(f"{who} graded in {assignment}; type: labkit grade {assignment}")
 
 
-def _tell(sentences: Iterable[str], where: TextIO) -> None:
+def tell(sentences: Iterable[str], where: TextIO) -> None:
+    """Print sentences as they come."""
     for sentence in sentences:
         print(sentence, file=where, flush=True)
 
@@ -289,4 +178,4 @@ def _write(text: str, where: Path | None) -> None:
         print(f"written: {where}")
 
 
-COMMANDS = (grade, explain, feedback, export, class_report)
+COMMANDS = (feedback, export, class_report)

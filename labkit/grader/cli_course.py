@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
 from typing import Any
+from zoneinfo import ZoneInfo
 
 import click
 
@@ -247,12 +248,18 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     metavar="PATTERN",
     help="How files are named that come from no platform: 'paths-{student}/*.ipynb'.",
 )
+@click.option(
+    "--at",
+    metavar="TIME",
+    help="When the download or clone was made; what has no time of its own was in by then.",
+)
 def collect(
     course: Course,
     assignment: str,
     sources: tuple[Path, ...],
     unverified: bool,
     named: str | None,
+    at: str | None,
 ) -> int:
     """Take downloads from Moodle, Canvas or the exchange, or files from anywhere.
 
@@ -263,11 +270,18 @@ def collect(
     (named at the end), 2 if nothing could be done.
     """
     from .collect import collect
+    from .exchange import read_time
+    from .rules import read_rules
 
+    when = read_time(at, ZoneInfo(read_rules(course).zone)) if at else None
+    if at and when is None:
+        raise LabkitError(f"{at!r} is not a time; write 2026-11-02 23:59")
     doubtful = []
     try:
         for source in sources:
-            for taken in collect(course, assignment, source, unverified=unverified, named=named):
+            for taken in collect(
+                course, assignment, source, unverified=unverified, named=named, at=when
+            ):
                 if taken.fine:
                     print(taken, flush=True)
                 else:

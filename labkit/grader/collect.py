@@ -10,7 +10,7 @@ import zipfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -58,6 +58,7 @@ def collect(
     *,
     unverified: bool = False,
     named: str | None = None,
+    at: datetime | None = None,
 ) -> Iterator[Taken]:
     """Take notebooks from a download; the same once more changes nothing.
 
@@ -69,6 +70,8 @@ def collect(
             their word.
         named: How files are named that come from no platform, such as
             ``paths-{student}/*.ipynb``; then the source is a folder of them, or a zip.
+        at: When the source was made, if that is known; what has no time of its own was handed in
+            by then.
 
     Yields:
         What was done with each file.
@@ -87,7 +90,7 @@ def collect(
                 files = list(in_zip(archive, now, read) if archive else in_folder(source, read))
                 others = [x for x in course.names() if x != assignment]
                 mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
-                yield from _take(course, assignment, source, mine)
+                yield from _take(course, assignment, source, [_made(x, at) for x in mine])
         elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
             yield from _take(course, assignment, source, files)
@@ -97,7 +100,13 @@ def collect(
             )
         else:
             with open_zip(source) as archive:
-                yield from _take(course, assignment, source, list(in_zip(archive, now)))
+                files = [_made(file, at) for file in in_zip(archive, now)]
+                yield from _take(course, assignment, source, files)
+
+
+def _made(file: File, at: datetime | None) -> File:
+    """A file of a source that was made at a known time."""
+    return file if at is None or file.exact else replace(file, when=at, exact=True)
 
 
 def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
