@@ -1,8 +1,13 @@
 """nbgrader's settings for this course: its layout, its stubs, its limits."""
 
+import tomllib
+from pathlib import Path
+
 c = get_config()  # noqa: F821  # nbgrader defines it
 
-c.CourseDirectory.course_id = "trajectory_tracking"
+rules = Path(__file__).with_name("course.toml")
+rules = tomllib.loads(rules.read_text(encoding="utf-8")) if rules.exists() else {}
+c.CourseDirectory.course_id = rules.get("id", "trajectory_tracking")
 c.CourseDirectory.source_directory = "build/course/source"
 c.CourseDirectory.release_directory = "assignments"
 c.CourseDirectory.submitted_directory = "submitted"
@@ -20,6 +25,13 @@ c.HTMLExporter.filters = {
     "markdown2html": "labkit.grader.markup.markdown",
     "clean_html": "labkit.grader.markup.clean",
 }
+
+# When work is due and what late work loses stands in course.toml; name a class of your own instead,
+# in a file that lies here, if its rules are not enough.
+c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
+
+# formgrader's button and nbgrader's command write the pages that `labkit feedback` writes.
+c.GenerateFeedback.exporter_class = "labkit.grader.feedback_exporter.StudentPage"
 
 # Students' code never runs in nbgrader's own process: a submission is brought into the release's
 # form and graded in a sandbox.

@@ -33,9 +33,9 @@ def program() -> click.Group:
     commands: list[click.Command] = [submit_check, merge]
     examples = EXAMPLES
     if find_spec("labkit.grader"):
-        from .grader import cli, cli_course
+        from .grader import cli, cli_course, cli_grade
 
-        commands += [*cli_course.COMMANDS, *cli.COMMANDS]
+        commands += [*cli_course.COMMANDS, *cli_grade.COMMANDS, *cli.COMMANDS]
         examples += EXAMPLES_FOR_INSTRUCTORS
     group = click.Group(
         "labkit",

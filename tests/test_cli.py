@@ -65,7 +65,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["submit-check", "."], ".: Is a directory"),
         (["merge", PATHS, PATHS, "--to", "nowhere/x.ipynb"], "nowhere/x.ipynb: No such file"),
         (["merge", WARMUP, PATHS, "--to", "x.ipynb"], "releases of the same assignment?"),
-        (["forget", "--course", "nowhere"], "there is no "),
+        (["term", "list", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
     ],

@@ -86,6 +86,12 @@ def is_check(grade_id: str) -> bool:
     return grade_id.endswith(_CHECK)
 
 
+def by_hand(cell: Cell) -> bool:
+    """Whether a person marks a released cell: nbgrader's manual answer, or its manual task."""
+    found = about(cell)
+    return bool(found.get("task") or (found.get("grade") and found.get("solution")))
+
+
 def defines(cell: Cell, name: str) -> bool:
     """Whether a code cell defines a function, a class or a value of that name."""
     if cell["cell_type"] != "code":
@@ -137,6 +143,7 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
             "kind": kind(cell),
             "grade_id": grade_id(cell) or None,
             "source": cell.source,
+            **({"points": float(about(cell)["points"])} if by_hand(cell) else {}),
         }
         for cell in source.cells
     ]

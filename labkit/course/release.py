@@ -6,7 +6,9 @@ room for it in the gradebook.
 
 from __future__ import annotations
 
+import copy
 import json
+import re
 import shutil
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -18,7 +20,7 @@ from ..errors import LabkitError
 from ..formats import stamp
 from .bundle import write_bundle
 from .layout import Course
-from .notebook import Notebook, manifest, source_notebook
+from .notebook import Notebook, kind, manifest, source_notebook
 from .question import Question
 from .refusals import refusals
 from .serialize import question_data
@@ -81,10 +83,24 @@ def write(made: Prepared, added: Iterable[str] = ()) -> None:
         added: Questions that are new to students who have handed in already.
     """
     public = _checks(made)
-    _write(made.course.source / made.name, made.source, public)
+    _write(made.course.source / made.name, _at_home(made.source), public)
     _write(made.course.solution / made.name, made.solved, public)
     cells = manifest(made.source)
     write_bundle(made.course, made.name, made.seed, cells, made.questions, added)
+
+
+def _at_home(source: Notebook) -> Notebook:
+    """A source whose answers find the course's ``solutions``, so that nbgrader can validate it."""
+    notebook = copy.deepcopy(source)
+    for cell in notebook.cells:
+        if kind(cell) == "answer":
+            cell.source = re.sub(
+                r"^( *)### BEGIN SOLUTION\n",
+                r'\g<0>\1__import__("sys").path.insert(0, "../../../..")\n',
+                cell.source,
+                flags=re.MULTILINE,
+            )
+    return notebook
 
 
 def _checks(made: Prepared) -> str:

@@ -10,7 +10,8 @@ that shows it, and an older download never takes the place of a newer hand-in.  
 that were handed in together the one that is called as the assignment counts, and of those the one
 with the highest number, ``01_paths(2).ipynb``; then the one that was collected last.  A notebook
 that somebody put into ``submitted/`` by hand is a hand-in of the moment at which the file was
-written.
+written.  Where ``course.toml`` says ``counts = "latest in time"``, the latest that came before it
+was due counts, and a late one only where there is no other.
 
 The one that counts is copied to ``submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb``, which nbgrader
 reads.
@@ -21,7 +22,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -33,6 +34,7 @@ from ..errors import LabkitError
 from .clean import safe_name
 from .exchange import SECRET, TIMESTAMP, read_secret, read_stamp, read_time
 from .results import digest, write
+from .rules import read_rules
 from .sandbox.limits import Limits
 from .submission import read_file
 
@@ -123,6 +125,22 @@ def counts(all: Sequence[Attempt], assignment: str) -> HandIn | None:
     return max(found, key=lambda x: (x.first.when, x.first.origin == BY_HAND), default=None)
 
 
+def that_counts(course: Course, student: str, assignment: str) -> HandIn | None:
+    """The attempt of a student that counts by the rules of the course; None if there is none.
+
+    Raises:
+        LabkitError: A record is damaged, or the rules are.
+    """
+    all, rules = attempts(course, student, assignment), read_rules(course)
+    due = rules.due_for(student, assignment)
+    if due is None or rules.counts == "latest":
+        return counts(all, assignment)
+    shown = (
+        replace(one, seen=tuple(x for x in one.seen if x.when <= due and not x.late)) for one in all
+    )
+    return counts([one for one in shown if one.seen], assignment) or counts(all, assignment)
+
+
 def keep(
     course: Course,
     student: str,
@@ -182,7 +200,7 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
         if path.is_symlink():
             raise LabkitError(f"{path.relative_to(course.root)} is a link; put a folder there")
     all = attempts(course, student, assignment)
-    ours, chosen = {one.sha256 for one in all}, counts(all, assignment)
+    ours, chosen = {one.sha256 for one in all}, that_counts(course, student, assignment)
     for path in sorted(folder.glob("*.ipynb")):
         if path.is_symlink() or not path.is_file():
             raise LabkitError(f"{path.relative_to(course.root)} is not a file; move it away")
@@ -208,7 +226,7 @@ def install(course: Course, student: str, assignment: str) -> HandIn | None:
     Raises:
         LabkitError: An attempt or its record is damaged.
     """
-    chosen = counts(attempts(course, student, assignment), assignment)
+    chosen = that_counts(course, student, assignment)
     if chosen is None:
         return None
     source, when = chosen.attempt.path, chosen.first.when
@@ -220,6 +238,8 @@ def install(course: Course, student: str, assignment: str) -> HandIn | None:
     same = path.is_file() and path.read_bytes() == data
     secret = read_secret(source.parent)
     stated = [x.when for x in (chosen.first, *chosen.attempt.seen) if x.exact]
+    if not stated and chosen.first.late:  # no earlier than this, as far as the platform says
+        stated = [chosen.first.when]
     stamp = str(stated[0]).encode() if stated else None
     for name, content in ((TIMESTAMP, stamp), (SECRET, secret)):
         if content is not None:

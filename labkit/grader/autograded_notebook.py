@@ -13,7 +13,7 @@ import nbformat
 
 from ..course.layout import Course
 from ..course.messages import summary
-from ..course.notebook import Notebook, about, grade_id, kind, question_of
+from ..course.notebook import Notebook, about, by_hand, grade_id, kind, question_of
 from .results import Answer, Result
 
 
@@ -33,8 +33,13 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
         text = own["source"] if code else _as_typed(own["source"])
         extra.setdefault(own["after"], []).append(make(text, id=f"own-{number:04d}"))
     for cell in notebook.cells:
-        if kind(cell) == "answer":
-            cell.source = answers.get(grade_id(cell), "")
+        name = grade_id(cell)
+        if by_hand(cell):
+            cell.source = (
+                cell.source if about(cell)["task"] else result.written.get(name, cell.source)
+            )
+        elif kind(cell) == "answer":
+            cell.source = answers.get(name, "")
     notebook.cells = extra.get("", []) + [
         one for cell in notebook.cells for one in (cell, *extra.get(cell["id"], []))
     ]
@@ -47,7 +52,7 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
     for cell in notebook.cells:
         if cell.cell_type == "code":
             cell.outputs, cell.execution_count = [], None
-        if not about(cell).get("grade"):
+        if not about(cell).get("grade") or by_hand(cell):
             continue
         answer = answers.get(question_of(grade_id(cell)))
         text = "\n".join(_told(answer)) if answer else result.rejected
@@ -74,9 +79,16 @@ def _told(answer: Answer) -> list[str]:
 
 
 def release_source(course: Course, assignment: str) -> Notebook:
-    """The release with its metadata."""
-    path = course.source / assignment / f"{assignment}.ipynb"
-    return nbformat.read(path, as_version=4)
+    """The release as graders have it; what students write in is as they were given it."""
+    source, given = (
+        nbformat.read(folder / assignment / f"{assignment}.ipynb", as_version=4)
+        for folder in (course.source, course.release)
+    )
+    blank = {grade_id(cell): cell for cell in given.cells}
+    for cell in source.cells:
+        if about(cell).get("solution"):
+            cell.source, cell.metadata = (blank[grade_id(cell)][x] for x in ("source", "metadata"))
+    return source
 
 
 def as_text(notebook: Notebook) -> str:

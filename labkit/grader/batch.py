@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import as_completed
+from concurrent.futures import Executor, as_completed
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 
 from ..course.bundle import Bundle
 from ..course.layout import Course
@@ -20,7 +22,7 @@ from .lock import WHOLE, exclusive_run
 from .results import Result, Results, digest
 from .sandbox.limits import Limits
 from .sandbox.mounts import NoIsolation
-from .submission import Submission
+from .submission import Submission, students
 from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3
@@ -39,6 +41,7 @@ class GradeOptions:
         dask: Address of a scheduler, or None for this machine.
         shard: (i, n): the i-th of n parts of the class, from 1.
         again: Whether to grade again what has a result that is up to date.
+        lower: Whether the mark of an unchanged submission may fall.
         limits: What a submission may use, on a quick machine.
     """
 
@@ -47,6 +50,7 @@ class GradeOptions:
     dask: str | None = None
     shard: tuple[int, int] = WHOLE
     again: bool = False
+    lower: bool = False
     limits: Limits = field(default_factory=Limits)
 
 
@@ -74,14 +78,14 @@ def in_shard(student: str, shard: tuple[int, int]) -> bool:
 
 
 def grade_class(
-    course: Course, assignment: str, students: Sequence[str], options: GradeOptions
+    course: Course, assignment: str, who: Sequence[str], options: GradeOptions
 ) -> Iterator[GradedSubmission | LabkitError]:
     """Grade submissions, each into a result file of its own.
 
     Args:
         course: The course.
         assignment: Its name.
-        students: Whose submissions.
+        who: Whose submissions.
         options: How to grade.
 
     Yields:
@@ -94,19 +98,63 @@ def grade_class(
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
     with exclusive_run(results.folder, options.shard):
-        for student in (x for x in students if in_shard(x, options.shard)):
+        for student in (x for x in who if in_shard(x, options.shard)):
             submission = Submission.of(course, assignment, student)
-            before = None if options.again else _still_good(results, submission, bundle, options)
-            if before is None:
-                todo.append(submission)
-            else:
+            before = None if options.again else still_good([results], submission, bundle, options)
+            aside = None if before else still_good([results.aside], submission, bundle, options)
+            if before is not None:
                 yield GradedSubmission(before, "as before")
-        for result in grade_aside(course, bundle, todo, options):
-            yield (
-                result
-                if isinstance(result, LabkitError)
-                else for_student(result.student, partial(_keep, results, result))
-            )
+            elif aside is not None:
+                yield for_student(student, partial(_keep, results, aside, options.lower))
+            else:
+                todo.append(submission)
+        yield from _kept(results, grade_aside(course, bundle, todo, options), options)
+
+
+def watch(
+    course: Course, assignment: str, options: GradeOptions, pause: float = 1.0
+) -> Iterator[GradedSubmission | LabkitError]:
+    """Grade submissions as they come, in workers that stay warm, until somebody stops it.
+
+    What is handed in and has no result of its own is the queue, so a run that is killed loses
+    nothing.  One whose grading failed is tried again once something else was handed in.
+
+    Args:
+        course: The course.
+        assignment: Its name.
+        options: How to grade.
+        pause: Seconds between two looks at ``submitted/``.
+
+    Yields:
+        Each result, or what failed.
+
+    Raises:
+        LabkitError: The assignment was not released, or another run is under way.
+        NoIsolation: No sandbox can be made here.
+    """
+    results, looked = Results(course, assignment), dict[str, tuple[float, int]]()
+    with (
+        exclusive_run(results.folder, options.shard),
+        executor(options.jobs, options.dask) as pool,
+    ):
+        while True:
+            bundle, todo = Bundle.of(course, assignment), []
+            for student in students(course, assignment):
+                submission = Submission.of(course, assignment, student)
+                seen = _look(submission.folder)
+                if looked.get(student) != seen and in_shard(student, options.shard):
+                    looked[student] = seen
+                    if still_good([results], submission, bundle, options) is None:
+                        todo.append(submission)
+            yield from _kept(results, _graded(pool, course, bundle, todo, options), options)
+            if not todo:
+                time.sleep(pause)
+
+
+def _look(folder: Path) -> tuple[float, int]:
+    """What changes when something else is handed in."""
+    found = [path.lstat() for path in folder.glob("*.ipynb")]
+    return max((x.st_mtime for x in found), default=0.0), sum(x.st_size for x in found)
 
 
 def grade_aside(
@@ -121,22 +169,40 @@ def grade_aside(
         NoIsolation: No sandbox can be made here.
         LabkitError: There is no such Dask scheduler.
     """
+    with executor(options.jobs, options.dask) as pool:
+        yield from _graded(pool, course, bundle, submissions, options)
+
+
+def _graded(
+    pool: Executor,
+    course: Course,
+    bundle: Bundle,
+    submissions: Iterable[Submission],
+    options: GradeOptions,
+) -> Iterator[Result | Failed]:
     key = bundle.data["hash"]
     tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
-    with executor(options.jobs, options.dask) as pool:
-        students = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-        for future in as_completed(students):
-            yield for_student(students[future], future.result, of_all=(NoIsolation,))
+    whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
+    for future in as_completed(whose):
+        yield for_student(whose[future], future.result, of_all=(NoIsolation,))
 
 
-def _keep(results: Results, result: Result) -> GradedSubmission:
-    """Store a result, unless it would lower the mark of an unchanged submission."""
+def _kept(
+    results: Results, graded: Iterable[Result | Failed], options: GradeOptions
+) -> Iterator[GradedSubmission | LabkitError]:
+    for result in graded:
+        if isinstance(result, LabkitError):
+            yield result
+        else:
+            yield for_student(result.student, partial(_keep, results, result, options.lower))
+
+
+def _keep(results: Results, result: Result, lower: bool) -> GradedSubmission:
+    """Store a result, unless it would lower the mark of an unchanged submission unasked."""
     before = results.get(result.student)
     same = before is not None and before.hashes["submission"] == result.hashes["submission"]
-    if before is not None and same and result.score < before.score:
-        return GradedSubmission(
-            before, f"kept; it would be {result.score:g} now, see `labkit regrade`"
-        )
+    if before is not None and same and result.score < before.score and not lower:
+        return GradedSubmission(before, f"kept; --lower lets it fall to {result.score:g}")
     results.keep(result)
     return GradedSubmission(result, "" if before is None else f"was {before.score:g}")
 
@@ -169,12 +235,15 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
         )
 
 
-def _still_good(
-    results: Results, submission: Submission, bundle: Bundle, options: GradeOptions
+def still_good(
+    places: Iterable[Results], submission: Submission, bundle: Bundle, options: GradeOptions
 ) -> Result | None:
-    """The result before, if it came from these very contents."""
-    before = results.get(submission.student)
-    if before is None or (options.isolated and before.isolation.startswith("none")):
-        return None
-    data, _, _ = submission.read(options.limits.notebook)
-    return before if before.hashes == hashes(data, bundle) else None
+    """A result before, if it came from these very contents."""
+    for results in places:
+        before = results.get(submission.student)
+        if before is None or (options.isolated and before.isolation.startswith("none")):
+            continue
+        data, _, _ = submission.read(options.limits.notebook)
+        if before.hashes == hashes(data, bundle):
+            return before
+    return None

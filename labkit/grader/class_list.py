@@ -26,6 +26,7 @@ HEADS = {
     "id_number": "id number, idnumber, sis user id, student number, student id, "
     "matriculation number, matrikelnummer, id-nummer, numéro d’identification, número de id",
     "lms_user_id": "lms user id, canvas id",
+    "github": "github, github username, github login",
     "email": "email, e-mail, email address, e-mail address, mail, e-mail-adresse, "
     "adresse de courriel, dirección de correo",
     "first_name": "first name, firstname, given name, forename, vorname, prénom, nombre",
@@ -33,6 +34,7 @@ HEADS = {
     "name": "name, full name, student, student name, vollständiger name, nom complet, "
     "nombre completo",
     "participant": "identifier",
+    "handed_in": "last modified (submission)",
 }
 """What a column may be called, by what it holds; a column "id" is settled by its neighbours."""
 _FIELDS = {head: field for field, heads in HEADS.items() for head in heads.split(", ")}
@@ -53,6 +55,8 @@ class Entry:
         login: The name that they log in with.
         id_number: The university's number.
         participant: Moodle's number of the participant in one assignment.
+        github: The name on GitHub.
+        handed_in: When the participant handed in, as Moodle's worksheet writes it.
     """
 
     line: int
@@ -63,6 +67,8 @@ class Entry:
     login: str = ""
     id_number: str = ""
     participant: str = ""
+    github: str = ""
+    handed_in: str = ""
 
     @property
     def name(self) -> str:

@@ -17,6 +17,7 @@ from ..course.problem import Problem
 from ..course.verdict import Outcome, Verdict
 from .batch import common_failures
 from .clean import clean_line
+from .marks import Mark
 from .pages import render
 from .results import Result
 
@@ -32,31 +33,37 @@ COUNTED = (
 
 def report(
     assignment: str,
-    results: Sequence[Result],
+    marks: Sequence[Mark],
     problems: Mapping[str, Problem],
     called: Callable[[str], str],
-    left_out: int = 0,
 ) -> str:
     """The report, in Markdown.
 
     Args:
         assignment: Which.
-        results: Of the class.
+        marks: Of the class; the roster's students without one are left out.
         problems: By name, for what to say in the lecture.
         called: What a student is called in it: ``str``, or `pseudonyms`.
-        left_out: How many more have no result that counts.
     """
+    marks = [mark for mark in marks if not mark.absent]
+    counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
+    results = [mark.result for mark in counted if mark.result]
     who = {r.student: _as_text(called(r.student)) for r in results}
     graded = [r for r in results if not r.rejected]
+    rejected = [r for r in results if r.rejected]
     times = sorted(((r.seconds.get("all", 0.0), who[r.student]) for r in graded), reverse=True)
     text = render(
         "class_report.md.j2",
         assignment=assignment,
-        handed_in=len(results) + left_out,
-        left_out=left_out,
-        rejected=[f"{who[r.student]}: {_as_text(r.rejected)}" for r in results if r.rejected],
-        scores=sorted(r.score for r in graded),
-        points=graded[0].points if graded else 0.0,
+        handed_in=len(marks),
+        left_out=len(marks) - len(counted),
+        open=sum(bool(mark.open) for mark in counted),
+        rejected=[f"{who[r.student]}: {_as_text(r.rejected)}" for r in rejected],
+        graded=len(graded),
+        scores=sorted(
+            float(m.score) for m in counted if m.raw is not None and m.result not in rejected
+        ),
+        points=max((mark.points for mark in counted), default=0.0),
         mean=mean,
         median=median,
         questions=list(_questions(graded)),

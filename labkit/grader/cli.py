@@ -1,120 +1,26 @@
-"""Commands on what was collected: grade, hand back, report, export."""
+"""Commands on what was graded: hand back, report, export."""
 
 from __future__ import annotations
 
-import json
-import os
 import sys
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, TextIO
 
 import click
 
 from ..course.cli import PATH, verb
 from ..course.layout import Course
 from ..errors import LabkitError
-from .cli_course import of_assignment
-from .each import Failures
+from .cli_course import of_assignment, of_course
+from .each import Failed, Failures
+
+if TYPE_CHECKING:
+    from .marks import Mark
 
 one_student = click.option("--student", metavar="S", help="Only this one.")
-jobs = click.option(
-    "--jobs",
-    type=click.IntRange(min=1),
-    metavar="N",
-    default=lambda: len(os.sched_getaffinity(0)),
-    help="Workers; by default one per core.",
-)
 to_file = click.option("--to", type=PATH, metavar="FILE", help="Instead of the screen.")
-
-
-def _shard(text: str) -> tuple[int, int]:
-    first, _, last = text.partition("/")
-    if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
-        raise click.BadParameter(f"{text} is not a part; write 1/4, 2/4, 3/4 or 4/4")
-    return int(first), int(last)
-
-
-@verb("01_paths --student ada")
-@of_assignment
-@one_student
-@jobs
-@click.option("--json", "as_json", is_flag=True, help="One JSON object per line, for programs.")
-@click.option("--again", is_flag=True, help="Grade anew what is graded already.")
-@click.option("--dask", metavar="ADDRESS", help="Of a Dask scheduler that shares the folder.")
-@click.option(
-    "--shard", type=_shard, default="1/1", metavar="i/n", help="Only the i-th of n parts."
-)
-@click.option(
-    "--unsafe-no-isolation",
-    "isolated",
-    flag_value=False,
-    default=True,
-    help="Run students' code with your own rights, able to read and delete your files.",
-)
-def grade(course: Course, assignment: str, student: str | None, as_json: bool, **how: Any) -> int:
-    """Grade what was handed in and is not graded yet.
-
-    Each submission is graded in a sandbox of its own.
-    """
-    from ..course.serialize import record_data
-    from .batch import GradeOptions, common_failures, grade_class
-    from .gradebook import record
-    from .lock import WHOLE
-    from .results import Result, Results
-
-    with Failures() as failures:
-        who = _handed_in(course, assignment, student, failures)
-        graded: list[Result] = []
-        done = failures.sift(
-            grade_class(course, assignment, who, GradeOptions(**how)), "not graded"
-        )
-        for number, one in enumerate(done, start=1):
-            graded.append(one.result)
-            says = f" ({one.says})" if one.says else ""
-            line = f"[{number}/{len(who)}] {one.result}{says}"
-            print(json.dumps(record_data(one.result)) if as_json else line, flush=True)
-        said = sys.stderr if as_json else sys.stdout
-        if how["shard"] == WHOLE:
-            recorded = record(course, assignment, graded)
-            _tell(failures.sift(recorded, "not in the gradebook"), said)
-            everybody = graded if student else list(Results(course, assignment))
-            _tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
-        if graded and not as_json:
-            print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
-    return failures.code
-
-
-@verb("01_paths --diff")
-@of_assignment
-@one_student
-@click.option("--diff", is_flag=True, help="Only say whose mark would move.")
-@click.option("--lower", is_flag=True, help="Let marks fall too.")
-@jobs
-def regrade(
-    course: Course, assignment: str, student: str | None, diff: bool, lower: bool, jobs: int
-) -> int:
-    """Grade again after a test or its points have changed."""
-    from .batch import GradeOptions
-    from .gradebook import record
-    from .lock import exclusive_run
-    from .regrade import accept, moves, summary
-    from .results import Results
-
-    with Failures() as failures, exclusive_run(Results(course, assignment).folder):
-        who = _handed_in(course, assignment, student, failures)
-        found = moves(course, assignment, who, GradeOptions(jobs=jobs))
-        moved = list(failures.sift(found, "not graded"))
-        _tell(summary(moved), sys.stdout)
-        if not diff:
-            counts = accept(course, assignment, moved, lower=lower)
-            accepted = list(failures.sift(counts, "not kept"))
-            left = len(moved) - len(counts)
-            if left:
-                print(f"{left} marks would fall and stay as they are; --lower lets them")
-            recorded = record(course, assignment, accepted)
-            _tell(failures.sift(recorded, "not in the gradebook"), sys.stdout)
-    return failures.code
 
 
 @verb("01_paths --student ada")
@@ -123,19 +29,29 @@ def regrade(
 @click.option(
     "--moodle", type=PATH, metavar="ZIP", help="Also write the feedback files that Moodle takes."
 )
-def feedback(course: Course, assignment: str, student: str | None, moodle: Path | None) -> int:
-    """Write a page for each student."""
+@click.option(
+    "--unmarked", is_flag=True, help="Do not wait until all that is marked by hand is marked."
+)
+def feedback(
+    course: Course, assignment: str, student: str | None, moodle: Path | None, unmarked: bool
+) -> int:
+    """Write a page for each student.
+
+    Pages wait until everybody's answers that a person marks are marked, in formgrader.
+    """
     from .exchange import for_exchange
     from .feedback import write_feedback
-    from .gradebook import comments
+    from .marks import marks_of
     from .return_feedback import moodle_zip
-    from .standing import standing
 
     with Failures() as failures:
-        results = list(failures.sift(standing(course, assignment, student), "no page"))
-        if not results and not failures.code:
+        everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
+        if not unmarked:
+            _wait_for_marks(everybody)
+        marks = [mark for mark in everybody if student in {None, mark.student}]
+        if not marks:
             raise _nobody(assignment, student)
-        pages = write_feedback(course, assignment, results, comments(course, assignment))
+        pages = write_feedback(course, assignment, marks)
         made = list(failures.sift(pages, "no page"))
         size = sum(path.stat().st_size for path in made) / 1e6
         print(f"pages in {course.root / 'feedback'}: {len(made)}, {size:.1f} MB")
@@ -150,7 +66,8 @@ def feedback(course: Course, assignment: str, student: str | None, moodle: Path 
 
 
 @verb("01_paths --to marks.csv")
-@of_assignment
+@click.argument("assignment", required=False)
+@of_course
 @click.option(
     "--layout",
     type=click.Choice(["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"]),
@@ -160,18 +77,44 @@ def feedback(course: Course, assignment: str, student: str | None, moodle: Path 
 @click.option(
     "--column", metavar="NAME", help="The assignment as the platform calls it: 'Paths (4711)'."
 )
+@click.option("--absent-zero", is_flag=True, help="Who handed in nothing has 0, not nothing.")
 @to_file
 def export(
-    course: Course, assignment: str, layout: str, column: str | None, to: Path | None
+    course: Course,
+    assignment: str | None,
+    layout: str,
+    column: str | None,
+    absent_zero: bool,
+    to: Path | None,
 ) -> int:
-    """Write marks as a table."""
-    from .export import LAYOUTS, as_csv, remarks
-    from .marks import marks_of
+    """Write marks as a table, of one assignment or of the term.
 
-    marks = list(marks_of(course, assignment))
+    Without ASSIGNMENT it is a table of all that were graded, with the weights of course.toml.
+    """
+    from .export import LAYOUTS, as_csv, of_term, remarks
+    from .marks import marks_of
+    from .rules import read_rules
+
+    def read(name: str) -> list[Mark]:
+        course.notebook_source(name)
+        found = list(marks_of(course, name))
+        if all(mark.absent for mark in found):
+            return []
+        return [replace(m, raw=0.0) if absent_zero and m.absent else m for m in found]
+
+    if assignment is None:
+        rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
+        term = {name: marks for name in names if (marks := read(name))}
+        if not term:
+            raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
+        for name, marks in term.items():
+            tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
+        _write(as_csv(of_term(term, {name: rules.weight(name) for name in term})), to)
+        return int(any(mark.missing for marks in term.values() for mark in marks))
+    marks = read(assignment)
     if not marks:
         raise _nobody(assignment, None)
-    _tell(remarks(layout, marks), sys.stderr)
+    tell(remarks(layout, marks), sys.stderr)
     _write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
     return int(any(mark.missing for mark in marks))
 
@@ -186,39 +129,33 @@ def class_report(
 ) -> int:
     """Say what the class got right and wrong."""
     from .class_report import for_jplag, report
+    from .marks import marks_of
     from .pseudonyms import pseudonyms
-    from .standing import standing
 
     with Failures() as failures:
-        results = list(failures.sift(standing(course, assignment), "left out"))
-        if not results:
+        marks = list(marks_of(course, assignment))
+        if not any(mark.result for mark in marks):
             raise _nobody(assignment, None)
+        out = [mark for mark in marks if mark.missing and not mark.lines]
+        failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
         pseudonym = pseudonyms(course)
-        called = str if names else pseudonym
-        _write(report(assignment, results, problems, called, len(failures.sentences)), to)
+        _write(report(assignment, marks, problems, str if names else pseudonym), to)
         if jplag:
-            written = for_jplag(results, jplag, pseudonym)
+            written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)
     return failures.code
 
 
-def _handed_in(
-    course: Course, assignment: str, student: str | None, failures: Failures
-) -> list[str]:
-    """Who handed in, or the one asked for; folders with a name that is not fit are failures."""
-    from .submission import misnamed, students
-
-    found = students(course, assignment)
-    who = [student] if student else found
-    if student is None:
-        failures.add("not graded", misnamed(course, assignment))
-    if set(who) - set(found) or not (who or failures.code):
+def _wait_for_marks(marks: Iterable[Mark]) -> None:
+    """Raise a LabkitError if a person has still something to mark."""
+    waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in marks if mark.open]
+    if waiting:
+        some = ", ".join(waiting[:5]) + (", ..." if len(waiting) > 5 else "")
         raise LabkitError(
-            f"nothing of {student or 'anybody'} lies in submitted/*/{assignment}; "
-            "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
+            f"{len(waiting)} are not marked by hand in full: {some}; mark them in formgrader, or "
+            "add --unmarked to write the pages before"
         )
-    return who
 
 
 def _nobody(assignment: str, student: str | None) -> LabkitError:
@@ -227,7 +164,8 @@ def _nobody(assignment: str, student: str | None) -> LabkitError:
     return LabkitError(f"{who} graded in {assignment}; type: labkit grade {assignment}")
 
 
-def _tell(sentences: Iterable[str], where: TextIO) -> None:
+def tell(sentences: Iterable[str], where: TextIO) -> None:
+    """Print sentences as they come."""
     for sentence in sentences:
         print(sentence, file=where, flush=True)
 
@@ -240,4 +178,4 @@ def _write(text: str, where: Path | None) -> None:
         print(f"written: {where}")
 
 
-COMMANDS = (grade, regrade, feedback, export, class_report)
+COMMANDS = (feedback, export, class_report)

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import wraps
 from pathlib import Path
 from typing import Any
+from zoneinfo import ZoneInfo
 
 import click
 
 from ..course.cli import PATH, verb
 from ..course.layout import PUBLIC_SEED, Course
+from ..errors import LabkitError
 
 Option = Callable[[Callable[..., int]], Callable[..., int]]
 SEED = click.IntRange(min=0)
@@ -62,6 +64,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
         used = seed_for(course, name) if seed is None else seed
         print(release(course, name, used), flush=True)
         seeds.add(used)
+    print("tried: known mistakes, stand-ins, public cases by heart; more by: labkit report-card")
     for warning in filter(None, map(public_warning, seeds)):
         print(warning)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
@@ -87,35 +90,61 @@ def student_bundle(
     return 0
 
 
-@verb("00_warmup 01_paths")
+@verb("new 01_paths")
+@click.argument("action", type=click.Choice(["new", "list", "forget"]), metavar="new|list|forget")
 @names
-@click.option("--seed", type=SEED, help="Of the hidden cases; drawn by default.")
+@click.option("--seed", type=SEED, help="new: of the hidden cases; drawn by default.")
+@click.option("--student", metavar="S", help="forget: all that is there of one student.")
+@click.option("--older", type=click.FloatRange(0), metavar="YEARS", help="forget: earlier terms.")
+@click.option("--yes", is_flag=True, help="forget: do it, and not only list what would go.")
 @of_course
-def new_term(course: Course, names: tuple[str, ...], seed: int | None) -> int:
-    """Archive the last term, release with a new seed.
+def term(
+    course: Course,
+    action: str,
+    names: tuple[str, ...],
+    seed: int | None,
+    student: str | None,
+    older: float | None,
+    yes: bool,
+) -> int:
+    """Begin a term, list terms, delete what is over.
 
-    Without a NAME it releases all assignments.
+    new archives the last term and releases each NAME, or all assignments, with a new seed. list
+    says what there is. forget lists what would be deleted, terms that ended some YEARS ago or all
+    of one student; with --yes it deletes it. The law may say how long marks must be kept.
     """
-    from .term import new_term
+    from .forget import forget, places_of
+    from .term import about, archives, new_term
 
-    record = new_term(course, seed, names)
-    for name, digest in record["bundles"].items():
-        print(f"{name}: bundle {digest[:16]}")
-    print(
-        f"a term with seed {record['seed']} begins; keep course_private/term.json, which holds it"
-    )
+    if action == "new":
+        record = new_term(course, seed, names)
+        for name, digest in record["bundles"].items():
+            print(f"{name}: bundle {digest[:16]}")
+        begun = f"a term with seed {record['seed']} begins"
+        print(f"{begun}; keep course_private/term.json, which holds it")
+    elif action == "list":
+        print("\n".join(about(course)))
+    else:
+        if (student is None) == (older is None):
+            raise LabkitError("say what to forget: --older YEARS, or --student NAME")
+        if student is not None:
+            found = places_of(course, student)
+        else:
+            found = [one.folder for one in archives(course, older or 0.0)]
+        for path in found:
+            print(f"{'deleted' if yes else 'would go'}: {path.relative_to(course.root)}")
+        if not found:
+            print("there is nothing to forget")
+        elif yes:
+            _say(forget(course, found, student))
+        else:
+            print("nothing is deleted yet; add --yes")
     return 0
 
 
-@verb("")
-@of_course
-def forget(course: Course) -> int:
-    """Delete archived terms, and the names with them."""
-    from .term import purge
-
-    gone = purge(course)
-    print("\n".join(f"deleted {folder.name}" for folder in gone) or "there is no archived term")
-    return 0
+def _say(sentences: Iterable[str]) -> None:
+    for sentence in sentences:
+        print(sentence)
 
 
 @verb("--to ../handout")
@@ -214,21 +243,45 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     is_flag=True,
     help="From the exchange, also take what users handed in whom this machine does not know.",
 )
-def collect(course: Course, assignment: str, sources: tuple[Path, ...], unverified: bool) -> int:
-    """Take downloads from Moodle, Canvas or the exchange.
+@click.option(
+    "--named",
+    metavar="PATTERN",
+    help="How files are named that come from no platform: 'paths-{student}/*.ipynb'.",
+)
+@click.option(
+    "--at",
+    metavar="TIME",
+    help="When the download or clone was made; what has no time of its own was in by then.",
+)
+def collect(
+    course: Course,
+    assignment: str,
+    sources: tuple[Path, ...],
+    unverified: bool,
+    named: str | None,
+    at: str | None,
+) -> int:
+    """Take downloads from Moodle, Canvas or the exchange, or files from anywhere.
 
-    The exchange is nbgrader's; give its inbound folder. Nothing that was handed in is lost: all of
-    it is under attempts/.
+    The exchange is nbgrader's; give its inbound folder. Clones of GitHub Classroom, or any folder
+    or zip of files, need --named. Nothing that was handed in is lost: all of it is under attempts/.
 
     Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
     (named at the end), 2 if nothing could be done.
     """
     from .collect import collect
+    from .exchange import read_time
+    from .rules import read_rules
 
+    when = read_time(at, ZoneInfo(read_rules(course).zone)) if at else None
+    if at and when is None:
+        raise LabkitError(f"{at!r} is not a time; write 2026-11-02 23:59")
     doubtful = []
     try:
         for source in sources:
-            for taken in collect(course, assignment, source, unverified=unverified):
+            for taken in collect(
+                course, assignment, source, unverified=unverified, named=named, at=when
+            ):
                 if taken.fine:
                     print(taken, flush=True)
                 else:
@@ -252,6 +305,6 @@ def doctor() -> int:
 
 
 COMMANDS = (
-    *(doctor, new_term, release, student_bundle, students, collect),
-    *(report_card, export_course, forget),
+    *(doctor, term, release, student_bundle, students, collect),
+    *(report_card, export_course),
 )

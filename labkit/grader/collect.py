@@ -9,16 +9,18 @@ from __future__ import annotations
 import zipfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
 from ..course.layout import Course
 from ..errors import LabkitError
-from .attempts import Seen, adopt, attempts, counts, install, keep
+from .attempts import Seen, adopt, called, install, keep, that_counts
 from .each import Failed, for_student
 from .enrol import settle
 from .exchange import in_exchange
+from .files import in_folder, reader
 from .identity import all_lms_users, alone, places, remember
 from .platforms import File, LmsUser, Named, in_zip, open_zip
 from .results import digest
@@ -50,7 +52,13 @@ _HandedIn = tuple[File, Named]
 
 
 def collect(
-    course: Course, assignment: str, source: Path, *, unverified: bool = False
+    course: Course,
+    assignment: str,
+    source: Path,
+    *,
+    unverified: bool = False,
+    named: str | None = None,
+    at: datetime | None = None,
 ) -> Iterator[Taken]:
     """Take notebooks from a download; the same once more changes nothing.
 
@@ -60,6 +68,10 @@ def collect(
         source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
         unverified: Whether users of the exchange whom this machine does not know are taken at
             their word.
+        named: How files are named that come from no platform, such as
+            ``paths-{student}/*.ipynb``; then the source is a folder of them, or a zip.
+        at: When the source was made, if that is known; what has no time of its own was handed in
+            by then.
 
     Yields:
         What was done with each file.
@@ -70,8 +82,16 @@ def collect(
     """
     if not source.exists():
         raise LabkitError(f"there is no {source}")
+    now = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
     with alone(course):
-        if source.is_dir():
+        if named is not None:
+            read = reader(named)
+            with open_zip(source) if source.is_file() else nullcontext() as archive:
+                files = list(in_zip(archive, now, read) if archive else in_folder(source, read))
+                others = [x for x in course.names() if x != assignment]
+                mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
+                yield from _take(course, assignment, source, [_made(x, at) for x in mine])
+        elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
             yield from _take(course, assignment, source, files)
         elif not zipfile.is_zipfile(source):
@@ -80,14 +100,22 @@ def collect(
             )
         else:
             with open_zip(source) as archive:
-                made = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
-                yield from _take(course, assignment, source, list(in_zip(archive, made)))
+                files = [_made(file, at) for file in in_zip(archive, now)]
+                yield from _take(course, assignment, source, files)
+
+
+def _made(file: File, at: datetime | None) -> File:
+    """A file of a source that was made at a known time."""
+    return file if at is None or file.exact else replace(file, when=at, exact=True)
 
 
 def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
-        raise LabkitError(f"nothing in {source} was handed in for {assignment}, read as {kind}")
+        raise LabkitError(
+            f"nothing in {source} was handed in for {assignment}, read as {kind}; files that come "
+            "from no platform need --named, such as --named 'paths-{student}/*.ipynb'"
+        )
     roster = read_roster(course)
     for sentence in settle(course, roster):
         yield Taken("", "", sentence, fine=False)
@@ -122,6 +150,10 @@ def _whose(file: File, roster: Roster) -> Named | str:
     if file.refused or not file.readings:
         return file.refused or "not taken; its name does not say whose it is"
     if len(file.readings) == 1:
+        who = file.readings[0].who
+        if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
+            known = len(roster.whose(who)) or "no"
+            return f"not taken; the roster has {known} students who are {who.name!r}"
         return file.readings[0]
     fits = [named for named in file.readings if _is_called_so(named.who, roster)]
     if len(fits) == 1:
@@ -201,7 +233,7 @@ def _keep_notebooks(
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
     adopt(course, student, assignment, now)
-    before = counts(attempts(course, student, assignment), assignment)
+    before = that_counts(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
     kept: list[tuple[Seen, str, bool]] = []
     for file, named in notebooks:

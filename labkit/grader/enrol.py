@@ -12,12 +12,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
+from zoneinfo import ZoneInfo
 
 from ..course.layout import Course
 from ..errors import LabkitError
-from .attempts import move
+from .attempts import attempts, counts, install, keep, move
 from .class_list import Entry, read_list
 from .clean import safe_name
+from .exchange import read_time
 from .identity import all_lms_users, alone, lms_users, places, remember
 from .platforms import LmsUser
 from .roster import (
@@ -29,9 +31,10 @@ from .roster import (
     save_roster,
     tell_gradebook,
 )
+from .rules import read_rules
 
 _Mark = tuple[str, object]
-_KEYS = ("login", "email", "lms_user_id", "id_number")
+_KEYS = ("login", "email", "lms_user_id", "id_number", "github")
 _FIELDS = ("first_name", "last_name", *_KEYS)
 
 
@@ -129,13 +132,14 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         tell_gradebook(course, done.roster)
         left = settle(course, done.roster)
         left += keep_numbers(course, assignment, done.rows) if assignment else []
+        times = keep_times(course, assignment, done.rows) if assignment else 0
     listed = {student.id for _, student in done.rows}
     absent = [str(student) for student in before.students if student.id not in listed]
     told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
     if absent:
         told.append(f"not in this list, and still in the roster: {', '.join(absent)}")
     if assignment:
-        told.append(f"participants of {assignment}: {numbered}")
+        told.append(f"participants of {assignment}: {numbered}, times of hand-ins: {times}")
     elif numbered:
         told.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"
@@ -179,6 +183,27 @@ def keep_numbers(
     left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
     remember(course, assignment, mine)
     return [sentence for sentence in left if sentence]
+
+
+def keep_times(course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]) -> int:
+    """Keep when each handed in what counts, as Moodle's worksheet says.
+
+    Returns:
+        How many times were taken; a hand-in that was not collected yet has none.
+    """
+    taken, rules = 0, read_rules(course)
+    for entry, student in rows:
+        stated = read_time(entry.handed_in, ZoneInfo(rules.zone)) if entry.handed_in else None
+        chosen = counts(attempts(course, student.id, assignment), assignment)
+        if stated is None or chosen is None or stated > chosen.first.when:
+            continue
+        first = chosen.first
+        if first.origin == "moodle" and not first.exact:
+            exact = replace(first, when=stated, exact=True)
+            keep(course, student.id, assignment, chosen.attempt.path.read_bytes(), exact)
+            install(course, student.id, assignment)
+            taken += 1
+    return taken
 
 
 def _keys(one: Entry | Student) -> tuple[str, ...]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import pwd
 from collections.abc import Iterable, Iterator, Sequence
-from datetime import UTC, datetime
+from datetime import UTC, datetime, tzinfo
 from functools import partial
 from pathlib import Path
 
@@ -160,13 +160,13 @@ def read_stamp(folder: Path) -> str:
         return file.read(200).strip()
 
 
-def read_time(text: str) -> datetime | None:
-    """A time as nbgrader writes it, in UTC if it does not say; None if it is not a time."""
+def read_time(text: str, zone: tzinfo = UTC) -> datetime | None:
+    """A time as it is written, in a zone if it does not say; None if it is not a time."""
     from dateutil.parser import parse
 
     try:
         when: datetime = parse(text)
-        when = when.astimezone(UTC) if when.tzinfo else when.replace(tzinfo=UTC)
+        when = (when if when.tzinfo else when.replace(tzinfo=zone)).astimezone(UTC)
     except (ValueError, OverflowError):
         return None
     return when if 2000 <= when.year < 2100 else None

@@ -22,7 +22,7 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 from .marks import Mark
@@ -92,13 +92,42 @@ def _participants(marks: Sequence[Mark]) -> set[str]:
     return {number for number, count in numbers.items() if number and count == 1}
 
 
+def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -> list[list[Any]]:
+    """All assignments side by side, and what they come to, in percent.
+
+    Args:
+        marks: By assignment, the same students in each or not.
+        weights: Of each assignment in the whole.
+    """
+    known = {mark.student: mark for each in marks.values() for mark in each}
+    cells = {(name, m.student): m for name, each in marks.items() for m in each}
+    full = {name: max((m.points for m in each), default=0.0) for name, each in marks.items()}
+    table: list[list[Any]] = [["student", "first", "last", "email", "id", *marks, "percent"]]
+    table.append(["(full marks)", "", "", "", "", *full.values(), 100])
+    table.append(["(weight)", "", "", "", "", *(weights[name] for name in marks), ""])
+    for student, who in sorted(known.items()):
+        scores = [m.score if (m := cells.get((name, student))) else "" for name in marks]
+        shares = [
+            weights[name] * score / full[name]
+            for name, score in zip(marks, scores, strict=True)
+            if isinstance(score, float) and full[name]
+        ]
+        whole = sum(weights[name] for name in marks if full[name])
+        percent = round(100 * sum(shares) / whole, 2) if whole and "" not in scores else ""
+        ids = (student, who.first, who.last, who.email, who.id_number)
+        table.append([*ids, *scores, percent])
+    return table
+
+
 def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
     """What should be known of a table: who has no mark, and whom the platform will not know."""
     for mark in marks:
         if mark.missing:
             yield f"no mark: {mark.student}: {mark.missing}"
-        elif mark.remark:
+        elif mark.remark and not mark.absent:
             yield f"{mark.student}: {mark.remark}"
+    if absent := [mark.student for mark in marks if mark.absent]:
+        yield f"{len(absent)} handed in nothing: {_some(absent)}"
     yield from filter(None, [left_out(layout, marks)])
 
 
@@ -113,9 +142,14 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
     if layout not in ways:
         return ""
     way = ways[layout]
-    lost = [r.student for r in marks if not way(r) or _cell(way(r), True) != way(r)]
-    some = ", ".join(lost[:5]) + (", ..." if len(lost) > 5 else "")
-    return f"{len(lost)} of {len(marks)} cannot be matched by this table: {some}" if lost else ""
+    there = [r for r in marks if not r.absent]
+    lost = [r.student for r in there if not way(r) or _cell(way(r), True) != way(r)]
+    said = f"{len(lost)} of {len(there)} cannot be matched by this table: {_some(lost)}"
+    return said if lost else ""
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
 
 
 LAYOUTS: dict[str, Callable[[str, Sequence[Mark]], list[list[Any]]]] = {

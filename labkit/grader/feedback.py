@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 from base64 import b64encode
-from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, partial
 from hashlib import sha256
@@ -21,13 +20,16 @@ from markupsafe import Markup
 
 from ..course.layout import Course
 from ..course.messages import GATE, HEADS, why
+from ..errors import LabkitError
 from ..metrics import SETTLED
 from ..replay import recorded_html, viewer_scripts
 from ..replay.motion import unpack
 from .drawing import curve, side_by_side
 from .each import Failed, for_student
+from .marks import Mark, mark_of
 from .pages import TEMPLATES, render
 from .results import Result, write
+from .rules import read_rules
 
 MEASURES = {
     "rms_mm": ("position error of the tip, RMS", "mm", 1.0),
@@ -59,22 +61,28 @@ class Measure(NamedTuple):
     over: bool
 
 
-def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
+def page(result: Result, mark: Mark | None = None, course: str = "") -> str:
     """The page of one student.
 
     Args:
         result: What came of the submission.
-        comments: What the teacher wrote by hand, by question.
+        mark: What it is worth, as the gradebook has it; by default what the result says.
+        course: What the course is called.
 
     Returns:
         HTML in one piece, readable without its scripts.
     """
+    mark = mark or mark_of(result)
+    asked = {line.name: line for line in mark_of(result).lines}
     replays = any(run["motion"] for q in result.questions for run in q.runs)
     style, scripts = _file("feedback.css"), _scripts() if replays else ()
     return render(
         "feedback.html.j2",
         result=result,
-        comments=defaultdict(str, comments or {}),
+        mark=mark,
+        course=course,
+        lines=asked | {line.name: line for line in mark.lines},
+        by_hand=[line for line in mark.lines if line.name not in asked],
         heads=HEADS,
         gate=GATE,
         why=why,
@@ -89,27 +97,27 @@ def page(result: Result, comments: Mapping[str, str] | None = None) -> str:
     )
 
 
-def write_feedback(
-    course: Course, assignment: str, results: Iterable[Result], comments: Mapping[str, Any]
-) -> list[Path | Failed]:
+def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> list[Path | Failed]:
     """Write the pages where ``nbgrader release_feedback`` looks for them.
 
     Args:
         course: The course.
         assignment: Which.
-        results: Of its students.
-        comments: Written by hand: by student, then by question.
+        marks: Of its students.
 
     Returns:
         The files; and for whom no page could be made.
     """
+    name = read_rules(course).name
 
-    def make(result: Result) -> Path:
-        path = course.root / "feedback" / result.student / assignment / f"{assignment}.html"
-        write(path, page(result, comments.get(result.student)))
+    def make(mark: Mark) -> Path:
+        if mark.result is None or (mark.missing and not mark.lines):
+            raise LabkitError(mark.missing or "there is no result of theirs; grade again")
+        path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
+        write(path, page(mark.result, mark, name))
         return path
 
-    return [for_student(result.student, partial(make, result)) for result in results]
+    return [for_student(mark.student, partial(make, mark)) for mark in marks]
 
 
 def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> Picture:

@@ -85,6 +85,7 @@ def grade(
         notes=(*((note,) if note else ()), *todo.notes.get("", ())),
         cells=cast(tuple[FailedCell, ...], failed),
         own=cast(tuple[OwnCell, ...], todo.own),
+        written=todo.written,
         tricks=todo.tricks,
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
     )
@@ -107,6 +108,7 @@ def _shortened(result: Result) -> Result:
         for x in result.cells
     )
     own: Any = tuple(x | {"source": budget.take(x["source"])} for x in result.own)
+    written = {name: budget.take(text) for name, text in result.written.items()}
     result = replace(
         result,
         tricks=(*tricks, f"and {more} more such things") if more > 0 else tricks,
@@ -116,6 +118,7 @@ def _shortened(result: Result) -> Result:
         ),
         cells=cells,
         own=own,
+        written=written,
     )
     if not budget.cut:
         return result

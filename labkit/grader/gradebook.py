@@ -6,12 +6,12 @@ Manual grades and comments stay; formgrader finds a notebook to open for every s
 from __future__ import annotations
 
 import fcntl
-import logging
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from datetime import datetime
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 from sqlalchemy import text as sql
@@ -19,13 +19,14 @@ from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
 from ..course.bundle import Bundle
 from ..course.layout import Course
-from ..course.notebook import about, grade_id, is_check, question_of
+from ..course.notebook import about, by_hand, grade_id, question_of, read_cells
 from ..errors import LabkitError
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 from .each import Failed, for_student
 from .exchange import read_stamp, read_time
 from .nbgrader_api import nbgrader_api
 from .results import Result, write
+from .rules import settle_lateness
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
@@ -43,7 +44,7 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
         LabkitError: The gradebook does not know the assignment, or cannot be used.
     """
     said: list[str | Failed] = []
-    source, late = release_source(course, assignment), _late_rule(course)
+    source = release_source(course, assignment)
     with open_gradebook(course) as book:
         if assignment not in {known.name for known in book.assignments}:
             seed = Bundle.of(course, assignment).data["seed"]
@@ -52,53 +53,47 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
                 f"labkit release {assignment} --seed {seed}"
             )
         for result in results:
-            step = partial(_record, course, book, source, late, result)
+            step = partial(_record, course, book, source, result)
             done = for_student(result.student, step, of_all=(OperationalError,))
             if isinstance(done, Failed):
                 book.db.rollback()
             said += [done] if isinstance(done, Failed) else done
+        settle_lateness(course, book, assignment)
     return said
 
 
-def _record(course: Course, book: Any, source: Any, late: Any, result: Result) -> list[str]:
+def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:
     """Write one student's scores, whole or not at all; nbgrader commits who the student is first.
 
     Returns:
         What a person should look at.
     """
-    written = as_text(with_verdicts(in_release_form(source, result), result))
+    notebook = with_verdicts(in_release_form(source, result), result)
+    written = as_text(notebook)
     when, note = timestamp(course, result)
     known = {} if when is None else {"timestamp": when}
     book.update_or_create_student(result.student)
     submission = book.update_or_create_submission(result.assignment, result.student, **known)
     notes = [f"{result.student}: {note}"] if note else []
-    notes += _write_scores(submission, result)
-    submission.late_submission_penalty = None
-    for notebook in submission.notebooks:
-        notebook.late_submission_penalty = late(result.student, notebook, submission)
-    book.db.flush()
     folder = course.root / "autograded" / result.student / result.assignment
-    write(folder / f"{result.assignment}.ipynb", written)
+    path = folder / f"{result.assignment}.ipynb"
+    notes += _write_scores(
+        submission, result, automatic_scores(notebook, result), _changed(path, notebook)
+    )
+    book.db.flush()
+    write(path, written)
     book.db.commit()
     return notes
 
 
-def automatic(result: Result, cell: str) -> float | None:
-    """The automatic score of a cell of the gradebook; None for one that is marked by hand."""
-    if not is_check(cell) and not result.rejected:
-        return None
-    earned = {q.verdict.name: q.verdict.earned for q in result.questions}
-    return float(earned.get(question_of(cell), 0.0))
-
-
-def comments(course: Course, assignment: str) -> dict[str, dict[str, str]]:
-    """What was written by hand: by student, then by question."""
-    found: dict[str, dict[str, str]] = {}
-    with open_gradebook(course) as book:
-        for submission in book.assignment_submissions(assignment):
-            said = {c.name: c.manual_comment for n in submission.notebooks for c in n.comments}
-            found[str(submission.student.id)] = {k: v for k, v in said.items() if v}
-    return found
+def _changed(path: Path, notebook: Any) -> set[str]:
+    """Cells marked by hand that say something else than when they were last recorded."""
+    try:
+        before = {grade_id(cell): cell["source"] for cell in read_cells(path)}
+    except LabkitError:
+        return set()
+    cells = {grade_id(cell): cell.source for cell in notebook.cells if by_hand(cell)}
+    return {name for name, text in cells.items() if before.get(name, text) != text}
 
 
 def migrate(course: Course, assignment: str, source: Any) -> list[str]:
@@ -120,10 +115,10 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
     Raises:
         LabkitError: A question would go that somebody has marked or commented on by hand.
     """
-    from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell
+    from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell, TaskCell
 
     cells = {grade_id(cell): (cell, about(cell)) for cell in source.cells if grade_id(cell)}
-    graded = {name: pair for name, pair in cells.items() if pair[1]["grade"]}
+    graded = {k: pair for k, pair in cells.items() if pair[1]["grade"] or pair[1]["task"]}
     solved = {name for name, pair in cells.items() if pair[1]["solution"]}
     with open_gradebook(course) as book:
         try:
@@ -132,22 +127,24 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
             return []
         if not notebook.submissions:
             return []
-        gone = [c for c in notebook.grade_cells if c.name not in graded]
+        there = [*notebook.grade_cells, *notebook.task_cells]
+        gone = [c for c in there if c.name not in graded]
         gone += [c for c in notebook.solution_cells if c.name not in solved]
         _keep_what_was_written(gone)
         for cell in gone:
-            for row in [*cell.grades, *cell.comments]:
+            for row in [*(cell.grades or ()), *(cell.comments or ())]:
                 book.db.delete(row)
             book.db.delete(cell)
         for cell in notebook.source_cells:
             if cell.name not in cells:
                 book.db.delete(cell)
-        new = sorted(set(graded) - {c.name for c in notebook.grade_cells})
+        new = sorted(set(graded) - {c.name for c in there})
         for name in new:
             cell, known = graded[name]
             points = float(known["points"])
             kind = cell.cell_type
-            add = GradeCell(name=name, notebook=notebook, max_score=points, cell_type=kind)
+            row = TaskCell if known["task"] else GradeCell
+            add = row(name=name, notebook=notebook, max_score=points, cell_type=kind)
             _add(book.db, add, notebook.submissions)
         for name in solved - {c.name for c in notebook.solution_cells}:
             _add(book.db, SolutionCell(name=name, notebook=notebook), notebook.submissions)
@@ -160,18 +157,19 @@ def migrate(course: Course, assignment: str, source: Any) -> list[str]:
 
 def _add(db: Any, cell: Any, submissions: Iterable[Any]) -> None:
     """A cell, with an empty row for it in every submission."""
-    from nbgrader.api import Comment, Grade, GradeCell
+    from nbgrader.api import Comment, Grade, GradeCell, SolutionCell
 
     db.add(cell)
     db.flush()
-    row = Grade if isinstance(cell, GradeCell) else Comment
-    db.add_all([row(cell_id=cell.id, notebook=submission) for submission in submissions])
+    rows = [Grade] * (not isinstance(cell, SolutionCell))
+    rows += [Comment] * (not isinstance(cell, GradeCell))
+    db.add_all([row(cell_id=cell.id, notebook=x) for row in rows for x in submissions])
 
 
 def _keep_what_was_written(gone: Iterable[Any]) -> None:
     for cell in gone:
-        marked = [g for g in cell.grades if g.manual_score is not None or g.extra_credit]
-        said = [c for c in cell.comments if c.manual_comment]
+        marked = [g for g in cell.grades or () if g.manual_score is not None or g.extra_credit]
+        said = [c for c in cell.comments or () if c.manual_comment]
         if marked or said:
             name = question_of(cell.name)
             raise LabkitError(
@@ -236,38 +234,52 @@ def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
     return when, bad if text and when is None else ""
 
 
-def _write_scores(submission: Any, result: Result) -> Iterator[str]:
+def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
+    """The automatic score of each cell of the gradebook; None for what a person must mark.
+
+    An answer that is as it was handed out earns 0 by itself.
+
+    Args:
+        notebook: The submission in the release's form.
+        result: Of the submission.
+    """
+    from nbgrader.utils import determine_grade
+
+    earned = {q.verdict.name: float(q.verdict.earned) for q in result.questions}
+    found: dict[str, float | None] = {}
+    for cell in notebook.cells:
+        name = grade_id(cell)
+        if about(cell).get("task"):
+            found[name] = 0.0 if result.rejected else None
+        elif by_hand(cell):
+            found[name] = determine_grade(cell)[0]
+        elif about(cell).get("grade"):
+            found[name] = earned.get(question_of(name), 0.0)
+    return found
+
+
+def _write_scores(
+    submission: Any, result: Result, scores: Mapping[str, float | None], changed: Set[str]
+) -> Iterator[str]:
+    """Write automatic scores; marks given by hand stay, and are looked at again where need be."""
     for notebook in submission.notebooks:
         for grade in notebook.grades:
-            score = automatic(result, grade.name)
-            by_hand = grade.manual_score is not None
-            if by_hand and score is not None and grade.auto_score not in {None, score}:
+            score, given = (
+                scores.get(grade.name, 0.0 if result.rejected else None),
+                grade.manual_score,
+            )
+            if given is None:
+                grade.needs_manual_grade = score is None
+            elif grade.name in changed:
                 yield (
-                    f"{result.student}: {grade.name} was marked {grade.manual_score:g} by hand and "
-                    f"is {score:g} now by itself; look at it again"
+                    f"{result.student}: {grade.name} was marked {given:g} by hand, and the answer "
+                    "is another one now; look at it again"
                 )
                 grade.needs_manual_grade = True
-            elif not by_hand:
-                grade.needs_manual_grade = score is None
+            elif score is not None and grade.auto_score not in {None, score}:
+                yield (
+                    f"{result.student}: {grade.name} was marked {given:g} by hand and is {score:g} "
+                    "now by itself; look at it again"
+                )
+                grade.needs_manual_grade = True
             grade.auto_score = score
-
-
-def _late_rule(course: Course) -> Any:
-    """The course's own rule for late work, from nbgrader's settings."""
-    from nbgrader.plugins import LateSubmissionPlugin
-    from traitlets.utils.importstring import import_item
-
-    config = nbgrader_api(course).config
-    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
-    plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
-    plugin.log.setLevel(logging.CRITICAL)
-
-    def late(student: str, notebook: Any, submission: Any) -> float | None:
-        if submission.total_seconds_late <= 0:
-            return None
-        penalty: float | None = plugin.late_submission_penalty(
-            student, notebook.score, submission.total_seconds_late
-        )
-        return penalty
-
-    return late

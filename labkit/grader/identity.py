@@ -76,8 +76,8 @@ def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> N
     mine = known.get(assignment, {})
     now = {one.key for one in found.values()}
     kept = {folder: one for folder, one in mine.items() if one.key not in now}
-    for folder, one in found.items():
-        if one.system != "exchange" or folder not in kept:  # a platform's number is needed later
+    for folder, one in found.items():  # a platform's number is needed later
+        if one.system in {"moodle", "canvas"} or folder not in kept:
             kept[folder] = one
     if kept != mine:
         data = msgspec.json.encode(known | {assignment: kept}, order="sorted")

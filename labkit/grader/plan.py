@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any
 
 from ..course.source import look, plain
@@ -27,6 +28,7 @@ class Plan:
         notes: What was unusual, by question; under "" what concerns the whole notebook.
         own: The student's own cells: the released cell ``after`` which each stands, its ``type``
             and ``source``.
+        written: For each cell that a person marks, by its name, what stands in it.
         looks: What each step does with names, see `labkit.course.source.look`.
         tricks: What in the student's own cells may be a way around a withheld tool, sentences.
     """
@@ -35,6 +37,7 @@ class Plan:
     places: Mapping[str, int]
     notes: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     own: tuple[Mapping[str, str], ...] = ()
+    written: Mapping[str, str] = field(default_factory=dict)
     looks: tuple[Cell, ...] = ()
     tricks: tuple[str, ...] = ()
 
@@ -60,7 +63,7 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     code = {k: cell for k, cell in enumerate(cells) if cell["type"] == "code"}
     own = {k: cell for k, cell in code.items() if _same(cell["source"]) not in released}
     for m in manifest:
-        if m["kind"] == "answer":
+        if m["kind"] == "answer" and "points" not in m:
             said = notes.setdefault(m["grade_id"], [])
             place, others = _answer(own, m, said)
             spare |= others
@@ -70,6 +73,7 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
     if in_order != sorted(in_order):
         notes.setdefault("", []).append("the cells stand in another order than in the release")
     needed = _needed(code, places.values())
+    by_hand = {m["grade_id"]: _at(cells, m) for m in manifest if "points" in m}
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
     looks: list[Cell] = [look(source) for source in setup]
     for k, cell in code.items():
@@ -81,7 +85,8 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
         tuple(steps),
         places,
         notes={name: tuple(said) for name, said in notes.items() if said},
-        own=tuple(_own(cells, manifest, set(places.values()))),
+        own=tuple(_own(cells, manifest, {*places.values(), *chain(*by_hand.values())})),
+        written={name: _together(cells, found) for name, found in by_hand.items() if found},
         looks=tuple(looks),
         tricks=tuple(f"cell {k + 1} {what}" for k, cell in own.items() for what in cell["tricks"]),
     )
@@ -109,6 +114,19 @@ def _own(
         after = cell["id"] if cell["id"] in ids else after
         if k not in places and cell["source"].strip() and _same(cell["source"]) not in released:
             yield {"after": after, "type": cell["type"], "source": cell["source"]}
+
+
+def _at(cells: Sequence[Cell], m: Mapping[str, Any]) -> list[int]:
+    """Where a cell of the release stands in a submission, by its name or its id."""
+    named = [k for k, cell in enumerate(cells) if cell["grade_id"] == m["grade_id"]]
+    return named or [
+        k for k, cell in enumerate(cells) if not cell["grade_id"] and cell["id"] == m["id"]
+    ]
+
+
+def _together(cells: Sequence[Cell], found: Sequence[int]) -> str:
+    """The text of cells that are one answer; one that was doubled loses nothing."""
+    return "\n\n".join(dict.fromkeys(cells[k]["source"] for k in found))
 
 
 def _answer(

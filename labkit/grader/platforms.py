@@ -59,9 +59,9 @@ class LmsUser:
     """A person as a platform's download names them.
 
     Attributes:
-        system: "moodle", "canvas" or "exchange".
+        system: "moodle", "canvas", "exchange", or "files" of no platform.
         number: Canvas's number of the user; Moodle's of the participant, one for each assignment;
-            the name of the user in the exchange.
+            the name of the user in the exchange, or what stands in a file's name.
         name: As it stands in the download.
     """
 
@@ -75,7 +75,7 @@ class LmsUser:
         return self.system, self.number
 
     def __str__(self) -> str:
-        what = {"moodle": "participant", "canvas": "Canvas's user", "exchange": "user"}[self.system]
+        what = {"moodle": "participant", "canvas": "Canvas's user"}.get(self.system, "user")
         return f"{what} {self.number}" + (f" ({self.name})" if self.name != self.number else "")
 
 
@@ -166,12 +166,17 @@ def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
         yield archive
 
 
-def in_zip(archive: zipfile.ZipFile, made: datetime) -> Iterator[File]:
+def in_zip(
+    archive: zipfile.ZipFile,
+    made: datetime,
+    read: Callable[[str], tuple[Named, ...]] = readings,
+) -> Iterator[File]:
     """The files of a zip.
 
     Args:
         archive: The zip.
         made: When it was downloaded, for entries without a time.
+        read: Tells whose a file is by its name; by default as Moodle and Canvas write it.
     """
     names: set[str] = set()
     for entry in archive.infolist():
@@ -180,7 +185,7 @@ def in_zip(archive: zipfile.ZipFile, made: datetime) -> Iterator[File]:
         name = _name(entry)
         label, when = clean_line(name)[-120:], _when(entry, made)
         refused = _refused(entry, name)
-        who = () if refused else readings(name)
+        who = () if refused else read(name)
         yield File(label, who, when, partial(_read, archive, entry), refused=refused)
         if name in names and not refused:
             twice = "it is in the zip twice; both are kept, so look which one counts"

@@ -7,14 +7,17 @@ records that it keeps; here it is only fed, and its result verified.
 from __future__ import annotations
 
 import shutil
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import nbformat
 
 from ..course.layout import Course
-from ..course.release import prepare, write
+from ..course.notebook import manifest
+from ..course.release import write
 from ..errors import LabkitError
+from .authoring import prepared
 from .gradebook import migrate
 from .nbgrader_api import nbgrader_api, reason
 
@@ -38,6 +41,7 @@ class Released:
         questions: How many.
         points: In all.
         hidden: How many hidden cases.
+        by_hand: What a person marks: the name of each cell, and its points.
     """
 
     name: str
@@ -45,11 +49,15 @@ class Released:
     questions: int
     points: float
     hidden: int
+    by_hand: Mapping[str, float]
 
     def __str__(self) -> str:
         return (
             f"{self.name}: {self.questions} questions, {self.points:g} points, "
             f"{self.hidden} hidden cases"
+            + "".join(
+                f"\n  to be marked by hand: {k}, {v:g} points" for k, v in self.by_hand.items()
+            )
         )
 
 
@@ -69,15 +77,16 @@ def release(course: Course, name: str, seed: int) -> Released:
         LabkitError: `prepare` or nbgrader refused, an answer would have leaked, or marks given by
             hand would have been lost.
     """
-    made = prepare(course, name, seed)
+    made = prepared(course, name, seed)
     added = migrate(course, name, made.source)  # once nothing of the author's can be refused
     write(made, added)
     generate(course, name)
     _verify(course.release / name)
     questions = made.questions.values()
     hidden = sum(case.hidden for q in questions for t in q.tests for case in t.cases)
-    points = sum(q.points for q in questions)
-    return Released(name, course.release / name, len(questions), points, hidden)
+    by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}
+    points = sum(q.points for q in questions) + sum(by_hand.values())
+    return Released(name, course.release / name, len(questions), points, hidden, by_hand)
 
 
 def generate(course: Course, name: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import glob
 import hashlib
 import json
@@ -109,6 +110,7 @@ class Result:
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
         own: The student's own cells, where they stood.
+        written: What stands in each cell that a person marks, by its name.
         tricks: What may be a way around a withheld tool, for the instructor, sentences.
         isolation: What kept it apart while it ran.
         versions: Of what graded it.
@@ -126,6 +128,7 @@ class Result:
     notes: tuple[str, ...] = ()
     cells: tuple[FailedCell, ...] = ()
     own: tuple[OwnCell, ...] = ()
+    written: Mapping[str, str] = field(default_factory=dict)
     tricks: tuple[str, ...] = ()
     isolation: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
@@ -192,7 +195,14 @@ class Results:
     """The result files of one assignment."""
 
     def __init__(self, course: Course, assignment: str) -> None:
-        self.folder = course.results / assignment
+        self.folder, self.assignment = course.results / assignment, assignment
+
+    @property
+    def aside(self) -> Results:
+        """Results that count for nothing until somebody grades again."""
+        other = copy.copy(self)
+        other.folder = self.folder / "aside"
+        return other
 
     def path(self, student: str) -> Path:
         """Where a student's result is."""
@@ -217,7 +227,7 @@ class Results:
             raise LabkitError(f"{path.name} cannot be read: {error.strerror}") from None
         except ValueError:
             raise LabkitError(f"{path.name} is not text") from None
-        if (result.student, result.assignment) != (student, self.folder.name):
+        if (result.student, result.assignment) != (student, self.assignment):
             whose = f"{result.student}'s {result.assignment}"
             raise LabkitError(f"{path.name} is damaged; it is the result of {whose}")
         return result

@@ -35,6 +35,7 @@ class Student:
         lms_user_id: Canvas's number of the user.
         login: The name that they log in with.
         id_number: The university's number.
+        github: The name on GitHub.
     """
 
     id: str
@@ -44,6 +45,7 @@ class Student:
     lms_user_id: str = ""
     login: str = ""
     id_number: str = ""
+    github: str = ""
 
     @property
     def name(self) -> str:
@@ -73,7 +75,10 @@ class Roster:
     def whose(self, one: LmsUser) -> tuple[Student, ...]:
         """Whom a platform may mean: nobody, one student, or all who have the same name."""
         key = same_name(one.name) if one.system == "moodle" else one.number.casefold()
-        return self._by_key.get((one.system, key), ())
+        found = self._by_key.get((one.system, key), ())
+        if one.system == "files" and not found:
+            return self._by_key.get(("files", " ".join(same_name(one.name))), ())
+        return found
 
     def namesakes(self) -> list[tuple[Student, ...]]:
         """Students who have the same name, as far as platforms write it."""
@@ -91,6 +96,9 @@ class Roster:
         for student in self.students:
             login, email = student.login.casefold(), student.email.casefold()
             keys = {("moodle", same_name(student.name)), ("canvas", student.lms_user_id)}
+            names = (student.id, login, email, email.partition("@")[0], student.id_number)
+            more = (student.lms_user_id, student.github, " ".join(same_name(student.name)))
+            keys |= {("files", name.casefold()) for name in (*names, *more)}
             for key in keys | {("exchange", login), ("exchange", email)}:
                 if key[1]:
                     found[key] = (*found.get(key, ()), student)

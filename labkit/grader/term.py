@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import secrets
 import shutil
-from datetime import UTC, datetime
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +18,13 @@ from .release import release
 from .results import write
 
 PERSONAL_FILES = (
-    *("submitted", "autograded", "feedback", "results", "gradebook.db"),
+    *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
     *(attempts.FOLDER, roster.FILE, identity.FILE, pseudonyms.FILE),
 )
-"""Where students' names stand, or what leads to them; all of it is ignored by git."""
+"""What is one term's alone: where students' names stand, what leads to them, and hidden cases.
+
+All of it is ignored by git.
+"""
 
 
 def _private(course: Course) -> Path:
@@ -63,7 +68,7 @@ def public_warning(seed: int) -> str:
         return ""
     return (
         f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
-        "them; begin a term with: labkit new-term"
+        "them; begin a term with: labkit term new"
     )
 
 
@@ -119,13 +124,42 @@ def archive(course: Course) -> Path | None:
     return folder
 
 
-def purge(course: Course) -> list[Path]:
-    """Delete every archived term, and the names with it.
+@dataclass(frozen=True)
+class Archive:
+    """A term that is over.
 
-    Returns:
-        The folders that are gone.
+    Attributes:
+        folder: Where it lies.
+        ended: The day on which the next one began.
+        people: Who handed in.
     """
-    folders = sorted(_private(course).glob("archive-*"))
-    for folder in folders:
-        shutil.rmtree(folder)
-    return folders
+
+    folder: Path
+    ended: date
+    people: int
+
+    def __str__(self) -> str:
+        return f"{self.folder.name}: ended {self.ended}, {self.people} students"
+
+
+def archives(course: Course, older: float = 0.0) -> list[Archive]:
+    """The terms that ended so many years ago or earlier; all of them by default."""
+    found = []
+    for folder in sorted(_private(course).glob("archive-*")):
+        ended = date.fromisoformat(folder.name.removeprefix("archive-")[:10])
+        people = len(list((folder / "submitted").glob("*/")))
+        if (datetime.now(UTC).date() - ended).days >= 365.25 * older:
+            found.append(Archive(folder, ended, people))
+    return found
+
+
+def about(course: Course) -> Iterator[str]:
+    """The term that is under way, and those that are over, a line each."""
+    file = _private(course) / "term.json"
+    if file.exists():
+        record = json.loads(file.read_text(encoding="utf-8"))
+        released = ", ".join(sorted(record.get("bundles", ()))) or "nothing"
+        yield f"now: begun {record.get('begun', 'some day')}, released: {released}"
+    else:
+        yield "now: no term was begun; hidden cases have the public seed"
+    yield from map(str, archives(course))

@@ -12,6 +12,10 @@ import zipfile
 import pytest
 from book_pages import ROOT
 
+from labkit.course.layout import Course
+from labkit.grader.rules import FILE, read_rules
+from labkit.grader.term import PERSONAL_FILES
+
 SHELL = re.compile(r"```shell\n(.*?)```", re.DOTALL)
 
 
@@ -47,18 +51,38 @@ def test_every_command_of_the_instructors_guide_works(tmp_path):
     commands = shown("instructor_guide")
     assert {words[0] for words in commands} == {"labkit", "python"}
     verbs = {words[1] for words in commands}
-    assert verbs >= {"doctor", "new-term", "release", "student-bundle", "-m", "students",
-                     "collect", "grade", "feedback", "export", "class-report", "regrade",
-                     "export-course", "forget"}  # fmt: skip
+    assert verbs >= {"doctor", "term", "release", "student-bundle", "-m", "students", "collect",
+                     "grade", "explain", "feedback", "export", "class-report",
+                     "export-course"}  # fmt: skip
     for words in commands:
         works(words, course)
-    assert len(list((course / "results/01_paths").glob("*.json"))) == 9
-    assert len(list((course / "feedback").glob("*/01_paths/01_paths.html"))) == 9
-    assert len((course / "marks.csv").read_text().splitlines()) == 10
+    assert len(list((course / "results/01_paths").glob("*.json"))) == 1
+    assert len(list((course / "feedback").glob("*/01_paths/01_paths.html"))) == 1
+    assert len(list((tmp_path / "rehearsal/results/01_paths").glob("*.json"))) == 8
+    assert len((course / "marks.csv").read_text().splitlines()) == 3
+    assert "Bob-Hope,Bob,Hope" in (course / "term.csv").read_text()
     assert "Ada,Lovelace,,,ada@uni.org," in (course / "marks.csv").read_text()
     assert (course / "report.md").read_text().strip()
     assert "01_paths" in json.loads((course / "course_private/term.json").read_text())["bundles"]
     assert not (course / "dist/course/student/solutions").exists()
+
+
+def test_the_rules_that_the_guide_shows_can_be_followed(tmp_path):
+    """`course.toml` as it is printed is read, in full."""
+    text = (ROOT / "book/instructor_guide.md").read_text()
+    (rules,) = re.findall(r"```toml\n(.*?)```", text, re.DOTALL)
+    (tmp_path / "course.toml").write_text(rules)
+    (tmp_path / "solutions").symlink_to(ROOT / "solutions")
+    found = read_rules(Course(tmp_path))
+    assert found.due("01_paths").isoformat() == "2026-11-02T22:59:00+00:00"
+    assert found.longer("Ada-Lovelace", "01_paths").days == 3
+
+
+def test_the_privacy_page_names_every_place():
+    """Whatever holds a student's name or work is in the table for the officer."""
+    text = (ROOT / "privacy.md").read_text()
+    for place in (*PERSONAL_FILES, FILE):
+        assert f"`{place}" in text, place
 
 
 def test_every_command_of_the_students_guide_works(tmp_path):

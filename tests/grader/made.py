@@ -11,6 +11,7 @@ from labkit.course.bundle import Bundle
 from labkit.course.verdict import Difference, Kind, Outcome, TestResult, Verdict
 from labkit.grader.grade import hashes, rejection
 from labkit.grader.gradebook import record
+from labkit.grader.marks import mark_of
 from labkit.grader.results import Answer, Result, Results
 
 NAME = "01_paths"
@@ -61,6 +62,13 @@ def saying(verdict, words):
     why = Difference(Kind.RAISED, found=words, error="ValueError")
     tests = tuple(replace(t, outcome=Outcome.ERROR, difference=why) for t in verdict.tests)
     return replace(verdict, tests=tests)
+
+
+def said_by_hand(result, **comments):
+    """The mark of a result, with what a person wrote on some of its questions."""
+    mark = mark_of(result)
+    lines = tuple(replace(x, comment=comments.get(x.name, "")) for x in mark.lines)
+    return replace(mark, lines=lines)
 
 
 def handed_in(course, *students):

@@ -19,6 +19,7 @@ from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.marks import mark_of
 from labkit.grader.nbgrader_api import nbgrader_api
 from labkit.grader.release import release
 from labkit.grader.results import Results
@@ -109,7 +110,8 @@ def test_an_added_question_leaves_other_marks_alone(marked, capsys):
     made = release(course, NAME, SEED)
     assert made.questions == 6
     assert marks(course) == {s: m | {f"{LATER}-check": 0.0} for s, m in before.items()}
-    assert main(["regrade", NAME, "--course", str(course.root)]) == 0
+    for words in (["--diff"], []):
+        assert main(["grade", NAME, "--course", str(course.root), *words]) == 0
     said = capsys.readouterr().out
     assert "0 of 2 marks move" in said
     assert "full marks were 16 and are 20 now" in said
@@ -193,4 +195,4 @@ def test_a_question_without_points_is_reported_as_void(marked):
     questions = tuple(
         replace(q, verdict=replace(q.verdict, points=0.0, earned=0.0)) for q in one.questions
     )
-    assert "| voided |" in report(NAME, [replace(one, questions=questions)], {}, str)
+    assert "| voided |" in report(NAME, [mark_of(replace(one, questions=questions))], {}, str)

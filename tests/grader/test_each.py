@@ -126,15 +126,15 @@ def test_numbers_of_any_size_have_a_page(marked, capsys):
 
 
 @pytest.mark.slow
-def test_regrade_keeps_the_others(marked, capsys, monkeypatch):
+def test_grading_again_keeps_the_others(marked, capsys, monkeypatch):
     """A result that cannot be kept is named, exit 1; the others count."""
     blank = (marked.release / NAME / f"{NAME}.ipynb").read_bytes()
     for student in CLASS:
         hand_in(marked, NAME, student, blank)
     spoil(monkeypatch, results, "write", PermissionError(errno.EACCES, "Permission denied"))
-    code, out, err = verb(marked, capsys, "regrade", "--lower", "--jobs", "2")
-    assert (code, err) == (1, "not kept: bob: Permission denied\n")
-    assert "3 of 3 marks move" in out
+    code, out, err = verb(marked, capsys, "grade", "--lower", "--jobs", "2")
+    assert (code, err) == (1, "not graded: bob: Permission denied\n")
+    assert "ada: 0 of 20 (was 20)" in out
     assert scores(marked) == {"ada": 0.0, "bob": 20.0, "carl": 0.0}
 
 
@@ -169,7 +169,7 @@ def test_a_damaged_gradebook_is_a_sentence(marked, capsys, damage):
     before = path.read_bytes()
     path.write_bytes(before[: len(before) // 2] if damage is None else damage)
     kept = {x: x.read_bytes() for x in Results(marked, NAME).folder.glob("*.json")}
-    for words in (["export"], ["feedback"], ["regrade"], ["grade"]):
+    for words in (["export"], ["feedback"], ["grade"]):
         code, _, err = verb(marked, capsys, *words)
         assert (code, err.count("\n")) == (2, 1)
         assert "gradebook.db is damaged: " in err and "restore a copy" in err
@@ -198,7 +198,7 @@ def test_no_name_of_a_folder_reaches_a_terminal(marked, capsys, monkeypatch):
     with open_gradebook(marked) as book:  # nbgrader's autograde adds whom it then refuses
         book.update_or_create_student(HOSTILE[0].decode())
         book.update_or_create_submission(NAME, HOSTILE[0].decode())
-    for words in (["grade"], ["feedback"], ["export"], ["class-report", "--names"], ["regrade"]):
+    for words in (["grade"], ["feedback"], ["export"], ["class-report", "--names"]):
         code, out, err = verb(marked, capsys, *words)
         assert code == 1, words
         assert err.count("rename the folder and grade again") == len(HOSTILE), words

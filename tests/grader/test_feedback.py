@@ -12,7 +12,7 @@ from html.parser import HTMLParser
 import numpy as np
 import pytest
 from handmade import ROOT
-from made import saying
+from made import said_by_hand, saying
 
 import labkit as lk
 from labkit.control import springs
@@ -231,7 +231,7 @@ def test_whatever_a_student_says_is_text(result):
             for q in result.questions
         ),
     )  # fmt: skip
-    found = Page(page(worst, {"follow": EVIL}))
+    found = Page(page(worst, said_by_hand(worst, follow=EVIL)))
     assert not {"img", "iframe", "a", "object", "link"} & {tag for tag, _ in found.tags}
     assert sum(tag == "script" for tag, _ in found.tags) == 3 + 2
     assert sum(EVIL in words for words in found.words) >= 10

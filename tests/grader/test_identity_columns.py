@@ -17,7 +17,7 @@ ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")
 
 def row(student="ada", known=None, person=None, email="", first="", last=""):
     who = (student, first, last, email, "", "", "")
-    return Mark(*who, {}, 1.0, 0.0, 2.0, user=known, person=person)
+    return Mark(*who, (), 1.0, 0.0, 2.0, user=known, person=person)
 
 
 def table(layout, *marks):

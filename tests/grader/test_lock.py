@@ -38,9 +38,9 @@ def test_only_other_shards_of_one_split_run_together(tmp_path, first, second):
         pass
 
 
-@pytest.mark.parametrize("words", [["grade"], ["grade", "--shard", "1/2"], ["regrade", "--diff"]])
+@pytest.mark.parametrize("words", [["grade"], ["grade", "--shard", "1/2"], ["grade", "--diff"]])
 def test_verbs_that_grade_exclude_each_other(course, capsys, words):
-    """Beside a run that is under way, grade, a shard of it and regrade end in a sentence."""
+    """Beside a run that is under way, grade, a shard of it and --diff end in a sentence."""
     handed_in(course, "ada")
     with exclusive_run(course.results / NAME):
         assert main([*words, NAME, "--course", str(course.root)]) == 2

@@ -1,6 +1,7 @@
 """A term begins, ends and is forgotten; a course is exported."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,11 @@ from labkit.course.bundle import Bundle
 from labkit.course.layout import PUBLIC_SEED, Course
 from labkit.errors import UnknownName
 from labkit.grader import term
+from labkit.grader.gradebook import open_gradebook
+from labkit.grader.identity import remember
+from labkit.grader.platforms import LmsUser
 from labkit.grader.release import FORBIDDEN
+from labkit.grader.roster import Roster, Student, read_roster, save_roster, tell_gradebook
 from labkit.grader.student_bundle import export_course
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -46,21 +51,65 @@ def test_a_correction_keeps_the_seed(course):
 def test_a_public_seed_is_said_to_be_public(course, capsys):
     """Released with the repository's seed, hidden cases are no secret, and the verb says so."""
     arguments = ["release", "00_warmup", "--course", str(course.root)]
-    sentence = "public seed 2019 are public: anyone can compute them; begin a term with: labkit new"
+    sentence = "public seed 2019 are public: anyone can compute them; begin a term with: labkit"
     assert main(arguments) == 0
     assert capsys.readouterr().out.count(sentence) == 1
     assert main([*arguments, "--seed", "41"]) == 0
     assert "anyone can compute" not in capsys.readouterr().out
 
 
-def test_the_next_term_archives_the_names_and_forgets_them(course):
+def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
     """What holds names moves into one folder, and one command deletes it."""
     (course.submitted / "ada" / "01_paths").mkdir(parents=True)
     folder = term.archive(course)
     assert not course.submitted.exists()
     assert (folder / "submitted" / "ada").is_dir()
-    assert term.purge(course) == [folder]
+    words = ["term", "forget", "--course", str(course.root)]
+    assert main(words) == 2
+    assert "--older YEARS, or --student NAME" in capsys.readouterr().err
+    assert main([*words, "--older", "1", "--yes"]) == 0 and folder.exists()
+    assert main([*words, "--older", "0"]) == 0 and folder.exists()
+    assert "nothing is deleted yet; add --yes" in capsys.readouterr().out
+    assert main([*words, "--older", "0", "--yes"]) == 0
     assert not folder.exists()
+
+
+def test_a_new_term_has_nothing_of_the_last_one(course):
+    """Its hidden cases go with it, and no advice names its seed."""
+    term.new_term(course, 41, ("00_warmup", "01_paths"))
+    assert term.new_term(course, 43, ("00_warmup",))["bundles"].keys() == {"00_warmup"}
+    with pytest.raises(LabkitError, match="was not released here"):
+        Bundle.of(course, "01_paths")
+
+
+def test_one_student_is_forgotten_everywhere(course, capsys):
+    """Files, results, gradebook, roster and numbers, of this term and of earlier ones."""
+    for kind in ("submitted", "attempts", "feedback", "autograded"):
+        for student in ("ada", "ada-2"):
+            (course.root / kind / student / "01_paths").mkdir(parents=True)
+    results = course.results / "01_paths"
+    for name in ("ada.json", "old/ada-1-2-3.json", "aside/ada.json", "ada-2.json"):
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        (results / name).write_text("{}")
+    save_roster(course, Roster((Student("ada", "Ada"), Student("ada-2", "Ada"))))
+    tell_gradebook(course, read_roster(course))
+    remember(course, "01_paths", {"ada": LmsUser("moodle", "7", "Ada")})
+    archived = term.archive(course)
+    shutil.copytree(archived, course.root, dirs_exist_ok=True)
+    shutil.copy(archived / "roster.csv", course.root / "course_private")
+    shutil.copy(archived / "lms.json", course.root / "course_private")
+    words = ["term", "forget", "--student", "ada", "--course", str(course.root)]
+    assert main(words) == 0
+    assert capsys.readouterr().out.count("would go: ") == 14
+    assert main([*words, "--yes"]) == 0
+    said = capsys.readouterr().out
+    assert said.count("no more in") == 6 and "backups" in said
+    left = {str(x.relative_to(course.root)) for x in course.root.rglob("ada*")}
+    assert not [x for x in left if "ada-2" not in x and "solutions" not in x]
+    assert any("ada-2" in x for x in left)
+    assert [x.id for x in read_roster(course).students] == ["ada-2"]
+    with open_gradebook(course) as book:
+        assert [x.id for x in book.students] == ["ada-2"]
 
 
 @pytest.mark.parametrize("seed", [PUBLIC_SEED])

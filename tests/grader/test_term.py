@@ -10,20 +10,20 @@ from html.parser import HTMLParser
 
 import pytest
 from handmade import QUICK
-from made import saying
+from made import said_by_hand, saying
 
 from labkit.__main__ import main
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
+from labkit.grader.changes import changes
 from labkit.grader.class_report import report
 from labkit.grader.export import LAYOUTS, as_csv, left_out
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
-from labkit.grader.marks import Mark, marks_of
+from labkit.grader.marks import Line, Mark, mark_of, marks_of
 from labkit.grader.platforms import LmsUser
 from labkit.grader.pseudonyms import pseudonyms
-from labkit.grader.regrade import accept, moves
 from labkit.grader.results import Results
 from labkit.grader.submission import students
 from labkit.grader.term import archive
@@ -79,7 +79,7 @@ def test_feedback_page_shows_text_as_text(term):
             for q in result.questions
         ),
     )
-    found = Page(page(worst, {"circle": evil}))
+    found = Page(page(worst, said_by_hand(worst, circle=evil)))
     tags = {tag for tag, _ in found.tags}
     assert not tags & {"script", "img", "iframe", "a", "object", "link"}
     policy = [a for t, a in found.tags if t == "meta" and "http-equiv" in a]
@@ -131,14 +131,14 @@ def test_tables(term, capsys):
 
 def test_nothing_becomes_a_formula():
     """A name that a spreadsheet would run is written as text."""
-    row = Mark("=1+1", "@a", "+b", "-c", "1", "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0)
+    row = Mark("=1+1", "@a", "+b", "-c", "1", "", "", (Line("q", 2.0, 1.0),), 1.0, 0.0, 2.0)
     for layout in LAYOUTS.values():
         for cells in csv.reader(io.StringIO(as_csv(layout("x", [row])))):
             assert not [c for c in cells if c[:1] in set("=+@")]
 
 
-def test_regrade_says_first_and_never_lowers_unasked(course, capsys):
-    """After a threshold moves, --diff names who moves; marks fall only with --lower."""
+def test_grade_says_first_and_never_lowers_unasked(course, monkeypatch):
+    """What --diff graded aside is not graded again; marks fall only with --lower."""
     make_class(course, NAME, seed=4, count=5)
     who = students(course, NAME)
     how = GradeOptions(jobs=2, limits=QUICK)
@@ -150,17 +150,16 @@ def test_regrade_says_first_and_never_lowers_unasked(course, capsys):
         if question["name"] == "witness":
             question["points"] = 1
     path.write_text(json.dumps(data))
-    moved = list(moves(course, NAME, who, how))
+    moved = list(changes(course, NAME, who, how))
     assert {m.by for m in moved} == {-1.0, 0.0}
     assert {r.student: r.score for r in Results(course, NAME)} == {
         s: r.score for s, r in before.items()
     }
-    accepted = {result.student for result in accept(course, NAME, moved, lower=False)}
-    left = [m for m in moved if m.after.student not in accepted]
-    assert {m.after.student for m in left} == {m.after.student for m in moved if m.by < 0}
-    kept = [one for one in grade_class(course, NAME, who, how) if one.says.startswith("kept")]
-    assert len(kept) == len(left)
-    assert len(accept(course, NAME, moved, lower=True)) == len(moved)
+    monkeypatch.setattr("labkit.grader.batch.grade_aside", lambda *_: iter(()))  # no more work
+    again = list(grade_class(course, NAME, who, how))
+    kept = {one.result.student for one in again if one.says.startswith("kept")}
+    assert kept == {m.after.student for m in moved if m.by < 0} and len(again) == len(moved)
+    assert len(list(grade_class(course, NAME, who, replace(how, lower=True)))) == len(moved)
     assert {r.score for r in Results(course, NAME)} == {m.after.score for m in moved}
     assert list((Results(course, NAME).folder / "old").iterdir())
 
@@ -169,12 +168,12 @@ def test_class_report(term):
     """The report counts misconceptions by name, and names nobody unless asked."""
     results = list(Results(term, NAME))
     problems = {p.name: p for p in term.problems(NAME)}
-    text = report(NAME, results, problems, pseudonyms(term))
+    text = report(NAME, list(map(mark_of, results)), problems, pseudonyms(term))
     mistakes = [q.verdict.mistake.name for r in results for q in r.questions if q.verdict.mistake]
     assert mistakes
     assert all(name in text for name in mistakes)
     assert not [r.student for r in results if r.student in text]
-    named = report(NAME, [replace(r, rejected="x") for r in results], problems, str)
+    named = report(NAME, [mark_of(replace(r, rejected="x")) for r in results], problems, str)
     assert all(r.student in named for r in results)
 
 
@@ -192,7 +191,7 @@ def test_look_alikes(term):
     one = next(
         r for r in results if sum(q.verdict.outcome is Outcome.WRONG for q in r.questions) > 2
     )
-    text = report(NAME, [*results, replace(one, student="zz")], {}, str)
+    text = report(NAME, [*map(mark_of, results), mark_of(replace(one, student="zz"))], {}, str)
     assert "Look-alikes" in text
     assert f"{one.student} and zz" in text
 
@@ -225,4 +224,5 @@ def test_moodle_layouts():
 
 
 def row(student, *, first="", last="", email="", lms="", known=None):
-    return Mark(student, first, last, email, lms, "", "", {"q": (1.0, 2.0)}, 1.0, 0.0, 2.0, known)
+    line = Line("q", 2.0, 1.0)
+    return Mark(student, first, last, email, lms, "", "", (line,), 1.0, 0.0, 2.0, user=known)

@@ -13,6 +13,7 @@ from labkit.course.verdict import Outcome
 from labkit.grader.class_report import report
 from labkit.grader.feedback import page
 from labkit.grader.grade import grade
+from labkit.grader.marks import mark_of
 
 pytestmark = pytest.mark.slow  # a sandbox for each way
 
@@ -58,7 +59,7 @@ def test_the_class_report_lists_both(graded):
             ("bob", WAYS["loading under another name"]),
         ]
     ]
-    text = report("01_paths", results, {}, str.upper)
+    text = report("01_paths", list(map(mark_of, results)), {}, str.upper)
     lines = text[text.index("## Withheld tools") :].splitlines()
     assert lines[2:] == [
         "- ADA, not counted: bang_bang uses lk.BangBang, which this question asks you to write",

@@ -48,7 +48,7 @@ class Step:
 LAYOUTS = ("questions", "nbgrader", "canvas", "moodle", "moodle-worksheet")
 EXPORTS = tuple(Step(f"export --layout {layout}") for layout in LAYOUTS)
 GRADE, FEEDBACK = Step("grade", needed=True), Step("feedback")
-REPORT, REGRADE = Step("class-report --to aside/report.md"), Step("regrade")
+REPORT, REGRADE = Step("class-report --to aside/report.md"), Step("grade --diff")
 LABKIT = (
     Step("collect downloads/moodle.zip", needed=True),
     Step("collect downloads/canvas.zip", needed=True),

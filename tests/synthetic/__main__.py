@@ -24,6 +24,10 @@ def main() -> int:
     course = Course.here(args.course)
     course.notebook_source(args.assignment)
     if args.rehearse is None:
+        record = course.root / "course_private" / "term.json"
+        if record.exists():
+            print(f"{course.root} has begun a term; give --rehearse DIR", file=sys.stderr)
+            return 2
         made = make_class(course, args.assignment, args.seed, args.count)
         print(f"{len(made)} submissions in {course.submitted}")
         print(f"what they deserve: {expected_file(course, args.assignment)}")

@@ -16,7 +16,7 @@ from labkit.grader.collect import collect
 from labkit.grader.each import Failed, Failures
 from labkit.grader.export import LAYOUTS, as_csv
 from labkit.grader.feedback import write_feedback
-from labkit.grader.gradebook import comments, record
+from labkit.grader.gradebook import record
 from labkit.grader.marks import marks_of
 from labkit.grader.release import release
 from labkit.grader.results import write
@@ -67,15 +67,15 @@ def rehearse(
     results = list(failures.sift(standing(stage, name), "left out"))
     notes = list(failures.sift(record(stage, name, results), "not in the gradebook"))
     yield clock.says(f"in the gradebook: {len(results)}, {len(notes)} to look at")
-    written = write_feedback(stage, name, results, comments(stage, name))
+    marks = list(marks_of(stage, name))
+    failures.add("no mark", (Failed(row.student, row.missing) for row in marks if row.missing))
+    written = write_feedback(stage, name, [mark for mark in marks if not mark.missing])
     pages = list(failures.sift(written, "no page"))
     size = sum(page.stat().st_size for page in pages) / 1e6
     yield clock.says(f"feedback: {len(pages)} pages, {size:.0f} MB", each=len(pages))
     problems = {p.name: p for p in stage.problems(name)}
-    write(stage.root / "report.md", report(name, results, problems, str))
+    write(stage.root / "report.md", report(name, marks, problems, str))
     yield clock.says(f"class report: report.md, {len(list(common_failures(results)))} to doubt")
-    marks = list(marks_of(stage, name))
-    failures.add("no mark", (Failed(row.student, row.missing) for row in marks if row.missing))
     for layout in LAYOUTS_TO_TRY:
         write(stage.root / f"marks-{layout}.csv", as_csv(LAYOUTS[layout](name, marks)))
     yield clock.says(f"exported: {', '.join(f'marks-{x}.csv' for x in LAYOUTS_TO_TRY)}")

@@ -1,0 +1,35 @@
+"""The page of a student where nbgrader makes feedback: its button and its command write ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from nbconvert import HTMLExporter
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .feedback import page
+from .marks import marks_of
+from .rules import read_rules
+
+
+class StudentPage(HTMLExporter):  # type: ignore[misc]
+    """Makes of an autograded notebook what `labkit feedback` makes of its result."""
+
+    def from_filename(
+        self, filename: str, resources: dict[str, Any] | None = None, **_: Any
+    ) -> tuple[str, dict[str, Any]]:
+        """The page, and what a writer needs to know.
+
+        Raises:
+            LabkitError: The student has no mark.
+        """
+        about = dict(resources or {})
+        course, known = Course.here(Path.cwd()), about["nbgrader"]
+        for mark in marks_of(course, known["assignment"], known["student"]):
+            if mark.result is not None and (mark.lines or not mark.missing):
+                about |= {"output_extension": ".html", "outputs": {}}
+                return page(mark.result, mark, read_rules(course).name), about
+            raise LabkitError(f"{mark.student}: {mark.missing}")
+        raise LabkitError(f"there is no mark of {known['student']}")

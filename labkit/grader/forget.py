@@ -1,0 +1,105 @@
+"""Forget: delete earlier terms, or all that is there of one student, wherever it lies."""
+
+from __future__ import annotations
+
+import csv
+import glob
+import io
+import json
+import shutil
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from nbgrader.api import Gradebook, MissingEntry
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .gradebook import quiet_database
+from .identity import FILE as LMS
+from .identity import alone
+from .results import write
+from .roster import FILE as ROSTER
+from .rules import FILE as RULES
+from .rules import read_rules
+from .submission import is_name
+
+_FOLDERS = ("submitted", "attempts", "autograded", "feedback")
+
+
+def places_of(course: Course, student: str) -> list[Path]:
+    """Files and folders that are one student's, in this term and in earlier ones.
+
+    Raises:
+        LabkitError: Nobody can have this name.
+    """
+    if not is_name(student) or student in {"", ".", ".."} or "/" in student:
+        raise LabkitError(f"{student!a} is not the name of a student's folder")
+    plain = glob.escape(student)
+    found = [root / name / student for root in _terms(course) for name in _FOLDERS]
+    for root in _terms(course):
+        found += sorted(root.glob(f"results/*/{plain}.json"))
+        found += sorted(root.glob(f"results/*/aside/{plain}.json"))
+        found += sorted(root.glob(f"results/*/old/{plain}-*-*-*.json"))
+    return [path for path in found if path.exists() or path.is_symlink()]
+
+
+def forget(course: Course, found: Sequence[Path], student: str | None = None) -> Iterator[str]:
+    """Delete what `places_of` found, or archived terms, and what is written of a student.
+
+    Yields:
+        What else was done, and what is left to do by hand, a sentence each.
+    """
+    for path in found:
+        if path.is_dir() and not path.is_symlink():
+            shutil.rmtree(path)
+        else:
+            path.unlink()
+    if student is None:
+        return
+    for root in _terms(course):
+        if (root / "gradebook.db").exists() and _leave_gradebook(root / "gradebook.db", student):
+            yield f"no more in {(root / 'gradebook.db').relative_to(course.root)}"
+    with alone(course):
+        for root in _terms(course):
+            private = root / "course_private" if root == course.root else root
+            for path in _leave_records(private, student):
+                yield f"no more in {path.relative_to(course.root)}"
+    if any(x.student == student for x in read_rules(course).extensions):
+        yield f"{RULES} names an extension of theirs; delete it there"
+    yield (
+        "copies elsewhere are yours to delete: downloads, exported tables and reports, backups, "
+        "the exchange, the platform itself"
+    )
+
+
+def _terms(course: Course) -> list[Path]:
+    return [course.root, *sorted((course.root / "course_private").glob("archive-*"))]
+
+
+def _leave_records(private: Path, student: str) -> Iterator[Path]:
+    """Take a student out of a term's roster and its record of platforms' numbers."""
+    roster, users = private / Path(ROSTER).name, private / Path(LMS).name
+    if roster.exists():
+        rows = list(csv.reader(io.StringIO(roster.read_text(encoding="utf-8"))))
+        kept = [row for row in rows if row[:1] != [student]]
+        if kept != rows:
+            out = io.StringIO()
+            csv.writer(out, lineterminator="\n").writerows(kept)
+            write(roster, out.getvalue())
+            yield roster
+    if users.exists():
+        known = json.loads(users.read_text(encoding="utf-8"))
+        left = {name: {k: v for k, v in x.items() if k != student} for name, x in known.items()}
+        if left != known:
+            write(users, json.dumps(left, indent=1, sort_keys=True) + "\n")
+            yield users
+
+
+def _leave_gradebook(path: Path, student: str) -> bool:
+    """Take a student out of a gradebook; whether they were in it."""
+    with quiet_database(), Gradebook(f"sqlite:///{path}") as book:
+        try:
+            book.remove_student(student)
+        except MissingEntry:
+            return False
+    return True

@@ -1,0 +1,198 @@
+"""The course's rules, in one file that a person reads and edits: ``course.toml``.
+
+What the course is called, when each assignment is due and what it weighs, who has longer, what late
+work loses, and which attempt counts.  Due dates and extensions are written into nbgrader's
+gradebook, where formgrader shows them, and late work loses its share by nbgrader's own plugin.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import sys
+import tomllib
+from collections.abc import Mapping
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Annotated, Any, Literal
+from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
+
+import msgspec
+from nbgrader.plugins import LateSubmissionPlugin
+from traitlets.utils.importstring import import_item
+
+from ..course.layout import Course
+from ..errors import LabkitError
+from .nbgrader_api import nbgrader_api
+
+FILE = "course.toml"
+_Share = Annotated[float, msgspec.Meta(ge=0.0, le=100.0)]
+_Positive = Annotated[float, msgspec.Meta(ge=0.0)]
+_DAY = 86400.0
+
+
+class _Table(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A table of the file, in which a misspelt name is an error."""
+
+
+class Late(_Table, frozen=True):
+    """What late work loses.
+
+    Attributes:
+        percent_per_day: Of the points earned, for each day begun.
+        at_most: No more than so many percent.
+        grace_minutes: So late is in time.
+    """
+
+    percent_per_day: _Share = 0.0
+    at_most: _Share = 100.0
+    grace_minutes: _Positive = 0.0
+
+    def penalty(self, score: float, seconds: float) -> float:
+        """The points that are taken from ``score`` for work that came so late."""
+        if seconds <= 60 * self.grace_minutes:
+            return 0.0
+        percent = min(self.at_most, self.percent_per_day * math.ceil(seconds / _DAY))
+        return round(score * percent / 100, 4)
+
+
+class Assignment(_Table, frozen=True):
+    """When an assignment is due, and what it weighs in the term."""
+
+    due: datetime | None = None
+    weight: _Positive = 1.0
+
+
+class Extension(_Table, frozen=True):
+    """Longer time for one student, in one assignment or in all of them."""
+
+    student: str
+    days: _Positive
+    assignment: str = ""
+
+
+class Rules(_Table, frozen=True):
+    """All of the file.
+
+    Attributes:
+        name: What the course is called on pages.
+        id: What nbgrader calls it, in the exchange; in one word.
+        zone: In which due dates are that state none, such as "Europe/Berlin".
+        counts: Which attempt counts.
+        late: What late work loses.
+        assignments: By name.
+        extensions: Who has longer.
+    """
+
+    name: str = ""
+    id: Annotated[str, msgspec.Meta(pattern=r"^[\w-]+$")] = "trajectory_tracking"
+    zone: str = "UTC"
+    counts: Literal["latest", "latest in time"] = "latest"
+    late: Late = Late()
+    assignments: Mapping[str, Assignment] = {}
+    extensions: tuple[Extension, ...] = ()
+
+    def due(self, assignment: str) -> datetime | None:
+        """When an assignment is due for everybody, in UTC; None if it is not said."""
+        when = self.assignments.get(assignment, Assignment()).due
+        if when is None:
+            return None
+        return (when if when.tzinfo else when.replace(tzinfo=ZoneInfo(self.zone))).astimezone(UTC)
+
+    def weight(self, assignment: str) -> float:
+        """What an assignment weighs in the term."""
+        return self.assignments.get(assignment, Assignment()).weight
+
+    def longer(self, student: str, assignment: str) -> timedelta:
+        """How much longer a student has; the longest of several extensions."""
+        days = [
+            x.days
+            for x in self.extensions
+            if x.student == student and x.assignment in {"", assignment}
+        ]
+        return timedelta(days=max(days, default=0.0))
+
+    def due_for(self, student: str, assignment: str) -> datetime | None:
+        """When it is due for one student, a moment of grace included."""
+        due, grace = self.due(assignment), timedelta(minutes=self.late.grace_minutes)
+        return due and due + self.longer(student, assignment) + grace
+
+
+def read_rules(course: Course) -> Rules:
+    """The course's rules; those that take nothing away where there is no file.
+
+    Raises:
+        LabkitError: The file is not TOML, or it says what nobody can follow.
+    """
+    path = course.root / FILE
+    try:
+        rules = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), Rules)
+        ZoneInfo(rules.zone)
+    except FileNotFoundError:
+        return Rules()
+    except (ValueError, ZoneInfoNotFoundError) as error:
+        raise LabkitError(f"{path}: {error}; correct that line") from None
+    unknown = {*rules.assignments, *(x.assignment for x in rules.extensions)} - {
+        "",
+        *course.names(),
+    }
+    if unknown:
+        raise LabkitError(
+            f"{path} names {min(unknown)!r}, which is no assignment; there are "
+            f"{', '.join(course.names())}"
+        )
+    return rules
+
+
+def settle_lateness(course: Course, book: Any, assignment: str) -> None:
+    """Bring due date, extensions and penalties in the gradebook up to the rules as they are now.
+
+    Where the file names no due date, the one that was set in formgrader counts.
+
+    Raises:
+        LabkitError: The rules, or the course's own plugin for late work, cannot be used.
+    """
+    rules, late = read_rules(course), _late_plugin(course)
+    due = rules.due(assignment)
+    for submission in book.assignment_submissions(assignment):
+        if due is not None:
+            submission.assignment.duedate = due.replace(tzinfo=None)
+        if submission.assignment.duedate is not None and (course.root / FILE).exists():
+            submission.extension = rules.longer(submission.student.id, assignment)
+        seconds = submission.total_seconds_late
+        for notebook in submission.notebooks:
+            who, score = submission.student.id, notebook.score
+            taken = late.late_submission_penalty(who, score, seconds) if seconds > 0 else None
+            if (notebook.late_submission_penalty or 0.0) != (taken or 0.0):
+                notebook.late_submission_penalty = taken
+    book.db.commit()
+
+
+def _late_plugin(course: Course) -> Any:
+    """What nbgrader's settings name, also where it lies beside them as ``late.py``."""
+    config = nbgrader_api(course).config
+    chosen = config.get("AssignLatePenalties", {}).get("plugin_class", LateSubmissionPlugin)
+    if str(course.root) not in sys.path:
+        sys.path.insert(0, str(course.root))
+    try:
+        plugin = (import_item(chosen) if isinstance(chosen, str) else chosen)(config=config)
+    except ImportError as error:
+        raise LabkitError(
+            f"nbgrader_config.py names {chosen!r} for late work: {error}; put that module beside it"
+        ) from None
+    plugin.log.setLevel(logging.CRITICAL)
+    return plugin
+
+
+class CourseRules(LateSubmissionPlugin):  # type: ignore[misc]
+    """nbgrader's plugin for late work, by the rules of ``course.toml``."""
+
+    def late_submission_penalty(
+        self, student_id: str, score: float, total_seconds_late: float
+    ) -> float:
+        """The points to take away."""
+        root = self.config.get("CourseDirectory", {}).get("root") or Path.cwd()
+        late = read_rules(Course.here(Path(root))).late
+        if late == Late():  # then nbgrader's own setting counts, if there is one
+            return super().late_submission_penalty(student_id, score, total_seconds_late) or 0.0
+        return late.penalty(score, total_seconds_late)

@@ -1,0 +1,147 @@
+"""Due dates, extensions and late rules: one file of the course that all pages and tables keep."""
+
+from __future__ import annotations
+
+import csv
+import io
+from datetime import UTC, datetime
+
+import pytest
+from made import NAME, graded, notebook_of, result_of
+
+from labkit.__main__ import main
+from labkit.errors import LabkitError
+from labkit.grader.attempts import Seen, install, keep, that_counts
+from labkit.grader.gradebook import open_gradebook
+from labkit.grader.rules import Late, read_rules
+
+RULES = f"""
+name = "Robot control, winter 2026"
+zone = "Europe/Berlin"
+
+[late]
+percent_per_day = 10
+at_most = 50
+grace_minutes = 15
+
+[assignments.{NAME}]
+due = 2026-11-02T23:59:00
+weight = 2
+
+[[extensions]]
+student = "cleo"
+assignment = "{NAME}"
+days = 3
+"""
+
+
+@pytest.fixture
+def late(course):
+    """Ada in time, Ben and Cleo 25 hours late; nobody is ever told why."""
+    (course.root / "course.toml").write_text(RULES)
+    for student, when in (("ada", "2026-11-02 23:05"), ("ben", "2026-11-03 23:59"),
+                          ("cleo", "2026-11-03 23:59")):  # fmt: skip
+        graded(course, result_of(course, student), recorded=False)
+        folder = course.submitted / student / NAME
+        (folder / "timestamp.txt").write_text(f"{when} UTC")
+        graded(course, result_of(course, student))
+    return course
+
+
+def verb(course, capsys, *words):
+    code = main([*words, "--course", str(course.root)])
+    return code, *capsys.readouterr()
+
+
+def scores(course, capsys):
+    text = verb(course, capsys, "export", NAME)[1]
+    return {r["student"]: r["score"] for r in csv.DictReader(io.StringIO(text))}
+
+
+def test_late_work_loses_its_share_everywhere(late, capsys):
+    """Table, page and formgrader have one number; an extension is kept, a day begun is a day."""
+    assert scores(late, capsys) == {"(full marks)": "20.0", "ada": "20.0", "ben": "16.0",
+                                    "cleo": "20.0"}  # fmt: skip
+    assert verb(late, capsys, "feedback", NAME)[0] == 0
+    page = (late.root / "feedback/ben" / NAME / f"{NAME}.html").read_text()
+    assert "16 of 20 points." in page
+    assert "It came 1 day 1 hour after it was due: 4 points are taken from 20." in page
+    with open_gradebook(late) as book:
+        assert book.find_submission(NAME, "ben").late_submission_penalty == 4.0
+        assert book.find_submission(NAME, "cleo").late_submission_penalty == 0.0
+
+
+def test_a_rule_that_changes_changes_marks_that_are_there(late, capsys):
+    """An extension granted later counts at once, without grading again."""
+    text = RULES.replace("cleo", "ben").replace("percent_per_day = 10", "percent_per_day = 20")
+    (late.root / "course.toml").write_text(text)
+    assert scores(late, capsys) | {"ada": ""} == {"(full marks)": "20.0", "ada": "", "ben": "20.0",
+                                                  "cleo": "12.0"}  # fmt: skip
+
+
+def test_the_term_in_one_table(late, capsys):
+    """All assignments with their weights; whoever lacks a mark has no percentage."""
+    code, out, _ = verb(late, capsys, "export")
+    rows = {r["student"]: r for r in csv.DictReader(io.StringIO(out))}
+    assert code == 0 and rows["(weight)"][NAME] == "2.0"
+    assert (rows["ada"]["percent"], rows["ben"]["percent"]) == ("100.0", "80.0")
+
+
+def test_who_handed_in_nothing_is_listed(late, tmp_path, capsys):
+    """With an empty cell, or with 0 if that is asked for; it is no failure."""
+    people = tmp_path / "people.csv"
+    people.write_text("login,first name,last name\nada,Ada,L\nben,Ben,M\ncleo,C,N\nfrank,F,O\n")
+    assert verb(late, capsys, "students", "import", str(people))[0] == 0
+    code, out, err = verb(late, capsys, "export", NAME)
+    assert code == 0 and "1 handed in nothing: frank" in err
+    assert "frank,,,,,,,,,nothing was handed in" in out
+    assert "\nfrank,,,,,,,0.0,0.0," in verb(late, capsys, "export", NAME, "--absent-zero")[1]
+    assert verb(late, capsys, "feedback", NAME)[0] == 0
+
+
+def test_nbgraders_own_plugin_works_from_the_courses_folder(late, capsys):
+    """A class in late.py beside nbgrader_config.py decides; without the file, a sentence."""
+    with (late.root / "nbgrader_config.py").open("a") as file:
+        file.write('c.AssignLatePenalties.plugin_class = "late.Half"\n')
+    code, _, err = verb(late, capsys, "export", NAME)
+    assert code == 2 and "put that module beside it" in err
+    (late.root / "late.py").write_text(
+        "from nbgrader.plugins import LateSubmissionPlugin\n"
+        "class Half(LateSubmissionPlugin):\n"
+        "    def late_submission_penalty(self, student, score, seconds):\n"
+        "        return score / 2\n"
+    )
+    assert scores(late, capsys)["ben"] == "10.0"
+
+
+@pytest.mark.parametrize(("minutes", "lost"), [(15, 0.0), (16, 2.0), (1440, 2.0), (1441, 4.0),
+                                               (14400, 10.0)])  # fmt: skip
+def test_what_is_lost_by_when(minutes, lost):
+    """Nothing within the grace, then a share for each day begun, up to a limit."""
+    assert Late(10, 50, 15).penalty(20.0, 60 * minutes) == lost
+
+
+@pytest.mark.parametrize(("text", "says"), [
+    ("[late]\npercent_per_dy = 3", "percent_per_dy"), ('zone = "Mars"', "Mars"),
+    ("due =\n", "line 1"), ("[assignments.99_no]", "no assignment"),
+    ("[late]\nat_most = 200", "100"),
+])  # fmt: skip
+def test_a_rule_that_nobody_can_follow_is_a_sentence(course, text, says):
+    """The file, what is wrong, and where."""
+    (course.root / "course.toml").write_text(text)
+    with pytest.raises(LabkitError, match=says):
+        read_rules(course)
+
+
+def test_the_latest_in_time_counts_where_the_rules_say_so(course):
+    """A late attempt does not take its place; both are kept."""
+    for day in (1, 5):
+        seen = Seen(datetime(2026, 11, day, tzinfo=UTC), "exchange", "ada", f"{NAME}.ipynb", True)
+        keep(course, "ada", NAME, notebook_of(f"day {day}"), seen)
+    (course.root / "course.toml").write_text(RULES)
+    assert that_counts(course, "ada", NAME).first.when.day == 5
+    (course.root / "course.toml").write_text('counts = "latest in time"\n' + RULES)
+    assert that_counts(course, "ada", NAME).first.when.day == 1
+    install(course, "ada", NAME)
+    stamp = (course.submitted / "ada" / NAME / "timestamp.txt").read_text()
+    assert stamp.startswith("2026-11-01")
