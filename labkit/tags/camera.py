@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import cv2
 import numpy as np
 
 from .. import se3
@@ -23,6 +24,7 @@ BACKGROUND = 255
 """Grey level where there is nothing to see."""
 
 _MARGIN = 4  # pixels around a tag's paper that are drawn with it
+_INSTANTS = 9  # of an exposure that are drawn
 _FINE = 4  # samples of a pixel along either side, where something may hide a tag
 
 
@@ -38,6 +40,9 @@ class Camera:
         intrinsics: Its lens and sensor.
         noise: Standard deviation of each colour of each pixel, in grey levels.
         samples: How fine a tag's edges are drawn: at s^2 points of each pixel.
+        blur: Standard deviation of the blur of a lens out of focus, in [px].
+        exposure: How long the shutter is open about the moment of a picture, in [s]: boards that
+            move are smeared.  The robot, and with it a camera in its hand, is taken as still.
     """
 
     def __init__(
@@ -48,6 +53,8 @@ class Camera:
         *,
         noise: float = 0.0,
         samples: int = 8,
+        blur: float = 0.0,
+        exposure: float = 0.0,
         seed: int = 0,
     ) -> None:
         """Fix a camera in ``world``.
@@ -59,6 +66,8 @@ class Camera:
             intrinsics: Lens and sensor; None is 640 x 480 pixels and a focal length of 515 px.
             noise: Standard deviation of each colour of each pixel, in grey levels of 255.
             samples: s, for s^2 points of each pixel on an edge of a tag; 1 makes it jagged.
+            blur: Of a lens out of focus, standard deviation in [px].
+            exposure: How long the shutter is open, in [s].
             seed: Of the noise.
 
         Raises:
@@ -75,6 +84,9 @@ class Camera:
         if not isinstance(samples, int) or not 1 <= samples <= 16:
             raise OutOfRange(f"samples is {samples!r}; give a whole number from 1 to 16")
         self.samples = samples
+        self.blur = as_number(blur, "blur", least=0.0)
+        self.exposure = as_number(exposure, "exposure", least=0.0)
+        self._wide, self._corner = _without_distortion(self.intrinsics)
         self._random = np.random.default_rng(seed)
         self._hand: Arm | None = None
         self.place(T_wc)
@@ -130,11 +142,10 @@ class Camera:
             Closed: The world is closed.
         """
         robot, T_wc = self._focus()
-        size = Window(0, 0, self.intrinsics.width, self.intrinsics.height)
+        size = Window(0, 0, self._wide.width, self._wide.height)
         seen = joined([self._robot_in(robot, T_wc, size, FAR), scenery(self.world)])
-        picture = 255.0 * draw(seen, self.intrinsics, T_wc, size)[0]
-        self._print(picture, robot, T_wc)
-        return self._developed(picture, [size])
+        picture = 255.0 * draw(seen, self._wide, T_wc, size)[0]
+        return self._developed(self._exposed(picture, robot, T_wc)[0], [size])
 
     def tag_image(self) -> Picture:
         """A quick picture of only the tags and of what hides them; the rest stays blank.
@@ -147,9 +158,21 @@ class Camera:
             Closed: The world is closed.
         """
         robot, T_wc = self._focus()
-        shape = (self.intrinsics.height, self.intrinsics.width, 3)
-        picture = np.full(shape, BACKGROUND, np.float32)
-        return self._developed(picture, self._print(picture, robot, T_wc))
+        picture = np.full((self._wide.height, self._wide.width, 3), BACKGROUND, np.float32)
+        return self._developed(*self._exposed(picture, robot, T_wc))
+
+    def _exposed(
+        self, picture: Any, robot: RobotVisuals, T_wc: Array
+    ) -> tuple[Any, list[Window]]:
+        """A picture with the tags printed over it, as a mean over the exposure; and where."""
+        if not self.exposure:
+            return picture, self._print(picture, robot, T_wc, self.world.t)
+        total, windows = np.zeros_like(picture), []
+        for share in (np.arange(_INSTANTS) + 0.5) / _INSTANTS - 0.5:
+            one = picture.copy()
+            windows += self._print(one, robot, T_wc, self.world.t + share * self.exposure)
+            total += one / _INSTANTS
+        return total, windows
 
     def _focus(self) -> tuple[RobotVisuals, Array]:
         """The robot as it stands now, and where the camera is."""
@@ -170,16 +193,16 @@ class Camera:
         centres, radii = robot.balls
         x, y, z = ((centres - T_wc[:3, 3]) @ T_wc[:3, :3]).T
         outside = (z + radii < NEAR) | (z - radii > depth)
-        for coordinate, rays in zip((x, y), window.rays(self.intrinsics), strict=True):
+        for coordinate, rays in zip((x, y), window.rays(self._wide), strict=True):
             low, high = rays[0], rays[-1]
             outside |= coordinate - low * z < -radii * np.hypot(1.0, low)
             outside |= coordinate - high * z > radii * np.hypot(1.0, high)
         return robot.surface(~outside)
 
-    def _print(self, picture: Any, robot: RobotVisuals, T_wc: Array) -> list[Window]:
+    def _print(self, picture: Any, robot: RobotVisuals, T_wc: Array, t: float) -> list[Window]:
         """Print the tags' papers over a picture, and over them what hides them; returns where."""
         boards = [thing for thing in self.world.shown if isinstance(thing, Board)]
-        poses = [se3.inverse(T_wc) @ board.T_wm for board in boards]
+        poses = [se3.inverse(T_wc) @ board.pose_at(t) for board in boards]
         windows = []
         for k in sorted(range(len(boards)), key=lambda k: -float(poses[k][2, 3])):  # nearest last
             board, T_cm = boards[k], poses[k]
@@ -187,7 +210,7 @@ class Camera:
             if place is None:
                 continue
             window, depth = place
-            share, white = paper(board.tag, T_cm, self.intrinsics, window, self.samples)
+            share, white = paper(board.tag, T_cm, self._wide, window, self.samples)
             shade = 255.0 * float(brightness(board.T_wm[:3, 2]))
             part = picture[window.rows, window.columns]
             part += share[..., None] * (shade * white[..., None] - part)
@@ -212,8 +235,8 @@ class Camera:
         if not len(near.corners):
             return
         n = _FINE
-        colours, z = draw(near, self.intrinsics, T_wc, window, n)
-        right, down = window.rays(self.intrinsics, n)
+        colours, z = draw(near, self._wide, T_wc, window, n)
+        right, down = window.rays(self._wide, n)
         normal, middle = T_wc[:3, :3].T @ T_wm[:3, 2], T_wc[:3, :3].T @ (T_wm[:3, 3] - T_wc[:3, 3])
         plane = (normal @ middle) / (normal[0] * right + (normal[1] * down + normal[2])[:, None])
         before = ((z < plane) | (plane <= 0.0)) & (z < 0.99 * FAR)
@@ -227,7 +250,7 @@ class Camera:
         corners = board.outline @ T_cm[:3, :3].T + T_cm[:3, 3]
         if corners[:, 2].min() < NEAR or T_cm[:3, 2] @ T_cm[:3, 3] >= 0.0:
             return None  # too near to be seen whole, or seen from behind
-        pixels, lens = self.intrinsics.project(corners), self.intrinsics
+        pixels, lens = self._wide.project(corners), self._wide
         low = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - _MARGIN, 0)
         high = np.ceil(pixels.max(axis=0)).astype(int) + _MARGIN + 1
         wide, tall = np.minimum(high, (lens.width, lens.height)) - low
@@ -236,16 +259,39 @@ class Camera:
         return Window(int(low[0]), int(low[1]), int(wide), int(tall)), float(corners[:, 2].max())
 
     def _developed(self, picture: Any, windows: list[Window]) -> Picture:
-        """With the sensor's noise where something was drawn, as whole grey levels, frozen."""
-        if self.noise and windows:
-            drawn = np.zeros(picture.shape[:2], dtype=bool)
-            for window in windows:
-                drawn[window.rows, window.columns] = True
-            grain = self._random.standard_normal((int(drawn.sum()), 3), dtype=np.float32)
-            picture[drawn] += np.float32(self.noise) * grain
+        """Through the lens and with the sensor's noise where something was drawn, frozen."""
+        drawn = np.zeros(picture.shape[:2], np.uint8)
+        for window in windows:
+            drawn[window.rows, window.columns] = 1
+        if self._corner is not None:
+            lens = self.intrinsics
+            v, u = np.indices((lens.height, lens.width)).reshape(2, -1)
+            seen = (lens.straightened(np.column_stack([u, v])) - self._corner).astype(np.float32)
+            at = seen.reshape(lens.height, lens.width, 2)
+            picture = cv2.remap(picture, at, None, cv2.INTER_CUBIC)
+            drawn = cv2.remap(drawn, at, None, cv2.INTER_NEAREST)
+        if self.blur:
+            picture = cv2.GaussianBlur(picture, (0, 0), self.blur)
+        if self.noise and drawn.any():
+            place = drawn > 0
+            grain = self._random.standard_normal((int(place.sum()), 3), dtype=np.float32)
+            picture[place] += np.float32(self.noise) * grain
         levels: Picture = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
         levels.setflags(write=False)
         return levels
+
+
+def _without_distortion(lens: Intrinsics) -> tuple[Intrinsics, Array | None]:
+    """A lens without distortion that sees all that ``lens`` sees, and its first pixel in that."""
+    if not any(lens.distortion):
+        return lens, None
+    v, u = np.indices((lens.height, lens.width))
+    rim = np.ones_like(u, bool)
+    rim[1:-1, 1:-1] = False
+    seen = lens.straightened(np.column_stack([u[rim], v[rim]]))
+    low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
+    wide, tall = (int(n) for n in high - low + 1)
+    return Intrinsics(wide, tall, lens.fx, lens.fy, lens.cx - low[0], lens.cy - low[1]), low
 
 
 def _held(arm: Arm, q: Array) -> Array:

@@ -19,8 +19,9 @@ class Estimate(NamedTuple):
 
     Attributes:
         t: At which time, in [s].
-        mean: Position [m] and velocity [m/s], shape (6,).
-        covariance: Of the mean, shape (6, 6).
+        mean: Position [m] and velocity [m/s], and acceleration [m/s^2] if it is estimated too,
+            shape (6,) or (9,).
+        covariance: Of the mean, shape (6, 6) or (9, 9).
     """
 
     t: float
@@ -28,19 +29,20 @@ class Estimate(NamedTuple):
     covariance: Array
 
 
-def first_estimate(t: float, position: Any, noise: Any, speed: float) -> Estimate:
+def first_estimate(t: float, position: Any, noise: Any, *spread: float) -> Estimate:
     """What one reading of a position tells, the velocity being anything.
 
     Args:
         t: When the picture was taken, in [s].
         position: Shape (3,) in [m].
         noise: Its covariance, shape (3, 3) in [m^2].
-        speed: Standard deviation of the velocity's coordinates that one expects, in [m/s].
+        *spread: Standard deviation that one expects of the velocity's coordinates, in [m/s], and,
+            to estimate it too, of the acceleration's, in [m/s^2].
     """
-    covariance = np.zeros((6, 6))
+    variances = [as_number(s, "spread", above=0.0) ** 2 for s in spread]
+    covariance = np.kron(np.diag([0.0, *variances]), np.eye(3))
     covariance[:3, :3] = as_array(noise, (3, 3), "noise")
-    covariance[3:, 3:] = as_number(speed, "speed", above=0.0) ** 2 * np.eye(3)
-    mean = np.concatenate([as_array(position, (3,), "position"), np.zeros(3)])
+    mean = np.concatenate([as_array(position, (3,), "position"), np.zeros(3 * len(spread))])
     return Estimate(t, locked(mean), locked(covariance))
 
 
@@ -60,8 +62,8 @@ def update(estimate: Estimate, position: Any, noise: Any) -> Estimate:
     """
     z, R = as_array(position, (3,), "position"), as_array(noise, (3, 3), "noise")
     mean, P = estimate.mean, estimate.covariance
-    K = np.linalg.solve(P[:3, :3] + R, P[:3, :]).T  # (6, 3); H picks the position
-    keep = np.eye(6)
+    K = np.linalg.solve(P[:3, :3] + R, P[:3, :]).T  # (n, 3); H picks the position
+    keep = np.eye(len(mean))
     keep[:, :3] -= K
     covariance = keep @ P @ keep.T + K @ R @ K.T
     return Estimate(

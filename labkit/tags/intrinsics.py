@@ -1,6 +1,11 @@
-r"""Intrinsics: how a camera without lens distortion turns points into pixels.
+r"""Intrinsics: how a camera turns points into pixels.
 
-.. math:: u = f_x X/Z + c_x, \qquad v = f_y Y/Z + c_y
+.. math:: u = f_x x + c_x, \qquad v = f_y y + c_y
+
+with x = X/Z and y = Y/Z; a lens with distortion first bends these by OpenCV's model, with
+r^2 = x^2 + y^2:
+
+.. math:: x' = x\,(1 + k_1 r^2 + k_2 r^4 + k_3 r^6) + 2 p_1 x y + p_2 (r^2 + 2 x^2)
 
 The camera's frame c has z forward, x to the right and y down in the picture.  Pixel (0, 0) is the
 middle of the upper left pixel (OpenCV's convention), so the middle of a picture 640 pixels wide is
@@ -12,10 +17,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import cv2
 import numpy as np
 
 from ..errors import OutOfRange, ShapeError
-from ..shapes import Array, as_number, as_numbers, locked
+from ..shapes import Array, as_array, as_number, as_numbers, locked
 
 
 @dataclass(frozen=True)
@@ -29,6 +35,7 @@ class Intrinsics:
         fy: Focal length along y, in [px].
         cx: Where the optical axis meets the picture, along x, in [px]; None is the middle.
         cy: The same along y.
+        distortion: k1, k2, p1, p2 and k3, as `cv2.projectPoints` takes them; none by default.
     """
 
     width: int = 640
@@ -37,6 +44,7 @@ class Intrinsics:
     fy: float = 515.0
     cx: Any = None
     cy: Any = None
+    distortion: Any = (0.0, 0.0, 0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
         for name, middle in (("width", "cx"), ("height", "cy")):
@@ -48,6 +56,8 @@ class Intrinsics:
             object.__setattr__(self, middle, at)
         as_number(self.fx, "fx", above=0.0)
         as_number(self.fy, "fy", above=0.0)
+        bent = as_array(self.distortion, (5,), "distortion")
+        object.__setattr__(self, "distortion", tuple(bent.tolist()))
 
     @property
     def matrix(self) -> Array:
@@ -68,7 +78,23 @@ class Intrinsics:
             self.fy * k,
             (self.cx + 0.5) * k - 0.5,  # the picture's corner is at -0.5
             (self.cy + 0.5) * k - 0.5,
+            self.distortion,
         )
+
+    def straightened(self, pixels: Any) -> Array:
+        """Where the same lens without distortion would show what appears at pixels, shape (n, 2)."""
+        if not any(self.distortion):
+            return np.asarray(pixels)
+        K, bent = self.matrix, np.array(self.distortion)
+        exact = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 1e-10)
+        flat = np.asarray(pixels, dtype=float)[:, None]
+        return np.asarray(cv2.undistortPointsIter(flat, K, bent, np.eye(3), K, exact))[:, 0]
+
+    def bent(self, pixels: Any) -> Array:
+        """Where what a lens without distortion shows at pixels, shape (n, 2), really appears."""
+        K = self.matrix
+        rays = (np.asarray(pixels) - K[:2, 2]) / K.diagonal()[:2]
+        return self.project(np.column_stack([rays, np.ones(len(rays))]))
 
     def project(self, points: Any) -> Array:
         """Where points appear in the picture.
@@ -92,4 +118,7 @@ class Intrinsics:
                 "camera; are these coordinates of the world?"
             )
         K: Array = self.matrix
+        if any(self.distortion):
+            bent = np.array(self.distortion)
+            return np.asarray(cv2.projectPoints(p, np.zeros(3), np.zeros(3), K, bent)[0])[:, 0]
         return np.asarray((p[:, :2] / p[:, 2:]) * K.diagonal()[:2] + K[:2, 2])

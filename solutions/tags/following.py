@@ -1,8 +1,9 @@
 r"""Following a tag: a reference that never jumps, made from readings that come late.
 
-A Kalman filter with constant velocity turns old readings into where the tag is now; each reading
-bends the reference towards that, by the polynomial of fifth order that takes over the reference's
-own position, velocity and acceleration.  Between the two ends of a blend, :math:`x = t/T`:
+A Kalman filter of position, velocity and acceleration turns old readings into where the tag will
+be; each reading bends the reference towards that, by the polynomial of fifth order that takes over
+the reference's own position, velocity and acceleration.  Between the two ends of a blend,
+:math:`x = t/T`:
 
 .. math:: p(t) = \sum_{k=0}^{5} c_k x^k
 
@@ -12,7 +13,9 @@ section 6.2.2 (continuous white-noise acceleration).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import factorial
 from typing import Any
 
 import numpy as np
@@ -37,26 +40,39 @@ _ENDS = np.linalg.inv(
 )  # from value, slope and bend at x = 0 and x = 1 to the coefficients
 
 
-def predict(mean: Any, covariance: Any, age: float, accel_noise: float) -> tuple[Array, Array]:
-    r"""Where a thing is ``age`` seconds later, if only unknown pushes change its velocity.
+def predict(mean: Any, covariance: Any, age: float, noise: float) -> tuple[Array, Array]:
+    r"""Where a thing is ``age`` seconds later, if only white noise changes its highest derivative.
+
+    For position and velocity, pushed by unknown accelerations:
 
     .. math:: F = \begin{bmatrix} I & \tau I \\ 0 & I \end{bmatrix}, \quad
        Q = q \begin{bmatrix} \tau^3/3\,I & \tau^2/2\,I \\ \tau^2/2\,I & \tau I \end{bmatrix}, \quad
        m' = F m, \quad P' = F P F^T + Q
 
+    In general :math:`F_{ij} = \tau^{j-i}/(j-i)!` and :math:`Q = q\int_0^\tau f f^T ds`, where f(s)
+    is the last column of F(s).
+
     Args:
-        mean: Position [m] and velocity [m/s], shape (6,).
-        covariance: P, shape (6, 6).
+        mean: Position [m] and velocity [m/s], or acceleration [m/s^2] too, shape (6,) or (9,).
+        covariance: P, shape (6, 6) or (9, 9).
         age: tau, in [s].
-        accel_noise: q, the power of the pushes, in [m^2/s^3].
+        noise: q, the power of the acceleration's noise, in [m^2/s^3], or, of nine numbers, of its
+            slope's, in [m^2/s^5].
 
     Returns:
         Mean and covariance then.
     """
-    mean, covariance = as_array(mean, (6,), "mean"), as_array(covariance, (6, 6), "covariance")
-    tau, q = as_number(age, "age"), as_number(accel_noise, "accel_noise", least=0.0)
-    F = np.kron([[1.0, tau], [0.0, 1.0]], np.eye(3))
-    Q = q * np.kron([[tau**3 / 3.0, tau**2 / 2.0], [tau**2 / 2.0, tau]], np.eye(3))
+    mean = as_array(mean, (9,) if np.size(mean) == 9 else (6,), "mean")
+    covariance = as_array(covariance, (len(mean), len(mean)), "covariance")
+    tau, q = as_number(age, "age"), as_number(noise, "noise", least=0.0)
+    order = range(len(mean) // 3)
+    F = [[tau ** (j - i) / factorial(j - i) if j >= i else 0.0 for j in order] for i in order]
+    left = [order[-1] - i for i in order]  # how often the noise is integrated to reach each row
+    Q = [
+        [tau ** (a + b + 1) / (factorial(a) * factorial(b) * (a + b + 1)) for b in left]
+        for a in left
+    ]
+    F, Q = np.kron(F, np.eye(3)), q * np.kron(Q, np.eye(3))
     return F @ mean, F @ covariance @ F.T + Q
 
 
@@ -100,19 +116,19 @@ class TagFollower:
         T_wt: Pose of the tip at the start, shape (4, 4); its orientation is kept.
         offset: From the tag to where the tip should be, world axes, shape (3,) in [m].
         horizon: How far ahead a blend meets the tag, in [s]; longer where `acceleration` asks it.
-        coast: How long to believe in the last velocity, in [s].
+        coast: How long to believe in the last motion, in [s].
         acceleration: Largest acceleration of the reference, in [m/s^2].
-        accel_noise: How unsteady the tag is, for `predict`, in [m^2/s^3].
-        speed: How fast one expects it to be at first, in [m/s].
+        noise: How unsteady the tag's acceleration is, for `predict`, in [m^2/s^5].
+        spread: What one expects of its speed [m/s] and its acceleration [m/s^2] at first.
     """
 
     T_wt: Any
     offset: Any
     horizon: float = 0.45
-    coast: float = 0.5
-    acceleration: float = 0.27
-    accel_noise: float = 0.005
-    speed: float = 0.1
+    coast: float = 0.7
+    acceleration: float = 0.7
+    noise: float = 0.0035
+    spread: tuple[float, float] = (0.1, 0.2)
     estimate: Estimate | None = field(default=None, init=False)
 
     def __post_init__(self) -> None:
@@ -126,10 +142,19 @@ class TagFollower:
         """The reference at time ``t`` [s], with the readings that have arrived since the last."""
         for reading in readings:
             self.learn(reading)
-        if readings:
-            self._bend(t)
-        elif self.estimate is not None and t - self.estimate.t > self.coast and not self._at_rest:
-            self._come_to_rest(t)
+        known = self.estimate
+        believed = known is not None and t - known.t <= self.coast
+        ending = not self._at_rest and t - self._began > 0.8 * self._lasts
+        if known is not None and (readings or (believed and ending)):
+            mean, _ = predict(known.mean, known.covariance, t + self.horizon - known.t, self.noise)
+            p, v, a = mean.reshape(3, 3)
+            self._blend_to(t, lambda late: Sample(p + self.offset + late * v, v, a * (late == 0.0)))
+            self._at_rest = False
+        elif not (believed or self._at_rest):
+            p, v, _ = self._reference(t)
+            half, still = 0.5 * v, np.zeros(3)
+            self._blend_to(t, lambda late: Sample(p + (self.horizon + late) * half, still, still))
+            self._at_rest = True
         p, v, a = self._reference(t)
         T = np.array(self.T_wt)
         T[:3, 3] = p
@@ -139,41 +164,30 @@ class TagFollower:
         """Take a reading into the estimate; one older than the estimate is of no use."""
         z, R = reading.T_wm[:3, 3], reading.covariance[:3, :3]
         if self.estimate is None:
-            self.estimate = first_estimate(reading.stamp, z, R, self.speed)
+            self.estimate = first_estimate(reading.stamp, z, R, *self.spread)
             return
         age = reading.stamp - self.estimate.t
         if age >= 0.0:
-            then = predict(self.estimate.mean, self.estimate.covariance, age, self.accel_noise)
+            then = predict(self.estimate.mean, self.estimate.covariance, age, self.noise)
             self.estimate = update(Estimate(reading.stamp, *then), z, R)
 
     def _reference(self, t: float) -> Sample:
         return blend(t - self._began, self._from, self._to, self._lasts)
 
-    def _bend(self, t: float) -> None:
-        """A new blend, from the reference as it is to the tag as it will be."""
-        here, estimate, duration = self._reference(t), self.estimate, self.horizon
-        assert estimate is not None
-        while True:
-            age = min(t + duration - estimate.t, self.coast + self.horizon)
-            mean, _ = predict(estimate.mean, estimate.covariance, age, self.accel_noise)
-            goal = Sample(mean[:3] + self.offset, mean[3:], np.zeros(3))
-            if duration > 20.0 or _peak(here, goal, duration) <= self.acceleration:
-                break
-            duration *= 1.2
-        self._from, self._to, self._began, self._lasts = here, goal, t, duration
-        self._at_rest = False
+    def _blend_to(self, t: float, goal: Callable[[float], Sample]) -> None:
+        """A new blend from the reference as it is, later than the horizon if that is too hard.
 
-    def _come_to_rest(self, t: float) -> None:
-        """A blend to a stop, as soon as the acceleration allows."""
+        Args:
+            t: Now, in [s].
+            goal: Where to be and how to move at so many seconds after the horizon.
+        """
         here, duration = self._reference(t), self.horizon
-        while True:
-            stop = here.position + 0.5 * duration * here.velocity
-            goal = Sample(stop, np.zeros(3), np.zeros(3))
-            if duration > 20.0 or _peak(here, goal, duration) <= self.acceleration:
-                break
+        while _peak(here, goal(duration - self.horizon), duration) > self.acceleration:
             duration *= 1.2
-        self._from, self._to, self._began, self._lasts = here, goal, t, duration
-        self._at_rest = True
+            if duration > 20.0:
+                break
+        end = goal(duration - self.horizon)
+        self._from, self._to, self._began, self._lasts = here, end, t, duration
 
 
 def _peak(reference: Sample, goal: Sample, duration: float) -> float:

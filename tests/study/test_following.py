@@ -86,16 +86,17 @@ def followed(duration, plant=lk.IDEAL, noise=0.0, follower=Watched, **dials):
 
 
 @pytest.mark.slow
-def test_a_circling_board_is_followed_within_a_centimetre():
-    """0.15 m and 0.1 m/s for 40 s, 10 Hz, 100 ms late: RMS, acceleration and jumps."""
-    log, error, guide, lookups = followed(40.0)
+def test_a_circling_board_is_followed_within_two_millimetres():
+    """0.15 m and 0.1 m/s for 20 s, 10 Hz, 100 ms late: within 2 mm, gently once it has caught up."""
+    log, error, guide, lookups = followed(20.0)
     settled = log.t >= 5.0
     rms = 1e3 * np.sqrt(np.mean(error[settled] ** 2))
-    peak = np.linalg.norm(log.target.dtwist[:, :3], axis=1).max()
+    acceleration = np.linalg.norm(log.target.dtwist[:, :3], axis=1)
+    peak = acceleration[settled].max()
     print(f"RMS {rms:.2f} mm, peak {peak / GENTLE:.2f} v^2/R, jump {max(guide.jumps):.1e}")
     assert lookups.count.unseen <= 0.02 * lookups.count.taken
-    assert rms <= 10.0
-    assert peak <= 5.0 * GENTLE
+    assert rms <= 2.0
+    assert peak <= 2.0 * GENTLE and acceleration.max() <= guide.acceleration
     assert max(guide.jumps) <= 1e-9
 
 
@@ -167,10 +168,10 @@ def test_a_reading_older_than_what_is_known_is_passed_over():
     scene.arm.close()
 
 
-@pytest.mark.parametrize("wrong", [{"age": "x"}, {"accel_noise": -1.0}])
+@pytest.mark.parametrize("wrong", [{"age": "x"}, {"noise": -1.0}])
 def test_a_prediction_without_sense_is_refused(wrong):
     with pytest.raises(lk.LabkitError):
-        predict(np.zeros(6), np.eye(6), **{"age": 0.1, "accel_noise": 1.0} | wrong)
+        predict(np.zeros(6), np.eye(6), **{"age": 0.1, "noise": 1.0} | wrong)
 
 
 def test_a_stalled_loop_repeats_its_command_until_the_timeout_then_the_arm_stands_still():
