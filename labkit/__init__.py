@@ -32,7 +32,7 @@ from .world import World
 
 if TYPE_CHECKING:
     from . import plotting, replay
-    from .replay import live
+    from .replay.live import live
     from .tags import *  # noqa: F403
 
 __version__ = "0.1.0"
@@ -42,8 +42,8 @@ __all__ = [
     "Intrinsics", "JointPosition", "JointTorque", "JointVelocity", "LabkitError", "Line", "Log",
     "Model", "Plant", "Polyline", "PosePath", "PoseSample", "Push", "Quintic", "Robot", "Sample",
     "Spring", "State", "Table", "Tag", "TagStream", "TagTarget", "Trajectory", "Trapezoid", "Wall",
-    "World", "detect_tags", "live", "looking_at", "metrics", "plotting", "ready", "replay", "robot", "run",
-    "se3",
+    "World", "detect_tags", "live", "looking_at", "metrics", "plotting", "ready", "replay", "robot",
+    "run", "se3",
 ]  # fmt: skip
 
 

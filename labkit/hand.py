@@ -35,6 +35,11 @@ class Hand:
         force: What it did in the last physics step, world axes, shape (3,) in [N].
     """
 
+    at: Array | None
+    force: Array
+    _point: tuple[int, Array] | None
+    _to: Array | None
+
     def __init__(self, arm: Arm) -> None:
         """A hand that holds nothing yet."""
         self._arm = arm
@@ -64,10 +69,8 @@ class Hand:
 
     def let_go(self) -> None:
         """Do nothing."""
-        self._point: tuple[int, Array] | None = None
-        self._to: Array | None = None
-        self.at: Array | None = None
-        self.force: Array = np.zeros(3)
+        self._point, self._to, self.at = None, None, None
+        self.force = np.zeros(3)
 
     def act(self) -> None:
         """Pull during the next physics step."""

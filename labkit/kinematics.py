@@ -101,8 +101,10 @@ class Kinematics:
         q, point = as_array(q, self._joints, "q"), as_array(point, (3,), "point")
         pin.computeJointJacobians(self._pin, self._data, q)
         joint = min(body, n - 1) + 1
-        T = self._data.oMi[joint] * pin.SE3(self.robot.T_hand_tip) if body >= n else (
-            self._data.oMi[joint]
+        T = (
+            self._data.oMi[joint] * pin.SE3(self.robot.T_hand_tip)
+            if body >= n
+            else (self._data.oMi[joint])
         )
         p = T.act(point)
         J = pin.getJointJacobian(self._pin, self._data, joint, pin.LOCAL_WORLD_ALIGNED)

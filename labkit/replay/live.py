@@ -7,6 +7,8 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from ..arm import Arm
 from ..errors import TypeMismatch
 from ..log import Log
@@ -85,7 +87,8 @@ def live(
         f"{title}, held by {names}: run this cell, press Start, and pull at the arm with the mouse "
         "or with the buttons below it."
     )
-    widget.picture = lambda: still(arm.robot, first["q"])
+    elbow = arm.model.point_on(first["q"], arm.robot.n // 2, np.zeros(3))[0]
+    widget.picture = lambda: still(arm.robot, first["q"], around=elbow[None, :])
     return widget
 
 
@@ -94,7 +97,7 @@ def _widget_class() -> type[Any]:
     import anywidget
     import traitlets
 
-    class Live(Saved, anywidget.AnyWidget):  # type: ignore[misc]
+    class Live(Saved, anywidget.AnyWidget):
         """Shows one session and passes on what the hand does."""
 
         _esm = source()

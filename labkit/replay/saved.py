@@ -58,13 +58,14 @@ class Saved:
         return {"text/plain": self.words, "text/html": page}
 
 
-def still(robot: Robot, q: Any, *paths: Array) -> bytes:
+def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
     """A picture of an arm, with paths drawn into it: a PNG file's bytes, or those of an empty one.
 
     Args:
         robot: Which arm; only Baxter's have a body to show.
         q: Joint angles, shape (n,) in [rad].
         *paths: Points of lines, each of shape (K, 3) in [m], red first, then black.
+        around: Further points that must be in sight, shape (K, 3) in [m].
     """
     import cv2
 
@@ -74,7 +75,7 @@ def still(robot: Robot, q: Any, *paths: Array) -> bytes:
     width, height = 640, 400
     picture = np.full((height, width, 3), 255, dtype=np.uint8)
     with Arm(robot, q0=np.clip(q, robot.lower, robot.upper)) as arm:
-        points = np.vstack([arm.tip()[0][None, :], *paths])
+        points = np.vstack([arm.tip()[0], *paths, *([] if around is None else [around])])
         at = 0.5 * (points.min(0) + points.max(0))
         radius = 0.5 * float(np.linalg.norm(np.ptp(points, axis=0))) + 0.12
         away = radius / np.sin(np.radians(17.5)) * _direction(robot)
@@ -97,6 +98,4 @@ def still(robot: Robot, q: Any, *paths: Array) -> bytes:
 def _direction(robot: Robot) -> Array:
     """From where the viewer's first picture looks, as `rig.js` has it."""
     azimuth, up = 1.2 * (-1 if robot.name == "right" else 1), 0.5
-    return np.array(
-        [np.cos(up) * np.cos(azimuth), np.cos(up) * np.sin(azimuth), np.sin(up)]
-    )
+    return np.array([np.cos(up) * np.cos(azimuth), np.cos(up) * np.sin(azimuth), np.sin(up)])

@@ -13,6 +13,7 @@ import traceback
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from pathlib import Path
 from queue import Empty, SimpleQueue
 from statistics import median
 from typing import Any
@@ -86,6 +87,7 @@ class Session(Simulated):
         self.state, self.note = "ready", ""
         self._keep = self._over = self._again = False
         self._steps_left = 0
+        self._changes: list[Callable[[], Any]] = []
         self._heard = self._held = 0.0
         self._calls, self._within = 0, False
         self._times: deque[float] = deque(maxlen=round(1.0 / self.period))
@@ -126,10 +128,16 @@ class Session(Simulated):
 
     def _one_run(self) -> None:
         """From a start to whatever ends it: a dial, another law, "keep", an error."""
+        for change in self._changes:
+            change()
+        self._changes.clear()
         self._obey(wait=self.state != "running")
+        if self._changes:
+            return
         if self.state != "running":
             return
         self._over = self._again = False
+        self.plant = self.arm.plant
         self._began = time.monotonic()
         self._times.clear()
         try:
@@ -160,7 +168,6 @@ class Session(Simulated):
 
     def begin(self) -> float:
         """A run begins."""
-        self.plant = self.arm.plant
         self.law_begins()
         return 0.0
 
@@ -187,6 +194,7 @@ class Session(Simulated):
             )
         if time.monotonic() - self._held > FRESH:
             self._hand.let_go()
+        self.around.approach(self.period)
         k, t, cut = super().advance(k)
         if self._steps_left:
             self._steps_left -= 1
@@ -264,15 +272,20 @@ class Session(Simulated):
         self.around.move(message["name"], message["position"])
 
     def _on_law(self, message: dict[str, Any]) -> None:
-        self._law.name, self._over = message["name"], True
+        self._after(lambda: setattr(self._law, "name", message["name"]))
 
     def _on_dial(self, message: dict[str, Any]) -> None:
-        name, value = message["name"], float(message["value"])
-        if name not in self._dials:
-            return
-        self._law.values[name], self._over = value, True
+        self._after(lambda: self._turn(message["name"], float(message["value"])))
+
+    def _after(self, change: Callable[[], Any]) -> None:
+        """End the run, for one run has one law on one plant, and begin the next with a change."""
+        self._changes.append(change)
+        self._over = True
+
+    def _turn(self, name: str, value: float) -> None:
+        self._law.values[name] = value
         if self._dials[name].of_plant:
-            numbers = {n: v for n, v in self._law.values.items() if self._dials[n].of_plant}
+            numbers: Any = {n: v for n, v in self._law.values.items() if self._dials[n].of_plant}
             self.arm.become(replace(self._usual, **numbers, name=f"{self._usual.name}, dialled"))
 
     # What the page draws
@@ -283,7 +296,8 @@ class Session(Simulated):
     def numbers(self, note: str = "") -> dict[str, Any]:
         """The session as the page draws it."""
         (a, x), (b, y) = self._real[0], self._real[-1]
-        held = self._hand.at is not None
+        at = self._hand.at
+        held = at is not None
         stale = held and time.monotonic() - self._held > FRESH
         T_wd = self.around.wanted()
         q = self.arm.truth().q
@@ -296,7 +310,7 @@ class Session(Simulated):
             "note": note or self.note,
             "law": self._law.name,
             "force": np.round(self._hand.force, 3).tolist() if held else None,
-            "at": np.round(self._hand.at, 4).tolist() if held else None,
+            "at": None if at is None else np.round(at, 4).tolist(),
             "stale": stale,
             "error": error,
             "pace": round((y - x) / (b - a), 3) if b > a else None,
@@ -314,8 +328,15 @@ class Session(Simulated):
             looks = looks + 1 if self._within and self._calls == call else 0
             call = self._calls
             if looks and looks % round(PATIENCE / 0.05) == 0:
-                self._show({"kind": "note", "state": "stuck", "note": (
-                    f"{self._law.name} has not returned for {PATIENCE:g} s; it is being ended")})
+                self._show(
+                    {
+                        "kind": "note",
+                        "state": "stuck",
+                        "note": (
+                            f"{self._law.name} has not returned for {PATIENCE:g} s; it is being ended"
+                        ),
+                    }
+                )
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(
                     ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
                 )
@@ -330,5 +351,16 @@ def _sentence(error: BaseException, name: str) -> str:
     else:
         what = f"{type(error).__name__}: {error}"
     steps = traceback.extract_tb((error.__cause__ or error).__traceback__)
-    own = [s.line for s in steps if s.line and "labkit" not in s.filename.replace("\\", "/").split("/") and "site-packages" not in s.filename]
+    own = [
+        s.line
+        for s in steps
+        if s.line
+        and "labkit" not in s.filename.replace("\\", "/").split("/")
+        and "site-packages" not in s.filename
+    ]
     return f"{what} (line: {own[-1]})" if own else what
+
+
+def _library(file: str) -> bool:
+    """Whether a line of code, by its file, is labkit's or an installed package's."""
+    return file.startswith(str(Path(__file__).parents[1])) or "site-packages" in file

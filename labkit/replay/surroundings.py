@@ -1,4 +1,4 @@
-"""What stands around a live arm: its target, walls, bands and tags, seen and moved from the page."""
+"""What stands around a live arm: its target, walls, bands and tags, seen and moved by the page."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ from ..shapes import Array, as_array
 from ..trajectory import PoseSample, Sample
 
 TARGET = "target"
+FASTEST = 2.0
+"""Dragged walls and bands move at most this fast, in [m/s]: so no wall jumps over the tip."""
 
 
 class Surroundings:
@@ -28,6 +30,7 @@ class Surroundings:
         self._arm, self._target, self.since = arm, target, 0.0
         self._shift: Array = np.zeros(3)
         self._latest: Any = None
+        self._goals: dict[int, Array] = {}
         duration = getattr(target, "duration", None)
         self._round = duration if duration and _closed(target, duration) else None
 
@@ -39,17 +42,21 @@ class Surroundings:
     def target(self, t: float) -> Any:
         """The target, moved by who took hold of it; a closed path goes round for ever."""
         t += self.since
-        sample = self._target(t % self._round if self._round else t)
+        self._latest = self._target(t % self._round if self._round else t)
+        return self._shifted()
+
+    def _shifted(self) -> Any:
+        """The latest sample, where it was dragged to."""
+        sample = self._latest
         if isinstance(sample, PoseSample) and self._shift.any():
             pose = np.array(sample.pose)
             pose[:3, 3] += self._shift
             sample = sample._replace(pose=pose)
-        self._latest = sample
         return sample
 
     def wanted(self) -> Array | None:
-        """The pose that the tip should have, shape (4, 4); None if the target names only a point."""
-        sample = self._latest if self._latest is not None else self.target(0.0)
+        """The pose that the tip should have, shape (4, 4); None where only a point is named."""
+        sample = self.target(0.0) if self._latest is None else self._shifted()
         if isinstance(sample, PoseSample):
             return np.asarray(sample.pose)
         if isinstance(sample, Sample) and sample.position.size == self._arm.robot.n:
@@ -69,7 +76,8 @@ class Surroundings:
                 }  # fmt: skip
             elif isinstance(thing, Spring):
                 found[f"thing {i}"] = {"kind": "band", "position": thing.anchor.tolist()}
-        for i, board in enumerate(self._arm.world.shown):
+        shown: list[Any] = self._arm.world.shown
+        for i, board in enumerate(shown):
             if hasattr(board, "T_wm"):
                 found[f"tag {i}"] = _placed("tag", board.T_wm) | {"size": float(board.tag.paper)}
         return found
@@ -88,9 +96,24 @@ class Surroundings:
             T[:3, 3] = position
             board.place(T)
         else:
-            world = self._arm.world
-            old: Any = world.things[int(number)]
-            world.exchange(old, _moved(old, position))
+            self._goals[int(number)] = position
+
+    def approach(self, seconds: float) -> None:
+        """Bring dragged things nearer to where they were dragged, no faster than a tip can feel."""
+        world = self._arm.world
+        for number, goal in list(self._goals.items()):
+            old: Any = world.things[number]
+            way = goal - _middle(old)
+            far = float(np.linalg.norm(way))
+            if far <= FASTEST * seconds:
+                del self._goals[number]
+            else:
+                goal = _middle(old) + way * (FASTEST * seconds / far)
+            world.exchange(old, _moved(old, goal))
+
+
+def _middle(thing: Any) -> Array:
+    return np.asarray(thing.anchor if isinstance(thing, Spring) else thing.T_wf[:3, 3])
 
 
 def _moved(thing: Any, position: Array) -> Any:

@@ -46,7 +46,7 @@ def _widget_class() -> type[Any]:
     import anywidget
     import traitlets
 
-    class Replay(Saved, anywidget.AnyWidget):  # type: ignore[misc]
+    class Replay(Saved, anywidget.AnyWidget):
         """Shows one motion; viewer and robot go to the page once, not into the notebook."""
 
         _esm = source()
