@@ -328,15 +328,8 @@ class Session(Simulated):
             looks = looks + 1 if self._within and self._calls == call else 0
             call = self._calls
             if looks and looks % round(PATIENCE / 0.05) == 0:
-                self._show(
-                    {
-                        "kind": "note",
-                        "state": "stuck",
-                        "note": (
-                            f"{self._law.name} has not returned for {PATIENCE:g} s; it is being ended"
-                        ),
-                    }
-                )
+                late = f"{self._law.name} has not returned for {PATIENCE:g} s; it is being ended"
+                self._show({"kind": "note", "note": late})
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(
                     ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
                 )
@@ -351,13 +344,7 @@ def _sentence(error: BaseException, name: str) -> str:
     else:
         what = f"{type(error).__name__}: {error}"
     steps = traceback.extract_tb((error.__cause__ or error).__traceback__)
-    own = [
-        s.line
-        for s in steps
-        if s.line
-        and "labkit" not in s.filename.replace("\\", "/").split("/")
-        and "site-packages" not in s.filename
-    ]
+    own = [step.line for step in steps if step.line and not _library(step.filename)]
     return f"{what} (line: {own[-1]})" if own else what
 
 
