@@ -118,7 +118,7 @@ class Session(Simulated):
     # In the thread
 
     def _main(self) -> None:
-        self.arm.world.owner = threading.get_ident()
+        self.arm.world.owner, self.state = threading.get_ident(), "ready"
         try:
             while self.state != "closed":
                 self._one_run()
@@ -159,6 +159,8 @@ class Session(Simulated):
         """Put the arm to rest and say why."""
         self._hand.let_go()
         self.arm.recover()
+        if getattr(error, "log", None) is not None:  # of an arm that ran away
+            self.logs.append(error.log)  # type: ignore[attr-defined]
         self.state, self.note = "stopped", _sentence(error, self._law.name)
         self._picture()
 
@@ -340,7 +342,7 @@ def _sentence(error: BaseException, name: str) -> str:
     if isinstance(error, _Ended):
         what = f"{name} did not return; does every loop in it come to its end?"
     elif isinstance(error, LabkitError):
-        what = str(error)
+        what = str(error).replace("error.log", "view.log")
     else:
         what = f"{type(error).__name__}: {error}"
     steps = traceback.extract_tb((error.__cause__ or error).__traceback__)
