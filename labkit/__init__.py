@@ -32,6 +32,7 @@ from .world import World
 
 if TYPE_CHECKING:
     from . import plotting, replay
+    from .replay.live import live
     from .tags import *  # noqa: F403
 
 __version__ = "0.1.0"
@@ -41,8 +42,8 @@ __all__ = [
     "Intrinsics", "JointPosition", "JointTorque", "JointVelocity", "LabkitError", "Line", "Log",
     "Model", "Plant", "Polyline", "PosePath", "PoseSample", "Push", "Quintic", "Robot", "Sample",
     "Spring", "State", "Table", "Tag", "TagStream", "TagTarget", "Trajectory", "Trapezoid", "Wall",
-    "World", "detect_tags", "looking_at", "metrics", "plotting", "ready", "replay", "robot", "run",
-    "se3",
+    "World", "detect_tags", "live", "looking_at", "metrics", "plotting", "ready", "replay", "robot",
+    "run", "se3",
 ]  # fmt: skip
 
 
@@ -50,6 +51,8 @@ def __getattr__(name: str) -> Any:
     """What is loaded when first asked for: OpenCV, Matplotlib and IPython are slow to import."""
     if name in ("course", "plotting", "replay", "tags"):
         return import_module(f".{name}", __name__)
+    if name == "live":
+        return import_module(".replay", __name__).live
     if name not in __all__:
         raise AttributeError(f"module 'labkit' has no attribute {name!r}")
     return getattr(import_module(".tags", __name__), name)

@@ -59,7 +59,6 @@ class Arm:
             ShapeError: The plant is that of an arm with another number of joints.
         """
         self.robot = robot = as_robot(robot)
-        self.plant = plant
         self.model = Model(robot, plant)
         self.world = World() if world is None else world
         self._check_place()
@@ -71,13 +70,20 @@ class Arm:
             ) from None
         if q0 is not None:
             self.model.within_limits(q0, "q")
-        dt = self.world.dt
+        self._build(self.model)
+        self.reset(q0)
+        self.world.arms.append(self)
+
+    def _build(self, model: Model) -> None:
+        """Make all that hangs on the plant."""
+        robot, plant, dt = self.robot, model.plant, self.world.dt
+        self.plant, self.model = plant, model
         elastic = any(plant.joint_stiffness)
         self._springs = Springs(plant, robot.n, dt) if elastic else None
         # Behind springs there are rotors and friction; the links have neither.
         links = replace(plant, armature=0.0, viscous=0.0, joint_stiffness=0.0)
         links = links if elastic else plant
-        self._engine = new_arm(self.world.engine, self.robot, links, dt)
+        self._engine = new_arm(self.world.engine, robot, links, dt)
         own = Model(robot, replace(plant, payload=0.0))  # the arm does not know what it carries
         self._viscous = links.each("viscous", robot.n)
         self._patience = round(plant.command_timeout / dt)  # in physics steps
@@ -86,8 +92,6 @@ class Arm:
         self._reports = Reports(plant, robot.n, dt, self._random)
         felt = Model(robot, replace(links, payload=0.0)) if elastic else own
         self._sensors = TorqueSensors(felt, plant, dt)
-        self.reset(q0)
-        self.world.arms.append(self)
 
     def _check_place(self) -> None:
         if not isinstance(self.world, World):
@@ -151,18 +155,34 @@ class Arm:
         """
         q = self.robot.neutral if q is None else self.model.within_limits(q, "q")
         self.check_open()
-        self._engine.place(q)
+        self._start(q, self.robot.zeros)
+
+    def _start(self, q: Array, dq: Array) -> None:
+        self._engine.place(q, dq)
         self._joints.reset()
         if self._springs is not None:
             self._springs.reset(q, self.model.gravity(q))
         self._known: tuple[Array, Array] | None = None
         self._torque: Array = self.robot.zeros
         self._touches: list[Touch] = []
+        self._pull: Array | None = None
         self._sensors.reset()
         seen = locked(self._reports.read(np.array(q)))
-        self._reports.reset(State(self.world.t, seen, self.robot.zeros))
+        self._reports.reset(State(self.world.t, seen, locked(np.array(dq))))
         self._motors.kind = type(None)
         self.stop()
+
+    def become(self, plant: Plant) -> None:
+        """Be an arm of another plant from now on, where it is and as fast as it is, told to stop.
+
+        Raises:
+            ShapeError: The plant is that of an arm with another number of joints.
+        """
+        q, dq = self._read()
+        before = self._engine
+        self._build(Model(self.robot, plant))
+        before.close()
+        self._start(q, dq)
 
     def recover(self) -> None:
         """Come to rest at once, inside the joints' range: what someone does after a runaway."""
@@ -204,15 +224,26 @@ class Arm:
         """Let something act on the tip during the next physics step."""
         self._touches.append(touch)
 
+    def pull(self, torque: Any) -> None:
+        """Turn the joints from outside during the next physics step, as a hand on a link does.
+
+        Args:
+            torque: Shape (n,) in [N m]; several add up.
+        """
+        torque = as_array(torque, self.robot.zeros.shape, "torque")
+        self._pull = torque if self._pull is None else self._pull + torque
+
     def tip(self) -> tuple[Array, Array]:
         """Place [m] and velocity [m/s] of the tip as they really are, each of shape (3,)."""
         q, dq = self._read()
         return self.model.pose(q)[:3, 3], self.model.tip_jacobian(q)[:3] @ dq
 
     def check_open(self) -> None:
-        """Raise `Closed` if the world it stands in was closed."""
+        """Raise `Closed` if the world it stands in was closed, or is in another thread's hands."""
         if self.world.closed:
             raise Closed("this arm's world was closed; make a new Arm")
+        if self.world.owner is not None:
+            self.world.check_owner()
 
     def lost_ticks(self, ticks: int) -> list[bool]:
         """Which of the next control ticks come too late to be used: drawn from the arm's seed."""
@@ -240,14 +271,15 @@ class Arm:
         motors = drive.tau
         if self._springs is not None:
             motors, drive = self._springs.pull(q, dq, drive)
-        given = self._joints.solve(q, dq, drive, self._touches)
+        outside = drive if self._pull is None else drive._replace(tau=drive.tau + self._pull)
+        given = self._joints.solve(q, dq, outside, self._touches)
         if self.world.things or self.plant.payload:  # else no torque comes from outside
             joint = drive.tau + given.held - self._viscous * dq
             self._sensors.begin(q, dq, joint, self.world.steps)
         gives = self._springs is not None or self._motors.kind is JointTorque
         self._torque = motors if gives else given.held
         self._engine.step(given.tau, given.ddq)
-        self._known, self._touches = None, []
+        self._known, self._touches, self._pull = None, [], None
 
     def release(self) -> None:
         """Free what it holds; the world calls it."""

@@ -9,6 +9,7 @@ Pinocchio's.
 
 from __future__ import annotations
 
+import threading
 import warnings
 from itertools import pairwise
 from typing import Any
@@ -30,10 +31,15 @@ _ITERATIONS = 200
 _SLACK = 1e-9
 
 
+class _WorkSpace(threading.local):
+    """Where Pinocchio computes: each thread, such as that of `live`, has its own."""
+
+    def __init__(self, model: Any) -> None:
+        self.data = model.createData()
+
+
 class Kinematics:
     """The arm as mere geometry.
-
-    It holds work space of its own, so give each thread its own.
 
     Attributes:
         robot: Names and limits.
@@ -46,8 +52,12 @@ class Kinematics:
         self._tip = self._pin.addFrame(
             pin.Frame("tip", robot.n, 0, pin.SE3(robot.T_hand_tip), pin.FrameType.OP_FRAME)
         )
-        self._data = self._pin.createData()
+        self._work = _WorkSpace(self._pin)
         self._joints = (robot.n,)
+
+    @property
+    def _data(self) -> Any:
+        return self._work.data
 
     def pose(self, q: Any) -> Array:
         """Pose of the gripper's tip in the world, `T_wt` (Lynch & Park, chapter 4).
@@ -75,6 +85,30 @@ class Kinematics:
             Shape (6, n); rows 0-2 in [m/rad], rows 3-5 in [rad/rad].
         """
         return self._jacobian(q, pin.LOCAL_WORLD_ALIGNED)
+
+    def point_on(self, q: Any, body: int, point: Any) -> tuple[Array, Array]:
+        """Where a point of a body is, and the Jacobian of its velocity.
+
+        Args:
+            q: Joint angles, shape (n,) in [rad].
+            body: The body, by the number of the joint that turns it, from 0; n is the tip's frame.
+            point: In the body's frame, shape (3,) in [m].
+
+        Returns:
+            The place in the world, shape (3,) in [m], and the Jacobian, shape (3, n) in [m/rad].
+        """
+        n = self.robot.n
+        q, point = as_array(q, self._joints, "q"), as_array(point, (3,), "point")
+        pin.computeJointJacobians(self._pin, self._data, q)
+        joint = min(body, n - 1) + 1
+        T = (
+            self._data.oMi[joint] * pin.SE3(self.robot.T_hand_tip)
+            if body >= n
+            else (self._data.oMi[joint])
+        )
+        p = T.act(point)
+        J = pin.getJointJacobian(self._pin, self._data, joint, pin.LOCAL_WORLD_ALIGNED)
+        return p, J[:3] - se3.hat(p - self._data.oMi[joint].translation) @ J[3:]
 
     def body_jacobian(self, q: Any) -> Array:
         r"""The body Jacobian: the tip's twist in the tip's own axes, :math:`V_b = J_b\,\dot q`.

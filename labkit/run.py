@@ -70,7 +70,13 @@ def run(
             raise TypeMismatch(
                 f"{name} is {shown(given)}, expected a function: run(arm, target, controller)"
             )
-    driven = _driven(arm, rate)
+    return loop(_driven(arm, rate), target, controller, duration)
+
+
+def loop(
+    driven: Simulated | Real, target: Target, controller: Controller, duration: float | None
+) -> Log:
+    """`run`, of what is driven already; `live` has a clock of its own."""
     robot, period = driven.robot, driven.period
     who, whom = _name(controller), f"the target {_name(target)}"
     last = _ticks(target, duration, period) - 1

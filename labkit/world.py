@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol, Self
 
@@ -65,9 +66,11 @@ class World:
         things: What was put into it, the arms apart.
         arms: The arms that stand in it.
         shown: What only cameras see.
+        owner: The number of the one thread that may move it, such as that of `live`; None is any.
     """
 
     closed = True
+    owner: int | None = None
 
     def __init__(
         self, dt: float = 1e-3, things: Iterable[Thing] = (), engine: str | None = None
@@ -88,6 +91,7 @@ class World:
         self.engine = chosen(engine)
         self.steps = 0
         self._actors: list[Actor] = []
+        self._acting: dict[int, Actor | None] = {}
         self.things: list[Thing] = []
         self.arms: list[Standing] = []
         self.shown: list[Shown] = []
@@ -116,8 +120,24 @@ class World:
             )
         actor = thing.put_into(self)
         self.things.append(thing)
+        self._acting[id(thing)] = actor
         if actor is not None:
             self.add(actor)
+
+    def exchange(self, old: Thing, new: Thing) -> None:
+        """Put ``new`` in the place of ``old``, which is one of `things`: so a wall is moved."""
+        self.things[self.things.index(old)] = new
+        before = self._acting.pop(id(old))
+        after = self._acting[id(new)] = new.put_into(self)
+        if before is not None and after is not None:
+            self._actors[self._actors.index(before)] = after
+
+    def check_owner(self) -> None:
+        """Raise `Closed` if another thread moves this world."""
+        if self.owner not in (None, threading.get_ident()):
+            raise Closed(
+                "this arm is live in a cell of this notebook; make a new Arm, or press Stop there"
+            )
 
     def add(self, actor: Actor) -> None:
         """Call ``actor`` before each physics step from now on."""
@@ -135,6 +155,7 @@ class World:
         """
         if self.closed:
             raise Closed("this world was closed; make a new World, or a new Arm")
+        self.check_owner()
         for _ in range(count):
             for act in self._actors:
                 act()

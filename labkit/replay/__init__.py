@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from .figure import recorded_html, viewer_scripts
+from .live import live
 from .motion import Motion
 from .recorded import motion_of
 from .widget import show
 
-__all__ = ["Motion", "motion_of", "recorded_html", "show", "viewer_scripts"]
+__all__ = ["Motion", "live", "motion_of", "recorded_html", "show", "viewer_scripts"]

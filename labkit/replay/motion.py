@@ -120,7 +120,7 @@ class Motion:
             "alt": self.alt,
             "label": self.label,
             "side": self.robot.name,
-            **({} if self.robot.name in SIDES else {"robot": _drawn(self.robot)}),
+            **({} if self.robot.name in SIDES else {"robot": drawn(self.robot)}),
             "start": round(float(times[0]), 6),
             "period": round(float(times[1] - times[0]), 9),
             **packed,
@@ -224,7 +224,7 @@ def _frozen(value: Any, shape: tuple[int, ...], name: str) -> Array:
     return locked(np.array(as_array(value, shape, name)))
 
 
-def _drawn(robot: Robot) -> dict[str, Any]:
+def drawn(robot: Robot) -> dict[str, Any]:
     """The joints of an arm that the viewer has no meshes of, in the form of Baxter's file."""
     names = ("base", *robot.joint_names)
     poses = np.array([*(body["T_parent"] for body in robot.bodies), robot.T_hand_tip])

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import json
 from functools import cache
+from html import escape
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from ..errors import TypeMismatch
 from ..shapes import shown
-from .figure import VIEWER
+from .figure import VIEWER, figure_html, viewer_scripts
 from .motion import Motion
+from .saved import Saved, still
 
 
 def show(motion: Motion) -> Any:
@@ -24,7 +29,15 @@ def show(motion: Motion) -> Any:
     Raises:
         TypeMismatch: It is not a `Motion`.
     """
-    return _widget_class()(data=_data(motion))
+    made = _widget_class()(data=_data(motion))
+    made.shows(motion)
+    return made
+
+
+@cache
+def source() -> str:
+    """The front end of the notebook's widgets."""
+    return (VIEWER / "widget.js").read_text(encoding="utf-8")
 
 
 @cache
@@ -33,15 +46,15 @@ def _widget_class() -> type[Any]:
     import anywidget
     import traitlets
 
-    class Replay(anywidget.AnyWidget):
+    class Replay(Saved, anywidget.AnyWidget):
         """Shows one motion; viewer and robot go to the page once, not into the notebook."""
 
-        _esm = (VIEWER / "widget.js").read_text(encoding="utf-8")
+        _esm = source()
         data = traitlets.Unicode().tag(sync=True)
 
         def __init__(self, **traits: Any) -> None:
             super().__init__(**traits)
-            self.on_msg(_answer)
+            self.on_msg(answer)
 
         def __repr__(self) -> str:
             return f"Replay: {json.loads(self.data)['alt']}"
@@ -55,8 +68,51 @@ def _widget_class() -> type[Any]:
         @motion.setter
         def motion(self, motion: Motion) -> None:
             self.data = _data(motion)
+            self.shows(motion)
+
+        def shows(self, motion: Motion) -> None:
+            """Remember what to leave in a saved notebook."""
+            self.words = f"{motion.title}. {motion.description}"
+            self.picture = lambda: motion_still(motion)
+
+        def save(self, path: Any) -> None:
+            """Write a page that plays anywhere, without network and kernel, 1.7 MB.
+
+            Args:
+                path: Where to; its name should end in ".html".
+            """
+            save(self.data, self.words, path)
 
     return Replay
+
+
+def motion_still(motion: Motion) -> bytes:
+    """The first view of a motion: the arm half way, the tip's path and the desired one."""
+    q = motion.q[len(motion.q) // 2]
+    from ..model import Model
+
+    model = Model(motion.robot)
+    few = slice(None, None, max(1, len(motion.q) // 60))
+    tips = np.array([model.pose(row)[:3, 3] for row in motion.q[few]])
+    return still(motion.robot, q, tips, *(p for p in (motion.path,) if p is not None))
+
+
+def save(data: str, words: str, path: Any) -> None:
+    """Write a page with one motion, the viewer and the robot in it."""
+    title = escape(str(json.loads(data)["title"]))
+    scripts = "".join(f"<script>{text}</script>\n" for text in viewer_scripts())
+    start = (
+        'for (const f of document.querySelectorAll(".lk-embed")) labkitViewer.mount(f, '
+        "JSON.parse(f.querySelector('[type=\"application/json\"]').textContent));"
+    )
+    Path(path).write_text(
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<title>{title}</title></head>\n"
+        f"<body><main><h1>{title}</h1>\n{figure_html(data, words, words, words)}</main>\n"
+        f"{scripts}<script>{start}</script></body></html>\n",
+        encoding="utf-8",
+    )
 
 
 def _data(motion: Motion) -> str:
@@ -67,7 +123,7 @@ def _data(motion: Motion) -> str:
     return motion.to_json()
 
 
-def _answer(widget: Any, message: Any, _buffers: Any) -> None:
+def answer(widget: Any, message: Any, _buffers: Any) -> None:
     """Send the shared files to the page that asks for them."""
     if message.get("kind") == "files":
         files = [(VIEWER / name).read_bytes() for name in ("viewer.js", "robot.js")]

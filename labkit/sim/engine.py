@@ -23,8 +23,8 @@ class Engine(Protocol):
     and has neither stops nor damping nor motors of its own.
     """
 
-    def place(self, q: Array) -> None:
-        """Put the joints at rest at ``q``, shape (n,) in [rad]."""
+    def place(self, q: Array, dq: Array) -> None:
+        """Put the joints at ``q`` [rad], turning at ``dq`` [rad/s], both of shape (n,)."""
 
     def state(self) -> tuple[Array, Array]:
         """Joint angles in [rad] and speeds in [rad/s], two new arrays of shape (n,)."""

@@ -31,8 +31,8 @@ class MuJoCo:
         self._data = mujoco.MjData(self._model)
         self._q, self._dq, self._tau = self._data.qpos, self._data.qvel, self._data.qfrc_applied
 
-    def place(self, q: Array) -> None:
-        self._q[:], self._dq[:] = q, 0.0
+    def place(self, q: Array, dq: Array) -> None:
+        self._q[:], self._dq[:] = q, dq
 
     def state(self) -> tuple[Array, Array]:
         return self._q.copy(), self._dq.copy()

@@ -44,9 +44,10 @@ class PyBullet:
         self._rotors = plant.each("armature", robot.n)
         self._geared = Model(robot, plant) if self._rotors.any() else None
 
-    def place(self, q: Array) -> None:
-        for joint, angle in enumerate(q):
-            bullet.resetJointState(self._arm, joint, angle, 0.0, physicsClientId=self._client)
+    def place(self, q: Array, dq: Array) -> None:
+        here = {"physicsClientId": self._client}
+        for joint, (angle, speed) in enumerate(zip(q, dq, strict=True)):
+            bullet.resetJointState(self._arm, joint, angle, speed, **here)
 
     def state(self) -> tuple[Array, Array]:
         q, dq, *_ = zip(*bullet.getJointStates(self._arm, self._joints, self._client), strict=True)

@@ -570,6 +570,33 @@ lk.plotting.show(
 )
 
 # %% [markdown]
+# ## Feel it
+#
+# The same arm, in real time, under your own law. Press *Start* and drag the tip with the mouse: the arrow
+# is your force. By how much must 10 N move it, with K = 300 N/m? Turn the stiffness and drag again. Then
+# drag the elbow: your law says nothing about it, so what holds it back? Push the tip against the wall and
+# move the wall. At last choose *position mode* and pull with all your might. All this goes without a
+# mouse too: choose where to push, how hard and along which axis, below the picture.
+
+# %%
+def by_hand(state, target, stiffness):
+    K_now = np.array([stiffness] * 3 + [20.0] * 3)
+    D = 2.0 * np.sqrt(K_now * felt)
+    return my_workspace_impedance(state, target, model, stiffness=K_now, damping=D)
+
+
+wall = lk.Wall(T_ready[:3, 3] + [0.06, 0.0, 0.0], normal=(-1.0, 0.0, 0.0), size=(0.3, 0.3))
+lk.live(
+    lk.Arm("left", plant, q0=ready, world=lk.World(things=[wall])),
+    {"impedance": by_hand, "position mode": stiff},
+    lk.Hold(T_ready, 1.0),
+    title="Your impedance",
+    stiffness=(50.0, 1500.0, 300.0),
+    payload=(0.0, 1.0),
+    stiction=(0.0, 2.0),
+)
+
+# %% [markdown]
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a

@@ -423,6 +423,21 @@ lk.plotting.show(
 lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="the hand"))
 
 # %% [markdown]
+# Now move the tag yourself. Press *Start* and drag it with the mouse: the hand follows, some tenths of a
+# second behind, and overshoots where you turn. Drag it out of the camera's sight: what does the prediction
+# make of that? (While this runs the arm belongs to this cell; *Stop* sets it free.)
+
+# %%
+def by_camera(state, target):
+    return lk.JointPosition(arm.model.inverse_kinematics(target.pose, state.q, posture=arm.robot.ready))
+
+
+arm.reset(arm.robot.ready)
+board.place(se3.pose(np.eye(3), T_wt[:3, 3] - offset))
+stream = lk.TagStream(watching, board.tag, rate=10.0, delay=0.1)
+lk.live(arm, by_camera, lk.TagTarget(stream, Follower()), rate=100.0, title="You move the tag")
+
+# %% [markdown]
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a

@@ -632,6 +632,21 @@ lk.replay.show(
 )
 
 # %% [markdown]
+# And with a hand in it. Press *Start*, and pull at the arm while it circles: springs give way. Make them
+# softer and stiffer with the dial, which is the factor on their frequency as above; hang the kilogram on;
+# take the friction away.
+
+# %%
+def pulled(state, target, factor):
+    return lk.control.springs(factor**2 * kp, factor * kd)(state, target)
+
+
+lk.live(
+    lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), {"springs": pulled, "computed torque": ct}, circle,
+    title="Torque control", factor=(0.3, 2.0, 1.0), payload=(0.0, 1.0), stiction=(0.0, 1.0),
+)
+
+# %% [markdown]
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a

@@ -436,6 +436,22 @@ lk.replay.show(
 # them better.
 
 # %% [markdown]
+# And once more in real time, with a hand in it. Press *Start*, drag the arm off its circle and let go: how
+# long does it take to come back, with which kp? Velocity mode is stiff. However hard you pull, the motors
+# give all they have to keep the speed. Now make the state older (*state_delay*) until the arm begins to
+# swing: at which kp?
+
+# %%
+def circling(state, target, kp):
+    return with_gains(kp, 0.0)(state, target)
+
+
+lk.live(
+    lk.Arm("left", lk.BAXTER, q0=q0), circling, joints, title="Velocity control", kp=(0.0, 30.0, 5.0),
+    state_delay=(0.0, 0.1), payload=(0.0, 1.0),
+)
+
+# %% [markdown]
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a

@@ -132,7 +132,7 @@ lk.plotting.show(
 # %% [markdown]
 # Here is the same run in three dimensions. Press *Play*, or move the slider to go back and forth in time;
 # drag to look around. The see-through arm is the target, which stands still. (A notebook that was saved
-# and opened again has no replays, "model not found", until you run it once more.)
+# and opened again shows a picture in its place until you run it once more.)
 
 # %%
 lk.replay.show(lk.replay.motion_of(log, "Towards a place in joint space"))

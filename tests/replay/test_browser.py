@@ -133,8 +133,8 @@ def test_every_control_is_reached_and_named(chromium, visit):
         names.append(
             page.evaluate("document.activeElement.ariaLabel || document.activeElement.textContent")
         )
-    for wanted in ("Play", "Time", "Time in seconds, typed", "Motion", "Front", "Side", "Top", "Hand",
-                   "Turn left", "Zoom out", "Description in words"):  # fmt: skip
+    for wanted in ("Play", "Time", "Time in seconds, typed", "Motion", "Front", "Side", "Top",
+                   "Hand", "Turn left", "Zoom out", "Description in words"):  # fmt: skip
         assert wanted in names
 
 

@@ -1,4 +1,4 @@
-(()=>{var a=`.lk-embed, .lk-player, .lk-demo {
+(()=>{var i=`.lk-embed, .lk-player, .lk-demo {
   --lk-text: #1f2328; --lk-quiet: #57606a; --lk-edge: #b6bec8; --lk-face: #ffffff; --lk-sky: #e9edf2;
   --lk-grid: #c3cad3; --lk-accent: #0a5aa6; --lk-trace: #b3001b; --lk-path: #1f2328;
   --lk-line-0: #b3001b; --lk-line-1: #0a5aa6; --lk-line-2: #a35200; --lk-line-3: #1a7f4b;
@@ -50,6 +50,13 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-play { min-width: 4.6rem; font-weight: 600; }
 .lk-icon { min-width: 2rem; padding: 0.1rem 0.3rem; }
 .lk-gap { flex: 0 0 0.6rem; }
+.lk-say { margin: 0; padding: 0.45rem 0.75rem; border-bottom: 1px solid var(--lk-edge); color: var(--lk-text); }
+.lk-say[hidden], .lk-dials[hidden] { display: none; }
+.lk-say.lk-alarm { border-left: 5px solid var(--lk-trace); font-weight: 600; }
+.lk-livedials { padding: 0.1rem 0.75rem 0.4rem; }
+.lk-live .lk-choice label { flex-basis: auto; }
+.lk-live button[aria-pressed="true"] { background: var(--lk-accent); color: var(--lk-face); }
+.lk-live button:disabled { opacity: 0.55; cursor: default; }
 .lk-check { display: flex; align-items: center; gap: 0.3rem; white-space: nowrap; font-size: 0.9rem; }
 .lk-choice.lk-magnify label { flex-basis: auto; }
 .lk-choice[hidden] { display: none; }
@@ -107,4 +114,4 @@ fieldset .lk-dial label { flex-basis: 2.6rem; }
   .lk-bar, .lk-load, .lk-dial { display: none !important; }
   .lk-player, .lk-demo { break-inside: avoid; }
 }
-`;function n(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(a),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var o=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function i(e){return p[e]??=new Promise((t,r)=>{let l=document.createElement("script");l.src=e,l.addEventListener("load",t),l.addEventListener("error",()=>r(new Error(`${e} is missing`))),document.head.append(l)})}async function c(e,t){let r=new URL(t,document.baseURI).href;return await i(r),globalThis.labkitRuns[t.replace(/^.*\//,"").replace(/\.js$/,"")]}var b=globalThis.labkitLoad=async()=>(await Promise.all([i(`${o}viewer.js`),i(`${o}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let t=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await b(),l=document.createElement("div");e.insertBefore(l,e.querySelector("figcaption")),r(l,t,c),l.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function u(e){let t=document.createElement("button");t.type="button",t.className="lk-load",t.textContent="Tap to load the interactive view",t.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(t,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,n();let e=new IntersectionObserver(t=>{for(let{isIntersecting:r,target:l}of t)r&&(e.unobserve(l),s(l))},{rootMargin:"400px"});for(let t of document.querySelectorAll(".lk-embed"))m.matches?u(t):e.observe(t)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();
+`;function o(){if(globalThis.labkitStyled)return;let e=new CSSStyleSheet;e.replaceSync(i),document.adoptedStyleSheets=[...document.adoptedStyleSheets,e],globalThis.labkitStyled=!0}var n=document.currentScript.src.split("?")[0].replace(/[^/]*$/,""),m=matchMedia("(max-width: 500px)"),p={};function a(e){return p[e]??=new Promise((l,r)=>{let t=document.createElement("script");t.src=e,t.addEventListener("load",l),t.addEventListener("error",()=>r(new Error(`${e} is missing`))),document.head.append(t)})}async function c(e,l){let r=new URL(l,document.baseURI).href;return await a(r),globalThis.labkitRuns[l.replace(/^.*\//,"").replace(/\.js$/,"")]}var b=globalThis.labkitLoad=async()=>(await Promise.all([a(`${n}viewer.js`),a(`${n}robot.js`)]),globalThis.labkitViewer);async function s(e){if(e.dataset.mounted)return;e.dataset.mounted="1",e.querySelector(".lk-load")?.remove();let l=JSON.parse(e.querySelector('script[type="application/json"]').textContent);try{let{mount:r}=await b(),t=document.createElement("div");e.insertBefore(t,e.querySelector("figcaption")),r(t,l,c),t.querySelector(".lk-note")&&e.classList.add("lk-flat")}catch(r){delete e.dataset.mounted,console.error(r)}}function u(e){let l=document.createElement("button");l.type="button",l.className="lk-load",l.textContent="Tap to load the interactive view",l.addEventListener("click",()=>s(e).then(()=>e.querySelector("button, input, select")?.focus())),e.insertBefore(l,e.querySelector("figcaption"))}function d(){if(globalThis.labkitStarted)return;globalThis.labkitStarted=!0,o();let e=new IntersectionObserver(l=>{for(let{isIntersecting:r,target:t}of l)r&&(e.unobserve(t),s(t))},{rootMargin:"400px"});for(let l of document.querySelectorAll(".lk-embed"))m.matches?u(l):e.observe(l)}document.readyState==="loading"?document.addEventListener("DOMContentLoaded",d):d();})();

@@ -12,7 +12,7 @@ export function framing(points) {
 }
 
 export const VIEWS = {
-  Motion: { azimuth: 0.75, elevation: 0.32, distance: 1.6, target: [0.7, 0, 0.2] },
+  Motion: { azimuth: 1.2, elevation: 0.5, distance: 1.6, target: [0.7, 0, 0.2] },
   Front: { azimuth: 0.5, elevation: 0.22, distance: 3.1, target: [0.3, 0, -0.02] },
   Side: { azimuth: 1.5708, elevation: 0.12, distance: 3.4, target: [0.4, 0, -0.06] },
   Top: { azimuth: 0, elevation: 1.5, distance: 3.0, target: [0.5, 0, 0] },

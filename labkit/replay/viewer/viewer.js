@@ -1,5 +1,6 @@
 // The viewer: one classic script for page and notebook.  Leaves `labkitViewer` behind.
 import { Explorer } from "./explorer.js";
+import { LiveArm } from "./live.js";
 import { JacobianDemo } from "./jacobian_demo.js";
 import { Player } from "./player.js";
 import { RotationDemo } from "./rotation_demo.js";
@@ -18,16 +19,20 @@ export { dress };
 
 const KINDS = {
   motion: (host, data, robot) => new Player(host, data, robot),
+  live: (host, data, robot, load, link) => new LiveArm(host, data, robot, link),
   explorer: (host, data, robot, load) => new Explorer(host, data, robot, load),
   jacobian: (host, data, robot) => new JacobianDemo(host, data, robot),
   scaling: (host) => new ScalingDemo(host),
   rotation: (host) => new RotationDemo(host),
 };
 
-/** Builds what `data.kind` says inside `host`; the result can dispose(). */
-export function mount(host, data, load) {
+/**
+ * Builds what `data.kind` says inside `host`; the result can dispose().  `load` fetches recorded
+ * runs, `link` is the way to a kernel.
+ */
+export function mount(host, data, load, link) {
   dress();
-  const made = KINDS[data.kind](host, data, globalThis.labkitRobot, load);
+  const made = KINDS[data.kind](host, data, globalThis.labkitRobot, load, link);
   made.element.dataset.lmSuppressShortcuts = "true"; // JupyterLab's own keys stay out
   host.labkit = made;
   return made;

@@ -25,10 +25,14 @@ async function render({ model, el }) {
   el.append(alt, host);
   const { mount } = await viewer(model);
   alt.remove();
-  let shown = mount(host, data());
-  const change = () => { shown.dispose(); shown = mount(host, data()); };
+  const hear = [];
+  const heard = (message) => hear.forEach((f) => f(message));
+  const link = model.send && { send: (message) => model.send(message), hear: (f) => hear.push(f) };
+  let shown = mount(host, data(), undefined, link);
+  const change = () => { hear.length = 0; shown.dispose(); shown = mount(host, data(), undefined, link); };
   model.on("change:data", change);
-  return () => { model.off("change:data", change); shown.dispose(); };
+  model.on("msg:custom", heard);
+  return () => { model.off("change:data", change); model.off("msg:custom", heard); shown.dispose(); };
 }
 
 export default { render };

@@ -1,0 +1,91 @@
+r"""A hand that takes hold of the arm anywhere: what pointer and keys of the live arm pull with.
+
+It is a spring and a damper between a point of a link and a place in the world, no stronger than a
+person's arm,
+
+.. math:: f = k\,(x - p) - d\,\dot p, \qquad |f| \le f_{max}, \qquad \tau = J_p^T f ,
+
+or a constant force at that point.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .arm import Arm
+from .shapes import Array, as_array
+
+STIFFNESS = 400.0
+"""Of the spring, in [N/m]."""
+
+DAMPING = 12.0
+"""Of the damper, in [N s/m]."""
+
+STRONGEST = 60.0
+"""The most that it pulls, in [N]."""
+
+
+class Hand:
+    """A hand beside an arm; it pulls from `take` or `push` until `let_go`.
+
+    Attributes:
+        at: Where it holds the arm, world axes, shape (3,) in [m]; None while it holds nothing.
+        force: What it did in the last physics step, world axes, shape (3,) in [N].
+    """
+
+    at: Array | None
+    force: Array
+    _point: tuple[int, Array] | None
+    _to: Array | None
+
+    def __init__(self, arm: Arm) -> None:
+        """A hand that holds nothing yet."""
+        self._arm = arm
+        self.let_go()
+        arm.world.add(self.act)
+
+    def take(self, body: int, point: Any, to: Any) -> None:
+        """Pull a point towards a place.
+
+        Args:
+            body: What to hold, by the number of the joint that turns it; n is the tip's frame.
+            point: Where on it, in its own frame, shape (3,) in [m].
+            to: Towards where, world axes, shape (3,) in [m].
+        """
+        self._point, self._to = (body, as_array(point, (3,), "point")), as_array(to, (3,), "to")
+
+    def push(self, body: int, point: Any, force: Any) -> None:
+        """Push at a point with a constant force.
+
+        Args:
+            body: As for `take`.
+            point: As for `take`.
+            force: World axes, shape (3,) in [N].
+        """
+        self._point, self._to = (body, as_array(point, (3,), "point")), None
+        self._force = _bounded(as_array(force, (3,), "force"))
+
+    def let_go(self) -> None:
+        """Do nothing."""
+        self._point, self._to, self.at = None, None, None
+        self.force = np.zeros(3)
+
+    def act(self) -> None:
+        """Pull during the next physics step."""
+        if self._point is None:
+            return
+        _, q, dq, _ = self._arm.truth()
+        self.at, J = self._arm.model.point_on(q, *self._point)
+        self.force = (
+            self._force
+            if self._to is None
+            else _bounded(STIFFNESS * (self._to - self.at) - DAMPING * (J @ dq))
+        )
+        self._arm.pull(J.T @ self.force)
+
+
+def _bounded(force: Array) -> Array:
+    size = float(np.linalg.norm(force))
+    return force if size <= STRONGEST else force * (STRONGEST / size)

@@ -1,0 +1,126 @@
+"""The dials of a live session: what they turn, and the laws that read them."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any
+
+from ..errors import OutOfRange, TypeMismatch, UnknownName
+from ..plant import Plant
+from ..shapes import as_number, shown
+
+_OF_PLANT = {f.name for f in fields(Plant)} - {"name", "gravity_compensation"}
+_UNITS = {
+    "payload": "kg", "stiction": "N m", "viscous": "N m s/rad", "state_delay": "s",
+    "velocity_lag": "s", "state_rate": "Hz", "lost_ticks": "", "velocity_noise": "rad/s",
+    "torque_noise": "N m", "armature": "kg m²", "position_gain": "1/s", "torque_lag": "s",
+    "command_timeout": "s",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Dial:
+    """One number to turn.
+
+    Attributes:
+        name: A number of `Plant`, or an argument of a law.
+        low: Its least.
+        high: Its most.
+        value: Where it starts.
+    """
+
+    name: str
+    low: float
+    high: float
+    value: float
+
+    @property
+    def of_plant(self) -> bool:
+        """Whether it turns the plant, not a law."""
+        return self.name in _OF_PLANT
+
+    def data(self) -> dict[str, Any]:
+        """As the page reads it."""
+        return {
+            "name": self.name, "min": self.low, "max": self.high, "value": self.value,
+            "unit": _UNITS.get(self.name, ""),
+        }  # fmt: skip
+
+
+def read_dials(
+    given: Mapping[str, Any], plant: Plant, laws: Mapping[str, Callable[..., Any]]
+) -> dict[str, Dial]:
+    """The dials by name.
+
+    Args:
+        given: For each a range (low, high) or (low, high, start).
+        plant: What they start from.
+        laws: What reads those that are not the plant's.
+
+    Raises:
+        TypeMismatch: A range is none.
+        OutOfRange: A start is outside its range.
+        UnknownName: No law has such an argument, and neither has the plant.
+    """
+    dials = {}
+    for name, span in given.items():
+        try:
+            low, high, *start = (as_number(x, name) for x in span)
+        except (TypeError, ValueError):
+            raise TypeMismatch(
+                f"the dial {name} is {shown(span)}; give its range, {name}=(low, high) or "
+                f"{name}=(low, high, start)"
+            ) from None
+        if name in _OF_PLANT:
+            own = getattr(plant, name)
+            usual = max(own) if isinstance(own, tuple) else own
+        elif any(name in arguments(law) for law in laws.values()):
+            usual = low
+        else:
+            known = {*_OF_PLANT, *(x for law in laws.values() for x in arguments(law)[2:])}
+            raise UnknownName("dial", name, sorted(known))
+        value = start[0] if start else min(max(usual, low), high)
+        if not low <= value <= high or low >= high:
+            raise OutOfRange(f"the dial {name} starts at {value:g}, outside {low:g} to {high:g}")
+        dials[name] = Dial(name, low, high, value)
+    return dials
+
+
+def arguments(law: Callable[..., Any]) -> tuple[str, ...]:
+    """The names of a law's arguments."""
+    try:
+        return tuple(inspect.signature(law).parameters)
+    except (TypeError, ValueError):
+        return ()
+
+
+class Dialled:
+    """The chosen one of some laws, given the dials that it has arguments for.
+
+    Attributes:
+        name: Which law.
+        values: Where the dials stand.
+    """
+
+    def __init__(self, laws: Mapping[str, Callable[..., Any]], dials: Mapping[str, Dial]) -> None:
+        """Begin with the first law and the dials at their start."""
+        self._laws = laws
+        self._takes = {
+            law: [d for d in dials if d in arguments(f) and not dials[d].of_plant]
+            for law, f in laws.items()
+        }
+        self.name = next(iter(laws))
+        self.values = {name: dial.value for name, dial in dials.items()}
+
+    @property
+    def __name__(self) -> str:
+        """The law and its dials, for logs and sentences."""
+        told = [f"{d} {self.values[d]:g}" for d in self._takes[self.name]]
+        return ", ".join([self.name, *told])
+
+    def __call__(self, state: Any, target: Any) -> Any:
+        """The law's command."""
+        dials = {d: self.values[d] for d in self._takes[self.name]}
+        return self._laws[self.name](state, target, **dials)

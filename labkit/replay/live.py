@@ -1,0 +1,140 @@
+"""Live: the arm in real time under a law of this notebook, and a hand that can pull at it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from ..arm import Arm
+from ..errors import TypeMismatch
+from ..log import Log
+from ..robot import SIDES
+from ..shapes import shown
+from .dials import read_dials
+from .motion import drawn
+from .saved import Saved, still
+from .session import Session
+from .widget import answer, source
+
+
+def live(
+    arm: Arm,
+    controller: Callable[..., Any] | Mapping[str, Callable[..., Any]],
+    target: Any,
+    *,
+    rate: float = 200.0,
+    title: str = "The arm, live",
+    **dials: Any,
+) -> Any:
+    """The arm in real time, to be pulled at with the mouse, by touch or by keys.
+
+    Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell; other cells
+    that use it are told so.  A law that raises, loses the arm, is too slow or never returns leaves
+    it at rest and is named beside the picture.
+
+    Args:
+        arm: A simulated arm, best one made for this cell; it starts where it is.
+        controller: As for `run`; or several by name, to switch between.  One that has an argument
+            with the name of a dial is given the dial's value there: ``law(state, target, Kp)``.
+        target: As for `run`.  A closed path goes round for ever; a target of poses can be dragged,
+            and so can walls, tables, bands and tags.
+        rate: How often the controller is asked, in [Hz].
+        title: The heading.
+        **dials: For each a range (low, high) or (low, high, start).  A number of `Plant`, such as
+            payload, stiction or state_delay, turns the arm itself.
+
+    Returns:
+        A view to put last in a cell; ``view.log`` is the run that was kept last, ``view.logs`` are
+        all, ``view.close()`` frees the arm.
+
+    Raises:
+        TypeMismatch: The arm is not simulated, a controller or the target is not a function, or a
+            dial has no range.
+        UnknownName: Neither a controller nor the plant has a number of a dial's name.
+        OutOfRange: A dial starts outside its range, or the rate does not fit the physics step.
+    """
+    if not isinstance(arm, Arm):
+        raise TypeMismatch(f"arm is {shown(arm)}, expected a simulated lk.Arm")
+    named = controller if isinstance(controller, Mapping) else {_name(controller): controller}
+    for name, given in (*named.items(), ("target", target)):
+        if not callable(given):
+            raise TypeMismatch(f"{name} is {shown(given)}, expected a function")
+    laws = {str(name): law for name, law in named.items()}
+    found = read_dials(dials, arm.plant, laws)
+    widget = _widget_class()()
+    widget.session = Session(arm, laws, target, found, rate, widget.send)
+    first = widget.session.numbers()
+    names = " and ".join(laws)
+    widget.data = json.dumps(
+        {
+            "kind": "live",
+            "title": title,
+            "alt": f"{title}: Baxter's {arm.robot.name} arm" if arm.robot.name in SIDES else title,
+            "side": arm.robot.name,
+            **({} if arm.robot.name in SIDES else {"robot": drawn(arm.robot)}),
+            "laws": list(laws),
+            "dials": [dial.data() for dial in found.values()],
+            "joints": [n.removeprefix(f"{arm.robot.name}_") for n in arm.robot.joint_names],
+            "first": first,
+        },
+        separators=(",", ":"),
+    )
+    widget.words = (
+        f"{title}, held by {names}: run this cell, press Start, and pull at the arm with the mouse "
+        "or with the buttons below it."
+    )
+    elbow = arm.model.point_on(first["q"], arm.robot.n // 2, np.zeros(3))[0]
+    widget.picture = lambda: still(arm.robot, first["q"], around=elbow[None, :])
+    return widget
+
+
+@cache
+def _widget_class() -> type[Any]:
+    import anywidget
+    import traitlets
+
+    class Live(Saved, anywidget.AnyWidget):
+        """Shows one session and passes on what the hand does."""
+
+        _esm = source()
+        data = traitlets.Unicode().tag(sync=True)
+        session: Session
+
+        def __init__(self, **traits: Any) -> None:
+            super().__init__(**traits)
+            self.on_msg(_heard)
+
+        def __repr__(self) -> str:
+            return self.words
+
+        @property
+        def log(self) -> Log | None:
+            """The run that was kept last."""
+            return self.session.logs[-1] if self.session.logs else None
+
+        @property
+        def logs(self) -> tuple[Log, ...]:
+            """All runs that were kept."""
+            return tuple(self.session.logs)
+
+        def close(self) -> None:
+            """End it; the arm is at rest and free."""
+            self.session.close()
+            super().close()
+
+    return Live
+
+
+def _heard(widget: Any, message: Any, buffers: Any) -> None:
+    if message.get("kind") == "files":
+        answer(widget, message, buffers)
+    elif message.get("kind"):
+        widget.session.tell(message)
+
+
+def _name(law: Any) -> str:
+    return getattr(law, "__name__", type(law).__name__)

@@ -1,0 +1,101 @@
+"""What stays in a saved notebook: a picture and its caption, for pages without a kernel.
+
+JupyterLab prefers a widget to all else in an output and says "model not found" where its kernel is
+gone.  So the picture is an output of its own before the widget's, and a style sheet shows one of
+the two: the picture until the widget lives.
+"""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from ..robot import SIDES, Robot
+from ..shapes import Array
+
+LIFT = 0.6
+"""Power of the picture's brightness, below 1 to lighten what is dark."""
+
+_STYLE = """<style>
+.jp-OutputArea-child:has(.lk-saved):has(+ .jp-OutputArea-child :is(.lk-player, .lk-demo)),
+.jp-OutputArea-child:has(.lk-saved) + .jp-OutputArea-child:not(:has(:is(.lk-player, .lk-demo)))
+{ position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
+.lk-saved { margin: 0; } .lk-saved img { max-width: 100%; border-radius: 8px; background: #e9edf2; }
+body[data-jp-theme-light="false"] .lk-saved img { background: #8a95a2; }
+</style>"""
+
+
+class Saved:
+    """A widget that leaves its picture in the notebook.
+
+    Attributes:
+        words: Caption and description.
+        picture: Makes the picture, a PNG file's bytes.
+    """
+
+    words: str
+    picture: Callable[[], bytes]
+
+    def _ipython_display_(self) -> None:
+        from IPython.display import display
+
+        display(self.fallback(), raw=True)
+        data, metadata = self._repr_mimebundle_()  # type: ignore[attr-defined]
+        display(data, metadata=metadata, raw=True)
+
+    def fallback(self) -> dict[str, str]:
+        """The picture and its caption as an output."""
+        picture = base64.b64encode(self.picture()).decode()
+        words = escape(self.words)
+        page = (
+            f'<figure class="lk-saved"><img alt="{words}" src="data:image/png;base64,{picture}">'
+            f"<figcaption>{words}</figcaption></figure>{_STYLE}"
+        )
+        return {"text/plain": self.words, "text/html": page}
+
+
+def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
+    """A picture of an arm, with paths drawn into it: a PNG file's bytes, or those of an empty one.
+
+    Args:
+        robot: Which arm; only Baxter's have a body to show.
+        q: Joint angles, shape (n,) in [rad].
+        *paths: Points of lines, each of shape (K, 3) in [m], red first, then black.
+        around: Further points that must be in sight, shape (K, 3) in [m].
+    """
+    import cv2
+
+    from ..arm import Arm
+    from ..tags import Camera, Intrinsics, looking_at
+
+    width, height = 640, 400
+    picture = np.full((height, width, 3), 255, dtype=np.uint8)
+    with Arm(robot, q0=np.clip(q, robot.lower, robot.upper)) as arm:
+        points = np.vstack([arm.tip()[0], *paths, *([] if around is None else [around])])
+        at = 0.5 * (points.min(0) + points.max(0))
+        radius = 0.5 * float(np.linalg.norm(np.ptp(points, axis=0))) + 0.12
+        away = radius / np.sin(np.radians(17.5)) * _direction(robot)
+        focus = height / 2 / np.tan(np.radians(17.5))
+        lens = Intrinsics(width, height, focus, focus)
+        camera = Camera(arm.world, looking_at(at + away, at), lens)
+        if robot.name in SIDES:
+            picture = np.array(camera.image())
+        T_cw = np.linalg.inv(camera.T_wc)
+    for points, colour in zip(paths, ((179, 0, 27), (31, 35, 40)), strict=False):
+        pixels = lens.project(points @ T_cw[:3, :3].T + T_cw[:3, 3])
+        drawn = np.rint(8 * pixels).astype(np.int32).reshape(-1, 1, 2)
+        cv2.polylines(picture, [drawn], False, colour, 2, cv2.LINE_AA, shift=3)
+    ground = (picture == 255).all(axis=2)
+    light = 255.0 * (picture / 255.0) ** LIFT  # a black gripper shows its shape
+    whole = np.dstack([light[:, :, ::-1], np.where(ground, 0.0, 255.0)]).astype(np.uint8)
+    return bytes(cv2.imencode(".png", whole)[1])
+
+
+def _direction(robot: Robot) -> Array:
+    """From where the viewer's first picture looks, as `rig.js` has it."""
+    azimuth, up = 1.2 * (-1 if robot.name == "right" else 1), 0.5
+    return np.array([np.cos(up) * np.cos(azimuth), np.cos(up) * np.sin(azimuth), np.sin(up)])

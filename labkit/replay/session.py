@@ -1,0 +1,355 @@
+"""A live session: one thread that owns the simulator and keeps the time of the wall.
+
+The thread runs the same loop as `run`, tick after tick; between two ticks it reads what came from
+the page.  What can go wrong ends the run with a sentence and leaves the arm at rest.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from queue import Empty, SimpleQueue
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from ..arm import Arm
+from ..driven import Simulated
+from ..errors import LabkitError
+from ..hand import Hand
+from ..log import Log
+from ..run import loop
+from .dials import Dial, Dialled
+from .surroundings import Surroundings
+
+FRESH = 0.2
+"""A hand of which nothing was heard for this long, in [s], lets go."""
+
+PATIENCE = 1.0
+"""A law that has not returned after this long, in [s], is ended."""
+
+LONGEST = 120.0
+"""A run is at most this long, in [s]; then the next begins where it ended."""
+
+ABSENT = 60.0
+"""Without a word from any page for this long, in [s], the session pauses."""
+
+FRAME = 1 / 30
+"""Time between two pictures, in [s]."""
+
+STEP = 0.05
+"""What the button "Step" advances, in [s]."""
+
+_OVER = 10**9  # a tick later than the last of any run
+
+
+class _Ended(BaseException):
+    """Thrown into a law that does not return; no `except Exception` of a student's stops it."""
+
+
+class TooSlow(LabkitError):
+    """A law takes longer than its tick."""
+
+
+class Session(Simulated):
+    """An arm, its laws and a hand, in a thread of their own from `start` to `close`.
+
+    Attributes:
+        logs: The runs that were kept, in their order.
+    """
+
+    def __init__(
+        self,
+        arm: Arm,
+        laws: Mapping[str, Callable[..., Any]],
+        target: Any,
+        dials: Mapping[str, Dial],
+        rate: float,
+        show: Callable[[dict[str, Any]], None],
+    ) -> None:
+        """A session that has not begun; ``show`` is told each picture, in numbers."""
+        super().__init__(arm, rate)
+        self.arm, self._dials, self._show = arm, dials, show
+        self._law = Dialled(laws, dials)
+        self.around = Surroundings(arm, target)
+        self._hand = Hand(arm)
+        self._usual, self._q0 = arm.plant, np.array(arm.truth().q)
+        self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
+        self._thread: threading.Thread | None = None
+        self.logs: list[Log] = []
+        self.state, self.note = "ready", ""
+        self._keep = self._over = self._again = False
+        self._steps_left = 0
+        self._changes: list[Callable[[], Any]] = []
+        self._heard = self._held = 0.0
+        self._calls, self._within = 0, False
+        self._times: deque[float] = deque(maxlen=round(1.0 / self.period))
+        self._real = deque([(0.0, 0.0)], maxlen=30)
+
+    # From any thread
+
+    def tell(self, message: dict[str, Any]) -> None:
+        """Take a message from the page; the thread reads it before its next tick."""
+        self._heard = time.monotonic()
+        if message["kind"] == "hand":
+            message = {**message, "heard": self._heard}
+        self._inbox.put(message)
+        if message["kind"] in ("go", "step") and not self._alive():
+            self._thread = threading.Thread(target=self._main, name="labkit live", daemon=True)
+            self._thread.start()
+            threading.Thread(target=self._watch, args=(self._thread,), daemon=True).start()
+
+    def close(self) -> None:
+        """End it; the arm is at rest and free for other cells."""
+        self._inbox.put({"kind": "close"})
+        if self._alive() and self._thread is not threading.current_thread():
+            self._thread.join(2 * PATIENCE)  # type: ignore[union-attr]
+
+    def _alive(self) -> bool:
+        return self._thread is not None and self._thread.is_alive()
+
+    # In the thread
+
+    def _main(self) -> None:
+        self.arm.world.owner, self.state = threading.get_ident(), "ready"
+        try:
+            while self.state != "closed":
+                self._one_run()
+        finally:
+            self.arm.become(self._usual)
+            self.arm.world.owner = None
+
+    def _one_run(self) -> None:
+        """From a start to whatever ends it: a dial, another law, "keep", an error."""
+        for change in self._changes:
+            change()
+        self._changes.clear()
+        self._obey(wait=self.state != "running")
+        if self._changes:
+            return
+        if self.state != "running":
+            return
+        self._over = self._again = False
+        self.plant = self.arm.plant
+        self._began = time.monotonic()
+        self._times.clear()
+        try:
+            log = loop(self, self.around.target, self._law, LONGEST)
+        except BaseException as error:
+            if self.state != "closed":
+                self._rest(error)
+            return
+        if self._again:
+            self.around.begin_again()
+        else:
+            self.around.since += float(log.t[-1])
+        if self._keep:
+            self._keep = False
+            self.logs.append(log)
+            self._picture(f"kept: {log!r}")
+
+    def _rest(self, error: BaseException) -> None:
+        """Put the arm to rest and say why."""
+        self._hand.let_go()
+        self.arm.recover()
+        if getattr(error, "log", None) is not None:  # of an arm that ran away
+            self.logs.append(error.log)  # type: ignore[attr-defined]
+        self.state, self.note = "stopped", _sentence(error, self._law.name)
+        self._picture()
+
+    def lost_ticks(self, ticks: int) -> list[bool]:
+        """As the arm loses them."""
+        return self.arm.lost_ticks(ticks)
+
+    def begin(self) -> float:
+        """A run begins."""
+        self.law_begins()
+        return 0.0
+
+    def stop(self) -> None:
+        """A run that only makes room for the next does not stop the arm."""
+        self._within = False
+        if self.state != "running":
+            super().stop()
+
+    def law_begins(self) -> None:
+        """From here on the law computes, and the watch looks at the time."""
+        self._calls += 1
+        self._since, self._within = time.perf_counter(), True
+
+    def advance(self, k: int) -> tuple[int, float, bool]:
+        """Take the physics of a tick, read what came, and wait for the wall's clock."""
+        self._within = False
+        self._times.append(time.perf_counter() - self._since)
+        if len(self._times) == self._times.maxlen and median(self._times) > self.period:
+            raise TooSlow(
+                f"it takes {1e3 * median(self._times):.1f} ms, and it is asked every "
+                f"{1e3 * self.period:g} ms; make it quicker, or give live(..., rate=...) a lower "
+                "rate"
+            )
+        if time.monotonic() - self._held > FRESH:
+            self._hand.let_go()
+        self.around.approach(self.period)
+        k, t, cut = super().advance(k)
+        if self._steps_left:
+            self._steps_left -= 1
+            self.state = "running" if self._steps_left else "paused"
+        self._obey()
+        while self.state == "paused" and not self._over:
+            self._picture()
+            self._obey(wait=True)
+            self._began = time.monotonic() - t
+        self._pace(t)
+        self.law_begins()
+        return (_OVER if self._over or self.state != "running" else k), t, cut
+
+    def _pace(self, t: float) -> None:
+        """Wait for the wall; a loop that is late by more than 0.1 s goes on from there."""
+        now = time.monotonic()
+        ahead = self._began + t - now
+        if ahead < -0.1:
+            self._began = now - t
+        if now - self._heard > ABSENT:
+            self.state, self.note = "paused", "nobody looked for a minute"
+        if now - self._real[-1][0] > FRAME:
+            self._real.append((now, self.arm.world.t))
+            self._picture()
+        if ahead > 0.0:
+            time.sleep(ahead)
+
+    def _obey(self, wait: bool = False) -> None:
+        """Do what the page asked for; with `wait`, wait for something."""
+        try:
+            while True:
+                message = self._inbox.get(wait, ABSENT if wait else None)
+                getattr(self, f"_on_{message['kind']}", lambda message: None)(message)
+                wait = False
+        except Empty:
+            return
+
+    def _on_go(self, message: dict[str, Any]) -> None:
+        self.state, self.note = "running", ""
+        self._real.clear()
+        self._real.append((time.monotonic(), self.arm.world.t))
+
+    def _on_pause(self, message: dict[str, Any]) -> None:
+        self.state = "paused" if self.state == "running" else self.state
+
+    def _on_step(self, message: dict[str, Any]) -> None:
+        self._on_go(message)
+        self._steps_left = max(1, round(STEP / self.period))
+
+    def _on_reset(self, message: dict[str, Any]) -> None:
+        self._hand.let_go()
+        self.arm.reset(self._q0)
+        self.around.begin_again()
+        self._over, self._again, self.note = True, True, ""
+        self.state = "running" if self.state == "running" else "ready"
+        self._picture()
+
+    def _on_keep(self, message: dict[str, Any]) -> None:
+        self._keep = self._over = self.state in ("running", "paused")
+
+    def _on_close(self, message: dict[str, Any]) -> None:
+        self.state = "closed"
+
+    def _on_hand(self, message: dict[str, Any]) -> None:
+        self._held = message["heard"]
+        point = message["link"], message["local"]
+        if "force" in message:
+            self._hand.push(*point, message["force"])
+        elif "to" in message:
+            self._hand.take(*point, message["to"])
+        else:
+            self._hand.let_go()
+
+    def _on_thing(self, message: dict[str, Any]) -> None:
+        self.around.move(message["name"], message["position"])
+
+    def _on_law(self, message: dict[str, Any]) -> None:
+        self._after(lambda: setattr(self._law, "name", message["name"]))
+
+    def _on_dial(self, message: dict[str, Any]) -> None:
+        self._after(lambda: self._turn(message["name"], float(message["value"])))
+
+    def _after(self, change: Callable[[], Any]) -> None:
+        """End the run, for one run has one law on one plant, and begin the next with a change."""
+        self._changes.append(change)
+        self._over = True
+
+    def _turn(self, name: str, value: float) -> None:
+        self._law.values[name] = value
+        if self._dials[name].of_plant:
+            numbers: Any = {n: v for n, v in self._law.values.items() if self._dials[n].of_plant}
+            self.arm.become(replace(self._usual, **numbers, name=f"{self._usual.name}, dialled"))
+
+    # What the page draws
+
+    def _picture(self, note: str = "") -> None:
+        self._show(self.numbers(note))
+
+    def numbers(self, note: str = "") -> dict[str, Any]:
+        """The session as the page draws it."""
+        (a, x), (b, y) = self._real[0], self._real[-1]
+        at = self._hand.at
+        held = at is not None
+        stale = held and time.monotonic() - self._held > FRESH
+        T_wd = self.around.wanted()
+        q = self.arm.truth().q
+        error = None if T_wd is None else float(np.linalg.norm(self.arm.tip()[0] - T_wd[:3, 3]))
+        return {
+            "kind": "frame",
+            "t": round(self.arm.world.t, 4),
+            "q": np.round(q, 5).tolist(),
+            "state": self.state,
+            "note": note or self.note,
+            "law": self._law.name,
+            "force": np.round(self._hand.force, 3).tolist() if held else None,
+            "at": None if at is None else np.round(at, 4).tolist(),
+            "stale": stale,
+            "error": error,
+            "pace": round((y - x) / (b - a), 3) if b > a else None,
+            "things": self.around.things(),
+            "kept": len(self.logs),
+        }
+
+    # In the watch's thread
+
+    def _watch(self, thread: threading.Thread) -> None:
+        """End a law that does not return: seen in the same call for `PATIENCE`, look after look."""
+        looks, call = 0, -1
+        while thread.is_alive():
+            time.sleep(0.05)
+            looks = looks + 1 if self._within and self._calls == call else 0
+            call = self._calls
+            if looks and looks % round(PATIENCE / 0.05) == 0:
+                late = f"{self._law.name} has not returned for {PATIENCE:g} s; it is being ended"
+                self._show({"kind": "note", "note": late})
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                    ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
+                )
+
+
+def _sentence(error: BaseException, name: str) -> str:
+    """What stopped the arm, and in which line of the student's."""
+    if isinstance(error, _Ended):
+        what = f"{name} did not return; does every loop in it come to its end?"
+    elif isinstance(error, LabkitError):
+        what = str(error).replace("error.log", "view.log")
+    else:
+        what = f"{type(error).__name__}: {error}"
+    steps = traceback.extract_tb((error.__cause__ or error).__traceback__)
+    own = [step.line for step in steps if step.line and not _library(step.filename)]
+    return f"{what} (line: {own[-1]})" if own else what
+
+
+def _library(file: str) -> bool:
+    """Whether a line of code, by its file, is labkit's or an installed package's."""
+    return file.startswith(str(Path(__file__).parents[1])) or "site-packages" in file

@@ -1,0 +1,139 @@
+"""What stands around a live arm: its target, walls, bands and tags, seen and moved by the page."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ..arm import Arm
+from ..scene import Spring, Table, Wall
+from ..shapes import Array, as_array
+from ..trajectory import PoseSample, Sample
+
+TARGET = "target"
+FASTEST = 2.0
+"""Dragged walls and bands move at most this fast, in [m/s]: so no wall jumps over the tip."""
+
+
+class Surroundings:
+    """The target and the things of an arm's world, by name.
+
+    Attributes:
+        since: The target's time at which the present run began, in [s].
+    """
+
+    def __init__(self, arm: Arm, target: Any) -> None:
+        """Look around ``arm``."""
+        self._arm, self._target, self.since = arm, target, 0.0
+        self._shift: Array = np.zeros(3)
+        self._latest: Any = None
+        self._goals: dict[int, Array] = {}
+        duration = getattr(target, "duration", None)
+        self._round = duration if duration and _closed(target, duration) else None
+
+    def begin_again(self) -> None:
+        """Go back to the target's start, where it has one; a tag's target lives on with its tag."""
+        if hasattr(self._target, "duration"):
+            self.since = 0.0
+
+    def target(self, t: float) -> Any:
+        """The target, moved by who took hold of it; a closed path goes round for ever."""
+        t += self.since
+        self._latest = self._target(t % self._round if self._round else t)
+        return self._shifted()
+
+    def _shifted(self) -> Any:
+        """The latest sample, where it was dragged to."""
+        sample = self._latest
+        if isinstance(sample, PoseSample) and self._shift.any():
+            pose = np.array(sample.pose)
+            pose[:3, 3] += self._shift
+            sample = sample._replace(pose=pose)
+        return sample
+
+    def wanted(self) -> Array | None:
+        """The pose that the tip should have, shape (4, 4); None where only a point is named."""
+        sample = self.target(0.0) if self._latest is None else self._shifted()
+        if isinstance(sample, PoseSample):
+            return np.asarray(sample.pose)
+        if isinstance(sample, Sample) and sample.position.size == self._arm.robot.n:
+            return self._arm.model.pose(sample.position)
+        return None
+
+    def things(self) -> dict[str, Any]:
+        """What the page draws, by name."""
+        found: dict[str, Any] = {}
+        T_wd = self.wanted()
+        if T_wd is not None:
+            found[TARGET] = _placed("target", T_wd)
+        for i, thing in enumerate(self._arm.world.things):
+            if isinstance(thing, Wall | Table):
+                found[f"thing {i}"] = _placed("face", thing.T_wf) | {
+                    "size": list(map(float, thing.size)), "colour": list(map(float, thing.colour)),
+                }  # fmt: skip
+            elif isinstance(thing, Spring):
+                found[f"thing {i}"] = {"kind": "band", "position": thing.anchor.tolist()}
+        shown: list[Any] = self._arm.world.shown
+        for i, board in enumerate(shown):
+            if hasattr(board, "T_wm"):
+                found[f"tag {i}"] = _placed("tag", board.T_wm) | {"size": float(board.tag.paper)}
+        return found
+
+    def move(self, name: str, position: Any) -> None:
+        """Put something elsewhere, by the middle of what is drawn, shape (3,) in [m]."""
+        position = as_array(position, (3,), "position")
+        kind, _, number = name.partition(" ")
+        if name == TARGET:
+            T_wd = self.wanted()
+            if T_wd is not None and isinstance(self._latest, PoseSample):
+                self._shift = self._shift + position - T_wd[:3, 3]
+        elif kind == "tag":
+            board: Any = self._arm.world.shown[int(number)]
+            T = np.array(board.T_wm)
+            T[:3, 3] = position
+            board.place(T)
+        else:
+            self._goals[int(number)] = position
+
+    def approach(self, seconds: float) -> None:
+        """Bring dragged things nearer to where they were dragged, no faster than a tip can feel."""
+        world = self._arm.world
+        for number, goal in list(self._goals.items()):
+            old: Any = world.things[number]
+            way = goal - _middle(old)
+            far = float(np.linalg.norm(way))
+            if far <= FASTEST * seconds:
+                del self._goals[number]
+            else:
+                goal = _middle(old) + way * (FASTEST * seconds / far)
+            world.exchange(old, _moved(old, goal))
+
+
+def _middle(thing: Any) -> Array:
+    return np.asarray(thing.anchor if isinstance(thing, Spring) else thing.T_wf[:3, 3])
+
+
+def _moved(thing: Any, position: Array) -> Any:
+    if isinstance(thing, Wall):
+        return replace(thing, point=position)
+    if isinstance(thing, Table):
+        return replace(thing, height=float(position[2]), centre=position[:2])
+    return replace(thing, anchor=position)
+
+
+def _placed(kind: str, T: Array) -> dict[str, Any]:
+    turn = Rotation.from_matrix(T[:3, :3]).as_quat()
+    return {
+        "kind": kind,
+        "position": np.round(T[:3, 3], 4).tolist(),
+        "quaternion": np.round(turn, 4).tolist(),
+    }
+
+
+def _closed(target: Any, duration: float) -> bool:
+    """Whether a target ends where it began, and has been elsewhere."""
+    first, middle, last = (target(t)[0] for t in (0.0, 0.5 * duration, duration))
+    return bool(np.allclose(first, last, atol=1e-6) and not np.allclose(first, middle, atol=1e-6))

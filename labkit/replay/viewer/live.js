@@ -1,0 +1,218 @@
+// The live arm of the notebook: the kernel simulates and tells where the arm is, 30 times a second;
+// this side draws it and says what pointer, keys and dials want.
+import { Picture } from "./picture.js";
+import { Plot } from "./plots.js";
+import { choice, dial, h, unique } from "./dom.js";
+import { sight } from "./sight.js";
+
+const NEWTON = 0.006; // metres of arrow
+const BEAT = 60; // ms between two messages while something is held
+const AXES = [["+x", [1, 0, 0]], ["−x", [-1, 0, 0]], ["+y", [0, 1, 0]], ["−y", [0, -1, 0]], ["+z", [0, 0, 1]], ["−z", [0, 0, -1]]];
+const SHOWN = 10; // seconds of the curves
+
+export class LiveArm {
+  /** link: {send(message), hear(f)}, the way to the kernel; without it the picture stands still. */
+  constructor(host, data, robot, link) {
+    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, rows: [], frames: 0 });
+    this.element = h("div", { class: "lk-player lk-live", role: "group", "aria-label": data.title });
+    this.stagebox = h("div", { class: "lk-stage" });
+    this.note = h("p", { class: "lk-say", hidden: true });
+    this.readout = h("p", { class: "lk-readout" });
+    this.status = h("p", { class: "lk-hidden", role: "status" });
+    this.picture = new Picture(this.stagebox, `${data.title}. Drag the arm or a thing to pull at it, elsewhere to turn the view`);
+    this.sight = sight(this.picture);
+    this.plot = new Plot({ title: "Distance from the target [mm]", xName: "time [s]", zero: true, least: 1, ...this.curve() });
+    this.element.append(this.stagebox, this.note, this.buttons(), this.sight.element, this.hand(), this.dials(), this.readout, this.status,
+      h("div", { class: "lk-plots" }, this.plot.element));
+    host.append(this.element);
+    if (this.picture.works) this.furnish();
+    else {
+      this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). Buttons, numbers and curve work all the same."));
+      this.sight.element.hidden = true;
+      host.dataset.ready = "1";
+    }
+    this.show(data.first);
+    if (!link) this.say("This arm needs a running kernel: run the cell, or the whole notebook, again.");
+    else link.hear((message) => (message.kind === "frame" ? this.show(message) : this.told(message)));
+  }
+
+  send(message) { this.link?.send(message); }
+
+  buttons() {
+    const button = (text, kind, title) => h("button", { type: "button", title, disabled: !this.link, onclick: () => this.send({ kind }) }, text);
+    this.start = h("button", { type: "button", class: "lk-play", disabled: !this.link,
+      onclick: () => this.send({ kind: this.state === "running" ? "pause" : "go" }) }, "Start");
+    const laws = this.data.laws.length < 2 ? [] : [choice({ label: "Controller", values: this.data.laws,
+      onchange: (name) => this.send({ kind: "law", name }) }).element];
+    return h("div", { class: "lk-bar" }, this.start, button("Step", "step", "Advance by 0.05 s"),
+      button("Reset", "reset", "Back to where the arm began"), button("Keep this run", "keep", "The run since the last change becomes view.log"),
+      button("Stop", "close", "End it, and free the arm for other cells"), laws);
+  }
+
+  /** What the pointer does, for keys: choose a link and a force, switch it on along an axis. */
+  hand() {
+    const { joints } = this.data;
+    const names = ["tip", ...joints.map((j) => (j === "e1" ? "elbow (e1)" : j)).reverse()];
+    this.where = choice({ label: "Push at", values: names });
+    this.where.at = () => joints.length - this.where.index();
+    this.newtons = h("input", { type: "number", "aria-label": "Force in newtons", min: 0, max: 60, step: "any", value: 10, disabled: !this.link });
+    this.pushes = AXES.map(([name, axis]) => h("button", { type: "button", class: "lk-icon", "aria-pressed": "false", disabled: !this.link,
+      "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`,
+      onclick: (e) => this.push(e.currentTarget, axis, name) }, name));
+    return h("div", { class: "lk-bar", role: "group", "aria-label": "Push with keys" }, this.where.element,
+      this.newtons, h("span", { class: "lk-unit" }, "N along"), this.pushes);
+  }
+
+  push(button, axis, name) {
+    const on = button.getAttribute("aria-pressed") !== "true";
+    this.release();
+    if (!on) return;
+    button.setAttribute("aria-pressed", "true");
+    const link = this.where.at();
+    const size = Math.min(60, Math.max(0, this.newtons.valueAsNumber || 0));
+    this.take({ link, local: [0, 0, 0], force: axis.map((x) => size * x) });
+    this.speak(`Pushing ${size} N along ${name} at the ${this.where.get()}.`, 0);
+    this.speak(() => `Under ${size} N along ${name}: ${this.numbers()}`, 1500);
+  }
+
+  /** Hold on to the arm until `release`: the kernel lets go of a hand of which it hears nothing. */
+  take(hand) {
+    this.held = hand;
+    const beat = () => this.send({ kind: "hand", ...this.held });
+    beat();
+    clearInterval(this.beating);
+    this.beating = setInterval(beat, BEAT);
+  }
+
+  release() {
+    clearInterval(this.beating);
+    this.pushes.forEach((b) => b.setAttribute("aria-pressed", "false"));
+    if (!this.held) return;
+    this.held = null;
+    this.send({ kind: "hand", link: 0, local: [0, 0, 0] });
+  }
+
+  dials() {
+    const made = this.data.dials.map((d) => dial({ label: d.name, unit: d.unit, min: d.min, max: d.max, step: "any", value: d.value,
+      oninput: (value) => this.turn(d.name, value) }).element);
+    return h("div", { class: "lk-dials lk-livedials", hidden: !made.length }, made);
+  }
+
+  /** Tell the kernel a dial's value, at most ten times a second, the last one always. */
+  turn(name, value) {
+    this.turned = { ...this.turned, [name]: value };
+    this.turning ??= setTimeout(() => {
+      this.turning = null;
+      for (const [n, v] of Object.entries(this.turned)) this.send({ kind: "dial", name: n, value: v });
+      this.turned = {};
+    }, 100);
+  }
+
+  furnish() {
+    const { picture } = this;
+    picture.embody(this.robot);
+    picture.pose(this.data.side, this.data.first.q);
+    const seen = [picture.tip.p, ...Object.values(this.data.first.things).filter((t) => t.kind !== "face").map((t) => t.position)];
+    picture.stage.rig.mirror = this.data.side === "right" ? -1 : 1;
+    picture.stage.rig.around([...seen, picture.frames[`${this.data.side}_e1`]?.p ?? picture.tip.p]);
+    picture.stage.rig.use("Motion");
+    picture.stage.drawn = () => { this.host.dataset.ready = "1"; this.frames++; };
+    if (this.link) picture.grab((picked, event) => this.grip(picked, event));
+  }
+
+  /** A pointer takes hold of a link or a thing. */
+  grip(picked, event) {
+    const { picture } = this;
+    let at = picked.at;
+    if (picked.thing !== undefined) {
+      const { position } = this.things[picked.thing];
+      const from = picture.dragged(event, at);
+      const move = (e) => {
+        const to = picture.dragged(e, at);
+        this.send({ kind: "thing", name: picked.thing, position: position.map((x, k) => x + to[k] - from[k]) });
+      };
+      return { move, end: () => this.speak("Moved.", 0) };
+    }
+    this.release();
+    this.take({ link: picked.link, local: picked.local, to: at });
+    const move = (e) => {
+      this.held = { ...this.held, to: picture.dragged(e, at) };
+      this.send({ kind: "hand", ...this.held });
+    };
+    return { move, end: () => this.release() };
+  }
+
+  /** A picture in numbers came from the kernel. */
+  show(frame) {
+    const before = this.state;
+    Object.assign(this, { frame, state: frame.state, things: frame.things });
+    this.start.textContent = frame.state === "running" ? "Pause" : "Start";
+    if (this.picture.works) this.draw(frame);
+    if (frame.error !== null && this.rows.at(-1)?.[0] !== frame.t) {
+      if (this.rows.length && frame.t < this.rows.at(-1)[0]) this.rows = [];
+      this.rows.push([frame.t, 1000 * frame.error]);
+      while (this.rows[0][0] < frame.t - SHOWN) this.rows.shift();
+    }
+    this.readout.textContent = this.numbers();
+    const stale = frame.stale || (this.held && frame.state === "running" && !frame.force && this.old());
+    this.say(frame.note || (stale ? "The kernel is busy with another cell: what you pull arrives later, and until then there is no force." : ""),
+      frame.state === "stopped");
+    if (before !== frame.state) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);
+    this.plotted ??= setTimeout(() => { this.plotted = null; const c = this.curve(); this.plot.set(c.series, c.x); this.plot.time(c.x.at(-1)); }, 200);
+  }
+
+  /** Whether the hand has been held for longer than a message should take. */
+  old() {
+    if (this.since !== this.held) { this.since = this.held; this.taken ??= performance.now(); }
+    return performance.now() - this.taken > 400;
+  }
+
+  draw({ q, force, at, things }) {
+    const { picture } = this;
+    picture.pose(this.data.side, q);
+    picture.furnish(things);
+    const size = force ? Math.hypot(...force) : 0;
+    if (force) this.taken = performance.now();
+    picture.arrow("force", at ?? picture.tip.p, (force ?? [0, 0, 0]).map((x) => NEWTON * x), `${size.toFixed(1)} N`);
+    const way = this.held?.to ? this.held.to.map((x, k) => x - (at ?? picture.tip.p)[k]) : [0, 0, 0];
+    picture.arrow("pointer", at ?? picture.tip.p, way, "", 0x57606a);
+  }
+
+  curve() {
+    const x = this.rows.length > 1 ? this.rows.map(([t]) => t) : [0, 1];
+    return { x, series: [{ name: "distance", values: this.rows.length > 1 ? this.rows.map(([, e]) => e) : [0, 0], colour: "var(--lk-trace)", width: 2.2 }] };
+  }
+
+  numbers() {
+    const { t, error, force, pace, kept, law } = this.frame;
+    const words = [law, `t = ${t.toFixed(2)} s`];
+    if (error !== null) words.push(`${(1000 * error).toFixed(1)} mm from the target`);
+    words.push(`your force ${(force ? Math.hypot(...force) : 0).toFixed(1)} N`);
+    if (pace && pace < 0.95 && this.state === "running") words.push(`${pace.toFixed(2)} × real time`);
+    if (kept) words.push(`${kept} kept`);
+    return words.join(" · ");
+  }
+
+  told({ note }) { if (note) this.say(note, true); }
+
+  say(text, alarm = false) {
+    this.note.hidden = !text;
+    if (this.note.textContent !== text) this.note.textContent = text;
+    this.note.classList.toggle("lk-alarm", alarm);
+  }
+
+  /** Politely, and only the last of what there is to say. */
+  speak(words, after = 300) {
+    clearTimeout(this.spoken);
+    this.spoken = setTimeout(() => { this.status.textContent = typeof words === "function" ? words() : words; }, after);
+  }
+
+  dispose() {
+    this.send({ kind: "pause" });
+    for (const timer of [this.spoken, this.turning, this.plotted]) clearTimeout(timer);
+    clearInterval(this.beating);
+    this.plot.dispose();
+    this.picture.dispose();
+    this.element.remove();
+  }
+}
