@@ -72,7 +72,7 @@ class Remote(WallClock):
     def __init__(self, port):
         self.robot = lk.robot("left")
         self.sent = []
-        self._line = socket.create_connection(("127.0.0.1", port), timeout=1.0)
+        self._line = socket.create_connection(("127.0.0.1", port), timeout=5.0)
         self._file = self._line.makefile("r")
 
     def say(self, kind, value=None):
