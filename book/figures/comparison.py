@@ -18,7 +18,7 @@ from solutions.study.campaign import BASELINE, FEED_FORWARD, FIVE, TABLES, WAYS
 from solutions.study.claims import IMPEDANCE, THREE, interval
 from solutions.study.grid import pick
 
-from .claims import claim
+from .claims import claim, told
 from .page import figure, holds, number, numbers, replay, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
@@ -88,6 +88,9 @@ def numbers_told() -> None:
         },
         ".2g",
     )
+    seeds = max(row["seed"] for row in rows) + 1
+    for name, count in (("first", WAYS.index(first)), ("runs", len(rows)), ("seeds", seeds)):
+        told(name, count + 1.0 if name == "first" else count)
     glue("first", first, display=False)
     glue("runs", f"{len(rows)}", display=False)
     glue("seeds", _seeds(), display=False)

@@ -57,5 +57,5 @@ def test_a_loop_that_never_oscillates_is_a_sentence():
 @pytest.mark.soak
 def test_the_compared_derivative_gain_is_what_the_tuning_finds():
     """For both velocity controllers, on two paths."""
-    rows = speed_gains.trials(seeds=1)
+    rows = speed_gains.trials(seeds=2)
     assert {speed_gains.best(rows, way) for way in speed_gains.WAYS} == {KD}
