@@ -46,7 +46,7 @@ def plants() -> dict[str, Plant]:
         if not evidence.assumed or name in TOGETHER:
             continue
         for end in ("least", "most"):
-            changed = {name: getattr(evidence, end)}
+            changed: dict[str, Any] = {name: getattr(evidence, end)}
             if name == "joint_stiffness" and end == "most":
                 changed = SPRINGS
             plant = replace(BAXTER, **changed)
