@@ -152,7 +152,7 @@ class Evidence(NamedTuple):
     most: Any
 
 
-SPRINGS = {
+SPRINGS: dict[str, Any] = {
     "joint_stiffness": (843.0, 843.0, 843.0, 843.0, 250.0, 250.0, 250.0),
     "joint_damping": (4.0, 4.0, 4.0, 4.0, 0.5, 0.5, 0.5),
 }

@@ -18,7 +18,10 @@ LAYERS = (
     ("Sentences and numbers", ("errors", "quiet", "formats", "shapes", "se3")),
     ("What is wanted", ("trajectory", "paths")),
     ("What is known", ("plant", "urdf", "robot", "baxter", "kinematics", "model")),
-    ("What moves", ("control", "joints", "sim", "world", "scene", "sensors", "motors", "springs", "arm")),
+    (
+        "What moves",
+        ("control", "joints", "sim", "world", "scene", "sensors", "motors", "springs", "arm"),
+    ),
     ("The loop, and what it did", ("log", "driven", "run", "metrics", "recordings", "loop")),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
     ("What judges", ("course",)),

@@ -90,8 +90,8 @@ def singular() -> HTML:
     right.semilogy(angles, speed, "C0-")
     right.axhline(LIMIT, color="C5", linestyle="--")
     right.axvline(at, color="C5", linestyle=":")
-    right.text(0.5, 1.08 * LIMIT, "limit of s0 to e1", fontsize="small")
-    right.set(xlabel="elbow e1 [rad]", ylabel="largest joint speed [rad/s]", ylim=(0.2, 200))
+    right.text(0.3, 0.5 * LIMIT, "limit of s0 to e1", fontsize="small")
+    right.set(xlabel="elbow e1 [rad]", ylabel="largest joint speed [rad/s]", ylim=(0.2, 3.0 * top))
     claim(
         "it vanishes at a bent elbow, not at a straight one",
         lambda at, least: abs(at - 0.16) < 0.01 and 0.0 < least < 2e-3,

@@ -129,6 +129,11 @@ def table_1() -> HTML:
         for task in ("line", "circle")
     ]
     claim("centimetres, not millimetres", lambda e: all(x > 20.0 for x in e), e=torque)
+    soft = [
+        pick(rows, way="joint velocity", task=task, plant="with joint springs")[0]["late_rms_mm"]
+        for task in ("line", "circle")
+    ]
+    numbers({"spring_line": soft[0], "spring_circle": soft[1]}, ".2g")
     numbers({"printed_line": torque[0], "printed_circle": torque[1]}, ".2g")
     return table(
         ("Controller", *(f"{task}, {plant}" for task, plant in grid)), body,

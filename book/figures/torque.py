@@ -98,6 +98,11 @@ def sampled() -> HTML:
         quick=values["bare_1000"],
         real=values["real_200"],
     )
+    claim(
+        "larger than one in size, the error grows without end",
+        lambda radius: radius > 1.0,
+        radius=values["bare_200"],
+    )
     numbers(values, ".3g")
     number("bare", bare, ".5f")
     number("real", real, ".2g")

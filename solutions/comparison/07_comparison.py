@@ -425,7 +425,7 @@ for n in (3, 4, 5):
 # %% [markdown]
 # With your own verdicts in place: the report's two sentences are both in this list, for single tasks. Which of
 # its controllers is better than the built-in way depends on which one is meant, and on which path; over the
-# tasks most of it is undecided, and would be with five hundred seeds. A fourth and a fifth path would tell more
+# tasks some of it is undecided, and would be with five hundred seeds. A fourth and a fifth path would tell more
 # than any number of seeds. So name the two, the task and the number, say what your units are, and say
 # how sure you are.
 

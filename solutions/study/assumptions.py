@@ -22,7 +22,7 @@ from labkit.plant import EVIDENCE, SPRINGS
 from .campaign import BASELINE, FIVE, joints, task_of
 from .claims import IMPEDANCE, THREE
 from .gains import Candidate, known
-from .grid import Cell, Meter, Row, cells, pick, work_through
+from .grid import Meter, Row, cells, pick, work_through
 
 KEPT = Path(__file__).with_name("assumptions.json")
 WAYS = (*FIVE, BASELINE)
@@ -46,7 +46,7 @@ def plants() -> dict[str, Plant]:
         if not evidence.assumed or name in TOGETHER:
             continue
         for end in ("least", "most"):
-            changed = {name: getattr(evidence, end)}
+            changed: dict[str, Any] = {name: getattr(evidence, end)}
             if name == "joint_stiffness" and end == "most":
                 changed = SPRINGS
             plant = replace(BAXTER, **changed)
@@ -80,7 +80,7 @@ def _line(way: str, plant: Plant, seed: int) -> Mapping[str, Any]:
     return {"late_rms_mm": float(f"{1e3 * metrics.rms(e):.4g}")}
 
 
-def grid(seeds: int) -> list[Cell]:
+def grid(seeds: int) -> list[Row]:
     """Every way on every plant."""
     return cells(way=WAYS, assumption=tuple(plants()), seed=range(seeds))
 

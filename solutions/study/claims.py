@@ -167,7 +167,7 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
         noise: Of `campaign.derivative`.
     """
     planned = [row for row in rows if row["task"] != "tag"]
-    asked = [
+    asked: list[tuple[str, Sequence[Row], tuple[str, ...], tuple[str, ...]]] = [
         (f"{joint} tracks better than {workspace}", rows, (workspace,), (joint,))
         for joint, workspace in (
             ("joint velocity", "workspace velocity"),

@@ -5,6 +5,8 @@ import pytest
 
 import labkit as lk
 from labkit.loop import VelocityJoint, ultimate_gain
+from solutions.study import speed_gains
+from solutions.study.gains import KD
 from solutions.study.report_procedure import decay_ratio, report_procedure
 
 DT, DELAY, LAG = 0.001, 0.02, 0.03
@@ -50,3 +52,10 @@ def test_a_loop_that_never_oscillates_is_a_sentence():
 
     with pytest.raises(lk.LabkitError, match="no oscillation up to Kp"):
         report_procedure(exact)
+
+
+@pytest.mark.soak
+def test_the_compared_derivative_gain_is_what_the_tuning_finds():
+    """For both velocity controllers, on two paths."""
+    rows = speed_gains.trials(seeds=2)
+    assert {speed_gains.best(rows, way) for way in speed_gains.WAYS} == {KD}
