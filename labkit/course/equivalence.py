@@ -11,6 +11,7 @@ from ..control import JointTorque
 from ..errors import OutOfRange
 from ..shapes import Array
 from .judges import AtMost, Close, Gains, Within, value
+from .predictions import Form
 from .verdict import Difference, Kind, Value
 
 MOST_COEFFICIENTS = 50
@@ -135,4 +136,4 @@ class AtTip:
         return float(np.max(off / (self.atol + self.rtol * scale)))
 
 
-Judge = Close | Within | AtMost | Response | Gains | AtTip
+Judge = Close | Within | AtMost | Response | Gains | AtTip | Form

@@ -58,6 +58,9 @@ class Desk:
         self.questions = questions
         self.seen: dict[str, tuple[Any, Verdict]] = {}
         self.badges: set[str] = set()
+        self.committed: dict[str, Any] = {}
+        self.chosen: dict[str, Any] = {}
+        self.revealed: set[str] = set()
 
     @classmethod
     def beside(cls, folder: Path) -> Desk:

@@ -20,7 +20,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -266,6 +266,16 @@ for kp in (8.0, 30.0, 90.0):
     row = [runner(kp, 0.0, seed) for seed in range(3)]
     print(f"Kp = {kp:4g}: " + ", ".join(f"{x:.2f} mm" for x in row) + f"; {runner.left} tries left")
 
+# %% predict="thirty_percent_more"
+
+# %%
+gains = np.arange(4.0, 70.0, 0.5)
+worst = np.array([line_trials.worst(Kp, 0.0) for Kp in gains])
+best = gains[np.argmin(worst)]
+beyond = line_trials.worst(1.3 * best, 0.0)
+print(f"best at Kp = {best:g}: {worst.min():.2f} mm; at {1.3 * best:.1f}: {beyond:.2f} mm")
+predict("thirty_percent_more", truth=round(float(beyond / worst.min()), 1))
+
 # %% [markdown]
 # Look at the last row: seed 1 alone would have told you that 90 is a fine gain.
 #
@@ -394,6 +404,30 @@ for claim, verdict in found.items():
 # they are worse: it depends on which one is meant, and each of the two is sure enough. And where it ranks
 # workspace against joint control, the rows do not tell. So name the two, the task and the number, and say
 # how sure you are.
+
+# %% predict="twenty_pairs"
+
+# %%
+def half_width(differences):
+    """Of the 95 % interval, by Student's t."""
+    t = {4: 3.182, 20: 2.093}[len(differences)]
+    return t * np.std(differences, ddof=1) / len(differences) ** 0.5
+
+
+apart = np.subtract(late("baseline"), late("joint velocity"))
+pooled, by_task = half_width(apart), half_width(apart.reshape(4, 5).mean(axis=1))
+print(f"± {pooled:.2f} mm from 20 differences, ± {by_task:.2f} mm from the means of 4 tasks")
+predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled > 1.4 * by_task else "a")
+
+# %% [markdown] why="why_so_narrow"
+# Which interval did you see to be narrower, and why? Say what five seeds of one task have in common, what a
+# second task would tell that a sixth seed would not, and which interval belongs to "controllers in general".
+#
+# ### BEGIN SOLUTION
+# The interval from 20 differences was much narrower. The five seeds of a task share path, speed and pose,
+# so they are nearly one observation repeated: they tell how noisy a task is, not how tasks differ. A claim about
+# tasks in general rests on four independent numbers, and has their wide interval.
+# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in

@@ -23,7 +23,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -305,6 +305,8 @@ lk.replay.show(
 #
 # $$ F = \frac{3\,\mathrm{cm}}{1/K + 1/k_{wall}} . $$
 
+# %% predict="wall_force"
+
 # %%
 from labkit.scene import TIP_RADIUS, contact_stiffness
 
@@ -348,6 +350,10 @@ dials = lk.plotting.dials(press, stiffness=(100.0, 1000.0, 300.0))
 
 rammed = meet(stiff, into_the_wall, wall)
 print(f"The position mode presses with {np.max(pressed(rammed)):.0f} N.")
+
+# %%
+met = meet(compliant(K), into_the_wall, wall)
+predict("wall_force", truth=round(float(pressed(met)[-20:].mean()), 1))
 
 # %% [markdown]
 # ## A spring
@@ -525,6 +531,8 @@ def shaped_impedance(state, target, wrench, model, *, inertia, stiffness, dampin
     ### END SOLUTION
 
 
+# %% predict="four_times_the_mass"
+
 # %% [markdown]
 # A push of 10 N again, with the same springs, on a tip that is to feel like 1, 5 and 20 kg. Look at the
 # first tenths of a second. Where it ends is the spring's business. (In 0.1 s a push of 10 N moves 20 kg
@@ -567,6 +575,20 @@ lk.plotting.show(
     + "; ".join(f"{a:.1f} and {b:.1f} mm with {kg:g} kg" for kg, (a, b) in early.items())
     + "."
 )
+
+# %%
+share = early[20.0][1] / max(early[5.0][1], 1e-9)
+predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.25], share))])
+
+# %% [markdown] why="why_as_far"
+# What did you see: how far away was the tip that pretends to 20 kg, after a tenth of a second and after two?
+# Say which of inertia, damping and stiffness decides at which moment, and why a wall meets only one of them.
+#
+# ### BEGIN SOLUTION
+# After 0.1 s the heavy tip had hardly moved; after two seconds it was as far away as the light one. At
+# first acceleration is all there is, so the inertia decides; once the tip rests, speed and acceleration are
+# zero, and only the spring balances the hand. A wall is met at rest, so it feels the stiffness alone.
+# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in

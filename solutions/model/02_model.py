@@ -24,7 +24,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -194,6 +194,14 @@ lk.plotting.show(
     f"{felt[0, 1]:.2f} to {felt[-1, 1]:.2f} kg m²."
 )
 
+# %% predict="heaviest_direction"
+
+# %%
+Jv = tip_jacobian(q0)[:3]
+felt_at_tip = 1.0 / np.diag(Jv @ np.linalg.inv(M(q0)) @ Jv.T)
+print("a tap at the tip meets", ", ".join(f"{x:.1f} kg along {a}" for a, x in zip("xyz", felt_at_tip)))
+predict("heaviest_direction", truth="".join("xyz"[k] for k in np.argsort(-felt_at_tip)))
+
 # %% [markdown]
 # ## Gravity: what it takes to stay
 #
@@ -220,6 +228,8 @@ def gravity(masses, com_jacobians):
     return answer(masses, com_jacobians)
     ### END SOLUTION
 
+
+# %% predict="base_joint"
 
 # %% [markdown]
 # No better test than to try: command your torque and nothing else, and the arm should float where it
@@ -268,6 +278,10 @@ lk.plotting.show(
     + "."
 )
 print("your g at the ready pose [N m]:", ", ".join(f"{x:.1f}" for x in g(q0)))
+
+# %%
+s0, elbow_torque = abs(g(q0)[0]), abs(g(q0)[3])
+predict("base_joint", truth="c" if s0 < 0.05 * elbow_torque else "a" if s0 > elbow_torque else "b")
 
 # %%
 lk.replay.show(
@@ -435,6 +449,16 @@ lk.plotting.show(
     + "; ".join(f"{name}, up to {np.abs(x).max():.1f} W" for name, x in left.items())
     + ". With friction the balance follows what friction takes."
 )
+
+# %% [markdown] why="why_no_torque"
+# What torque did you see at s0, and why? Use what $g_k = \partial V / \partial q_k$ says about an axis, and
+# say how the answer would change if Baxter's torso leaned forwards by 30 degrees.
+#
+# ### BEGIN SOLUTION
+# s0 needs no torque at all. Its axis is vertical, so turning it changes the height of no body: the
+# potential energy does not depend on q_0 and its slope is zero, however heavy the arm. Were the torso to
+# lean, the axis would lean too, turning s0 would lift or lower the arm, and s0 would carry weight.
+# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in

@@ -21,7 +21,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -63,6 +63,8 @@ def bang_bang(t, duration):
     ### END SOLUTION
 
 
+# %% predict="peak_acceleration"
+
 # %% [markdown]
 # Here it is as a picture. Look at the lowest curve: where it jumps, the arm gets a jerk.
 
@@ -90,6 +92,11 @@ lk.plotting.show(
     "s, its speed and its acceleration over 3 s: bang-bang jumps in acceleration at the ends and in the "
     "middle, the cubic at the ends, the quintic nowhere."
 )
+
+# %%
+peaks = [max(abs(schedule(t)[2]) for t in np.linspace(0, 3, 601)[:-1]) for schedule in (bang, lk.Quintic(3.0))]
+print(f"peak of the acceleration: bang-bang {peaks[0]:.2f} 1/s², the quintic {peaks[1]:.2f} 1/s²")
+predict("peak_acceleration", truth="b" if peaks[1] > 1.01 * peaks[0] else "a")
 
 # %% [markdown]
 # ## Limits are in metres
@@ -250,6 +257,8 @@ log = follow(line, within_limits(line.length))
 lk.plotting.tracking(log)
 lk.plotting.show(lk.plotting.describe(log))
 
+# %% predict="twice_the_time"
+
 # %% [markdown]
 # And the circle, your own, about an axis 15 cm to the side. If your `compose` is right, the arm's speed
 # is the one that your trajectory promises.
@@ -273,6 +282,15 @@ lk.plotting.show(
     f"Speed of the tip on the circle: at most {max(speed):.2f} m/s as promised, {max(actual):.2f} m/s by "
     "the arm."
 )
+
+# %%
+def largest_acceleration(duration):
+    """Of the tip on the circle, in [m/s^2]."""
+    samples = [my_compose(ring, lk.Quintic(duration), t) for t in np.linspace(0.0, duration, 301)]
+    return max(np.linalg.norm(x.acceleration) for x in samples)
+
+
+predict("twice_the_time", truth=largest_acceleration(12.0) / largest_acceleration(6.0))
 
 # %% [markdown]
 # ## Several segments
@@ -372,6 +390,16 @@ def witness(theta, duration):
     return answer(theta, duration)
     ### END SOLUTION
 
+
+# %% [markdown] why="why_a_quarter"
+# What did you see: by how much did the largest acceleration change when the circle took twice as long? Say
+# why with the two terms of `compose`, and what follows for an arm whose motors are too weak for a path.
+#
+# ### BEGIN SOLUTION
+# It fell to a quarter. Both terms of the acceleration have the unit of 1/T²: the speed ds/dt halves
+# and enters squared in p''·ds², and dds itself falls to a quarter. So slowing down by a tenth saves a fifth
+# of the acceleration, whatever the path: weak motors are helped by time before anything else.
+# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in

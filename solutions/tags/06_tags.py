@@ -24,7 +24,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -178,6 +178,22 @@ lk.plotting.show(
     f"deviation. Along z it is {1e3 * spread[2]:.2f} mm, across {1e3 * spread[:2].max():.2f} mm."
 )
 
+# %% predict="twice_as_far"
+
+# %%
+def depth_spread(distance, pictures=12):
+    """Standard deviation of the depth of a tag that faces the camera askew, in [m]."""
+    place = board.T_wm[:3, 3]
+    view = np.array([0.6, -0.1, 0.5]) / np.linalg.norm([0.6, -0.1, 0.5])
+    there = lk.Camera(world, lk.looking_at(place + distance * view, place), noise=6.0, seed=2)
+    shots = [lk.detect_tags(there.tag_image(), there, 0.1) for _ in range(pictures)]
+    return np.std([tags[0].T_cm[2, 3] for tags in shots if tags], ddof=1)
+
+
+near, far = depth_spread(0.6), depth_spread(1.2)
+print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f} mm at 1.2 m")
+predict("twice_as_far", truth=round(float(far / near), 1))
+
 # %% [markdown]
 # Along the view the place is measured worst, for a tag that comes nearer changes the picture least. A dot
 # that lies farther from zero than its bar is long is bias: more pictures make the bars shorter, and leave
@@ -316,6 +332,16 @@ def predict(mean, covariance, age, accel_noise):
     ### END SOLUTION
 
 
+# %% predict="round_and_round"
+
+# %%
+turn = 2.0 * np.pi / 6.0 * 2.0  # how far the tag goes round in two seconds, in [rad]
+old_place = abs(np.exp(1j * turn) - 1.0)  # in radii, the circle as complex numbers
+straight_on = abs(np.exp(1j * turn) - (1.0 + 1j * turn))
+print(f"error in radii: {old_place:.2f} with the old place, {straight_on:.2f} with the prediction")
+ratio = straight_on / old_place
+predict("round_and_round", truth="c" if ratio > 1.0 else "b" if ratio > 0.3 else "a")
+
 # %% [markdown]
 # ## All of it, on the arm
 #
@@ -421,6 +447,16 @@ lk.plotting.show(
 
 # %%
 lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="the hand"))
+
+# %% [markdown] why="why_it_harms"
+# When did you see the prediction make things worse, and why? Say what the predictor believes about the tag,
+# how its error grows with the age of the picture, and for which of a conveyor and a waving hand you would use it.
+#
+# ### BEGIN SOLUTION
+# On a circle that turns by two radians during the picture's age, the straight prediction was farther off
+# than the old place. It believes in a constant velocity, and its error grows with the square of the age times
+# the acceleration. A conveyor has none, so it gains everything; a waving hand turns round within the age.
+# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in

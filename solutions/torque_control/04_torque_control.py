@@ -20,7 +20,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -122,6 +122,8 @@ def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
     ### END SOLUTION
 
 
+# %% predict="gravity_twice"
+
 # %% [markdown]
 # Let your law hold the arm, on both arms and with the switch both ways. Two of the four agree with the
 # arm they run on. What do the other two do? (If your law is not ready, Baxter's position mode stands in:
@@ -169,6 +171,10 @@ lk.plotting.show(
     + "; ".join(f"{name}: {z:+.0f} mm" for name, z in heights.items())
     + "."
 )
+
+# %%
+rise = heights["self-carrying, arm_compensates=False"]
+predict("gravity_twice", truth="a" if abs(rise) < 5.0 else "c" if rise > 0.0 else "b")
 
 # %% [markdown]
 # Here they are as arms. Drag the time, turn the view.
@@ -251,7 +257,16 @@ lk.plotting.show(
 # %% [markdown]
 # Seven curves on top of one another: that is what the model buys. It is also a promise that hangs on the
 # model. On an arm with friction, or with something in its gripper, they come apart again.
-#
+
+# %% predict="unknown_load"
+
+# %%
+burdened = replace(carries_itself, name="with 0.5 kg", payload=0.5)
+log = stay(burdened, with_gains(my_computed_torque, carries_itself, 40.0, 2 * 40.0**0.5, True), 3.0)
+z = 1e3 * lk.metrics.tip_poses(log)[:, 2, 3]
+predict("unknown_load", truth=round(float(z[0] - z[-1]), 1))
+
+# %% [markdown]
 # ## Gains with a meaning
 #
 # Nobody knows what "kp = 40" feels like. A frequency and a damping ratio do have a feel: how often the
@@ -628,6 +643,16 @@ lk.replay.show(
         sprung, "A circle with 1 kg in the gripper", label="springs", ghosts={"computed torque": computed}
     )
 )
+
+# %% [markdown] why="why_it_sags"
+# How far did you see computed torque sag under half a kilogram, and why? The load pulls with 5 N: say through
+# what it is turned into accelerations, and why "stiff" has another meaning for kp in 1/s² than in N m/rad.
+#
+# ### BEGIN SOLUTION
+# It sagged by a good deal, far more than springs of the same number would. The load gives the torques
+# J^T F; computed torque answers with M kp e, so at rest e = M^-1 J^T F / kp. Where M is small, at the wrist,
+# the stiffness M kp is small too: kp in 1/s² fixes a frequency, not a stiffness.
+# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in

@@ -19,7 +19,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -141,6 +141,8 @@ def decay_rate(kp, kd):
     ### END SOLUTION
 
 
+# %% predict="with_more_d"
+
 # %% [markdown]
 # Compare with an arm whose motors take 50 ms to follow a command. (Motors that obey at once would make
 # the loop bite its own tail: the speed measured now *is* the last command, so with kd above 1 the
@@ -177,6 +179,9 @@ lk.plotting.show(
     + ", ".join(f"{100 * share:.0f} % at kd = {kd:g}" for kd, share in shares.items())
     + ". Dotted: exp(-r t) with your rate."
 )
+
+# %%
+predict("with_more_d", truth=(log.t, e))
 
 # %% [markdown]
 # Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, for D
@@ -219,6 +224,8 @@ def damped_inverse(J, damping):
     ### END SOLUTION
 
 
+# %% predict="worst_elbow"
+
 # %% [markdown]
 # How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest,
 # while the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s. Without damping
@@ -245,6 +252,7 @@ for damping, style in ((1e-9, "-"), (0.0025, "--"), (0.02, "-.")):
         worst = np.linalg.svd(J)[0][:, -1]
         worst = 0.1 * worst / np.linalg.norm(worst[:3])
         fastest.append(np.abs(my_damped_inverse(J, damping) @ worst).max())
+    undamped = fastest if damping < 1e-6 else undamped
     name = "no damping" if damping < 1e-6 else f"damping {damping:g}"
     plt.semilogy(angles, fastest, style, label=name)
     speeds[name] = max(fastest)
@@ -258,6 +266,9 @@ lk.plotting.show(
     f"straight at {straight:.2f} rad. The most, in rad/s: "
     + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items()) + "."
 )
+
+# %%
+predict("worst_elbow", truth=round(float(angles[np.argmax(undamped)]), 2))
 
 # %% [markdown]
 # ## A controller for the tip
@@ -434,6 +445,16 @@ lk.replay.show(
 # millimetres, largest where the circle is quickest: the motors lag, and the state is some milliseconds
 # old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
 # them better.
+
+# %% [markdown] why="why_slower"
+# What did you see happen to the error of a resting joint when D grew? Say why D *slows* an arm whose speed is
+# commanded, although in your mechanics lecture a damper lets you raise P. What is the difference?
+#
+# ### BEGIN SOLUTION
+# With more D the error died more slowly: its rate is kp/(1 + kd). Where the speed itself is commanded,
+# D subtracts a share of the speed from the command, so it simply makes the command smaller. A mass needs D to
+# lose its kinetic energy; a joint in velocity mode has no mass in the loop, so there is nothing to damp.
+# ### END SOLUTION
 
 # %% [markdown]
 # ## Hand in
