@@ -6,8 +6,11 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 from __future__ import annotations
 
 from .equivalence import AtTip, Response, TipTorque
+from .bugs import Found, Telling
+from .identification import Identification, Measured
 from .judges import AtMost, Close, Gains, Within
 from .marking import fingerprint, mark
+from .own_arm import my_arm, my_bug
 from .predictions import Choose, Curve, Number, Prediction, Rank
 from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed
@@ -25,8 +28,11 @@ __all__ = [
     "Close",
     "Curve",
     "Failed",
+    "Found",
     "Gains",
+    "Identification",
     "Loop",
+    "Measured",
     "Mistake",
     "Number",
     "Outcome",
@@ -35,6 +41,7 @@ __all__ = [
     "Raised",
     "Rank",
     "Response",
+    "Telling",
     "Test",
     "TestResult",
     "TipTorque",
@@ -45,6 +52,8 @@ __all__ = [
     "fingerprint",
     "hint",
     "mark",
+    "my_arm",
+    "my_bug",
     "predict",
     "question_data",
     "read_question",

@@ -11,6 +11,8 @@ from ..control import JointTorque
 from ..errors import OutOfRange
 from ..shapes import Array
 from .judges import AtMost, Close, Gains, Within, value
+from .bugs import Found, Telling
+from .identification import Measured
 from .predictions import Form
 from .verdict import Difference, Kind, Value
 
@@ -136,4 +138,4 @@ class AtTip:
         return float(np.max(off / (self.atol + self.rtol * scale)))
 
 
-Judge = Close | Within | AtMost | Response | Gains | AtTip | Form
+Judge = Close | Within | AtMost | Response | Gains | AtTip | Form | Measured | Found | Telling

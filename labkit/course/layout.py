@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from ..errors import LabkitError, UnknownName
 
 if TYPE_CHECKING:
+    from .identification import Identification
     from .predictions import Prediction
     from .problem import Problem
 
@@ -111,14 +112,16 @@ class Course:
         problems: tuple[Problem, ...] = self._listed(name, "problems").PROBLEMS
         return problems
 
-    def predictions(self, name: str) -> tuple[Prediction, ...]:
+    def predictions(self, name: str) -> tuple[Prediction | Identification, ...]:
         """The predictions of an assignment, from the ``solutions`` package as its problems.
 
         Raises:
             UnknownName: There is no assignment of that name.
             LabkitError: It has a notebook, and no predictions.
         """
-        predictions: tuple[Prediction, ...] = self._listed(name, "predictions").PREDICTIONS
+        predictions: tuple[Prediction | Identification, ...] = self._listed(
+            name, "predictions"
+        ).PREDICTIONS
         return predictions
 
     def _listed(self, name: str, what: str) -> Any:

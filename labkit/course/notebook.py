@@ -16,8 +16,8 @@ from typing import Any
 
 from ..errors import LabkitError
 from ..formats import stamp
+from .identification import Identification
 from .predictions import Prediction
-from .predictions import brief as brief_of_prediction
 from .question import Question
 from .serialize import read_record, record_data
 from .source import look
@@ -148,12 +148,13 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
 def source_notebook(
     path: Path,
     questions: Mapping[str, Question],
-    predictions: Sequence[Prediction] = (),
+    predictions: Sequence[Prediction | Identification] = (),
 ) -> Notebook:
     """The notebook that nbgrader takes as its source, with the solutions inside.
 
     In the source text, a code cell with ``question="name"`` holds a stub whose solution region
-    imports the answer; an empty one with ``predict="name"`` marks the place of a prediction; a
+    imports the answer; an empty one with ``predict="name"`` or ``find_out="name"`` marks the
+    place of a value that students write down; a
     Markdown cell with ``why="name" points=2`` asks for a text and holds a model answer in a
     solution region; ``setup=true`` marks cells that students should leave alone.  A brief before
     the stub and the check after it are written here, from the question.
@@ -161,7 +162,7 @@ def source_notebook(
     Args:
         path: The source, in jupytext's percent format.
         questions: By name.
-        predictions: Those of this notebook.
+        predictions: Those of this notebook, and what is to be found out.
 
     Raises:
         LabkitError: Stubs and questions do not match.
@@ -179,8 +180,8 @@ def source_notebook(
             asked.append(name)
         if "why" in cell.metadata:
             cells += _why(path, name, cell)
-        elif name in foretold and "predict" in cell.metadata:
-            cells += _predicted(foretold[name])
+        elif name in foretold and "question" not in cell.metadata:
+            cells += _written_down(foretold[name])
         elif name in questions and "question" in cell.metadata:
             _check_stub(path, name, cell)
             cells += _asked(questions[name], cell)
@@ -201,7 +202,7 @@ def source_notebook(
     )
 
 
-_ASKS = ("question", "predict", "why")
+_ASKS = ("question", "predict", "find_out", "why")
 
 
 def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
@@ -212,12 +213,11 @@ def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
     yield _check(name, question.points)
 
 
-def _predicted(prediction: Prediction) -> Iterator[dict[str, Any]]:
-    """The three cells of a prediction; nbgrader has nothing to clear in its answer."""
-    name = prediction.name
-    yield _cell("markdown", brief_of_prediction(prediction), "brief", {})
-    yield _cell("code", f'{name} = predict("{name}", None)', "answer", _nbgrader(name))
-    yield _check(name, prediction.points)
+def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
+    """The three cells of a value; nbgrader has nothing to clear in its answer."""
+    yield _cell("markdown", asked.brief(), "brief", {})
+    yield _cell("code", asked.cell(), "answer", _nbgrader(asked.name))
+    yield _check(asked.name, asked.points)
 
 
 def _check(name: str, points: float) -> dict[str, Any]:

@@ -19,11 +19,13 @@ from typing import Any
 import numpy as np
 
 from ..arm import Arm
-from ..errors import LabkitError
+from ..errors import LabkitError, OutOfRange
+from ..log import Log
 from ..model import Model
 from ..plant import BAXTER, Plant
 from ..scene import TIP_RADIUS, Wall
 from ..world import World
+from .bugs import CAUSES, MOVES, Bug
 from .layout import PUBLIC_SEED
 
 FILE = "arms.json"
@@ -40,6 +42,12 @@ RANGES = {
 """From where to where each number is drawn; below `OwnArm` says what it is."""
 
 
+BUGS = 3
+"""So many misbehaving runs everybody gets, of `CAUSES` times `MOVES`."""
+ONSETS = (0.3, 0.8)
+"""In which part of a run the mistake comes in, in [s]: the arm is under way."""
+
+
 @dataclass(frozen=True)
 class OwnArm:
     """What is particular about somebody's arm; the rest is Baxter's.
@@ -49,12 +57,14 @@ class OwnArm:
         stiction: Dry friction of s0, in [N m]; that of the other joints is scaled alike.
         lag: Time constant of the velocity mode, in [s].
         wall: Distance from the resting tip to the wall in front of it, along x, in [m].
+        bugs: Three misbehaving runs to find the cause of.
     """
 
     payload: float
     stiction: float
     lag: float
     wall: float
+    bugs: tuple[Bug, ...] = ()
 
     @property
     def plant(self) -> Plant:
@@ -73,7 +83,20 @@ def draw(secret: int, handle: str) -> OwnArm:
     """The arm of a handle, by HMAC-SHA256 under the term's secret."""
     digest = hmac.new(str(secret).encode(), handle.encode(), hashlib.sha256).digest()
     shares = (int.from_bytes(digest[8 * k : 8 * k + 8], "big") / 2.0**64 for k in range(4))
-    return OwnArm(*(a + x * (b - a) for x, (a, b) in zip(shares, RANGES.values(), strict=True)))
+    numbers = (a + x * (b - a) for x, (a, b) in zip(shares, RANGES.values(), strict=True))
+    random = np.random.default_rng(list(digest))
+    causes = random.choice(list(CAUSES), BUGS, replace=False)
+    bugs = (
+        Bug(str(cause), int(move), round(float(onset), 2), int(seed))
+        for cause, move, onset, seed in zip(
+            causes,
+            random.integers(len(MOVES), size=BUGS),
+            random.uniform(*ONSETS, BUGS),
+            random.integers(1000, size=BUGS),
+            strict=True,
+        )
+    )
+    return OwnArm(*numbers, tuple(bugs))
 
 
 def sealed(secret: int, handles: Mapping[str, str] | Iterable[str]) -> dict[str, str]:
@@ -100,7 +123,7 @@ def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
     Raises:
         LabkitError: The file of arms is not there, or does not know the handle.
     """
-    own = draw(PUBLIC_SEED, DEMO) if handle == DEMO else _unsealed(handle)
+    own = _own(handle)
     known = replace(BAXTER, name="own")
     model = Model("left", known)
     tip = model.pose(model.robot.ready)[:3, 3]
@@ -108,6 +131,26 @@ def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
     arm = Arm("left", own.plant, seed, q0=model.robot.ready, world=World(things=[wall]))
     arm.plant, arm.model = known, model  # what is known of it
     return arm
+
+
+def my_bug(number: int, handle: str = DEMO) -> Log:
+    """One of your misbehaving runs: a law that was right at first.
+
+    Args:
+        number: From 1 to 3.
+        handle: As for `my_arm`.
+
+    Raises:
+        OutOfRange: There is no such run.
+        LabkitError: As for `my_arm`.
+    """
+    if number not in range(1, BUGS + 1):
+        raise OutOfRange(f"there are the runs 1 to {BUGS}, and no run {number!r}")
+    return _own(handle).bugs[number - 1].log()
+
+
+def _own(handle: str) -> OwnArm:
+    return draw(PUBLIC_SEED, DEMO) if handle == DEMO else _unsealed(handle)
 
 
 def _unsealed(handle: str) -> OwnArm:
@@ -124,8 +167,8 @@ def _unsealed(handle: str) -> OwnArm:
         raise LabkitError(
             f"{FILE} has no arm for {handle!r}; write your handle as your course gave it to you"
         )
-    numbers = json.loads(_mixed(base64.b64decode(text), handle))
-    return OwnArm(**numbers)
+    sealed = json.loads(_mixed(base64.b64decode(text), handle))
+    return OwnArm(**sealed | {"bugs": tuple(Bug(**bug) for bug in sealed["bugs"])})
 
 
 def _hashed(handle: str) -> str:

@@ -190,12 +190,19 @@ class Prediction:
         test = Test(COMMITTED, (Call((), expected=True),))
         return Question(self.name, self.points, self.asks, self.form, (test,))
 
+    def brief(self) -> str:
+        """What stands above the place for it."""
+        form = self.form
+        options = form.options.items() if isinstance(form, Choose | Rank) else ()
+        head = f"**Predict first: `{self.name}`** · 1 point for committing, right or wrong"
+        lines = [head, "", self.asks, "", *(f"- ({letter}) {text}" for letter, text in options)]
+        how = f"Write {form.how}, in place of `None`; or use the controls and run the cell again."
+        return "\n".join([*lines, "", how])
 
-def brief(prediction: Prediction) -> str:
-    """What stands above the place for a prediction."""
-    form = prediction.form
-    options = form.options.items() if isinstance(form, Choose | Rank) else ()
-    lines = [f"**Predict first: `{prediction.name}`** · 1 point for committing, right or wrong", ""]
-    lines += [prediction.asks, "", *(f"- ({letter}) {text}" for letter, text in options)]
-    how = f"Write {form.how}, in place of `None`; or use the controls and run the cell again."
-    return "\n".join([*lines, "", how])
+    def cell(self) -> str:
+        """The cell that the student fills in."""
+        return f'{self.name} = predict("{self.name}", None)'
+
+    def solved(self) -> str:
+        """The cell with a prediction that turns out right."""
+        return f'{self.name} = predict("{self.name}", {self.truth!r})'

@@ -11,17 +11,20 @@ from typing import Any
 
 from ..errors import LabkitError
 from .notebook import Notebook, grade_id, kind
+from .identification import Identification
 from .predictions import Prediction
 from .problem import Problem
 from .source import names_defined
 
 
 def solution_notebook(
-    source: Notebook, problems: Mapping[str, Problem], predictions: Iterable[Prediction] = ()
+    source: Notebook,
+    problems: Mapping[str, Problem],
+    predictions: Iterable[Prediction | Identification] = (),
 ) -> Notebook:
     """The solved notebook: the answers' own source in place of the stubs, model texts for whys."""
     notebook = copy.deepcopy(source)
-    foretold = {x.name: f'{x.name} = predict("{x.name}", {x.truth!r})' for x in predictions}
+    foretold = {x.name: x.solved() for x in predictions}
     for cell in notebook.cells:
         if kind(cell) == "answer":
             name = grade_id(cell)

@@ -65,13 +65,13 @@ def kp_for_margin(lag: float, delay: float, margin_deg: float) -> float:
 
 
 def choose_gains(runner: Callable[..., float]) -> tuple[float, float]:
-    """Raise Kp until some seed's arm is about to be lost, then step well back."""
-    stable, error = 4.0, runner(4.0, 0.0, 0)
-    for Kp in (8.0, 14.0, 22.0, 34.0, 50.0, 70.0, 100.0):
-        now = runner(Kp, 0.0, 0)
-        if max(now, runner(Kp, 0.0, 1)) > 1.5 * error:
+    """Raise Kp until some seed's error turns upwards, then step well back."""
+    stable = lowest = 0.0
+    for Kp in (4.0, 8.0, 14.0, 22.0, 34.0, 50.0, 70.0, 100.0):
+        now = max(runner(Kp, 0.0, 0), runner(Kp, 0.0, 1))
+        if stable and now > 1.2 * lowest:
             break
-        stable, error = Kp, now
+        stable, lowest = Kp, min(now, lowest or now)
     return stable / 2.0, 0.0
 
 

@@ -494,7 +494,32 @@ lk.plotting.show(
 # %% [markdown]
 # Where the arm is soft, and in which direction, is a matter of its pose if the springs sit in the joints.
 # At the tip it is yours to say. That is what workspace impedance is for.
+
+# %% [markdown]
+# ## Your own arm: what does it carry, and what stands before it?
 #
+# Your arm (notebook 03) carries something, and there is a wall somewhere in front of it. Find both out with
+# experiments of your own; the cell below is only a beginning. The tip is to be moved as gently as you can.
+
+# %%
+HANDLE = "demo"  # yours, or your team's
+mine = lk.my_arm(HANDLE)
+holding = np.diag(mine.model.mass_matrix(ready))
+holding = lk.control.springs(50.0 * holding, 14.0 * holding)
+
+resting = lk.run(mine, lk.Hold(ready, 1.0), holding)
+names = [name.removeprefix("left_") for name in mine.robot.joint_names]
+print("commanded at rest [N m]:", ", ".join(
+    f"{name} {x:+.2f}" for name, x in zip(names, resting.command[-20:].mean(axis=0))
+))
+one_kilogram = mine.model.tip_jacobian(ready)[:3].T @ [0.0, 0.0, 9.81]
+print("one kilogram takes [N m]:", ", ".join(f"{name} {x:+.2f}" for name, x in zip(names, one_kilogram)))
+
+# %% find_out="my_payload"
+
+# %% find_out="my_wall"
+
+# %% [markdown]
 # ## Another inertia
 #
 # So far the tip kept its inertia $\Lambda$. It can pretend to have another one, $M_d$:

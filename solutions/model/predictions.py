@@ -9,7 +9,7 @@ PREDICTIONS = (
         "direction does the tip feel heaviest? The arm is in its ready pose, motors off, weight "
         "carried.",
         Rank({"x": "forwards", "y": "sideways", "z": "upwards"}, "the heaviest"),
-        truth="zxy",
+        truth="zyx",
     ),
     Prediction(
         "base_joint",

@@ -312,8 +312,8 @@ show_reference(blended(times), "Blends of 1 s, a look every 0.5 s")
 # and $Q$ is what the pushes add: $\int_0^\tau F(s)\,\mathrm{diag}(0, qI)\,F(s)^T ds$. Work it out; it must
 # vanish with $\tau$, and two half steps must make one whole.
 
-# %% question="predict"
-def predict(mean, covariance, age, accel_noise):
+# %% question="carry_forward"
+def carry_forward(mean, covariance, age, accel_noise):
     """Carry a belief forward in time.
 
     Args:
@@ -326,7 +326,7 @@ def predict(mean, covariance, age, accel_noise):
         (mean, covariance) then.
     """
     ### BEGIN SOLUTION
-    from solutions.tags.following import predict as answer
+    from solutions.tags.following import carry_forward as answer
 
     return answer(mean, covariance, age, accel_noise)
     ### END SOLUTION
@@ -346,16 +346,16 @@ predict("round_and_round", truth="c" if ratio > 1.0 else "b" if ratio > 0.3 else
 # ## All of it, on the arm
 #
 # The board goes round on a circle of 15 cm at 0.1 m/s. The camera takes ten pictures a second; each reading is
-# 100 ms old when it arrives. Between the readings your `predict` says where the tag is, your `blend` bends the
+# 100 ms old when it arrives. Between the readings your `carry_forward` says where the tag is, your `blend` bends the
 # reference, and the arm follows it in position mode. The update of the filter is given.
 
 # %%
-def given_predict(mean, covariance, age, accel_noise):
+def given_carry_forward(mean, covariance, age, accel_noise):
     """No prediction: the old picture is taken for now."""
     return mean, covariance + 1e-4 * np.eye(6)
 
 
-my_predict = use("predict", predict, given_predict)
+my_carry_forward = use("carry_forward", carry_forward, given_carry_forward)
 
 offset = np.array([0.0, 0.0, 0.2])
 radius, speed = 0.15, 0.1
@@ -384,10 +384,10 @@ class Follower:
                 self.belief = estimation.first_estimate(reading.stamp, place, noise, speed)
             else:
                 age = reading.stamp - self.belief.t
-                then = my_predict(self.belief.mean, self.belief.covariance, age, 0.005)
+                then = my_carry_forward(self.belief.mean, self.belief.covariance, age, 0.005)
                 self.belief = estimation.update(estimation.Estimate(reading.stamp, *then), place, noise)
         if readings:
-            mean, _ = my_predict(*self.belief[1:], t + self.ahead - self.belief.t, 0.005)
+            mean, _ = my_carry_forward(*self.belief[1:], t + self.ahead - self.belief.t, 0.005)
             self.start, self.began = self.sample(t), t
             self.goal = lk.Sample(mean[:3] + offset, mean[3:], np.zeros(3))
         point = self.sample(t)

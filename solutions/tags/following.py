@@ -37,7 +37,9 @@ _ENDS = np.linalg.inv(
 )  # from value, slope and bend at x = 0 and x = 1 to the coefficients
 
 
-def predict(mean: Any, covariance: Any, age: float, accel_noise: float) -> tuple[Array, Array]:
+def carry_forward(
+    mean: Any, covariance: Any, age: float, accel_noise: float
+) -> tuple[Array, Array]:
     r"""Where a thing is ``age`` seconds later, if only unknown pushes change its velocity.
 
     .. math:: F = \begin{bmatrix} I & \tau I \\ 0 & I \end{bmatrix}, \quad
@@ -102,7 +104,7 @@ class TagFollower:
         horizon: How far ahead a blend meets the tag, in [s]; longer where `acceleration` asks it.
         coast: How long to believe in the last velocity, in [s].
         acceleration: Largest acceleration of the reference, in [m/s^2].
-        accel_noise: How unsteady the tag is, for `predict`, in [m^2/s^3].
+        accel_noise: How unsteady the tag is, for `carry_forward`, in [m^2/s^3].
         speed: How fast one expects it to be at first, in [m/s].
     """
 
@@ -143,7 +145,9 @@ class TagFollower:
             return
         age = reading.stamp - self.estimate.t
         if age >= 0.0:
-            then = predict(self.estimate.mean, self.estimate.covariance, age, self.accel_noise)
+            then = carry_forward(
+                self.estimate.mean, self.estimate.covariance, age, self.accel_noise
+            )
             self.estimate = update(Estimate(reading.stamp, *then), z, R)
 
     def _reference(self, t: float) -> Sample:
@@ -155,7 +159,7 @@ class TagFollower:
         assert estimate is not None
         while True:
             age = min(t + duration - estimate.t, self.coast + self.horizon)
-            mean, _ = predict(estimate.mean, estimate.covariance, age, self.accel_noise)
+            mean, _ = carry_forward(estimate.mean, estimate.covariance, age, self.accel_noise)
             goal = Sample(mean[:3] + self.offset, mean[3:], np.zeros(3))
             if duration > 20.0 or _peak(here, goal, duration) <= self.acceleration:
                 break

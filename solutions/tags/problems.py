@@ -426,11 +426,11 @@ BLEND = Problem(
 )
 
 PREDICT = Problem(
-    name="predict",
+    name="carry_forward",
     points=5,
     asks="A tag is believed at `mean` (position and velocity) with `covariance`. Give both `age` seconds "
     "later, for constant velocity under continuous white acceleration of power `accel_noise`.",
-    answer=following.predict,
+    answer=following.carry_forward,
     judge=Close(rtol=1e-6, atol=1e-12, parts=("mean", "covariance")),
     trials=(
         Trial(

@@ -414,7 +414,48 @@ for armature in (0.0, 0.05):
 # %% [markdown]
 # This is why every simulated Baxter that is driven by torques needs rotors in its data, though the data
 # sheet has none.
+
+# %% [markdown]
+# ## Find the bug
 #
+# Three runs of computed torque, yours alone. Each law is right at first; while the arm is under way, a
+# version with one mistake takes over. You know how the right law behaves, for you have written it. The
+# suspects:
+#
+# | | |
+# |---|---|
+# | a | the error of the speed has the wrong sign |
+# | b | gravity is left out |
+# | c | gravity is added twice |
+# | d | the state is 60 ms old |
+# | e | the target is always the last one (index -1) |
+# | f | the target's acceleration is left out |
+# | g | the errors of the joints w0 and w2 are exchanged |
+# | h | the joints' own speed is damped, not the error of the speed |
+
+# %%
+HANDLE = "demo"  # yours, or your team's
+_, axes = plt.subplots(1, 3, figsize=(9, 3), sharex=True, layout="constrained")
+for number, ax in enumerate(axes, start=1):
+    log = lk.my_bug(number, HANDLE)
+    off = log.target.position[: len(log)] - log.q
+    for k, column in enumerate(off.T):
+        ax.plot(log.t, column, ("-", "--", "-.", ":")[k % 4], label=names[k])
+    ax.set_title(f"run {number}", loc="left", fontsize="medium")
+    ax.set_xlabel("time [s]")
+axes[0].set_ylabel("error [rad]")
+axes[2].legend(frameon=False, ncols=2, fontsize="small")
+lk.plotting.show(f"The errors of the seven joints in three misbehaving runs of the arm {HANDLE}.")
+
+# %% find_out="bug_1"
+
+# %% find_out="bug_2"
+
+# %% find_out="bug_3"
+
+# %% find_out="experiment"
+
+# %% [markdown]
 # ## Gravity on the real robot, and why nobody could tell
 #
 # For years teams of this lab fought with gravity. One wrote a formula that came to 3 % of the true

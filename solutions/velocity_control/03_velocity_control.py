@@ -396,6 +396,37 @@ print(f"The upper arm turned by {np.ptp(log.q[:, 2]):.2f} rad, the tip moved by 
 lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", reference=False))
 
 # %% [markdown]
+# ## An arm of your own
+#
+# From here on an arm belongs to you. It is a Baxter, but its motors, its joints' friction, what it carries
+# and what stands before it are its own: no two teams have the same one. Your course gives you a handle for
+# it; `"demo"` is a public arm to practise on. Numbers that you find out about it are judged against it, and
+# the report of notebook 08 is about it.
+
+# %%
+HANDLE = "demo"  # yours, or your team's
+mine = lk.my_arm(HANDLE)
+
+
+def steps(state, target, speed=0.4):
+    """One joint, s0, at a constant speed from the first tick on."""
+    return lk.JointVelocity(speed * np.eye(7)[0])
+
+
+mine.reset(mine.robot.ready)
+own_step = lk.run(mine, lk.Hold(mine.robot.ready, 1.2), steps)
+plt.figure(figsize=(8, 2.6), layout="constrained")
+plt.plot(own_step.t, own_step.dq[:, 0], label="s0 of your arm")
+plt.plot(own_step.t, own_step.command[:, 0], "--", label="commanded")
+plt.xlim(0.0, 0.4)
+plt.xlabel("time [s]")
+plt.ylabel("speed [rad/s]")
+plt.legend(frameon=False)
+lk.plotting.show(f"A step of the commanded speed, and how joint s0 of the arm {HANDLE} follows it.")
+
+# %% find_out="my_lag"
+
+# %% [markdown]
 # ## Baxter, at last
 #
 # Now the arm as its users found it: 100 states a second for 200 commands, noise on the speeds, motors

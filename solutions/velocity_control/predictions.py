@@ -1,6 +1,6 @@
 """What notebook 03 lets students predict."""
 
-from labkit.course import Curve, Number, Prediction
+from labkit.course import Curve, Identification, Measured, Number, Prediction
 
 PREDICTIONS = (
     Prediction(
@@ -16,5 +16,21 @@ PREDICTIONS = (
         "direction. At which angle of the elbow do the joints turn fastest, without damping?",
         Number("rad", 0.0, 0.8),
         truth=0.15,
+    ),
+    Identification(
+        "my_lag",
+        "How long do the motors of *your* arm take to follow a commanded speed? Command a step, look "
+        "at the log, and give the time constant of the lag.",
+        Measured("lag", "s", 0.0, 0.5, 0.005),
+        truth=0.033,
+        form="one number, in s",
+        points=3.0,
+        hints=(
+            "A joint that follows with the time constant τ has covered 63 % of a step of its speed "
+            "after τ, and in steady motion its angle is v τ behind.",
+            "`log.q` and `log.dq` hold the angles and speeds as they were, not as the controller saw "
+            "them; so they are not late. Let one joint turn at 0.4 rad/s for a second.",
+            "Average t - (q(t) - q(0)) / v over the second half of the run.",
+        ),
     ),
 )
