@@ -94,7 +94,16 @@ class Identification:
                 also="whether it is true of your own arm",
             ),
         )
-        return Question(self.name, self.points, self.asks, self.judge, tests, hints=self.hints)
+        return Question(
+            self.name,
+            self.points,
+            self.asks,
+            self.judge,
+            tests,
+            hints=self.hints,
+            core=self.core,
+            outcomes=self.outcomes,
+        )
 
     def _expected(self) -> Any:
         return self.truth[0][0] if isinstance(self.judge, Telling) else self.truth

@@ -249,7 +249,8 @@ WHY_POINTS = 2.0
 def brief(question: Question) -> str:
     """What stands above a stub: the task, the points, how it is tried, what is withheld."""
     points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
-    lines = [f"**Your turn: `{question.name}`** · {points}", "", question.asks]
+    part = "core" if question.core else "extension"
+    lines = [f"**Your turn: `{question.name}`** · {points} · {part}", "", question.asks]
     also = list(dict.fromkeys(test.also for test in question.tests if test.also))
     gates = [test.name for test in question.tests if not test.weight]
     lines += ["", f"- Needed before anything counts: {'; '.join(gates)}."] if gates else [""]

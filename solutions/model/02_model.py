@@ -51,12 +51,12 @@ for name, link in zip(names, model.links(q0)):
 #
 # Freeze all joints but one. Everything beyond it turns about its axis $z_k$ like a door on its hinge. A
 # point of the door at the arm $r$ from the hinge moves with $z_k \times r$, and the door itself turns
-# with $z_k$. All joints together simply add up:
+# with $z_k$. All joints together simply add up,
 #
-# $$ \begin{pmatrix} \dot p \\ \omega \end{pmatrix} = J(q)\,\dot q, \qquad
-# J_k = \begin{pmatrix} z_k \times (p - p_k) \\ z_k \end{pmatrix}, $$
+# $$ \begin{pmatrix} \dot p \\ \omega \end{pmatrix} = J(q)\,\dot q, $$
 #
-# with $p$ the tip, $p_k$ a point on the axis, all in world axes (Siciliano, *Robotics: Modelling,
+# so a column of $J$ is what one joint does at unit speed. Derive it: the tip is at $p$, a point on the
+# joint's axis at $p_k$, all in world axes (Siciliano, *Robotics: Modelling,
 # Planning and Control*, section 3.1.3). Beware: several matrices are called "the Jacobian". This one
 # gives the velocity of the *tip*, in *world* axes.
 
@@ -93,7 +93,12 @@ def jacobian_at(q):
     return jacobian(axes, origins, model.pose(q)[:3, 3])
 
 
-tip_jacobian = use("jacobian", jacobian, model.tip_jacobian, yours=jacobian_at)
+def shoulder_alone(q):
+    """The stand-in: as if only the first two joints moved the tip."""
+    return model.tip_jacobian(q) * (np.arange(7) < 2)
+
+
+tip_jacobian = use("jacobian", jacobian, shoulder_alone, yours=jacobian_at)
 
 
 def passes_on(state, target):
@@ -176,7 +181,12 @@ def mass_matrix_at(q):
     )
 
 
-M = use("mass_matrix", mass_matrix, model.mass_matrix, yours=mass_matrix_at)
+def stretched_out(q):
+    """The stand-in: the inertia of the stretched arm, wherever the arm is."""
+    return model.mass_matrix(np.zeros(7))
+
+
+M = use("mass_matrix", mass_matrix, stretched_out, yours=mass_matrix_at)
 
 print(f"symmetric to {np.abs(M(q0) - M(q0).T).max():.1e} kg m²")
 print(f"smallest eigenvalue {np.linalg.eigvalsh(M(q0))[0]:.1e} kg m²")
@@ -245,7 +255,12 @@ def gravity_at(q):
     )
 
 
-g = use("gravity", gravity, model.gravity, yours=gravity_at)
+def half_the_weight(q):
+    """The stand-in: half of what the arm weighs."""
+    return 0.5 * model.gravity(q)
+
+
+g = use("gravity", gravity, half_the_weight, yours=gravity_at)
 
 
 def floats(state, target):
@@ -341,7 +356,12 @@ def coriolis_at(q, dq):
     return coriolis(model.mass_matrix, q, dq)
 
 
-C = use("coriolis", coriolis, model.coriolis, yours=coriolis_at)
+def nothing_turns(q, dq):
+    """The stand-in: no Coriolis torques."""
+    return np.zeros((7, 7))
+
+
+C = use("coriolis", coriolis, nothing_turns, yours=coriolis_at)
 
 q, dq, h = q0 + 0.2, np.array([0.5, -0.4, 0.3, 0.6, -0.8, 0.7, 1.0]), 1e-5
 M_rate = (model.mass_matrix(q + h * dq) - model.mass_matrix(q - h * dq)) / (2 * h)

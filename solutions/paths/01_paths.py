@@ -70,7 +70,9 @@ def bang_bang(t, duration):
 
 # %%
 def given_bang_bang(t, duration):
-    return lk.BangBang(duration)(t)
+    """The stand-in: at an even speed, with a jerk at both ends."""
+    on = 0.0 < t < duration
+    return min(max(t / duration, 0.0), 1.0), 1.0 / duration if on else 0.0, 0.0
 
 
 my_bang_bang = use("bang_bang", bang_bang, given_bang_bang)
@@ -133,7 +135,8 @@ def trapezoid(t, distance, v_max, a_max):
 
 # %%
 def given_trapezoid(t, distance, v_max, a_max):
-    return lk.Trapezoid(distance, v_max, a_max)(t)
+    """The stand-in: at an even speed, whatever the limits."""
+    return given_bang_bang(t, lk.Trapezoid(distance, v_max, a_max).duration)
 
 
 my_trapezoid = use("trapezoid", trapezoid, given_trapezoid)
@@ -225,11 +228,17 @@ def compose(path, scaling, t):
 
 # %%
 def given_circle(s, start, centre):
-    return lk.Circle(start, centre)(s)
+    """The stand-in: a triangle through the start, about the same axis."""
+    corners = [lk.Circle(start, centre)(k / 3).position for k in range(4)]
+    k = min(int(3 * s), 2)
+    return lk.Sample(*(scale * x for scale, x in zip((1, 3, 1), lk.Line(*corners[k : k + 2])(3 * s - k))))
 
 
 def given_compose(path, scaling, t):
-    return lk.Trajectory(path, scaling)(t)
+    """The stand-in: the place alone, as if the tip stood still there."""
+    s, _, _ = scaling(t)
+    place = path(s).position
+    return lk.Sample(place, 0 * place, 0 * place)
 
 
 my_circle = use("circle", circle, given_circle)
@@ -320,9 +329,9 @@ def segment_at(durations, t):
 
 # %%
 def given_segment_at(durations, t):
-    parts = lk.Chain([lk.Hold([0.0], duration) for duration in durations])
-    index = sum(begun <= t for begun in parts.starts) - 1
-    return max(index, 0), t - parts.starts[max(index, 0)]
+    """The stand-in: the first segment, and then the last one."""
+    first = t < durations[0]
+    return (0, t) if first else (len(durations) - 1, t - sum(durations[:-1]))
 
 
 my_segment_at = use("segment_at", segment_at, given_segment_at)
@@ -350,15 +359,35 @@ plt.legend(frameon=False)
 lk.plotting.show(f"The square from above: four sides of 12 cm, gone round in {t[-1]:.1f} s.")
 
 # %% [markdown]
-# Let the arm go round it. Its target is made of labkit's own parts, in the same order; the see-through
-# arm is your circle from above, for comparison. Drag to look around, move the slider to go back and
-# forth in time.
+# Let the arm go round it, on your own parts: your trapezoid, your `compose`, your `segment_at`. Wrong
+# ones may drive, too: write `use("segment_at", segment_at, given_segment_at, anyway=True)` above and run
+# on. The see-through arm goes round the square as it should. Drag to look around, move the slider to go
+# back and forth in time.
 
 # %%
 arm.reset(q0)
 tour = lk.Chain([lk.Trajectory(side, lk.Trapezoid(side.length, 0.2, 0.4)) for side in sides])
-log_square = lk.run(arm, model.joint_trajectory(tour, q0), passes_on)
-lk.replay.show(lk.replay.motion_of(log_square, "Round four corners", ghosts={"the circle": log}))
+as_it_should = lk.run(arm, model.joint_trajectory(tour, q0), passes_on)
+
+
+def follows_the_square(state, target, k=8.0):
+    """Feed-forward and feedback after your square; at most 0.5 m/s, should it jump."""
+    wanted = square(state.t)
+    pull = wanted.velocity + k * (wanted.position - model.pose(state.q)[:3, 3])
+    pull = pull * min(1.0, 0.5 / max(np.linalg.norm(pull), 1e-9))
+    turn = k * lk.se3.orientation_error(upright, model.pose(state.q)[:3, :3])
+    return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ np.concatenate([pull, turn]))
+
+
+upright = model.pose(q0)[:3, :3]
+arm.reset(q0)
+log_square = lk.run(arm, lk.Hold(q0, sum(durations)), follows_the_square)
+lk.replay.show(
+    lk.replay.motion_of(
+        log_square, "Round four corners", label="your square", ghosts={"the square": as_it_should},
+        reference=False,
+    )
+)
 
 # %% [markdown]
 # ## A witness

@@ -91,11 +91,8 @@ for name, log in loose.items():
 # $$ e = q_d - q, \qquad \dot e = \dot q_d - \dot q . $$
 #
 # Fasten a spring $K_p$ and a damper $K_d$ between each joint and its target, and add the torque which
-# the target's own motion takes:
-#
-# $$ \tau = M(q)\,\ddot q_d + C(q, \dot q)\,\dot q_d + g(q) + K_d\,\dot e + K_p\,e . $$
-#
-# This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
+# the target's own motion takes: put the target's motion into the equation above, at the angles where the
+# arm is. This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
 # Note whose speed stands behind $C$: with the target's, the energy in springs and error can only fall,
 # and that is a proof that the arm arrives. The report that this lab grew out of printed the arm's own
 # speed there, and no theorem covers that.

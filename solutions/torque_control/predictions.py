@@ -37,7 +37,7 @@ PREDICTIONS = (
             form='a letter and a time, such as ("b", 1.25)',
             points=1.0,
             hints=INTERVAL,
-            outcomes=("diagnosis",),
+            outcomes=("experiment", "control"),
         )
         for k, truth in enumerate((("c", 0.76), ("h", 0.55), ("f", 0.85)))
     ),
@@ -52,6 +52,6 @@ PREDICTIONS = (
         form='suspects, start and move, such as ("ad", [0, 0, 0, 0, 0, 0, 0], [0.3, 0, 0, 0, 0, 0, 0])',
         points=2.0,
         core=False,
-        outcomes=("diagnosis", "experiment"),
+        outcomes=("experiment", "control"),
     ),
 )

@@ -33,9 +33,8 @@ import numpy as np
 # A target that says how fast it moves makes half of the work easy: turn the joints at just that speed.
 # This is *feed-forward*. Were the arm perfect and its start exact, nothing else would be needed. As it
 # is not, every small error stays. So add something that pulls: *feedback*, in proportion to the error
-# (P) and to the rate of the error (D),
-#
-# $$ u = \dot q_d + K_p\,(q_d - q) + K_d\,(\dot q_d - \dot q) . $$
+# (P) and to the rate of the error (D). Which error is that, which rate, and in which units are the two
+# gains? Write the law down on paper first.
 #
 # Because feed-forward does so well on its own, it hides feedback that is broken, even one with the
 # wrong sign. So the check starts off the path, and with a target that stands still (Lynch and Park,
@@ -200,9 +199,9 @@ predict("with_more_d", truth=(log.t, e))
 # joints do: with the elbow straight, towards or away from the shoulder. Near such a *singularity* the
 # exact answer is absurd. It pays to be a little wrong instead: minimise
 #
-# $$ |V - J\,\dot q|^2 + \lambda^2\,|\dot q|^2 \quad\Rightarrow\quad
-# \dot q = J^T (J J^T + \lambda^2 I)^{-1} V $$
+# $$ |V - J\,\dot q|^2 + \lambda^2\,|\dot q|^2 $$
 #
+# over $\dot q$. Set the gradient to zero; what stands before $V$ is the matrix that you need
 # (Nakamura and Hanafusa 1986; Siciliano, *Robotics: Modelling, Planning and Control*, section 3.5.2).
 # In the stub, `damping` is the whole factor $\lambda^2$.
 
@@ -273,13 +272,9 @@ predict("worst_elbow", truth=round(float(angles[np.argmax(undamped)]), 2))
 # %% [markdown]
 # ## A controller for the tip
 #
-# Now put it together: how the tip should move, and the joint speeds that do it.
-#
-# $$ V = V_d + K_p \begin{pmatrix} p_d - p \\ \log(R_d R^T)^\vee \end{pmatrix}, \qquad
-# u = J^{+} V . $$
-#
-# The lower part is the orientation error of notebook 00, a turn in world axes;
-# `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong versions of this controller draw a fine
+# Now put it together: how the tip should move, and the joint speeds that do it. The tip should move as
+# its target does, and besides towards it, in place and in orientation. The error of orientation is that of
+# notebook 00, a turn in world axes; `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong versions of this controller draw a fine
 # circle as long as the hand starts upright, so the check tilts it.
 
 # %% question="workspace_velocity_pd"

@@ -62,6 +62,7 @@ def use(
     function: Callable[..., Any],
     given: Callable[..., Any],
     yours: Callable[..., Any] | None = None,
+    **options: Any,
 ) -> Callable[..., Any]:
     """The student's function where it is right, else the one given, as in a notebook.
 
