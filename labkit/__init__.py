@@ -50,7 +50,7 @@ def __getattr__(name: str) -> Any:
     """What is loaded when first asked for: OpenCV, Matplotlib and IPython are slow to import."""
     if name in ("course", "plotting", "replay", "tags"):
         return import_module(f".{name}", __name__)
-    if name in ("my_arm", "my_bug"):
+    if name in ("hand_in", "my_arm", "my_bug"):
         return getattr(import_module(".course", __name__), name)
     if name not in __all__:
         raise AttributeError(f"module 'labkit' has no attribute {name!r}")

@@ -5,8 +5,9 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
-from .equivalence import AtTip, Response, TipTorque
 from .bugs import Found, Telling
+from .equivalence import AtTip, Response, TipTorque
+from .hand_in import hand_in
 from .identification import Identification, Measured
 from .judges import AtMost, Close, Gains, Within
 from .marking import fingerprint, mark
@@ -50,6 +51,7 @@ __all__ = [
     "Within",
     "check",
     "fingerprint",
+    "hand_in",
     "hint",
     "mark",
     "my_arm",

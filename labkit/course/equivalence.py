@@ -10,9 +10,9 @@ import numpy as np
 from ..control import JointTorque
 from ..errors import OutOfRange
 from ..shapes import Array
-from .judges import AtMost, Close, Gains, Within, value
 from .bugs import Found, Telling
 from .identification import Measured
+from .judges import AtMost, Close, Gains, Within, value
 from .predictions import Form
 from .verdict import Difference, Kind, Value
 

@@ -155,8 +155,8 @@ def source_notebook(
     In the source text, a code cell with ``question="name"`` holds a stub whose solution region
     imports the answer; an empty one with ``predict="name"`` or ``find_out="name"`` marks the
     place of a value that students write down; a
-    Markdown cell with ``why="name" points=2`` asks for a text and holds a model answer in a
-    solution region; ``setup=true`` marks cells that students should leave alone.  A brief before
+    Markdown cell with ``why="name"``, or ``task="name" points=3`` for a longer text, asks for a
+    text and holds a model answer in a solution region; ``setup=true`` marks cells that students should leave alone.  A brief before
     the stub and the check after it are written here, from the question.
 
     Args:
@@ -178,7 +178,7 @@ def source_notebook(
         name = next((cell.metadata[x] for x in _ASKS if x in cell.metadata), None)
         if name is not None:
             asked.append(name)
-        if "why" in cell.metadata:
+        if "why" in cell.metadata or "task" in cell.metadata:
             cells += _why(path, name, cell)
         elif name in foretold and "question" not in cell.metadata:
             cells += _written_down(foretold[name])
@@ -202,7 +202,7 @@ def source_notebook(
     )
 
 
-_ASKS = ("question", "predict", "find_out", "why")
+_ASKS = ("question", "predict", "find_out", "why", "task")
 
 
 def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
@@ -235,8 +235,9 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
         )
     points = float(cell["metadata"].get("points", WHY_POINTS))
     least, most = WORDS
-    head = f"**Why? `{name}`** · {points:g} points · {least} to {most} words of your own"
-    yield _cell("markdown", f"{head}\n\n{asks.strip()}", "brief", {})
+    head = f"**Why? `{name}`** · {points:g} points · {least} to {most} words of your own\n\n"
+    head = head if "why" in cell["metadata"] else ""
+    yield _cell("markdown", head + asks.strip(), "brief", {})
     meta = _nbgrader(name, solution=True, grade=True, points=points)
     yield _cell("markdown", begins + model, "why", meta)
 

@@ -1,4 +1,4 @@
-"""An arm of one's own: no two handles have the same one, and whoever knows the secret draws it again.
+"""An arm of one's own: no two handles have the same one; who knows the secret draws it again.
 
 Payload, stiction, lag and a wall follow from the HMAC of the handle under the term's secret.  What
 students get holds each number as a sealed text, so that nobody reads one by accident; whoever

@@ -10,8 +10,8 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from ..errors import LabkitError
-from .notebook import Notebook, grade_id, kind
 from .identification import Identification
+from .notebook import Notebook, grade_id, kind
 from .predictions import Prediction
 from .problem import Problem
 from .source import names_defined

@@ -236,7 +236,7 @@ def use(
         desk().badges.add(name)
         print(f"[stand-in] {name}: yours is not ready, so a stand-in takes its place.")
         if wrong:
-            print("(To see what yours does, add anyway=True to that call of use.)")
+            print("(To see what yours does, add anyway=True to that use.)")
     return given
 
 

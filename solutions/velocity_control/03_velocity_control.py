@@ -485,12 +485,9 @@ lk.replay.show(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 03_velocity_control.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("03_velocity_control")
