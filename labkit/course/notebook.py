@@ -154,9 +154,9 @@ def source_notebook(
 
     In the source text, a code cell with ``question="name"`` holds a stub whose solution region
     imports the answer; an empty one with ``predict="name"`` or ``find_out="name"`` marks the
-    place of a value that students write down; a
-    Markdown cell with ``why="name"``, or ``task="name" points=3`` for a longer text, asks for a
-    text and holds a model answer in a solution region; ``setup=true`` marks cells that students should leave alone.  A brief before
+    place of a value that students write down; a Markdown cell with ``why="name"``, or
+    ``task="name" points=3`` for a longer text, asks for a text and holds a model answer in a
+    solution region; ``setup=true`` marks cells that students should leave alone.  A brief before
     the stub and the check after it are written here, from the question.
 
     Args:

@@ -194,8 +194,8 @@ def hint(name: str, level: int = 1) -> None:
         return
     if level > 1 and level == len(hints) and name not in desk().attempted:
         text = (
-            f"Hint {level} of {name} opens after an attempt: write what you believe, run the check, "
-            "and ask again. What the check says about your attempt is often hint enough."
+            f"Hint {level} of {name} opens after an attempt: write what you believe, run the "
+            "check, and ask again. What the check says about your attempt is often hint enough."
         )
         print(wrapped(text))
         return
