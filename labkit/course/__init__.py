@@ -5,11 +5,17 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
+from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
+from .hand_in import hand_in
+from .identification import Identification, Measured
 from .judges import AtMost, Close, Gains, Within
 from .marking import fingerprint, mark
+from .own_arm import my_arm, my_bug
+from .predictions import Choose, Curve, Number, Prediction, Rank
 from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed
+from .reveal import predict
 from .serialize import question_data, read_question
 from .student import check, hint, use
 from .verdict import Outcome, TestResult, Verdict
@@ -19,15 +25,24 @@ __all__ = [
     "AtTip",
     "Call",
     "Choice",
+    "Choose",
     "Close",
+    "Curve",
     "Failed",
+    "Found",
     "Gains",
+    "Identification",
     "Loop",
+    "Measured",
     "Mistake",
+    "Number",
     "Outcome",
+    "Prediction",
     "Question",
     "Raised",
+    "Rank",
     "Response",
+    "Telling",
     "Test",
     "TestResult",
     "TipTorque",
@@ -36,8 +51,12 @@ __all__ = [
     "Within",
     "check",
     "fingerprint",
+    "hand_in",
     "hint",
     "mark",
+    "my_arm",
+    "my_bug",
+    "predict",
     "question_data",
     "read_question",
     "use",

@@ -5,13 +5,15 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 from ..errors import LabkitError
 from ..formats import check_stamp, stamp
+from .identification import personal
 from .layout import PUBLIC_SEED, Course
+from .own_arm import draw, handles_of
 from .question import Question
 from .serialize import question_data, read_question
 
@@ -23,9 +25,11 @@ class Bundle:
     Attributes:
         data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
             any, the questions ``added`` when some had handed in already.
+        handles: Of each student's arm, where arms were given out.
     """
 
     data: Mapping[str, Any]
+    handles: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, course: Course, assignment: str) -> Bundle:
@@ -47,7 +51,16 @@ class Bundle:
             ) from None
         seed = data.get("seed", PUBLIC_SEED)
         check_stamp(data, str(path), f"type: labkit release {assignment} --seed {seed}")
-        return cls(data)
+        return cls(data, handles_of(course.root))
+
+    def of_student(self, student: str) -> Bundle:
+        """The same with what is true of the student's own arm."""
+        if student not in self.handles:
+            return self
+        arm = draw(self.data["seed"], self.handles[student])
+        bundle = Bundle(self.data)
+        bundle.__dict__["questions"] = tuple(personal(q, arm) for q in self.questions)
+        return bundle
 
     @cached_property
     def questions(self) -> tuple[Question, ...]:

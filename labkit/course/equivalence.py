@@ -10,7 +10,10 @@ import numpy as np
 from ..control import JointTorque
 from ..errors import OutOfRange
 from ..shapes import Array
+from .bugs import Found, Telling
+from .identification import Measured
 from .judges import AtMost, Close, Gains, Within, value
+from .predictions import Form
 from .verdict import Difference, Kind, Value
 
 MOST_COEFFICIENTS = 50
@@ -135,4 +138,4 @@ class AtTip:
         return float(np.max(off / (self.atol + self.rtol * scale)))
 
 
-Judge = Close | Within | AtMost | Response | Gains | AtTip
+Judge = Close | Within | AtMost | Response | Gains | AtTip | Form | Measured | Found | Telling

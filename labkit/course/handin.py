@@ -19,7 +19,17 @@ from typing import Any
 from ..errors import LabkitError
 from ..sim import chosen
 from .messages import head
-from .notebook import about, check_id, checks, defines, grade_id, last_verdict, read_cells
+from .notebook import (
+    WORDS,
+    about,
+    check_id,
+    checks,
+    defines,
+    grade_id,
+    kind,
+    last_verdict,
+    read_cells,
+)
 from .serialize import decode
 from .source import is_stub, plain
 from .source import look as look_at
@@ -112,6 +122,11 @@ def look(path: Path) -> HandIn:
     unrun = [name for name, verdict in verdicts.items() if verdict is None]
     if unrun:
         notes.append(f"not run since it was opened: {', '.join(unrun)}; marking runs them again")
+    for cell in cells:
+        if kind(cell) == "why" and grade_id(cell):
+            words = len(str(cell["source"]).split())
+            if words < WORDS[0]:
+                notes.append(f"{grade_id(cell)} has {words} words; its point needs {WORDS[0]}")
     wrong = [name for name, v in verdicts.items() if v and not v.right]
     if wrong:
         notes.append(f"not yet right: {', '.join(wrong)}; what is right counts all the same")

@@ -6,11 +6,13 @@ import importlib
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..errors import LabkitError, UnknownName
 
 if TYPE_CHECKING:
+    from .identification import Identification
+    from .predictions import Prediction
     from .problem import Problem
 
 PUBLIC_SEED = 2019
@@ -107,16 +109,33 @@ class Course:
             UnknownName: There is no assignment of that name.
             LabkitError: It has a notebook, and no problems.
         """
+        problems: tuple[Problem, ...] = self._listed(name, "problems").PROBLEMS
+        return problems
+
+    def predictions(self, name: str) -> tuple[Prediction | Identification, ...]:
+        """The predictions of an assignment, from the ``solutions`` package as its problems.
+
+        Raises:
+            UnknownName: There is no assignment of that name.
+            LabkitError: It has a notebook, and no predictions.
+        """
+        predictions: tuple[Prediction | Identification, ...] = self._listed(
+            name, "predictions"
+        ).PREDICTIONS
+        return predictions
+
+    def _listed(self, name: str, what: str) -> Any:
+        """A module of an assignment's folder."""
         self.notebook_source(name)
         if str(self.root) not in sys.path:
             sys.path.insert(0, str(self.root))
-        where = f"solutions.{name.partition('_')[2]}.problems"
+        where = f"solutions.{name.partition('_')[2]}.{what}"
         try:
-            module = importlib.import_module(where)
+            return importlib.import_module(where)
         except ModuleNotFoundError as error:
-            if error.name not in (where, where.removesuffix(".problems")):
+            if error.name not in (where, where.removesuffix(f".{what}")):
                 raise
             path = where.replace(".", "/")
-            raise LabkitError(f"{name} has no problems; write {path}.py with PROBLEMS") from None
-        problems: tuple[Problem, ...] = module.PROBLEMS
-        return problems
+            raise LabkitError(
+                f"{name} has no {what}; write {path}.py with {what.upper()}"
+            ) from None

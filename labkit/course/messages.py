@@ -8,6 +8,7 @@ from collections.abc import Iterable, Iterator
 
 from ..control import COMMANDS
 from ..errors import ControllerError
+from .predictions import COMMITTED
 from .question import Loop, Question, Test, Tuned, in_brief
 from .verdict import Difference, Kind, Outcome, TestResult, Value, Verdict
 from .withheld import spoken
@@ -35,6 +36,8 @@ def head(verdict: Verdict) -> str:
     """The verdict in a line."""
     points = f"{verdict.points:g} point{'' if verdict.points == 1 else 's'}"
     says = HEADS[verdict.outcome]
+    if verdict.right and [test.name for test in verdict.tests] == [COMMITTED]:
+        says = "committed"
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:

@@ -1,20 +1,23 @@
 """A notebook's cells: the only module that knows what the metadata of a cell means.
 
-A course's cells are of five kinds: "setup" cells, which students leave alone; the "walk", which
-they may change; and for each question a "brief", an "answer" and a "check".  nbgrader knows an
-answer by the question's name and its check by that name with "-check".
+A course's cells are of six kinds: "setup" cells, which students leave alone; the "walk", which
+they may change; for each question and prediction a "brief", an "answer" and a "check"; and the
+"why", a text that people mark.  nbgrader knows an answer by the question's name and its check by
+that name with "-check".
 """
 
 from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
 from ..formats import stamp
+from .identification import Identification
+from .predictions import Prediction
 from .question import Question
 from .serialize import read_record, record_data
 from .source import look
@@ -149,16 +152,24 @@ def manifest(source: Notebook) -> list[dict[str, Any]]:
     ]
 
 
-def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
+def source_notebook(
+    path: Path,
+    questions: Mapping[str, Question],
+    predictions: Sequence[Prediction | Identification] = (),
+) -> Notebook:
     """The notebook that nbgrader takes as its source, with the solutions inside.
 
     In the source text, a code cell with ``question="name"`` holds a stub whose solution region
-    imports the answer; ``setup=true`` marks cells that students should leave alone.  A brief before
+    imports the answer; an empty one with ``predict="name"`` or ``find_out="name"`` marks the
+    place of a value that students write down; a Markdown cell with ``why="name"``, or
+    ``task="name" points=3`` for a longer text, asks for a text and holds a model answer in a
+    solution region; ``setup=true`` marks cells that students should leave alone.  A brief before
     the stub and the check after it are written here, from the question.
 
     Args:
         path: The source, in jupytext's percent format.
         questions: By name.
+        predictions: Those of this notebook, and what is to be found out.
 
     Raises:
         LabkitError: Stubs and questions do not match.
@@ -167,24 +178,27 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     import nbformat
 
     text = jupytext.read(path, fmt="py:percent")
+    foretold = {prediction.name: prediction for prediction in predictions}
     cells: list[dict[str, Any]] = []
     asked: list[str] = []
     for cell in text.cells:
-        name, setup = cell.metadata.get("question"), cell.metadata.get("setup", False)
-        if name is None:
+        name = next((cell.metadata[x] for x in _ASKS if x in cell.metadata), None)
+        if name is not None:
+            asked.append(name)
+        if "why" in cell.metadata or "task" in cell.metadata:
+            cells += _why(path, name, cell)
+        elif name in foretold and "question" not in cell.metadata:
+            cells += _written_down(foretold[name])
+        elif name in questions and "question" in cell.metadata:
+            _check_stub(path, name, cell)
+            cells += _asked(questions[name], cell)
+        elif name is not None:
+            raise LabkitError(f"{path.name} asks {name!r}, which has no Problem or Prediction")
+        else:
+            setup = cell.metadata.get("setup", False)
             meta = _nbgrader(f"setup-{len(cells)}", locked=True) if setup else {}
             cells.append(_cell(cell.cell_type, cell.source, "setup" if setup else "walk", meta))
-            continue
-        if name not in questions:
-            raise LabkitError(f"{path.name} asks {name!r}, which has no Problem")
-        question = questions[name]
-        asked.append(name)
-        _check_stub(path, name, cell)
-        cells.append(_cell("markdown", brief(question), "brief", {}))
-        cells.append(_cell("code", cell.source, "answer", _nbgrader(name, solution=True)))
-        meta = _nbgrader(check_id(name), locked=True, grade=True, points=question.points)
-        cells.append(_cell("code", f'check("{name}", {name})', "check", meta))
-    for name in questions:
+    for name in (*questions, *foretold):
         if asked.count(name) != 1:
             raise LabkitError(f"{path.name} has {asked.count(name)} stubs of {name}, and needs one")
     for number, cell in enumerate(cells):
@@ -195,10 +209,56 @@ def source_notebook(path: Path, questions: Mapping[str, Question]) -> Notebook:
     )
 
 
+_ASKS = ("question", "predict", "find_out", "why", "task")
+
+
+def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
+    """The three cells of a question."""
+    name = question.name
+    yield _cell("markdown", brief(question), "brief", {})
+    yield _cell("code", stub["source"], "answer", _nbgrader(name, solution=True))
+    yield _check(name, question.points)
+
+
+def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
+    """The three cells of a value; nbgrader has nothing to clear in its answer."""
+    yield _cell("markdown", asked.brief(), "brief", {})
+    yield _cell("code", asked.cell(), "answer", _nbgrader(asked.name))
+    yield _check(asked.name, asked.points)
+
+
+def _check(name: str, points: float) -> dict[str, Any]:
+    meta = _nbgrader(check_id(name), locked=True, grade=True, points=points)
+    return _cell("code", f'check("{name}", {name})', "check", meta)
+
+
+def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
+    """What is asked, and the cell for the text, which nbgrader leaves to a person to mark."""
+    asks, begins, model = cell["source"].partition("### BEGIN SOLUTION")
+    if not begins or not model.rstrip().endswith("### END SOLUTION"):
+        raise LabkitError(
+            f"{path.name}: the why {name} needs a model answer at its end, between a line "
+            "### BEGIN SOLUTION and a line ### END SOLUTION"
+        )
+    points = float(cell["metadata"].get("points", WHY_POINTS))
+    least, most = WORDS
+    head = f"**Why? `{name}`** · {points:g} points · {least} to {most} words of your own\n\n"
+    head = head if "why" in cell["metadata"] else ""
+    yield _cell("markdown", head + asks.strip(), "brief", {})
+    meta = _nbgrader(name, solution=True, grade=True, points=points)
+    yield _cell("markdown", begins + model, "why", meta)
+
+
+WORDS = 25, 80
+"""Of a why: the least and the most."""
+WHY_POINTS = 2.0
+
+
 def brief(question: Question) -> str:
     """What stands above a stub: the task, the points, how it is tried, what is withheld."""
     points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
-    lines = [f"**Your turn: `{question.name}`** · {points}", "", question.asks]
+    part = "core" if question.core else "extension"
+    lines = [f"**Your turn: `{question.name}`** · {points} · {part}", "", question.asks]
     also = list(dict.fromkeys(test.also for test in question.tests if test.also))
     gates = [test.name for test in question.tests if not test.weight]
     lines += ["", f"- Needed before anything counts: {'; '.join(gates)}."] if gates else [""]

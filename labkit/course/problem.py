@@ -82,6 +82,8 @@ class Problem:
         expected: What to compare with, where that is not the answer's own output.
         free_share: Share of the points that the notebook's stand-in, or the public cases learnt by
             heart, may earn.  Say why where it is above 0.
+        core: Whether it belongs to the core path; else it is an extension.
+        outcomes: What it is evidence of, names of `outcomes.OUTCOMES`.
     """
 
     name: str
@@ -96,6 +98,8 @@ class Problem:
     variants: tuple[Callable[..., Any], ...] = ()
     expected: Callable[..., Any] | None = None
     free_share: float = 0.0
+    core: bool = True
+    outcomes: tuple[str, ...] = ()
 
     def question(self, seed: int) -> Question:
         """The question with hidden cases drawn from a seed; the mistakes as fingerprints."""
@@ -111,6 +115,8 @@ class Problem:
             tests,
             withheld=self.withheld,
             hints=self.hints,
+            core=self.core,
+            outcomes=self.outcomes,
         )
         mistakes = (Mistake(w.name, w.says, fingerprint(plain, w.function)) for w in self.wrong)
         return replace(plain, mistakes=tuple(mistakes))

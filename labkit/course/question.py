@@ -242,6 +242,8 @@ class Question:
         withheld: Names that would answer it, such as "labkit.Circle".
         hints: From the idea to nearly there.
         mistakes: Known wrong answers.
+        core: Whether it belongs to the core path; else it is an extension.
+        outcomes: What it is evidence of, names of `outcomes.OUTCOMES`.
     """
 
     name: str
@@ -252,6 +254,8 @@ class Question:
     withheld: tuple[str, ...] = ()
     hints: tuple[str, ...] = ()
     mistakes: tuple[Mistake, ...] = ()
+    core: bool = True
+    outcomes: tuple[str, ...] = ()
 
     @property
     def calls(self) -> tuple[Call | Choice, ...]:

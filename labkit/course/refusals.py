@@ -28,7 +28,7 @@ from .source import look, names_defined
 from .verdict import Outcome
 from .withheld import withheld_tools, withhold
 
-USE = "def use(name, function, given, yours=None):\n    return yours or function\n"
+USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"
 """Takes the place of the notebook's, since the other parts are right."""
 
 

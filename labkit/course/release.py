@@ -69,10 +69,13 @@ def prepare(course: Course, name: str, seed: int) -> Prepared:
         for withheld in question.withheld:
             if find(withheld)[1] is None:
                 raise LabkitError(f"{question.name} withholds {withheld}, which does not exist")
-    source = source_notebook(course.notebook_source(name), questions)
+    predictions = course.predictions(name)
+    source = source_notebook(course.notebook_source(name), questions, predictions)
     if reasons := refusals(source, problems, questions):
         raise LabkitError("\n".join([f"{name} is not released:", *reasons]))
-    return Prepared(course, name, seed, source, solution_notebook(source, problems), questions)
+    solved = solution_notebook(source, problems, predictions)
+    questions |= {prediction.name: prediction.question() for prediction in predictions}
+    return Prepared(course, name, seed, source, solved, questions)
 
 
 def write(made: Prepared, added: Iterable[str] = ()) -> None:

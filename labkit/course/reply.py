@@ -48,6 +48,8 @@ def reply(
 ) -> dict[str, Any]:
     """What a function does with some arguments, as JSON data, whatever that is.
 
+    A value, such as a prediction, answers with itself; None is one that is still to be written.
+
     Returns:
         What it ``is``; or the tool that is ``withheld`` and that it used; or the type of what it
         ``raised``, and what that ``says``.
@@ -56,6 +58,10 @@ def reply(
         KeyboardInterrupt, TimeUp: Somebody stopped it.
     """
     try:
+        if function is None:
+            raise NotImplementedError
+        if not callable(function) and not args:
+            return {"is": _as_data(function)}
         return {"is": _as_data(call(function, args, kwargs))}
     except (KeyboardInterrupt, TimeUp):
         raise

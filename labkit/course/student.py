@@ -25,7 +25,7 @@ from .question import Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
-from .verdict import Verdict
+from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
 
 FILE = "checks.json"
@@ -57,7 +57,11 @@ class Desk:
     def __init__(self, questions: dict[str, Question]) -> None:
         self.questions = questions
         self.seen: dict[str, tuple[Any, Verdict]] = {}
+        self.attempted: set[str] = set()
         self.badges: set[str] = set()
+        self.committed: dict[str, Any] = {}
+        self.chosen: dict[str, Any] = {}
+        self.revealed: set[str] = set()
 
     @classmethod
     def beside(cls, folder: Path) -> Desk:
@@ -105,6 +109,8 @@ class Desk:
                 f"{name} was stopped{where}; does every loop in it come to its end?"
             ) from None
         self.seen[name] = (function, verdict)
+        if verdict.outcome is not Outcome.NOT_ATTEMPTED:
+            self.attempted.add(name)
         return verdict, out.text, found
 
     def leaning(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
@@ -172,16 +178,24 @@ def check(name: str, function: Callable[..., Any]) -> float:
 def hint(name: str, level: int = 1) -> None:
     """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
 
-    Beyond the last one it says so, and where else to ask.
+    The last one opens after an attempt that the check has seen and that was not right.  Beyond it
+    `hint` says so, and where else to ask.
 
     Raises:
-        UnknownName: No such question.
+        UnknownName: There is no question of that name.
     """
     hints = desk().question(name).hints
     if not isinstance(level, int) or not 1 <= level <= len(hints):
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
             "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
+        )
+        print(wrapped(text))
+        return
+    if level > 1 and level == len(hints) and name not in desk().attempted:
+        text = (
+            f"Hint {level} of {name} opens after an attempt: write what you believe, run the "
+            "check, and ask again. What the check says about your attempt is often hint enough."
         )
         print(wrapped(text))
         return
@@ -195,6 +209,8 @@ def use(
     function: Callable[..., Any],
     given: Callable[..., Any],
     yours: Callable[..., Any] | None = None,
+    *,
+    anyway: bool = False,
 ) -> Callable[..., Any]:
     """Your function if it is right, else the one given; so the notebook always goes on.
 
@@ -203,6 +219,7 @@ def use(
         function: What you wrote.
         given: What takes its place: a tool of labkit's, or something simpler.
         yours: What to use instead of `function` itself, where the notebook wraps it first.
+        anyway: Whether to use yours even if it is wrong, to see what the arm makes of it.
 
     Returns:
         One of them; a badge says once which, if it is not yours.
@@ -210,11 +227,16 @@ def use(
     known, verdict = desk().seen.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
-    if verdict.right:
+    wrong = verdict.outcome is Outcome.WRONG
+    if anyway and wrong:
+        print(f"[anyway] {name}: yours is not right yet, and drives the arm all the same.")
+    if verdict.right or (anyway and wrong):
         return yours or function
     if name not in desk().badges:
         desk().badges.add(name)
         print(f"[stand-in] {name}: yours is not ready, so a stand-in takes its place.")
+        if wrong:
+            print("(To see what yours does, add anyway=True to that use.)")
     return given
 
 

@@ -51,6 +51,7 @@ def grade(
         The result, whatever the notebook does.
     """
     began = time.perf_counter()
+    bundle = bundle.of_student(student)
     cells = parse(data, sandbox, limits)
     if isinstance(cells, str):
         return rejection(cells, student, bundle, sandbox.level, data)

@@ -11,7 +11,7 @@
 # | **You need** | numpy; what a standard deviation is; complex numbers |
 # | **Given** | recorded runs of every controller, a loop's parts, an interval's recipe |
 # | **You write** | the error of a run, a loop on paper, gains with a margin, differences over seeds, verdicts |
-# | **Time** | about 5 hours · 20 points |
+# | **Time** | core about 3 hours, all about 4 · 24 points |
 #
 # Every cell below runs from the start, solved or not: where your part is missing, something given stands
 # in and says so. Only the functions are marked.
@@ -20,7 +20,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -262,12 +262,18 @@ def choose_gains(runner):
 # %%
 line_trials = recordings.read_trials(recordings.LINE)
 runner = recordings.Runner(line_trials)
-for kp in (8.0, 30.0, 90.0):
+for kp in (8.0, 30.0, 60.0):
     row = [runner(kp, 0.0, seed) for seed in range(3)]
     print(f"Kp = {kp:4g}: " + ", ".join(f"{x:.2f} mm" for x in row) + f"; {runner.left} tries left")
 
+# %% predict="another_seed"
+
+# %%
+grown = line_trials.error(0, 90.0, 0.0) / line_trials.error(0, 34.0, 0.0)
+predict("another_seed", truth=round(float(grown), 1))
+
 # %% [markdown]
-# Look at the last row: seed 1 alone would have told you that 90 is a fine gain.
+# Seed 1 alone would have told you that 90 is a fine gain.
 #
 # And here is yours: what it chooses, what that costs on the line, and what the loop on paper says of it.
 # (If it is not ready, a guess stands in.)
@@ -429,15 +435,36 @@ for n in (3, 4, 5):
 # than any number of seeds. So name the two, the task and the number, say what your units are, and say
 # how sure you are.
 
+# %% predict="twenty_pairs"
+
+# %%
+def half_width(differences):
+    """Of the 95 % interval, by Student's t."""
+    t = {4: 3.182, 20: 2.093}[len(differences)]
+    return t * np.std(differences, ddof=1) / len(differences) ** 0.5
+
+
+apart = np.subtract(late("baseline"), late("joint velocity"))
+pooled, by_task = half_width(apart), half_width(apart.reshape(4, 5).mean(axis=1))
+print(f"± {pooled:.2f} mm from 20 differences, ± {by_task:.2f} mm from the means of 4 tasks")
+predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled > 1.4 * by_task else "a")
+
+# %% [markdown] why="why_so_narrow"
+# Which interval did you see to be narrower, and why? Say what five seeds of one task have in common, what a
+# second task would tell that a sixth seed would not, and which interval belongs to "controllers in general".
+#
+# ### BEGIN SOLUTION
+# The interval from 20 differences was much narrower. The five seeds of a task share path, speed and pose,
+# so they are nearly one observation repeated: they tell how noisy a task is, not how tasks differ. A claim about
+# tasks in general rests on four independent numbers, and has their wide interval.
+# ### END SOLUTION
+
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 07_comparison.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("07_comparison")

@@ -20,6 +20,7 @@ _345 = np.array([0.003, 0.004, 0.012])
 RMS_ERROR = Problem(
     name="rms_error",
     points=3,
+    outcomes=("evidence",),
     asks="From a log whose target is poses, give the RMS position error of the tip in metres: the "
     "root of the mean, over the rows, of the squared length of the error.",
     answer=answers.rms_error,
@@ -63,7 +64,8 @@ RMS_ERROR = Problem(
         "In the target of that row.",
         "log.q has one row for each instant, log.target.pose one pose. model.pose(q)[:3, 3] is the "
         "tip. Square the length of the difference, row by row.",
-        "np.sqrt(np.mean(np.sum(e**2, axis=1))) with e of shape (rows, 3).",
+        "Make an array of one error vector for each row, in three columns. Square, sum over "
+        "the right axis, mean over the other, root.",
     ),
     wrong=(
         Wrong(
@@ -145,6 +147,8 @@ RMS_ERROR = Problem(
 OPEN_LOOP = Problem(
     name="open_loop",
     points=4,
+    core=False,
+    outcomes=("control",),
     asks="Give the open loop of one velocity-commanded joint as a transfer function of "
     "python-control: the gain `kp`, the first-order `lag` of its speed, the integration to an angle, "
     "and the `delay`.",
@@ -172,8 +176,8 @@ OPEN_LOOP = Problem(
         "integrator from speed to angle, a delay. Transfer functions in a row multiply.",
         "control.tf([kp], [lag, 1, 0]) holds gain, lag and integrator. The delay is no ratio of "
         "polynomials; control.pade(delay, 4) gives one that is close.",
-        "control.tf([kp], [lag, 1, 0]) * control.tf(*control.pade(delay, 4)); leave the second factor "
-        "out where the delay is 0.",
+        "A lag and an integrator make a second-order denominator with no constant term. The "
+        "delay multiplies; where it is 0 there is nothing to approximate.",
     ),
     wrong=(
         Wrong(
@@ -242,6 +246,8 @@ OPEN_LOOP = Problem(
 KP_FOR_MARGIN = Problem(
     name="kp_for_margin",
     points=3,
+    core=False,
+    outcomes=("control",),
     asks="Give the gain at which that loop has a phase margin of `margin_deg` degrees, with the delay "
     "taken exactly.",
     answer=answers.kp_for_margin,
@@ -266,8 +272,8 @@ KP_FOR_MARGIN = Problem(
         "wants; then choose kp so that the gain is 1 there.",
         "The phase at ω is -90° - atan(lag·ω) - delay·ω, the last one in radians. The margin is what "
         "is left to -180°.",
-        "Solve π/2 - atan(lag·ω) - delay·ω = margin for ω (scipy.optimize.brentq does); then "
-        "kp = ω·√(1 + (lag·ω)²).",
+        "The phase of the loop does not know Kp. Find the frequency at which it leaves the "
+        "margin (scipy has root finders), then the Kp that makes the gain 1 there.",
     ),
     wrong=(
         Wrong(
@@ -326,6 +332,7 @@ KP_FOR_MARGIN = Problem(
 CHOOSE_GAINS = Problem(
     name="choose_gains",
     points=4,
+    outcomes=("evidence",),
     asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 tries: `runner(Kp, Kd, seed)` "
     "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
     f"where you could not try them, and so is {hidden.RESERVE:g} times your Kp, your margin: at most "
@@ -360,8 +367,9 @@ CHOOSE_GAINS = Problem(
         "The best place on the map is close to the edge.",
         "Raise Kp in steps and look at more than one seed. As soon as the error jumps on one of them, "
         "you have found the edge.",
-        "Take a third of the largest Kp that was safe on the seeds you tried. It costs a few tenths of a "
-        "millimetre and buys a robot that may be loaded, hurried and late.",
+        "Look at the largest Kp that was safe on more than one seed, and ask what an older "
+        "state would leave of it. A step well back costs a few tenths of a millimetre and "
+        "buys a robot that may be loaded, hurried and late.",
     ),
     wrong=(
         Wrong(
@@ -405,6 +413,7 @@ CHOOSE_GAINS = Problem(
 PAIRED = Problem(
     name="paired_difference",
     points=3,
+    outcomes=("evidence",),
     asks="Two controllers were run on the same seeds. Give `(mean, half_width)`: the mean of a - b and "
     "half the width of its 95 % interval by Student's t.",
     answer=answers.paired_difference,
@@ -427,7 +436,8 @@ PAIRED = Problem(
         "out.",
         "d = a - b. Its mean, and the standard error of the mean: the standard deviation over √n, "
         "with n - 1 in it.",
-        "half_width = scipy.stats.t.ppf(0.975, n - 1) * d.std(ddof=1) / √n.",
+        "Differences first. Their standard deviation has n - 1 in it, the mean's has a root "
+        "of n on top, and the quantile of Student's t is that of 0.975 with n - 1.",
     ),
     wrong=(
         Wrong(
@@ -504,6 +514,7 @@ PAIRED = Problem(
 VERDICTS = Problem(
     name="verdicts",
     points=3,
+    outcomes=("evidence",),
     asks="A table gives for each claim two rows of errors over the same seeds. The claim is that the "
     'first is larger. Give for each claim "holds", "does not hold" or "undecided".',
     answer=answers.verdicts,
@@ -547,7 +558,8 @@ VERDICTS = Problem(
         "When does a difference say something? When it is larger than what the seeds alone could make.",
         "Use your paired_difference: the claim holds if mean - half_width > 0, and does not hold if "
         "mean + half_width < 0.",
-        'Else it is "undecided", which is an honest and often the right answer.',
+        "Compare the mean with the half width: beyond it on one side, beyond it on the other, "
+        "or neither. Neither is an honest and often the right answer.",
     ),
     wrong=(
         Wrong(

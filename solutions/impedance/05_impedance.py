@@ -10,7 +10,7 @@
 # | **You need** | Newton's law for one mass on a spring; matrices and their inverses |
 # | **Given** | the arm's model, an arm that can be pushed, a wall and a spring to meet |
 # | **You write** | one mass, the inertia at the tip, two impedance laws, a stiffness read from data |
-# | **Time** | about 4 hours · 20 points |
+# | **Time** | core about 3.5 hours, all about 5 · 29 points |
 #
 # The team whose report this lab grew out of wrote two impedance controllers, found them "a bit off", and
 # saw no use in them. They never pushed the arm. Here you will.
@@ -23,7 +23,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -306,6 +306,8 @@ lk.replay.show(
 #
 # $$ F = \frac{3\,\mathrm{cm}}{1/K + 1/k_{wall}} . $$
 
+# %% predict="wall_force"
+
 # %%
 from labkit.scene import TIP_RADIUS, contact_stiffness
 
@@ -349,6 +351,10 @@ dials = lk.plotting.dials(press, stiffness=(100.0, 1000.0, 300.0))
 
 rammed = meet(stiff, into_the_wall, wall)
 print(f"The position mode presses with {np.max(pressed(rammed)):.0f} N.")
+
+# %%
+met = meet(compliant(K), into_the_wall, wall)
+predict("wall_force", truth=round(float(pressed(met)[-20:].mean()), 1))
 
 # %% [markdown]
 # ## A spring
@@ -489,7 +495,32 @@ lk.plotting.show(
 # %% [markdown]
 # Where the arm is soft, and in which direction, is a matter of its pose if the springs sit in the joints.
 # At the tip it is yours to say. That is what workspace impedance is for.
+
+# %% [markdown]
+# ## Your own arm: what does it carry, and what stands before it?
 #
+# Your arm (notebook 03) carries something, and there is a wall somewhere in front of it. Find both out with
+# experiments of your own; the cell below is only a beginning. The tip is to be moved as gently as you can.
+
+# %%
+HANDLE = "demo"  # yours, or your team's
+mine = lk.my_arm(HANDLE)
+holding = np.diag(mine.model.mass_matrix(ready))
+holding = lk.control.springs(50.0 * holding, 14.0 * holding)
+
+resting = lk.run(mine, lk.Hold(ready, 1.0), holding)
+names = [name.removeprefix("left_") for name in mine.robot.joint_names]
+print("commanded at rest [N m]:", ", ".join(
+    f"{name} {x:+.2f}" for name, x in zip(names, resting.command[-20:].mean(axis=0))
+))
+one_kilogram = mine.model.tip_jacobian(ready)[:3].T @ [0.0, 0.0, 9.81]
+print("one kilogram takes [N m]:", ", ".join(f"{name} {x:+.2f}" for name, x in zip(names, one_kilogram)))
+
+# %% find_out="my_payload"
+
+# %% find_out="my_wall"
+
+# %% [markdown]
 # ## Another inertia
 #
 # So far the tip kept its inertia $\Lambda$. It can pretend to have another one, $M_d$:
@@ -525,6 +556,8 @@ def shaped_impedance(state, target, wrench, model, *, inertia, stiffness, dampin
     )
     ### END SOLUTION
 
+
+# %% predict="four_times_the_mass"
 
 # %% [markdown]
 # A push of 10 N again, with the same springs, on a tip that is to feel like 1, 5 and 20 kg. Look at the
@@ -569,6 +602,20 @@ lk.plotting.show(
     + "."
 )
 
+# %%
+share = early[20.0][1] / max(early[5.0][1], 1e-9)
+predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.25], share))])
+
+# %% [markdown] why="why_as_far"
+# What did you see: how far away was the tip that pretends to 20 kg, after a tenth of a second and after two?
+# Say which of inertia, damping and stiffness decides at which moment, and why a wall meets only one of them.
+#
+# ### BEGIN SOLUTION
+# After 0.1 s the heavy tip had hardly moved; after two seconds it was as far away as the light one. At
+# first acceleration is all there is, so the inertia decides; once the tip rests, speed and acceleration are
+# zero, and only the spring balances the hand. A wall is met at rest, so it feels the stiffness alone.
+# ### END SOLUTION
+
 # %% [markdown]
 # ## Feel it
 #
@@ -599,12 +646,9 @@ lk.live(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 05_impedance.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("05_impedance")

@@ -65,6 +65,7 @@ M_D = np.diag([5.0, 5.0, 5.0, 0.3, 0.3, 0.3])
 MSD = Problem(
     name="msd",
     points=2,
+    outcomes=("contact",),
     asks="Give the acceleration of a mass `m` that is tied to its target by a spring `k` and a damper "
     "`b`, while somebody pushes it with `force`.",
     answer=answers.msd,
@@ -95,7 +96,9 @@ MSD = Problem(
         "to the right of its target.",
         "With e = x_d - x the spring pulls with k e and the damper with b ė. If nobody pushes and there "
         "is no error, the mass must move just as its target does.",
-        "ddx = ddx_d + (force + b (dx_d - dx) + k (x_d - x)) / m.",
+        "Write Newton's law for the error, not for the mass: with nobody pushing, the error "
+        "obeys the damped spring. Then solve for ddx, and check the sign of the hand's force "
+        "with a target at rest.",
     ),
     wrong=(
         Wrong(
@@ -200,6 +203,10 @@ MSD = Problem(
 OPERATIONAL_INERTIA = Problem(
     name="operational_inertia",
     points=4,
+    outcomes=(
+        "contact",
+        "model",
+    ),
     asks="Give the inertia Λ that a hand feels at the tip of an arm with the mass matrix `M`, shape "
     "(n, n), and the Jacobian `J`, shape (6, n) or (3, n): the matrix with F = Λ · (acceleration of the "
     "tip), when the arm is at rest and its motors are off.",
@@ -235,7 +242,9 @@ OPERATIONAL_INERTIA = Problem(
         "acceleration do they make, and what acceleration of the tip is that?",
         "q̈ = M⁻¹ Jᵀ F, and the tip's acceleration is J q̈ (at rest). So acceleration = (J M⁻¹ Jᵀ) F. "
         "You want it the other way round.",
-        "np.linalg.inv(J @ np.linalg.solve(M, J.T)).",
+        "Follow a force through the three steps: to torques, to joint accelerations, to the "
+        "tip's acceleration. That matrix gives the acceleration of a force; you are asked for "
+        "the other way round.",
     ),
     wrong=(
         Wrong(
@@ -297,6 +306,7 @@ OPERATIONAL_INERTIA = Problem(
 WORKSPACE_IMPEDANCE = Problem(
     name="workspace_impedance",
     points=6,
+    outcomes=("contact",),
     asks="Give the `lk.JointTorque` that makes the tip answer a push as if it were tied to its target "
     "by springs `stiffness` and dampers `damping`, one for each of x, y, z and the three rotations, in "
     "world axes, with the inertia Λ that the tip has anyway. The arm does not carry its own weight: add "
@@ -357,8 +367,10 @@ WORKSPACE_IMPEDANCE = Problem(
         "e = lk.se3.pose_error(target.pose, model.pose(q)), ė = target.twist - J q̇. The motion takes "
         "Λ times the acceleration that the *joints* have to bring up: target.dtwist minus J̇ q̇, which "
         "comes by itself.",
-        "F = Λ (target.dtwist - J̇ q̇) + damping ė + stiffness e; tau = Jᵀ F + C q̇ + g, with "
-        "model.tip_jacobian, model.tip_jacobian_rate, model.operational_inertia.",
+        "Ask for the force at the tip first: what the springs and dampers give, and Λ times "
+        "the acceleration that the motors must bring up, which is the target's less the part "
+        "that comes by itself. Then through the Jacobian to the joints, and what the arm "
+        "itself takes.",
     ),
     wrong=(
         Wrong(
@@ -518,6 +530,8 @@ WORKSPACE_IMPEDANCE = Problem(
 SHAPED_IMPEDANCE = Problem(
     name="shaped_impedance",
     points=4,
+    core=False,
+    outcomes=("contact",),
     asks="As `workspace_impedance`, but the tip is to feel as heavy as `inertia`, M_d of shape (6, 6). "
     "For that the law is told the measured `wrench` of the hand on the arm, shape (6,), world "
     "axes.",
@@ -555,7 +569,9 @@ SHAPED_IMPEDANCE = Problem(
         "hand. Then ask which force of the *motors* makes the real tip, with its own Λ, move like "
         "that.",
         "M_d (a - dV_d) = D ė + K e + F. And Λ (a - J̇ q̇) = F_motors + F: the hand does its share.",
-        "a = dV_d + M_d⁻¹ (D ė + K e + F); tau = Jᵀ (Λ (a - J̇ q̇) - F) + C q̇ + g.",
+        "Solve the wanted behaviour for the tip's acceleration; the hand appears in it. Then "
+        "ask which force gives the real Λ that acceleration, and take off the share that the "
+        "hand does itself.",
     ),
     wrong=(
         Wrong(
@@ -677,6 +693,11 @@ _offset = np.array([2.0, -1.0, 4.0])
 APPARENT_STIFFNESS = Problem(
     name="apparent_stiffness",
     points=4,
+    core=False,
+    outcomes=(
+        "contact",
+        "experiment",
+    ),
     asks="Somebody pushed the arm N times and waited until it rested. Fit `force` = K · `displacement` "
     "+ offset by least squares of the force (its sensor has the noise, displacements are exact), and "
     "give K of shape (3, 3). Row i of `force` and `displacement`, both of shape (N, 3), belongs to push "
@@ -715,8 +736,9 @@ APPARENT_STIFFNESS = Problem(
         "All of them are linear.",
         "np.linalg.lstsq solves A X = B for X. With one row for each push, A holds the displacement and "
         "a 1, B the force. What stands where in X?",
-        "A = np.column_stack([displacement, np.ones(len(displacement))]); "
-        "X = np.linalg.lstsq(A, force, rcond=None)[0]; K is X[:3], transposed.",
+        "A column of ones beside the displacements takes up the offset. numpy solves all "
+        "three force components at once; look at which way round its answer has rows and "
+        "columns.",
     ),
     wrong=(
         Wrong(

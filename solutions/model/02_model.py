@@ -16,7 +16,7 @@
 # | **You need** | numpy; vectors, the cross product, derivatives in several variables; notebook 00 or its conventions: 1-D arrays, twists as (v, w), `T_ab` |
 # | **Given** | the simulated arm; where its joints and bodies are at any angles (`model.links`) |
 # | **You write** | the Jacobian, the mass matrix, gravity, the Coriolis matrix, the power balance |
-# | **Time** | about 5 hours · 20 points |
+# | **Time** | core about 2.5 hours, all about 4 · 24 points |
 #
 # Every cell runs from the start, solved or not: where your part is missing, a stand-in takes its place
 # and says so. After each stub a check tells you in words what it found. Only the functions are marked, so
@@ -24,7 +24,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -51,12 +51,12 @@ for name, link in zip(names, model.links(q0)):
 #
 # Freeze all joints but one. Everything beyond it turns about its axis $z_k$ like a door on its hinge. A
 # point of the door at the arm $r$ from the hinge moves with $z_k \times r$, and the door itself turns
-# with $z_k$. All joints together simply add up:
+# with $z_k$. All joints together simply add up,
 #
-# $$ \begin{pmatrix} \dot p \\ \omega \end{pmatrix} = J(q)\,\dot q, \qquad
-# J_k = \begin{pmatrix} z_k \times (p - p_k) \\ z_k \end{pmatrix}, $$
+# $$ \begin{pmatrix} \dot p \\ \omega \end{pmatrix} = J(q)\,\dot q, $$
 #
-# with $p$ the tip, $p_k$ a point on the axis, all in world axes (Siciliano, *Robotics: Modelling,
+# so a column of $J$ is what one joint does at unit speed. Derive it: the tip is at $p$, a point on the
+# joint's axis at $p_k$, all in world axes (Siciliano, *Robotics: Modelling,
 # Planning and Control*, section 3.1.3). Beware: several matrices are called "the Jacobian". This one
 # gives the velocity of the *tip*, in *world* axes.
 
@@ -93,7 +93,12 @@ def jacobian_at(q):
     return jacobian(axes, origins, model.pose(q)[:3, 3])
 
 
-tip_jacobian = use("jacobian", jacobian, model.tip_jacobian, yours=jacobian_at)
+def shoulder_alone(q):
+    """The stand-in: as if only the first two joints moved the tip."""
+    return model.tip_jacobian(q) * (np.arange(7) < 2)
+
+
+tip_jacobian = use("jacobian", jacobian, shoulder_alone, yours=jacobian_at)
 
 
 def passes_on(state, target):
@@ -176,7 +181,12 @@ def mass_matrix_at(q):
     )
 
 
-M = use("mass_matrix", mass_matrix, model.mass_matrix, yours=mass_matrix_at)
+def stretched_out(q):
+    """The stand-in: the inertia of the stretched arm, wherever the arm is."""
+    return model.mass_matrix(np.zeros(7))
+
+
+M = use("mass_matrix", mass_matrix, stretched_out, yours=mass_matrix_at)
 
 print(f"symmetric to {np.abs(M(q0) - M(q0).T).max():.1e} kg m²")
 print(f"smallest eigenvalue {np.linalg.eigvalsh(M(q0))[0]:.1e} kg m²")
@@ -193,6 +203,14 @@ lk.plotting.show(
     "Inertia felt by three joints as the elbow bends from 0 to 2.4 rad: that of s1 falls from "
     f"{felt[0, 1]:.2f} to {felt[-1, 1]:.2f} kg m²."
 )
+
+# %% predict="heaviest_direction"
+
+# %%
+Jv = tip_jacobian(q0)[:3]
+felt_at_tip = 1.0 / np.diag(Jv @ np.linalg.inv(M(q0)) @ Jv.T)
+print("a tap at the tip meets", ", ".join(f"{x:.1f} kg along {a}" for a, x in zip("xyz", felt_at_tip)))
+predict("heaviest_direction", truth="".join("xyz"[k] for k in np.argsort(-felt_at_tip)))
 
 # %% [markdown]
 # ## Gravity: what it takes to stay
@@ -221,6 +239,8 @@ def gravity(masses, com_jacobians):
     ### END SOLUTION
 
 
+# %% predict="base_joint"
+
 # %% [markdown]
 # No better test than to try: command your torque and nothing else, and the arm should float where it
 # is. Beside it the report's formula, $M J^T (0, 0, 0.981, 0, 0, 0)^T$: it lets only the tip have weight,
@@ -235,7 +255,12 @@ def gravity_at(q):
     )
 
 
-g = use("gravity", gravity, model.gravity, yours=gravity_at)
+def half_the_weight(q):
+    """The stand-in: half of what the arm weighs."""
+    return 0.5 * model.gravity(q)
+
+
+g = use("gravity", gravity, half_the_weight, yours=gravity_at)
 
 
 def floats(state, target):
@@ -268,6 +293,10 @@ lk.plotting.show(
     + "."
 )
 print("your g at the ready pose [N m]:", ", ".join(f"{x:.1f}" for x in g(q0)))
+
+# %%
+s0, elbow_torque = abs(g(q0)[0]), abs(g(q0)[3])
+predict("base_joint", truth="c" if s0 < 0.05 * elbow_torque else "a" if s0 > elbow_torque else "b")
 
 # %%
 lk.replay.show(
@@ -328,7 +357,12 @@ def coriolis_at(q, dq):
     return coriolis(model.mass_matrix, q, dq)
 
 
-C = use("coriolis", coriolis, model.coriolis, yours=coriolis_at)
+def nothing_turns(q, dq):
+    """The stand-in: no Coriolis torques."""
+    return np.zeros((7, 7))
+
+
+C = use("coriolis", coriolis, nothing_turns, yours=coriolis_at)
 
 q, dq, h = q0 + 0.2, np.array([0.5, -0.4, 0.3, 0.6, -0.8, 0.7, 1.0]), 1e-5
 M_rate = (model.mass_matrix(q + h * dq) - model.mass_matrix(q - h * dq)) / (2 * h)
@@ -437,15 +471,22 @@ lk.plotting.show(
     + ". With friction the balance follows what friction takes."
 )
 
+# %% [markdown] why="why_no_torque"
+# What torque did you see at s0, and why? Use what $g_k = \partial V / \partial q_k$ says about an axis, and
+# say how the answer would change if Baxter's torso leaned forwards by 30 degrees.
+#
+# ### BEGIN SOLUTION
+# s0 needs no torque at all. Its axis is vertical, so turning it changes the height of no body: the
+# potential energy does not depend on q_0 and its slope is zero, however heavy the arm. Were the torso to
+# lean, the axis would lean too, turning s0 would lift or lower the arm, and s0 would carry weight.
+# ### END SOLUTION
+
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 02_model.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("02_model")

@@ -17,6 +17,7 @@ REACHING = np.array([-0.2, 0.3, -1.0, 0.4, 1.2, -0.6, -1.0])
 JACOBIAN = Problem(
     name="jacobian",
     points=4,
+    outcomes=("model",),
     asks="Give the Jacobian of the tip in world axes, of shape (6, 7): column k holds the velocity "
     "of the tip (3 numbers, first) and the angular velocity (3 numbers) while joint k alone turns "
     "at 1 rad/s.",
@@ -47,8 +48,8 @@ JACOBIAN = Problem(
         "door on its hinge. Which way, and how fast, does the tip go?",
         "A point at the arm r from the axis z moves with z × r. The arm goes from the axis to the "
         "tip: r = tip - origins[k]. The angular velocity of the hand is z itself.",
-        "Column k is np.concatenate([np.cross(axes[k], tip - origins[k]), axes[k]]); put the seven "
-        "side by side with np.column_stack.",
+        "Each column has two parts of three numbers, as a door's handle and the door. Build "
+        "one column, then put seven side by side.",
     ),
     wrong=(
         Wrong(
@@ -91,6 +92,7 @@ JACOBIAN = Problem(
 MASS_MATRIX = Problem(
     name="mass_matrix",
     points=4,
+    outcomes=("model",),
     asks="Give the mass matrix M of the arm, of shape (7, 7): the matrix with kinetic energy "
     "½ dqᵀ M dq, summed over the seven links, each of which moves and turns.",
     answer=answers.mass_matrix,
@@ -118,8 +120,9 @@ MASS_MATRIX = Problem(
         "and dq.",
         "With J the Jacobian of the centre, v = J[:3] dq and w = J[3:] dq. So the link adds "
         "m J[:3]ᵀ J[:3] + J[3:]ᵀ I J[3:], with I and w in the same axes.",
-        "The inertia is given in the link's axes, w in the world's: use R @ inertia @ R.T with the "
-        "link's rotation R. Sum over the links.",
+        "Write the energy of one body as ½ dq' (...) dq. Both of its parts have a Jacobian on "
+        "each side; between them stands a mass, or an inertia that must be turned into world "
+        "axes on both sides.",
     ),
     wrong=(
         Wrong(
@@ -161,6 +164,7 @@ MASS_MATRIX = Problem(
 GRAVITY = Problem(
     name="gravity",
     points=4,
+    outcomes=("model",),
     asks="Give the torques, of shape (7,) and in N m, that hold the arm still against its weight: the "
     "slope of the potential energy along each joint. The world's z axis points up; take 9.81 m/s².",
     answer=answers.gravity,
@@ -180,7 +184,8 @@ GRAVITY = Problem(
         "centre of mass change when joint k turns a little?",
         "The slope of the height of a centre along the joints is a row of its Jacobian: the third, "
         "that of z.",
-        "g is the sum over the links of 9.81 * masses[l] * com_jacobians[l][2].",
+        "Of each body's Jacobian only the row of its height matters. Weigh each by what the "
+        "body weighs, in newtons, and add.",
     ),
     wrong=(
         Wrong(
@@ -225,6 +230,8 @@ SPIN = np.array([0.5, -0.4, 0.3, 0.6, -0.8, 0.7, 1.0])
 CORIOLIS = Problem(
     name="coriolis",
     points=5,
+    core=False,
+    outcomes=("model",),
     asks="Give the Coriolis matrix C of shape (7, 7), made of Christoffel's symbols, at the angles "
     "`q` and speeds `dq`, from a function `mass_matrix(q)`; take its slopes by central differences.",
     answer=answers.coriolis,
@@ -248,8 +255,9 @@ CORIOLIS = Problem(
         "small h, both ways. Then it is bookkeeping.",
         "C_ij = ½ Σ_k (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i) dq_k. Three loops will do; h = 1e-5 rad "
         "is a good step.",
-        "With dM stacked so that dM[i, j, k] is the slope of M_ij along q_k: "
-        "0.5 * (dM + dM.transpose(0, 2, 1) - dM.transpose(2, 1, 0)) @ dq.",
+        "Make one array of three indices with all slopes of M. The three terms are that array "
+        "with its indices exchanged; add them with their signs, and let the speeds take away "
+        "the last index.",
     ),
     wrong=(
         Wrong(
@@ -293,6 +301,8 @@ CORIOLIS = Problem(
 POWER_BALANCE = Problem(
     name="power_balance",
     points=3,
+    core=False,
+    outcomes=("model",),
     asks="Give, at each tick of a run, the growth of the arm's whole energy less the power of its "
     "motors, in W and of shape (N,): what is left came from elsewhere. `np.gradient(x, log.t)` takes "
     "slopes.",
@@ -318,7 +328,8 @@ POWER_BALANCE = Problem(
         "the joints. Which torque does the log hold, and which is only wished for?",
         "At each row: model.kinetic_energy(q, dq) + model.potential_energy(q). Its slope over time is "
         "np.gradient(energy, log.t).",
-        "np.gradient(energy, log.t) - np.sum(log.tau * log.dq, axis=1).",
+        "Two curves over time: how fast the energy grows (numpy has a gradient that knows the "
+        "times), and what the motors give, joint by joint, summed.",
     ),
     wrong=(
         Wrong(

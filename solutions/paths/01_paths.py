@@ -10,7 +10,7 @@
 # | **You need** | numpy; the derivative of a product and of a function of a function |
 # | **Given** | the simulated arm, a controller that follows (you write your own in notebook 03), figures |
 # | **You write** | two time scalings, a circle, the composition of path and schedule, segments in a row |
-# | **Time** | about 4 hours · 20 points |
+# | **Time** | core about 3 hours, all about 4 · 24 points |
 #
 # A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling*
 # is the schedule `s(t)`. Together they are a *trajectory*. Kept apart, any path goes with any schedule.
@@ -21,7 +21,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -63,12 +63,16 @@ def bang_bang(t, duration):
     ### END SOLUTION
 
 
+# %% predict="peak_acceleration"
+
 # %% [markdown]
 # Here it is as a picture. Look at the lowest curve: where it jumps, the arm gets a jerk.
 
 # %%
 def given_bang_bang(t, duration):
-    return lk.BangBang(duration)(t)
+    """The stand-in: at an even speed, with a jerk at both ends."""
+    on = 0.0 < t < duration
+    return min(max(t / duration, 0.0), 1.0), 1.0 / duration if on else 0.0, 0.0
 
 
 my_bang_bang = use("bang_bang", bang_bang, given_bang_bang)
@@ -90,6 +94,11 @@ lk.plotting.show(
     "s, its speed and its acceleration over 3 s: bang-bang jumps in acceleration at the ends and in the "
     "middle, the cubic at the ends, the quintic nowhere."
 )
+
+# %%
+peaks = [max(abs(schedule(t)[2]) for t in np.linspace(0, 3, 601)[:-1]) for schedule in (bang, lk.Quintic(3.0))]
+print(f"peak of the acceleration: bang-bang {peaks[0]:.2f} 1/s², the quintic {peaks[1]:.2f} 1/s²")
+predict("peak_acceleration", truth="b" if peaks[1] > 1.01 * peaks[0] else "a")
 
 # %% [markdown]
 # ## Limits are in metres
@@ -126,7 +135,8 @@ def trapezoid(t, distance, v_max, a_max):
 
 # %%
 def given_trapezoid(t, distance, v_max, a_max):
-    return lk.Trapezoid(distance, v_max, a_max)(t)
+    """The stand-in: at an even speed, whatever the limits."""
+    return given_bang_bang(t, lk.Trapezoid(distance, v_max, a_max).duration)
 
 
 my_trapezoid = use("trapezoid", trapezoid, given_trapezoid)
@@ -218,11 +228,17 @@ def compose(path, scaling, t):
 
 # %%
 def given_circle(s, start, centre):
-    return lk.Circle(start, centre)(s)
+    """The stand-in: a triangle through the start, about the same axis."""
+    corners = [lk.Circle(start, centre)(k / 3).position for k in range(4)]
+    k = min(int(3 * s), 2)
+    return lk.Sample(*(scale * x for scale, x in zip((1, 3, 1), lk.Line(*corners[k : k + 2])(3 * s - k))))
 
 
 def given_compose(path, scaling, t):
-    return lk.Trajectory(path, scaling)(t)
+    """The stand-in: the place alone, as if the tip stood still there."""
+    s, _, _ = scaling(t)
+    place = path(s).position
+    return lk.Sample(place, 0 * place, 0 * place)
 
 
 my_circle = use("circle", circle, given_circle)
@@ -250,6 +266,8 @@ log = follow(line, within_limits(line.length))
 lk.plotting.tracking(log)
 lk.plotting.show(lk.plotting.describe(log))
 
+# %% predict="twice_the_time"
+
 # %% [markdown]
 # And the circle, your own, about an axis 15 cm to the side. If your `compose` is right, the arm's speed
 # is the one that your trajectory promises.
@@ -273,6 +291,15 @@ lk.plotting.show(
     f"Speed of the tip on the circle: at most {max(speed):.2f} m/s as promised, {max(actual):.2f} m/s by "
     "the arm."
 )
+
+# %%
+def largest_acceleration(duration):
+    """Of the tip on the circle, in [m/s^2]."""
+    samples = [my_compose(ring, lk.Quintic(duration), t) for t in np.linspace(0.0, duration, 301)]
+    return max(np.linalg.norm(x.acceleration) for x in samples)
+
+
+predict("twice_the_time", truth=largest_acceleration(12.0) / largest_acceleration(6.0))
 
 # %% [markdown]
 # ## Several segments
@@ -302,9 +329,9 @@ def segment_at(durations, t):
 
 # %%
 def given_segment_at(durations, t):
-    parts = lk.Chain([lk.Hold([0.0], duration) for duration in durations])
-    index = sum(begun <= t for begun in parts.starts) - 1
-    return max(index, 0), t - parts.starts[max(index, 0)]
+    """The stand-in: the first segment, and then the last one."""
+    first = t < durations[0]
+    return (0, t) if first else (len(durations) - 1, t - sum(durations[:-1]))
 
 
 my_segment_at = use("segment_at", segment_at, given_segment_at)
@@ -332,15 +359,35 @@ plt.legend(frameon=False)
 lk.plotting.show(f"The square from above: four sides of 12 cm, gone round in {t[-1]:.1f} s.")
 
 # %% [markdown]
-# Let the arm go round it. Its target is made of labkit's own parts, in the same order; the see-through
-# arm is your circle from above, for comparison. Drag to look around, move the slider to go back and
-# forth in time.
+# Let the arm go round it, on your own parts: your trapezoid, your `compose`, your `segment_at`. Wrong
+# ones may drive, too: write `use("segment_at", segment_at, given_segment_at, anyway=True)` above and run
+# on. The see-through arm goes round the square as it should. Drag to look around, move the slider to go
+# back and forth in time.
 
 # %%
 arm.reset(q0)
 tour = lk.Chain([lk.Trajectory(side, lk.Trapezoid(side.length, 0.2, 0.4)) for side in sides])
-log_square = lk.run(arm, model.joint_trajectory(tour, q0), passes_on)
-lk.replay.show(lk.replay.motion_of(log_square, "Round four corners", ghosts={"the circle": log}))
+as_it_should = lk.run(arm, model.joint_trajectory(tour, q0), passes_on)
+
+
+def follows_the_square(state, target, k=8.0):
+    """Feed-forward and feedback after your square; at most 0.5 m/s, should it jump."""
+    wanted = square(state.t)
+    pull = wanted.velocity + k * (wanted.position - model.pose(state.q)[:3, 3])
+    pull = pull * min(1.0, 0.5 / max(np.linalg.norm(pull), 1e-9))
+    turn = k * lk.se3.orientation_error(upright, model.pose(state.q)[:3, :3])
+    return lk.JointVelocity(np.linalg.pinv(model.tip_jacobian(state.q)) @ np.concatenate([pull, turn]))
+
+
+upright = model.pose(q0)[:3, :3]
+arm.reset(q0)
+log_square = lk.run(arm, lk.Hold(q0, sum(durations)), follows_the_square)
+lk.replay.show(
+    lk.replay.motion_of(
+        log_square, "Round four corners", label="your square", ghosts={"the square": as_it_should},
+        reference=False,
+    )
+)
 
 # %% [markdown]
 # ## A witness
@@ -373,15 +420,22 @@ def witness(theta, duration):
     ### END SOLUTION
 
 
+# %% [markdown] why="why_a_quarter"
+# What did you see: by how much did the largest acceleration change when the circle took twice as long? Say
+# why with the two terms of `compose`, and what follows for an arm whose motors are too weak for a path.
+#
+# ### BEGIN SOLUTION
+# It fell to a quarter. Both terms of the acceleration have the unit of 1/T²: the speed ds/dt halves
+# and enters squared in p''·ds², and dds itself falls to a quarter. So slowing down by a tenth saves a fifth
+# of the acceleration, whatever the path: weak motors are helped by time before anything else.
+# ### END SOLUTION
+
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 01_paths.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("01_paths")

@@ -16,6 +16,7 @@ SCALING = Close(parts=("s", "ds", "dds"))
 BANG_BANG = Problem(
     name="bang_bang",
     points=3,
+    outcomes=("motion",),
     asks="Give `(s, ds, dds)` at time `t` for a motion that speeds up evenly for half of its "
     "duration and brakes evenly for the other half.",
     answer=answers.bang_bang,
@@ -53,8 +54,9 @@ BANG_BANG = Problem(
         "roof) and again for s. How high must the step be for s to end at 1?",
         "In the first half s = a t²/2, and at T/2 it must be 1/2, so a = 4/T². The second half is "
         "the first one run backwards from the end: use the time that is left, T - t.",
-        "Second half, with left = T - t: s = 1 - a left²/2, ds = a left, dds = -a. Before 0 return "
-        "(0, 0, 0), from T on (1, 0, 0).",
+        "With the time that is left, the second half is the first one seen from the other "
+        "end. Differentiate what you have twice and look at each sign. Then two cases are "
+        "missing: before and after.",
     ),
     wrong=(
         Wrong(
@@ -91,6 +93,7 @@ BANG_BANG = Problem(
 TRAPEZOID = Problem(
     name="trapezoid",
     points=4,
+    outcomes=("motion",),
     asks="Give `(s, ds, dds)` at time `t` for a way of `distance` metres, as quick as `v_max` in m/s "
     "and `a_max` in m/s² allow: speed up, cruise, brake.",
     answer=answers.trapezoid,
@@ -125,8 +128,9 @@ TRAPEZOID = Problem(
         "the distance at the very end.",
         "The speed reached is v = min(v_max, √(distance·a_max)): on a short way the two ramps meet "
         "before v_max. Then ramp = v/a_max and duration = distance/v + ramp.",
-        "Three phases: a t²/2; then v (t - ramp/2); then distance - a left²/2 with "
-        "left = duration - t. Outside: (0, 0, 0) and (1, 0, 0).",
+        "The ramp lasts v/a, or the square root of d/a where v is never reached. Write the "
+        "way in metres in each of the three phases, the last one by the time that is left; "
+        "divide everything by d at the end.",
     ),
     wrong=(
         Wrong(
@@ -164,6 +168,7 @@ TRAPEZOID = Problem(
 CIRCLE = Problem(
     name="circle",
     points=4,
+    outcomes=("motion",),
     asks="Give the `lk.Sample` (point and derivatives with respect to `s`) of the level circle that "
     "begins at `start`, goes once round the vertical axis through `centre`, counter-clockwise seen "
     "from above, and comes back to `start` at `s` = 1. It keeps the height of `start`.",
@@ -215,8 +220,9 @@ CIRCLE = Problem(
         "turns by 2πs. Its length never changes.",
         "Turning a flat vector (x, y) by an angle φ gives (cos φ x - sin φ y, sin φ x + cos φ y). No "
         "arctangent is needed. The height is start[2].",
-        "With out = the turned spoke and on = (-out_y, out_x, 0): position = axis + out, "
-        "velocity = 2π on, acceleration = -(2π)² out.",
+        "Call the level vector from the axis to the start the spoke. Turn it by 2πs, and each "
+        "derivative turns it by a right angle and brings one factor 2π. The axis passes at "
+        "the height of the start.",
     ),
     wrong=(
         Wrong(
@@ -277,6 +283,7 @@ RING = lk.Circle(np.array([0.8, 0.1, 0.2]), np.array([0.6, 0.1, 0.2]))
 COMPOSE = Problem(
     name="compose",
     points=4,
+    outcomes=("motion",),
     asks="Put a path `path(s)` on a schedule `scaling(t)`: give the `lk.Sample` of position, velocity "
     "and acceleration at time `t`, now with respect to time.",
     answer=answers.compose,
@@ -315,7 +322,8 @@ COMPOSE = Problem(
         "once more, with the product rule.",
         "Ask the scaling first: s, ds, dds = scaling(t). Then the path at s, not at t. The velocity "
         "is dx·ds.",
-        "acceleration = ddx·ds² + dx·dds.",
+        "Differentiate p'(s(t))·s'(t) as a product. One factor of it is a function of a "
+        "function again: that brings the square.",
     ),
     wrong=(
         Wrong(
@@ -361,6 +369,8 @@ TOUR = [1.0, 2.0, 0.5]
 SEGMENT_AT = Problem(
     name="segment_at",
     points=3,
+    core=False,
+    outcomes=("motion",),
     asks="Segments of the given `durations` follow one another. Give `(index, local_time)`: which one "
     "is on at time `t`, counted from 0, and how long since it began. At a joint the later one is on; "
     "before the start it is the first one, after the end the last.",
@@ -399,8 +409,9 @@ SEGMENT_AT = Problem(
         "is on is the last that has begun.",
         "Sum the durations of the segments before it, not its own: that sum is when it began, and "
         "local_time = t - begun.",
-        "Walk through the segments with begun = 0; stop at the first with t < begun + duration, or "
-        "at the last one whatever t is.",
+        "Go through the segments and add up when each begins. Stop at the first that ends "
+        "later than t; think about what should happen when none does, and about t exactly on "
+        "a joint.",
     ),
     wrong=(
         Wrong(
@@ -438,6 +449,8 @@ SEGMENT_AT = Problem(
 WITNESS = Problem(
     name="witness",
     points=2,
+    core=False,
+    outcomes=("motion",),
     asks="The report's equation 8 for the angle of a circle adds the start angle `theta` in the first "
     "half of the motion and once more in the second. Give a time at which the motion it prints "
     "cannot be made by any arm.",

@@ -11,7 +11,7 @@
 # | **You need** | numpy; matrices as poses (00), trajectories (01), or the two boxes below |
 # | **Given** | the camera, the detector of corners, a filter's update step, an arm that follows a reference |
 # | **You write** | a tag's corners, its pose from a picture, a sensor's quality, a blend, a prediction |
-# | **Time** | about 5 hours · 20 points |
+# | **Time** | core about 3 hours, all about 4 · 24 points |
 #
 # > **Box: poses.** $T_{ab}$ turns coordinates in frame b into frame a: $p_a = T_{ab}\,p_b$. Camera: c, with
 # > z forward, x right, y down in the picture. Tag: m, with z out of the paper. World: w. Tip of the arm: t.
@@ -24,7 +24,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -178,6 +178,22 @@ lk.plotting.show(
     f"deviation. Along z it is {1e3 * spread[2]:.2f} mm, across {1e3 * spread[:2].max():.2f} mm."
 )
 
+# %% predict="twice_as_far"
+
+# %%
+def depth_spread(distance, pictures=12):
+    """Standard deviation of the depth of a tag that faces the camera askew, in [m]."""
+    place = board.T_wm[:3, 3]
+    view = np.array([0.6, -0.1, 0.5]) / np.linalg.norm([0.6, -0.1, 0.5])
+    there = lk.Camera(world, lk.looking_at(place + distance * view, place), noise=6.0, seed=2)
+    shots = [lk.detect_tags(there.tag_image(), there, 0.1) for _ in range(pictures)]
+    return np.std([tags[0].T_cm[2, 3] for tags in shots if tags], ddof=1)
+
+
+near, far = depth_spread(0.6), depth_spread(1.2)
+print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f} mm at 1.2 m")
+predict("twice_as_far", truth=round(float(far / near), 1))
+
 # %% [markdown]
 # Along the view the place is measured worst, for a tag that comes nearer changes the picture least. A dot
 # that lies farther from zero than its bar is long is bias: more pictures make the bars shorter, and leave
@@ -296,8 +312,8 @@ show_reference(blended(times), "Blends of 1 s, a look every 0.5 s")
 # and $Q$ is what the pushes add: $\int_0^\tau F(s)\,\mathrm{diag}(0, qI)\,F(s)^T ds$. Work it out; it must
 # vanish with $\tau$, and two half steps must make one whole.
 
-# %% question="predict"
-def predict(mean, covariance, age, accel_noise):
+# %% question="carry_forward"
+def carry_forward(mean, covariance, age, accel_noise):
     """Carry a belief forward in time.
 
     Args:
@@ -310,26 +326,36 @@ def predict(mean, covariance, age, accel_noise):
         (mean, covariance) then.
     """
     ### BEGIN SOLUTION
-    from solutions.tags.following import predict as answer
+    from solutions.tags.following import carry_forward as answer
 
     return answer(mean, covariance, age, accel_noise)
     ### END SOLUTION
 
 
+# %% predict="round_and_round"
+
+# %%
+turn = 2.0 * np.pi / 6.0 * 2.0  # how far the tag goes round in two seconds, in [rad]
+old_place = abs(np.exp(1j * turn) - 1.0)  # in radii, the circle as complex numbers
+straight_on = abs(np.exp(1j * turn) - (1.0 + 1j * turn))
+print(f"error in radii: {old_place:.2f} with the old place, {straight_on:.2f} with the prediction")
+ratio = straight_on / old_place
+predict("round_and_round", truth="c" if ratio > 1.0 else "b" if ratio > 0.3 else "a")
+
 # %% [markdown]
 # ## All of it, on the arm
 #
 # The board goes round on a circle of 15 cm at 0.1 m/s. The camera takes ten pictures a second; each reading is
-# 100 ms old when it arrives. Between the readings your `predict` says where the tag is, your `blend` bends the
+# 100 ms old when it arrives. Between the readings your `carry_forward` says where the tag is, your `blend` bends the
 # reference, and the arm follows it in position mode. The update of the filter is given.
 
 # %%
-def given_predict(mean, covariance, age, accel_noise):
+def given_carry_forward(mean, covariance, age, accel_noise):
     """No prediction: the old picture is taken for now."""
     return mean, covariance + 1e-4 * np.eye(6)
 
 
-my_predict = use("predict", predict, given_predict)
+my_carry_forward = use("carry_forward", carry_forward, given_carry_forward)
 
 offset = np.array([0.0, 0.0, 0.2])
 radius, speed = 0.15, 0.1
@@ -358,10 +384,10 @@ class Follower:
                 self.belief = estimation.first_estimate(reading.stamp, place, noise, speed)
             else:
                 age = reading.stamp - self.belief.t
-                then = my_predict(self.belief.mean, self.belief.covariance, age, 0.005)
+                then = my_carry_forward(self.belief.mean, self.belief.covariance, age, 0.005)
                 self.belief = estimation.update(estimation.Estimate(reading.stamp, *then), place, noise)
         if readings:
-            mean, _ = my_predict(*self.belief[1:], t + self.ahead - self.belief.t, 0.005)
+            mean, _ = my_carry_forward(*self.belief[1:], t + self.ahead - self.belief.t, 0.005)
             self.start, self.began = self.sample(t), t
             self.goal = lk.Sample(mean[:3] + offset, mean[3:], np.zeros(3))
         point = self.sample(t)
@@ -422,6 +448,16 @@ lk.plotting.show(
 # %%
 lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="the hand"))
 
+# %% [markdown] why="why_it_harms"
+# When did you see the prediction make things worse, and why? Say what the predictor believes about the tag,
+# how its error grows with the age of the picture, and for which of a conveyor and a waving hand you would use it.
+#
+# ### BEGIN SOLUTION
+# On a circle that turns by two radians during the picture's age, the straight prediction was farther off
+# than the old place. It believes in a constant velocity, and its error grows with the square of the age times
+# the acceleration. A conveyor has none, so it gains everything; a waving hand turns round within the age.
+# ### END SOLUTION
+
 # %% [markdown]
 # Now move the tag yourself. Press *Start* and drag it with the mouse: the hand follows, some tenths of a
 # second behind, and overshoots where you turn. Drag it out of the camera's sight: what does the prediction
@@ -440,12 +476,9 @@ lk.live(arm, by_camera, lk.TagTarget(stream, Follower()), rate=100.0, title="You
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 06_tags.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("06_tags")

@@ -40,7 +40,7 @@ _ENDS = np.linalg.inv(
 )  # from value, slope and bend at x = 0 and x = 1 to the coefficients
 
 
-def predict(mean: Any, covariance: Any, age: float, noise: float) -> tuple[Array, Array]:
+def carry_forward(mean: Any, covariance: Any, age: float, noise: float) -> tuple[Array, Array]:
     r"""Where a thing is ``age`` seconds later, if only white noise changes its highest derivative.
 
     For position and velocity, pushed by unknown accelerations:
@@ -118,7 +118,7 @@ class TagFollower:
         horizon: How far ahead a blend meets the tag, in [s]; longer where `acceleration` asks it.
         coast: How long to believe in the last motion, in [s].
         acceleration: Largest acceleration of the reference, in [m/s^2].
-        noise: How unsteady the tag's acceleration is, for `predict`, in [m^2/s^5].
+        noise: How unsteady the tag's acceleration is, for `carry_forward`, in [m^2/s^5].
         spread: What one expects of its speed [m/s] and its acceleration [m/s^2] at first.
     """
 
@@ -146,7 +146,9 @@ class TagFollower:
         believed = known is not None and t - known.t <= self.coast
         ending = not self._at_rest and t - self._began > 0.8 * self._lasts
         if known is not None and (readings or (believed and ending)):
-            mean, _ = predict(known.mean, known.covariance, t + self.horizon - known.t, self.noise)
+            mean, _ = carry_forward(
+                known.mean, known.covariance, t + self.horizon - known.t, self.noise
+            )
             p, v, a = mean.reshape(3, 3)
             self._blend_to(t, lambda late: Sample(p + self.offset + late * v, v, a * (late == 0.0)))
             self._at_rest = False
@@ -168,7 +170,7 @@ class TagFollower:
             return
         age = reading.stamp - self.estimate.t
         if age >= 0.0:
-            then = predict(self.estimate.mean, self.estimate.covariance, age, self.noise)
+            then = carry_forward(self.estimate.mean, self.estimate.covariance, age, self.noise)
             self.estimate = update(Estimate(reading.stamp, *then), z, R)
 
     def _reference(self, t: float) -> Sample:

@@ -12,7 +12,7 @@ from labkit import Sample, se3
 from labkit.shapes import Array
 
 from .answers import sensor_quality, tag_corners, tag_pose
-from .following import blend, predict
+from .following import blend, carry_forward
 
 BORDER = 1.25  # an AprilTag 36h11 with its white border is ten cells wide, eight without
 
@@ -344,7 +344,7 @@ def certain_for_ever(
     mean: Any, covariance: Any, age: float, accel_noise: float
 ) -> tuple[Array, Array]:
     """Moves the mean and leaves the covariance."""
-    return predict(mean, covariance, age, accel_noise)[0], np.array(covariance)
+    return carry_forward(mean, covariance, age, accel_noise)[0], np.array(covariance)
 
 
 @dataclass(frozen=True)
@@ -373,7 +373,7 @@ def half_the_product(
     mean: Any, covariance: Any, age: float, accel_noise: float
 ) -> tuple[Array, Array]:
     """F P, without F^T: not even symmetric."""
-    m, P = predict(mean, covariance, age, accel_noise)
+    m, P = carry_forward(mean, covariance, age, accel_noise)
     F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
     return m, P - F @ covariance @ F.T + F @ covariance
 
@@ -382,7 +382,7 @@ def product_turned_round(
     mean: Any, covariance: Any, age: float, accel_noise: float
 ) -> tuple[Array, Array]:
     """F^T P F."""
-    m, P = predict(mean, covariance, age, accel_noise)
+    m, P = carry_forward(mean, covariance, age, accel_noise)
     F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
     return m, P - F @ covariance @ F.T + F.T @ covariance @ F
 
@@ -390,7 +390,7 @@ def product_turned_round(
 def back_in_time(mean: Any, covariance: Any, age: float, accel_noise: float) -> tuple[Array, Array]:
     """To when the picture was taken, not from there to now."""
     F = np.kron([[1.0, -age], [0.0, 1.0]], np.eye(3))
-    Q = predict(mean, np.zeros((6, 6)), age, accel_noise)[1]
+    Q = carry_forward(mean, np.zeros((6, 6)), age, accel_noise)[1]
     return F @ mean, F @ covariance @ F.T + Q
 
 

@@ -24,6 +24,8 @@ _BELIEF = hidden.believed(_RANDOM)
 TAG_CORNERS = Problem(
     name="tag_corners",
     points=2,
+    core=False,
+    outcomes=("frames",),
     asks="Give the four corners of the black square in the tag's own frame: origin in the middle, x to "
     "the right, y up, z out of the paper; clockwise as one looks at it, from the upper left; shape (4, 3).",
     answer=answers.tag_corners,
@@ -32,7 +34,9 @@ TAG_CORNERS = Problem(
     hints=(
         "Draw the square, mark the middle, and write the coordinates of the upper left corner first.",
         "Half a side to the left is -size/2 in x, half a side up is +size/2 in y. All of it lies in z = 0.",
-        "Upper left (-h, h, 0), upper right (h, h, 0), lower right (h, -h, 0), lower left (-h, -h, 0).",
+        "Draw the square with x to the right and y upwards, and write down half a side with "
+        "its sign for each corner, beginning upper left and going round as the hands of a "
+        "clock.",
     ),
     wrong=(
         Wrong(
@@ -102,6 +106,7 @@ def _seen(
 TAG_POSE = Problem(
     name="tag_pose",
     points=5,
+    outcomes=("frames",),
     asks="From the four corners in the picture give the pose of the tag in the camera's frame, `T_cm`, "
     "shape (4, 4). `K` is the camera's matrix. OpenCV is allowed: `cv2.solvePnPGeneric` with "
     "`cv2.SOLVEPNP_IPPE_SQUARE` gives two candidates and how badly each fits.",
@@ -129,7 +134,9 @@ TAG_POSE = Problem(
         "the camera's matrix and None for the distortion.",
         "It returns (count, rotation vectors, translations, errors). Take the candidate with the smallest "
         "error; cv2.Rodrigues turns a rotation vector into a matrix.",
-        "T = np.eye(4); T[:3, :3] = cv2.Rodrigues(turns[best])[0]; T[:3, 3] = places[best].ravel().",
+        "IPPE gives lists of rotation vectors, translations and errors. Find the index of the "
+        "best fit, turn its rotation vector into a matrix with Rodrigues, and beware of "
+        "columns of shape (3, 1).",
     ),
     wrong=(
         Wrong(
@@ -187,6 +194,8 @@ TAG_POSE = Problem(
 QUALITY = Problem(
     name="sensor_quality",
     points=3,
+    core=False,
+    outcomes=("sensing",),
     asks="From many estimates `T_cm` of one tag and the truth give `(bias, covariance)` of the error, "
     "truth minus estimate: three numbers of position and the rotation vector of R_truth R_estimate^T, "
     "together shape (6,) and (6, 6).",
@@ -210,7 +219,9 @@ QUALITY = Problem(
     hints=(
         "First one error vector of six numbers for each estimate. Then their mean and their covariance.",
         "se3.rotation_log(R_truth @ R_estimate.T) is the turn from the estimate to the truth.",
-        "np.mean(errors, axis=0) and np.cov(np.array(errors).T), which divides by n - 1.",
+        "First make n rows of six errors, each with the function for the error of a pose, "
+        "truth first. Then numpy has a mean along an axis, and a covariance that wants its "
+        "variables in rows.",
     ),
     wrong=(
         Wrong(
@@ -289,6 +300,7 @@ QUALITY = Problem(
 BLEND = Problem(
     name="blend",
     points=5,
+    outcomes=("motion",),
     asks="Lead a reference over to a goal by a polynomial of fifth order: at `t` = 0 it has the "
     "reference's position, velocity and acceleration, at `t` = `duration` the goal's. After that it goes "
     "on with the goal's velocity, without acceleration. Give an `lk.Sample`.",
@@ -318,8 +330,9 @@ BLEND = Problem(
         "c0 + c1 t + ... + c5 t^5 at both ends.",
         "c0, c1 and c2 come from the start at once: p, v and a/2. The other three solve a 3 x 3 system "
         "with the rows [T³, T⁴, T⁵], [3T², 4T³, 5T⁴], [6T, 12T², 20T³].",
-        "The right side of that system is the goal's position, velocity and acceleration minus what "
-        "c0 + c1 t + c2 t² makes of them at T. np.linalg.solve does all axes at once.",
+        "The first three coefficients follow from the start. The goal gives three equations "
+        "for the others: what it demands, less what the known three make of it at the end. "
+        "Solve them for all axes at once.",
     ),
     wrong=(
         Wrong(
@@ -426,11 +439,12 @@ BLEND = Problem(
 )
 
 PREDICT = Problem(
-    name="predict",
+    name="carry_forward",
     points=5,
+    outcomes=("sensing",),
     asks="A tag is believed at `mean` (position and velocity) with `covariance`. Give both `age` seconds "
     "later, for constant velocity under continuous white acceleration of power `accel_noise`.",
-    answer=following.predict,
+    answer=following.carry_forward,
     judge=Close(rtol=1e-6, atol=1e-12, parts=("mean", "covariance")),
     trials=(
         Trial(
@@ -451,8 +465,9 @@ PREDICT = Problem(
         "through a matrix?",
         "mean' = F mean and covariance' = F P F^T + Q. Q is what the pushes add, and it must vanish with "
         "age: two half steps have to make one whole.",
-        "Q = accel_noise · [[age³/3, age²/2], [age²/2, age]] for each axis; np.kron(that, np.eye(3)) for "
-        "all three.",
+        "Multiply F(s) diag(0, q) F(s)ᵀ out for one axis: four entries, powers of s. "
+        "Integrate each from 0 to the age. The three axes do not mix; numpy's kron spreads "
+        "them.",
     ),
     wrong=(
         Wrong(

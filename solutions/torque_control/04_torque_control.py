@@ -10,7 +10,7 @@
 # | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0; what an eigenvalue is |
 # | **Given** | the arm's model: M, C and g (notebook 02 builds them, here you only use them) |
 # | **You write** | two torque laws, gains from frequency and damping, a sampled joint, the factor of gravity, gains that serve |
-# | **Time** | about 5 hours · 20 points |
+# | **Time** | core about 4 hours, all about 5 · 29 points |
 #
 # Every cell below runs from the start, solved or not: where your part is missing, something given
 # stands in and says so. After each stub a check tells you in words what it found. Only the functions
@@ -20,7 +20,7 @@
 from dataclasses import replace
 
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -91,11 +91,8 @@ for name, log in loose.items():
 # $$ e = q_d - q, \qquad \dot e = \dot q_d - \dot q . $$
 #
 # Fasten a spring $K_p$ and a damper $K_d$ between each joint and its target, and add the torque which
-# the target's own motion takes:
-#
-# $$ \tau = M(q)\,\ddot q_d + C(q, \dot q)\,\dot q_d + g(q) + K_d\,\dot e + K_p\,e . $$
-#
-# This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
+# the target's own motion takes: put the target's motion into the equation above, at the angles where the
+# arm is. This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
 # Note whose speed stands behind $C$: with the target's, the energy in springs and error never grows. That
 # alone is no proof that the arm arrives, for the energy also stays wherever the error stands still; Murray,
 # Li and Sastry close the gap (proposition 4.10). The report that this lab grew out of printed the arm's own
@@ -122,6 +119,8 @@ def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
     return answer(state, target, model, kp=kp, kd=kd, arm_compensates=arm_compensates)
     ### END SOLUTION
 
+
+# %% predict="gravity_twice"
 
 # %% [markdown]
 # Let your law hold the arm, on both arms and with the switch both ways. Two of the four agree with the
@@ -170,6 +169,10 @@ lk.plotting.show(
     + "; ".join(f"{name}: {z:+.0f} mm" for name, z in heights.items())
     + "."
 )
+
+# %%
+rise = heights["self-carrying, arm_compensates=False"]
+predict("gravity_twice", truth="a" if abs(rise) < 5.0 else "c" if rise > 0.0 else "b")
 
 # %% [markdown]
 # Here they are as arms. Drag the time, turn the view.
@@ -252,7 +255,16 @@ lk.plotting.show(
 # %% [markdown]
 # Seven curves on top of one another: that is what the model buys. It is also a promise that hangs on the
 # model. On an arm with friction, or with something in its gripper, they come apart again.
-#
+
+# %% predict="unknown_load"
+
+# %%
+burdened = replace(carries_itself, name="with 0.5 kg", payload=0.5)
+log = stay(burdened, with_gains(my_computed_torque, carries_itself, 40.0, 2 * 40.0**0.5, True), 3.0)
+z = 1e3 * lk.metrics.tip_poses(log)[:, 2, 3]
+predict("unknown_load", truth=round(float(z[0] - z[-1]), 1))
+
+# %% [markdown]
 # ## Gains with a meaning
 #
 # Nobody knows what "kp = 40" feels like. A frequency and a damping ratio do have a feel: how often the
@@ -401,7 +413,48 @@ for armature in (0.0, 0.05):
 # %% [markdown]
 # This is why every simulated Baxter that is driven by torques needs rotors in its data, though the data
 # sheet has none.
+
+# %% [markdown]
+# ## Find the bug
 #
+# Three runs of computed torque, yours alone. Each law is right at first; while the arm is under way, a
+# version with one mistake takes over. You know how the right law behaves, for you have written it. The
+# suspects:
+#
+# | | |
+# |---|---|
+# | a | the error of the speed has the wrong sign |
+# | b | gravity is left out |
+# | c | gravity is added twice |
+# | d | the state is 60 ms old |
+# | e | the target is always the last one (index -1) |
+# | f | the target's acceleration is left out |
+# | g | the errors of the joints w0 and w2 are exchanged |
+# | h | the joints' own speed is damped, not the error of the speed |
+
+# %%
+HANDLE = "demo"  # yours, or your team's
+_, axes = plt.subplots(1, 3, figsize=(9, 3), sharex=True, layout="constrained")
+for number, ax in enumerate(axes, start=1):
+    log = lk.my_bug(number, HANDLE)
+    off = log.target.position[: len(log)] - log.q
+    for k, column in enumerate(off.T):
+        ax.plot(log.t, column, ("-", "--", "-.", ":")[k % 4], label=names[k])
+    ax.set_title(f"run {number}", loc="left", fontsize="medium")
+    ax.set_xlabel("time [s]")
+axes[0].set_ylabel("error [rad]")
+axes[2].legend(frameon=False, ncols=2, fontsize="small")
+lk.plotting.show(f"The errors of the seven joints in three misbehaving runs of the arm {HANDLE}.")
+
+# %% find_out="bug_1"
+
+# %% find_out="bug_2"
+
+# %% find_out="bug_3"
+
+# %% find_out="experiment"
+
+# %% [markdown]
 # ## Gravity on the real robot, and why nobody could tell
 #
 # For years teams of this lab fought with gravity. One wrote a formula that came to 3 % of the true
@@ -631,6 +684,16 @@ lk.replay.show(
     )
 )
 
+# %% [markdown] why="why_it_sags"
+# How far did you see computed torque sag under half a kilogram, and why? The load pulls with 5 N: say through
+# what it is turned into accelerations, and why "stiff" has another meaning for kp in 1/s² than in N m/rad.
+#
+# ### BEGIN SOLUTION
+# It sagged by a good deal, far more than springs of the same number would. The load gives the torques
+# J^T F; computed torque answers with M kp e, so at rest e = M^-1 J^T F / kp. Where M is small, at the wrist,
+# the stiffness M kp is small too: kp in 1/s² fixes a frequency, not a stiffness.
+# ### END SOLUTION
+
 # %% [markdown]
 # And with a hand in it. Press *Start*, and pull at the arm while it circles: springs give way. Make them
 # softer and stiffer with the dial, which is the factor on their frequency as above; hang the kilogram on;
@@ -649,12 +712,9 @@ lk.live(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 04_torque_control.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("04_torque_control")

@@ -82,6 +82,7 @@ TERMS = (
 AUGMENTED_PD = Problem(
     name="augmented_pd",
     points=4,
+    outcomes=("control",),
     asks="Give the `lk.JointTorque` of the augmented PD law: the torque that the target's motion takes "
     "(M times the target's acceleration, C times the target's speed, the weight if the arm does not "
     "carry it itself), plus a spring `kp` and a damper `kd` at each joint. M, C and g are those of the "
@@ -109,8 +110,9 @@ AUGMENTED_PD = Problem(
         "Write the error first: e = target.position - state.q, and its rate with the speeds. Then "
         "the torque is a sum of four things: inertia, Coriolis, weight, springs and dampers.",
         HINTS_SWITCH + " M is model.mass_matrix(state.q), C is model.coriolis(state.q, state.dq).",
-        "tau = M @ target.acceleration + C @ target.velocity + kp * e + kd * de, plus the weight or "
-        "not. Note which speed C is multiplied with, and that kp and kd stand outside M.",
+        "Five terms. Two are the motion's own, and both use the target's motion; one is the "
+        "weight, and a condition stands before it; two are the springs and dampers, outside "
+        "of M.",
     ),
     wrong=(
         Wrong(
@@ -238,6 +240,7 @@ AUGMENTED_PD = Problem(
 COMPUTED_TORQUE = Problem(
     name="computed_torque",
     points=4,
+    outcomes=("control",),
     asks="Give the `lk.JointTorque` of computed torque: the acceleration that would let the error die "
     "out as that of a damped spring, put through the arm's equation of motion. The weight is added "
     "only if the arm does not carry it itself.",
@@ -264,8 +267,8 @@ COMPUTED_TORQUE = Problem(
         "ë + kd ė + kp e = 0. Which one is it?",
         "ddq = target.acceleration + kd * de + kp * e. Then the torque for it is that of the "
         "manipulator equation, at the arm's own q and dq. " + HINTS_SWITCH,
-        "tau = M @ ddq + C @ state.dq (+ g). model.inverse_dynamics(q, dq, ddq) gives M ddq + C dq + g "
-        "in one step; take g off again where the arm carries itself.",
+        "Put the acceleration that you ask for into the equation of motion, with the arm's "
+        "own state everywhere else. What the arm does for itself must come off.",
     ),
     wrong=(
         Wrong(
@@ -378,6 +381,8 @@ COMPUTED_TORQUE = Problem(
 GAINS_FOR = Problem(
     name="gains_for",
     points=2,
+    core=False,
+    outcomes=("control",),
     asks="The error shall obey ë + kd ė + kp e = 0. Give `(kp, kd)` so that it swings with a natural "
     "`frequency` in Hz and a `damping_ratio`. Both may be numbers or arrays.",
     answer=answers.gains_for,
@@ -401,7 +406,7 @@ GAINS_FOR = Problem(
         "Compare with the equation of a damped spring, ë + 2 ζ ω ė + ω² e = 0. What is ω, in rad/s, "
         "if the frequency is in Hz?",
         "ω = 2π · frequency. Compare the two equations term by term.",
-        "kp = ω², kd = 2 · damping_ratio · ω; with arrays numpy does it for every joint.",
+        "Compare the two equations term by term; a frequency in Hz is not yet ω.",
     ),
     wrong=(
         Wrong(
@@ -459,6 +464,7 @@ GAINS_FOR = Problem(
 SAMPLED_JOINT = Problem(
     name="sampled_joint",
     points=4,
+    outcomes=("control",),
     asks="A joint of some `inertia` has angle q and speed q̇; its torque -kp q - kd q̇ is computed once "
     "every `dt` seconds and held in between. Give the matrix of shape (2, 2) that takes (q, q̇) from one "
     "sample to the next, exactly.",
@@ -484,8 +490,8 @@ SAMPLED_JOINT = Problem(
         "angle and speed after dt at constant acceleration a?",
         "q + dt q̇ + dt²/2 · a, and q̇ + dt · a. Now put a = -(kp q + kd q̇) / inertia and collect what "
         "stands before q and before q̇.",
-        "First row: 1 - kp dt²/(2 inertia), dt - kd dt²/(2 inertia). Second row: -kp dt/inertia, "
-        "1 - kd dt/inertia.",
+        "With τ held, q grows by dt·dq + ½dt²·τ/m and dq by dt·τ/m. Put in what τ is, and "
+        "read off what stands before q and before dq.",
     ),
     wrong=(
         Wrong(
@@ -581,6 +587,11 @@ _nothing = call(0.5 * _random.standard_normal((12, 7)), _weights)
 GRAVITY_FACTOR = Problem(
     name="gravity_factor",
     points=3,
+    core=False,
+    outcomes=(
+        "control",
+        "experiment",
+    ),
     asks="In N rest poses you read the torques that hold the arm, `tau_hold`, and compute the model's "
     "`gravity_model`, both of shape (N, 7). Give the one factor by which the model's gravity explains "
     "the torques best, in the sense of least squares.",
@@ -610,8 +621,8 @@ GRAVITY_FACTOR = Problem(
     hints=(
         "One unknown k, and 7 N equations tau = k g. For which k is the sum of (tau - k g)² least?",
         "Differentiate that sum by k and set it to zero: k is a fraction of two sums.",
-        "k = sum(tau * g) / sum(g * g), over all poses and joints. Joints that carry nothing count "
-        "for nothing, as they should.",
+        "Write the sum of squares of τ - k g over all poses and joints, set its derivative by "
+        "k to zero, and solve. One fraction remains.",
     ),
     wrong=(
         Wrong(
@@ -702,6 +713,7 @@ _circle = MODEL.joint_trajectory(
 CHOOSE_GAINS = Problem(
     name="choose_gains",
     points=3,
+    outcomes=("control",),
     asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each a number or seven, for springs and dampers at "
     "the joints of the `lk.BAXTER` arm (`lk.control.springs`, 200 Hz). They must serve on a slow line, "
     "on quicker tours, and with up to a kilogram in the gripper that the model does not know of; and an "
@@ -754,8 +766,9 @@ CHOOSE_GAINS = Problem(
         "Too soft, and friction and the load win. Too stiff, and the state, up to 14 ms old, comes too "
         "late: stay well below one tenth of the 100 Hz at which it is published. Draw the error over "
         "the frequency, between 0.5 and 5 Hz.",
-        "m = np.diag(model.mass_matrix(model.robot.ready)); about 2 Hz, so w = 2π·2; kp = m w², "
-        "kd = 2 m w.",
+        "Multiply the square of the frequency, in rad/s, by the inertia that each joint "
+        "feels, and critical damping follows from the two. The frequency is yours to find: "
+        "between one and three hertz.",
     ),
     wrong=(
         Wrong(

@@ -11,7 +11,7 @@
 # | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, orientations are compared by a product, twists are (v, w) |
 # | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and as Baxter's users found it (`lk.BAXTER`); trajectories; the model with its Jacobian |
 # | **You write** | two controllers, a damped inverse, motion that the tip does not feel |
-# | **Time** | about 4 hours · 20 points |
+# | **Time** | core about 3 hours, all about 4 · 27 points |
 #
 # Every cell runs from the start, solved or not: where your part is missing, a stand-in takes its place
 # and says so. After each stub a check tells you in words what it found. Only the functions are marked, so
@@ -19,7 +19,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -33,9 +33,8 @@ import numpy as np
 # A target that says how fast it moves makes half of the work easy: turn the joints at just that speed.
 # This is *feed-forward*. Were the arm perfect and its start exact, nothing else would be needed. As it
 # is not, every small error stays. So add something that pulls: *feedback*, in proportion to the error
-# (P) and to the rate of the error (D),
-#
-# $$ u = \dot q_d + K_p\,(q_d - q) + K_d\,(\dot q_d - \dot q) . $$
+# (P) and to the rate of the error (D). Which error is that, which rate, and in which units are the two
+# gains? Write the law down on paper first.
 #
 # Because feed-forward does so well on its own, it hides feedback that is broken, even one with the
 # wrong sign. So the check starts off the path, and with a target that stands still (Lynch and Park,
@@ -141,6 +140,8 @@ def decay_rate(kp, kd):
     ### END SOLUTION
 
 
+# %% predict="with_more_d"
+
 # %% [markdown]
 # Compare with an arm whose motors take 50 ms to follow a command. (Motors that obey at once would make
 # the loop bite its own tail: the speed measured now *is* the last command, so with kd above 1 the
@@ -178,6 +179,9 @@ lk.plotting.show(
     + ". Dotted: exp(-r t) with your rate."
 )
 
+# %%
+predict("with_more_d", truth=(log.t, e))
+
 # %% [markdown]
 # Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, for D
 # makes the loop less sensitive to their lag. And the arm arrives later. The second weighs more: from here
@@ -195,9 +199,9 @@ lk.plotting.show(
 # joints do: with the elbow straight, towards or away from the shoulder. Near such a *singularity* the
 # exact answer is absurd. It pays to be a little wrong instead: minimise
 #
-# $$ |V - J\,\dot q|^2 + \lambda^2\,|\dot q|^2 \quad\Rightarrow\quad
-# \dot q = J^T (J J^T + \lambda^2 I)^{-1} V $$
+# $$ |V - J\,\dot q|^2 + \lambda^2\,|\dot q|^2 $$
 #
+# over $\dot q$. Set the gradient to zero; what stands before $V$ is the matrix that you need
 # (Nakamura and Hanafusa 1986; Siciliano, *Robotics: Modelling, Planning and Control*, section 3.5.2).
 # In the stub, `damping` is the whole factor $\lambda^2$.
 
@@ -218,6 +222,8 @@ def damped_inverse(J, damping):
     return answer(J, damping)
     ### END SOLUTION
 
+
+# %% predict="worst_elbow"
 
 # %% [markdown]
 # How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest,
@@ -245,6 +251,7 @@ for damping, style in ((1e-9, "-"), (0.0025, "--"), (0.02, "-.")):
         worst = np.linalg.svd(J)[0][:, -1]
         worst = 0.1 * worst / np.linalg.norm(worst[:3])
         fastest.append(np.abs(my_damped_inverse(J, damping) @ worst).max())
+    undamped = fastest if damping < 1e-6 else undamped
     name = "no damping" if damping < 1e-6 else f"damping {damping:g}"
     plt.semilogy(angles, fastest, style, label=name)
     speeds[name] = max(fastest)
@@ -259,16 +266,15 @@ lk.plotting.show(
     + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items()) + "."
 )
 
+# %%
+predict("worst_elbow", truth=round(float(angles[np.argmax(undamped)]), 2))
+
 # %% [markdown]
 # ## A controller for the tip
 #
-# Now put it together: how the tip should move, and the joint speeds that do it.
-#
-# $$ V = V_d + K_p \begin{pmatrix} p_d - p \\ \log(R_d R^T)^\vee \end{pmatrix}, \qquad
-# u = J^{+} V . $$
-#
-# The lower part is the orientation error of notebook 00, a turn in world axes;
-# `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong versions of this controller draw a fine
+# Now put it together: how the tip should move, and the joint speeds that do it. The tip should move as
+# its target does, and besides towards it, in place and in orientation. The error of orientation is that of
+# notebook 00, a turn in world axes; `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong versions of this controller draw a fine
 # circle as long as the hand starts upright, so the check tilts it.
 
 # %% question="workspace_velocity_pd"
@@ -385,6 +391,37 @@ print(f"The upper arm turned by {np.ptp(log.q[:, 2]):.2f} rad, the tip moved by 
 lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", reference=False))
 
 # %% [markdown]
+# ## An arm of your own
+#
+# From here on an arm belongs to you. It is a Baxter, but its motors, its joints' friction, what it carries
+# and what stands before it are its own: no two teams have the same one. Your course gives you a handle for
+# it; `"demo"` is a public arm to practise on. Numbers that you find out about it are judged against it, and
+# the report of notebook 08 is about it.
+
+# %%
+HANDLE = "demo"  # yours, or your team's
+mine = lk.my_arm(HANDLE)
+
+
+def steps(state, target, speed=0.4):
+    """One joint, s0, at a constant speed from the first tick on."""
+    return lk.JointVelocity(speed * np.eye(7)[0])
+
+
+mine.reset(mine.robot.ready)
+own_step = lk.run(mine, lk.Hold(mine.robot.ready, 1.2), steps)
+plt.figure(figsize=(8, 2.6), layout="constrained")
+plt.plot(own_step.t, own_step.dq[:, 0], label="s0 of your arm")
+plt.plot(own_step.t, own_step.command[:, 0], "--", label="commanded")
+plt.xlim(0.0, 0.4)
+plt.xlabel("time [s]")
+plt.ylabel("speed [rad/s]")
+plt.legend(frameon=False)
+lk.plotting.show(f"A step of the commanded speed, and how joint s0 of the arm {HANDLE} follows it.")
+
+# %% find_out="my_lag"
+
+# %% [markdown]
 # ## Baxter, at last
 #
 # Now the arm as its users found it: 100 states a second for 200 commands, noise on the speeds, motors
@@ -435,6 +472,16 @@ lk.replay.show(
 # old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
 # them better.
 
+# %% [markdown] why="why_slower"
+# What did you see happen to the error of a resting joint when D grew? Say why D *slows* an arm whose speed is
+# commanded, although in your mechanics lecture a damper lets you raise P. What is the difference?
+#
+# ### BEGIN SOLUTION
+# With more D the error died more slowly: its rate is kp/(1 + kd). Where the speed itself is commanded,
+# D subtracts a share of the speed from the command, so it simply makes the command smaller. A mass needs D to
+# lose its kinetic energy; a joint in velocity mode has no mass in the loop, so there is nothing to damp.
+# ### END SOLUTION
+
 # %% [markdown]
 # And once more in real time, with a hand in it. Press *Start*, drag the arm off its circle and let go: how
 # long does it take to come back, with which kp? Velocity mode is stiff. However hard you pull, the motors
@@ -454,12 +501,9 @@ lk.live(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 03_velocity_control.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("03_velocity_control")

@@ -25,6 +25,7 @@ COMMAND = Close(rtol=1e-6, atol=1e-8)
 JOINT_VELOCITY_PD = Problem(
     name="joint_velocity_pd",
     points=5,
+    outcomes=("control",),
     asks="Command joint speeds that follow a joint trajectory: the target's own speed, plus `kp` "
     "times the error of the angles, plus `kd` times the error of the speeds. Gains are numbers or "
     "arrays of shape (7,).",
@@ -75,7 +76,8 @@ JOINT_VELOCITY_PD = Problem(
         "error push? (Target minus actual, always.)",
         "e = target.position - state.q and de = target.velocity - state.dq. The command starts from "
         "the target's speed, not from the measured one.",
-        "return lk.JointVelocity(target.velocity + kp * e + kd * de)",
+        "Three terms, each seven numbers. One needs no gain. The result is a command, not an "
+        "array.",
     ),
     wrong=(
         Wrong(
@@ -144,6 +146,7 @@ JOINT_VELOCITY_PD = Problem(
 DECAY_RATE = Problem(
     name="decay_rate",
     points=2,
+    outcomes=("control",),
     asks="A joint moves at exactly the speed that is commanded, and its target stands still. Give the "
     "rate, in 1/s, at which the error dies away under the gains `kp` and `kd`: the r in exp(-r t).",
     answer=answers.decay_rate,
@@ -161,7 +164,8 @@ DECAY_RATE = Problem(
         "The target stands still, so the speed of the joint is minus the rate of the error. Put the "
         "command into that.",
         "dq = kp e + kd (0 - dq), and dq = -de/dt. The speed is on both sides: collect it.",
-        "(1 + kd) de/dt = -kp e.",
+        "The joint moves at the commanded speed: put dq = u into the law, with a target at "
+        "rest, and collect all terms with de/dt on one side.",
     ),
     wrong=(
         Wrong(
@@ -218,6 +222,10 @@ DECAY_RATE = Problem(
 DAMPED_INVERSE = Problem(
     name="damped_inverse",
     points=3,
+    outcomes=(
+        "control",
+        "model",
+    ),
     asks="Give the damped pseudo-inverse of a Jacobian of shape (6, 7), of shape (7, 6): the matrix "
     "that finds, for a twist V, the joint speeds with the least |V - J dq|² + `damping` |dq|².",
     answer=answers.damped_inverse,
@@ -245,7 +253,8 @@ DAMPED_INVERSE = Problem(
         "Without damping it is the pseudo-inverse Jᵀ (J Jᵀ)⁻¹, which explodes where J Jᵀ has an "
         "eigenvalue near zero. What could you add to J Jᵀ so that it has none?",
         "Add damping times the identity of size 6 to J Jᵀ before you invert it.",
-        "J.T @ np.linalg.inv(J @ J.T + damping * np.eye(6))",
+        "Set the gradient to zero and solve. Of the two forms, one inverts a 7 by 7 matrix "
+        "and one a 6 by 6; both are right, and the damping stands on the diagonal.",
     ),
     wrong=(
         Wrong(
@@ -296,6 +305,7 @@ GAINS = np.array([2.0, 3.0, 4.0, 5.0, 4.0, 3.0])
 WORKSPACE_VELOCITY_PD = Problem(
     name="workspace_velocity_pd",
     points=6,
+    outcomes=("control",),
     asks="Command joint speeds that make the tip follow a target of poses: the tip should move with "
     "the target's twist plus `kp` times its error of position and orientation, both in world axes. "
     "`kp` is a number or an array of shape (6,). Use the damped inverse of the tip Jacobian.",
@@ -370,8 +380,9 @@ WORKSPACE_VELOCITY_PD = Problem(
         "joint speeds do that.",
         "e has six numbers: target.pose[:3, 3] minus the tip's place, then the turn "
         "lk.se3.orientation_error(R_wd, R_wt) of notebook 00. V = target.twist + kp * e.",
-        "J = model.tip_jacobian(state.q); return lk.JointVelocity(J⁺ @ V) with the damped inverse J⁺ "
-        "= J.T @ np.linalg.inv(J @ J.T + damping * np.eye(6)).",
+        "Work from the outside in: the twist that you want, six numbers, its feedback in "
+        "world axes in the order (v, w); then the joint speeds that give it, with the damped "
+        "inverse of this Jacobian.",
     ),
     wrong=(
         Wrong(
@@ -498,6 +509,11 @@ ORTHONORMAL = np.eye(7)[[0, 2, 3, 4, 5, 6]]
 POSTURE_VELOCITY = Problem(
     name="posture_velocity",
     points=4,
+    core=False,
+    outcomes=(
+        "control",
+        "model",
+    ),
     asks="The joints would like to turn at `dq_wish`. Give the part of that wish, of shape (7,), that "
     "does not move the tip at all, as near to the wish as can be.",
     answer=answers.posture_velocity,
@@ -523,7 +539,8 @@ POSTURE_VELOCITY = Problem(
         "Let the wish run: the tip would move with J dq_wish. Take away just the joint speeds that "
         "make that motion, and nothing else.",
         "The smallest joint speeds that give a twist V are pinv(J) V. Here V = J dq_wish.",
-        "dq_wish - np.linalg.pinv(J) @ (J @ dq_wish)",
+        "First ask how the wish would move the tip. Then find the smallest joint speeds that "
+        "move the tip in just that way, and take them off the wish.",
     ),
     wrong=(
         Wrong(

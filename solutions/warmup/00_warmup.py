@@ -11,7 +11,7 @@
 # | **You need** | Python with numpy; matrices and their products |
 # | **Given** | the simulated arm, figures, the logarithm of a rotation |
 # | **You write** | a joint error, a point from frame to frame, an inverse, an orientation error |
-# | **Time** | about 2 hours · 10 points |
+# | **Time** | core about 1.5 hours, all about 2 · 14 points |
 #
 # How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not:
 # where your part is missing, a stand-in takes its place and says so. After each stub a check tells you in
@@ -19,7 +19,7 @@
 
 # %% setup=true
 import labkit as lk
-from labkit.course import check, hint, use
+from labkit.course import check, hint, predict, use
 
 lk.ready()
 
@@ -252,6 +252,19 @@ def orientation_error(R_wd, R_wt):
     ### END SOLUTION
 
 
+# %% predict="same_components"
+
+# %%
+my_orientation_error = use("orientation_error", orientation_error, lk.se3.orientation_error)
+
+down = np.diag([1.0, -1.0, -1.0])
+tilted_down = down @ lk.se3.rotation([0.15, 0.12, 0.06])
+in_world = my_orientation_error(down, tilted_down)
+in_tool = tilted_down.T @ in_world
+print("in world axes:", in_world.round(2), "  in the tool's axes:", in_tool.round(2))
+same = "".join("xyz"[k] for k in range(3) if abs(in_world[k] - in_tool[k]) < 0.02)
+predict("same_components", truth={"xyz": "a", "x": "b", "z": "c"}.get(same, "d"))
+
 # %% [markdown]
 # ## Let the arm decide
 #
@@ -259,10 +272,9 @@ def orientation_error(R_wd, R_wt):
 # Jacobian, which comes in notebook 02, turns that into joint speeds. Three runs that differ in the
 # error alone: yours, roll-pitch-yaw subtracted, and your turn by mistake in the tool's axes.
 
+# %% predict="farthest_off"
+
 # %%
-my_orientation_error = use("orientation_error", orientation_error, lk.se3.orientation_error)
-
-
 def euler_difference(R_wd, R_wt):
     def angles(R):
         return np.array(
@@ -318,6 +330,9 @@ lk.plotting.show(
 )
 
 # %%
+predict("farthest_off", truth="abc"[int(np.argmax(list(final.values())))])
+
+# %%
 lk.replay.show(
     lk.replay.motion_of(
         runs["one turn (yours)"],
@@ -332,15 +347,23 @@ lk.replay.show(
 # hand whose axes lie along the world's, turned about the vertical only, all three errors would have been
 # the same, which is why so many programs get away with it. When you test an orientation error, point the
 # hand down and tilt it.
+
+# %% [markdown] why="why_it_turns_away"
+# What did you see the hand do when its error was given in the tool's axes, and why? The gripper points
+# down: say which components of the error change their sign, and what the controller then does with them.
 #
+# ### BEGIN SOLUTION
+# The hand turned away from its target instead of towards it. With the gripper pointing down, the
+# tool's y and z axes point against the world's, so those two components of the error have the wrong sign:
+# the feedback about y and z is positive, and the error grows, while x still decays.
+# ### END SOLUTION
+
+# %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save. In a
-# terminal (*File, New, Terminal*) go to this folder and ask whether the file is whole:
-#
-# ```
-# labkit submit-check 00_warmup.ipynb
-# ```
-#
-# Then hand it in with its name as it is. The teacher runs your functions on further cases; of what kind
-# they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
+# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
+# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+
+# %% setup=true
+lk.hand_in("00_warmup")

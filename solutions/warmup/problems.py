@@ -25,6 +25,7 @@ def _sample(q: object, dq: object = REST) -> lk.Sample:
 JOINT_ERROR = Problem(
     name="joint_error",
     points=2,
+    outcomes=("frames",),
     asks="Give the error of the seven joint angles, target minus actual, in rad and of shape (7,).",
     answer=answers.joint_error,
     judge=Close(rtol=1e-9, atol=1e-12),
@@ -51,7 +52,8 @@ JOINT_ERROR = Problem(
         "Where should the joints be, and where are they? Both are arrays with names: look at what "
         "`target` and `state` hold.",
         "The angles wanted are `target.position`, the angles that are `state.q`, each of shape (7,).",
-        "Return target.position - state.q, and nothing else: no reshape, no sum.",
+        "Put the two side by side in the order in which the course's definition of an error "
+        "names them. Nothing else is needed: no reshape, no sum.",
     ),
     wrong=(
         Wrong(
@@ -97,6 +99,7 @@ TILTED = lk.se3.pose([[0, 0, 1], [1, 0, 0], [0, 1, 0]], [0.3, -0.4, 0.5])
 TRANSFORM_POINT = Problem(
     name="transform_point",
     points=2,
+    outcomes=("frames",),
     asks="A point has the coordinates `p_b` in frame b, and frame b has the pose `T_ab` in frame a. "
     "Give the point's coordinates in a, of shape (3,).",
     answer=answers.transform_point,
@@ -125,7 +128,8 @@ TRANSFORM_POINT = Problem(
         "First turn the little vector from b's axes into a's axes; then go from a's origin to b's "
         "origin and from there along the turned vector.",
         "The rotation is R_ab = T_ab[:3, :3], the origin of b in a is T_ab[:3, 3].",
-        "p_a = R_ab @ p_b + origin. Or append a 1 to p_b, multiply by T_ab, and drop the 1 again.",
+        "Try it on a frame that is not turned: the answer is then one vector plus another. "
+        "Now turn the right one of the two first.",
     ),
     wrong=(
         Wrong(
@@ -167,6 +171,7 @@ TRANSFORM_POINT = Problem(
 INVERSE_TRANSFORM = Problem(
     name="inverse_transform",
     points=2,
+    outcomes=("frames",),
     asks="Give `T_ba`, the pose of a in b, from `T_ab`, the pose of b in a; of shape (4, 4).",
     answer=answers.inverse_transform,
     judge=Close(rtol=1e-5, atol=1e-5),
@@ -185,8 +190,8 @@ INVERSE_TRANSFORM = Problem(
         "T_ba must undo T_ab: p_a = R_ab p_b + t. Solve this for p_b.",
         "A rotation is undone by its transpose: p_b = R_abᵀ (p_a - t). What multiplies p_a, and what "
         "is added?",
-        "The upper left block is R_abᵀ, the upper right column is -R_abᵀ @ t, the last row stays "
-        "(0, 0, 0, 1).",
+        "Write p_a = R p_b + t and solve it for p_b. What stands before p_a is the new "
+        "rotation, the rest is the new translation.",
     ),
     wrong=(
         Wrong(
@@ -235,6 +240,7 @@ SIDE = lk.se3.rotation([0.0, 0.0, 0.5]) @ DOWN
 ORIENTATION_ERROR = Problem(
     name="orientation_error",
     points=4,
+    outcomes=("frames",),
     asks="Give the turn, as a rotation vector in world axes, that takes the tip from its actual "
     "orientation `R_wt` to the desired one `R_wd`: shape (3,), in rad.",
     answer=answers.orientation_error,
@@ -272,8 +278,8 @@ ORIENTATION_ERROR = Problem(
         "one, then do the target. Which product of R_wd and R_wt does that?",
         "You look for the rotation E with E R_wt = R_wd, in world axes. Solve for E; a rotation's "
         "inverse is its transpose. Then lk.se3.rotation_log reads axis and angle from E.",
-        "return lk.se3.rotation_log(R_wd @ R_wt.T). The other order, R_wt.T @ R_wd, is the same turn "
-        "seen in the tool's axes.",
+        "Solve E R_wt = R_wd for E; the inverse of a rotation is its transpose. Check on a "
+        "turn of 0.1 rad which side the transpose must stand on.",
     ),
     wrong=(
         Wrong(

@@ -25,7 +25,7 @@ QUESTIONS = {name: problem.question(1) for name, problem in PROBLEMS.items()}
 
 
 def source():
-    return source_notebook(COURSE.notebook_source(NAME), QUESTIONS)
+    return source_notebook(COURSE.notebook_source(NAME), QUESTIONS, COURSE.predictions(NAME))
 
 
 def cells(notebook, kind):
@@ -37,9 +37,13 @@ def test_each_question_gets_brief_stub_and_check():
     notebook = source()
     assert not nbformat.validate(notebook)
     kinds = [cell.metadata["lab"] for cell in notebook.cells]
-    assert kinds.count("brief") == kinds.count("answer") == kinds.count("check") == len(QUESTIONS)
+    asked = len(QUESTIONS) + len(COURSE.predictions(NAME))
+    assert kinds.count("answer") == kinds.count("check") == asked
+    assert kinds.count("brief") == asked + kinds.count("why")
     for stub, test in zip(cells(notebook, "answer"), cells(notebook, "check"), strict=True):
         name = stub.metadata["nbgrader"]["grade_id"]
+        if name not in QUESTIONS:
+            continue
         assert test.metadata["nbgrader"]["grade_id"] == f"{name}-check"
         assert test.metadata["nbgrader"]["points"] == QUESTIONS[name].points
         assert test.metadata["nbgrader"]["locked"] and not stub.metadata["nbgrader"]["locked"]
@@ -78,7 +82,9 @@ def test_solutions_are_whole(name):
     """The solved notebook holds the answers' source, runs on its own, and no hidden cases."""
     problems = {p.name: p for p in COURSE.problems(name)}
     questions = {key: p.question(1) for key, p in problems.items()}
-    solved = solution_notebook(source_notebook(COURSE.notebook_source(name), questions), problems)
+    more = COURSE.predictions(name)
+    source = source_notebook(COURSE.notebook_source(name), questions, more)
+    solved = solution_notebook(source, problems, more)
     text = "\n".join(cell.source for cell in solved.cells)
     assert not [word for word in FORBIDDEN if word in text]
     for problem in problems.values():
@@ -102,9 +108,9 @@ def test_a_notebook_without_problems_is_a_sentence(tmp_path):
     """A source that somebody has begun says which file is still to be written."""
     course = copied(tmp_path)
     (tmp_path / "solutions/dance").mkdir()
-    (tmp_path / "solutions/dance/08_dance.py").write_text("# %%\n")
+    (tmp_path / "solutions/dance/09_dance.py").write_text("# %%\n")
     with pytest.raises(LabkitError, match=r"write solutions/dance/problems\.py with PROBLEMS"):
-        course.problems("08_dance")
+        course.problems("09_dance")
 
 
 def test_a_withheld_name_must_exist(tmp_path, monkeypatch):
@@ -147,14 +153,16 @@ def test_the_public_file_is_small_and_valid():
         assert data["assignment"] == name
         questions = map(read_question, data["questions"])
         cases = [case for question in questions for test in question.tests for case in test.cases]
-        assert cases and not any(case.hidden for case in cases)
+        assert not any(case.hidden for case in cases)
 
 
 def refused(problems, text=None):
     """Why the warm-up with these problems, and with this notebook text, should not be released."""
     questions = {name: problem.question(1) for name, problem in problems.items()}
     return refusals(
-        source_notebook(text or COURSE.notebook_source(NAME), questions), problems, questions
+        source_notebook(text or COURSE.notebook_source(NAME), questions, COURSE.predictions(NAME)),
+        problems,
+        questions,
     )
 
 
@@ -171,7 +179,7 @@ def test_the_course_itself_is_refused_nothing(name, seed):
     """No question pays without work or takes one mistake for another, whatever its hidden cases."""
     problems = {p.name: p for p in COURSE.problems(name)}
     questions = {key: p.question(seed) for key, p in problems.items()}
-    source = source_notebook(COURSE.notebook_source(name), questions)
+    source = source_notebook(COURSE.notebook_source(name), questions, COURSE.predictions(name))
     assert refusals(source, problems, questions) == []
 
 
@@ -215,7 +223,8 @@ def test_a_stand_in_is_run_alone():
     """Of the notebook only what the stand-in needs is run: no arm, no figure, no other check."""
     name = "03_velocity_control"
     questions = {p.name: p.question(1) for p in COURSE.problems(name)}
-    text = stand_ins(source_notebook(COURSE.notebook_source(name), questions))
+    more = COURSE.predictions(name)
+    text = stand_ins(source_notebook(COURSE.notebook_source(name), questions, more))
     assert set(text) == set(questions)
     whole = text["workspace_velocity_pd"]
     for part in ("def tip_feedforward", "my_damped_inverse = use(", "import labkit as lk"):

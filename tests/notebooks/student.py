@@ -62,8 +62,10 @@ def fill(name, parts: Mapping[str, str]):
 
 
 def solved(name):
-    """Every part with the answer's own source."""
-    return {p.name: inlined(p).replace("{", "{{").replace("}", "}}") for p in COURSE.problems(name)}
+    """Every part with the answer's own source, and every value written down."""
+    sources = {p.name: inlined(p) for p in COURSE.problems(name)}
+    sources |= {p.name: p.solved() for p in COURSE.predictions(name)}
+    return {q: source.replace("{", "{{").replace("}", "}}") for q, source in sources.items()}
 
 
 def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):

@@ -10,7 +10,7 @@ from labkit.course.layout import Course
 from labkit.course.marking import mark, recognise
 
 COURSE = Course.here(Path(__file__))
-NAMES = COURSE.names()
+NAMES = [name for name in COURSE.names() if COURSE.problems(name)]
 PROBLEMS = [problem for name in NAMES for problem in COURSE.problems(name)]
 POINTS = dict.fromkeys(NAMES, 20) | {"00_warmup": 10}
 

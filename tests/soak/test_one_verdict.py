@@ -124,7 +124,9 @@ def test_three_verdicts_are_one(assignment, sandbox, tmp_path):
         for text in (kinds[name][kind] or stubs[name], f'check("{name}", {name})')
     ]
     outputs = in_a_kernel(assignment, [*setup, *cells], tmp_path)[len(setup) + 1 :: 2]
-    source = source_notebook(COURSE.notebook_source(assignment), questions)
+    source = source_notebook(
+        COURSE.notebook_source(assignment), questions, COURSE.predictions(assignment)
+    )
     data = {"assignment": assignment, "seed": 1, "hash": "", "cells": manifest(source)}
     bundle = Bundle(data | {"questions": [question_data(q) for q in questions.values()]})
     for kind in next(iter(kinds.values())):

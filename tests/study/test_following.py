@@ -9,7 +9,7 @@ from labkit.tags.stream import Reading
 from solutions.study.tag_scenes import RADIUS, SPEED, circling_board
 from solutions.study.visual_servoing import SequentialServoing, stalled
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
-from solutions.tags.following import TagFollower, blend, predict
+from solutions.tags.following import TagFollower, blend, carry_forward
 
 GENTLE = SPEED**2 / RADIUS  # what the board itself needs, in [m/s^2]
 
@@ -21,8 +21,8 @@ def sample(*rows):
 def test_two_half_steps_of_prediction_are_one_whole_step():
     random = np.random.default_rng(0)
     m, A = random.standard_normal(6), random.standard_normal((6, 6))
-    whole = predict(m, A @ A.T, 0.3, 0.7)
-    half = predict(*predict(m, A @ A.T, 0.1, 0.7), 0.2, 0.7)
+    whole = carry_forward(m, A @ A.T, 0.3, 0.7)
+    half = carry_forward(*carry_forward(m, A @ A.T, 0.1, 0.7), 0.2, 0.7)
     for a, b in zip(whole, half, strict=True):
         np.testing.assert_allclose(a, b, rtol=1e-12)
 
@@ -36,14 +36,14 @@ def test_prediction_spreads_as_white_acceleration_does():
         kick = np.sqrt(q * dt) * random.standard_normal(20000)
         p += (v + 0.5 * kick) * dt
         v += kick
-    _, P = predict(np.zeros(6), np.zeros((6, 6)), age, q)
+    _, P = carry_forward(np.zeros(6), np.zeros((6, 6)), age, q)
     seen = np.cov(p, v)
     np.testing.assert_allclose(seen, P[np.ix_([0, 3], [0, 3])], rtol=0.05)
 
 
 def test_the_age_of_a_picture_counts():
     """At 0.1 m/s and 100 ms the tag is 10 mm further."""
-    mean, _ = predict([0, 0, 0, 0.1, 0, 0], np.eye(6), 0.1, 0.0)
+    mean, _ = carry_forward([0, 0, 0, 0.1, 0, 0], np.eye(6), 0.1, 0.0)
     np.testing.assert_allclose(mean, [0.01, 0, 0, 0.1, 0, 0])
 
 
@@ -87,7 +87,7 @@ def followed(duration, plant=lk.IDEAL, noise=0.0, follower=Watched, **dials):
 
 @pytest.mark.slow
 def test_a_circling_board_is_followed_within_two_millimetres():
-    """0.15 m and 0.1 m/s for 20 s, 10 Hz, 100 ms late: within 2 mm, gently once it has caught up."""
+    """0.15 m and 0.1 m/s for 20 s, 10 Hz, 100 ms late: within 2 mm, gently once caught up."""
     log, error, guide, lookups = followed(20.0)
     settled = log.t >= 5.0
     rms = 1e3 * np.sqrt(np.mean(error[settled] ** 2))
@@ -171,7 +171,7 @@ def test_a_reading_older_than_what_is_known_is_passed_over():
 @pytest.mark.parametrize("wrong", [{"age": "x"}, {"noise": -1.0}])
 def test_a_prediction_without_sense_is_refused(wrong):
     with pytest.raises(lk.LabkitError):
-        predict(np.zeros(6), np.eye(6), **{"age": 0.1, "noise": 1.0} | wrong)
+        carry_forward(np.zeros(6), np.eye(6), **{"age": 0.1, "noise": 1.0} | wrong)
 
 
 def test_a_stalled_loop_repeats_its_command_until_the_timeout_then_the_arm_stands_still():

@@ -1,0 +1,254 @@
+"""Find the bug: a torque law that is right at first, and then runs a version with one mistake."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..arm import Arm
+from ..control import JointTorque, State
+from ..errors import Diverged, LabkitError
+from ..log import Log
+from ..model import Model
+from ..paths import Line, Quintic
+from ..plant import Plant
+from ..run import run
+from ..shapes import Array, as_array
+from ..trajectory import Chain, Hold, Sample, Trajectory
+from .predictions import Choose
+from .verdict import Difference, Kind
+
+PLANT = Plant(name="textbook", armature=0.05, viscous=0.7, velocity_noise=0.01)
+"""The arm of all these runs; the law carries its weight."""
+RATE = 200.0
+STALE = 12
+"""So many ticks is a stale state old."""
+KP, KD = 60.0, 16.0
+
+CAUSES = {
+    "a": "the error of the speed has the wrong sign",
+    "b": "gravity is left out",
+    "c": "gravity is added twice",
+    "d": "the state is 60 ms old",
+    "e": "the target is always the last one (index -1)",
+    "f": "the target's acceleration is left out",
+    "g": "the errors of the joints w0 and w2 are exchanged",
+    "h": "the joints' own speed is damped, not the error of the speed",
+}
+"""What may be wrong, by its letter."""
+
+MOVES = (
+    (0.5, 0.3, 0.0, -0.4, 0.3, 0.2, 0.9),
+    (-0.4, -0.2, 0.4, 0.5, -0.8, 0.3, -0.5),
+    (0.3, -0.3, -0.4, 0.3, 0.5, -0.4, 0.8),
+)
+"""From the ready pose, in [rad]; there, a rest of a quarter of a second, and back."""
+LASTS = 1.2
+SHOWS = 0.003
+"""A joint this far from where it would be shows that something is wrong, in [rad]."""
+
+
+@dataclass(frozen=True)
+class Bug:
+    """One misbehaving run.
+
+    Attributes:
+        cause: A letter of `CAUSES`.
+        move: Which of `MOVES`.
+        onset: From when on the mistake is in the law, in [s].
+        seed: Of the noise.
+    """
+
+    cause: str
+    move: int
+    onset: float
+    seed: int
+
+    def log(self) -> Log:
+        """The run, up to the moment when the arm runs away, if it does."""
+        return _run(there_and_back(MOVES[self.move]), self.cause, self.onset, self.seed)
+
+    def shows(self) -> float:
+        """When a joint first is `SHOWS` away from where the right law would have it, in [s]."""
+        wrong, right = self.log(), Bug("", self.move, self.onset, self.seed).log()
+        n = min(len(wrong), len(right))
+        off = np.abs(wrong.q[:n] - right.q[:n]).max(axis=1) > SHOWS
+        return float(wrong.t[np.argmax(off)]) if off.any() else float("inf")
+
+
+def there_and_back(move: Any) -> Chain:
+    """A target that goes a way in the joints, rests there, and comes back."""
+    ready = Model("left", PLANT).robot.ready
+    goal = ready + np.asarray(move, dtype=float)
+    go, back = Line(ready, goal), Line(goal, ready)
+    return Chain(
+        [Trajectory(go, Quintic(LASTS)), Hold(goal, 0.25), Trajectory(back, Quintic(LASTS))]
+    )
+
+
+def tells_apart(one: str, other: str, start: Any, move: Any) -> float:
+    """How clearly an experiment tells two causes apart.
+
+    Args:
+        one: A letter of `CAUSES`; the mistake is in the law from the beginning.
+        other: Another one.
+        start: By how much the arm starts beside its target, shape (7,) in [rad].
+        move: Where it goes and comes back from, shape (7,) in [rad].
+
+    Returns:
+        The RMS difference of the joints in the two runs, over that of two right runs whose noise
+        differs.
+    """
+    target = there_and_back(move)
+    runs = [_run(target, cause, 0.0, 1, start) for cause in (one, other)]
+    noise = [_run(target, "", 0.0, seed, start) for seed in (1, 2)]
+    return _apart(*runs) / _apart(*noise)
+
+
+def _apart(a: Log, b: Log) -> float:
+    n = min(len(a), len(b))
+    return float(np.sqrt(np.mean((a.q[:n] - b.q[:n]) ** 2)))
+
+
+def _run(target: Chain, cause: str, onset: float, seed: int, start: Any = 0.0) -> Log:
+    model = Model("left", PLANT)
+    q0 = target(0.0).position + start
+    with Arm("left", PLANT, seed, q0=model.within_limits(q0, "the start")) as arm:
+        try:
+            return run(arm, target, _law(model, target, cause, onset), RATE)
+        except Diverged as error:
+            if not isinstance(error.log, Log):
+                raise
+            return error.log
+
+
+def _law(
+    model: Model, target: Chain, cause: str, onset: float
+) -> Callable[[State, Sample], JointTorque]:
+    """Computed torque, with one mistake from some time on."""
+    if cause and cause not in CAUSES:
+        raise LabkitError(f"{cause!r} is no cause; choose one of {', '.join(CAUSES)}")
+    before: list[State] = []
+    last = target(target.duration)
+
+    def law(state: State, wanted: Sample) -> JointTorque:
+        now = cause if state.t >= onset else ""
+        before.append(state)
+        if now == "d":
+            state = before[max(0, len(before) - 1 - STALE)]
+        if now == "e":
+            wanted = last
+        q, dq = state.q, state.dq
+        e, de = wanted.position - q, wanted.velocity - dq
+        if now == "a":
+            de = -de
+        elif now == "h":
+            de = -dq
+        elif now == "g":
+            e = _exchanged(e)
+        ddq = KP * e + KD * de + (0.0 if now == "f" else wanted.acceleration)
+        weights = {"b": 0.0, "c": 2.0}.get(now, 1.0)
+        tau = model.mass_matrix(q) @ ddq + model.coriolis(q, dq) @ dq
+        return JointTorque(tau + weights * model.gravity(q))
+
+    law.__name__ = "computed torque"
+    return law
+
+
+def _exchanged(e: Array) -> Array:
+    e = e.copy()
+    e[[4, 6]] = e[[6, 4]]
+    return e
+
+
+CHOICE = Choose(CAUSES)
+NEAR = 0.15
+"""How near the time must be at which it first shows, in [s]."""
+CLEAR = 5.0
+"""So many times the noise two suspects must differ by, in an experiment that tells them apart."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """What is said of a misbehaving run: its cause, and when it first shows.
+
+    Attributes:
+        number: Which run, from 0.
+    """
+
+    number: int
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if it is right, or plausible where nothing is expected."""
+        try:
+            cause, seconds = answer
+            seconds = float(seconds)
+        except (TypeError, ValueError):
+            what = 'a letter and a time in s, such as ("b", 1.25)'
+            return Difference(Kind.REFUSED, found=f"it is {answer!r}; write {what}")
+        if found := CHOICE.problem(cause):
+            return Difference(Kind.REFUSED, found=found)
+        if expected is None or (cause == expected[0] and abs(seconds - expected[1]) <= NEAR):
+            return None
+        return Difference(Kind.VALUE, found=str(answer))
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers are the same one."""
+        return bool(answer == other)
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """Zero if it is right, else infinite."""
+        return 0.0 if self(answer, expected) is None else float("inf")
+
+    def expected(self, bugs: tuple[Bug, ...]) -> tuple[str, float]:
+        """What is right for somebody's runs."""
+        bug = bugs[self.number]
+        return bug.cause, bug.shows()
+
+
+@dataclass(frozen=True)
+class Telling:
+    """An experiment that tells the cause of a run from the next suspect; both runs are made.
+
+    Attributes:
+        number: Which misbehaving run, from 0.
+    """
+
+    number: int
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if the first suspect is right and the two differ by `CLEAR` times the noise."""
+        try:
+            suspects, start, move = answer
+            one, other = suspects
+            ratio = tells_apart(
+                one, other, as_array(start, (7,), "start"), as_array(move, (7,), "move")
+            )
+        except LabkitError as error:
+            return Difference(Kind.REFUSED, found=str(error))
+        except (TypeError, ValueError):
+            what = 'it should be (suspects, start, move), such as ("ad", [0, ...], [0.3, ...])'
+            return Difference(Kind.REFUSED, found=what)
+        if one == other:
+            return Difference(Kind.REFUSED, found="two different suspects are needed")
+        if not ratio >= CLEAR:
+            says = f"the two differ by {ratio:.1f} times the noise; {CLEAR:g} are needed"
+            return Difference(Kind.REFUSED, found=says)
+        if expected is not None and one != expected:
+            return Difference(Kind.VALUE, found=str(one))
+        return None
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Never: there are many."""
+        return False
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """Zero if it tells them apart, else infinite."""
+        return 0.0 if self(answer, expected) is None else float("inf")
+
+    def expected(self, bugs: tuple[Bug, ...]) -> str:
+        """The right first suspect."""
+        return bugs[self.number].cause

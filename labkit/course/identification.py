@@ -1,0 +1,147 @@
+"""Identification: a number that a student measures on an arm of their own, judged against it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from .bugs import Found, Telling
+from .predictions import Number
+from .verdict import Difference, Kind
+
+if TYPE_CHECKING:
+    from .own_arm import OwnArm
+    from .question import Question
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A measured number, within a tolerance of the arm's; without an expected one, any plausible.
+
+    Attributes:
+        of: Which number of an `OwnArm`.
+        unit: Of it.
+        least: Less than this nobody could measure.
+        most: More than this nobody could measure.
+        tolerance: Largest difference, in the same unit.
+    """
+
+    of: str
+    unit: str
+    least: float
+    most: float
+    tolerance: float
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if it is near enough, else how it differs."""
+        found = Number(self.unit, self.least, self.most).problem(answer)
+        if found:
+            return Difference(Kind.REFUSED, found=found)
+        if expected is None or abs(answer - expected) <= self.tolerance:
+            return None
+        return Difference(Kind.NUMBERS, found=float(answer), several=True)
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two numbers are the same one."""
+        return bool(answer == other)
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """How far it is off, in tolerances."""
+        if self(answer, None) is not None:
+            return float("inf")
+        return 0.0 if expected is None else abs(answer - expected) / self.tolerance
+
+    def expected(self, arm: OwnArm) -> float:
+        """What is right for somebody's arm."""
+        return float(getattr(arm, self.of))
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Something to find out about an arm of one's own, as its author writes it.
+
+    Attributes:
+        name: Of the value that the student writes down.
+        asks: What to find out.
+        judge: What is right, and how near.
+        truth: What is right for the demonstration's arm.
+        form: What to write down, such as "one number, in kg".
+        points: For a number within the tolerance.
+        hints: From the idea to nearly there.
+        core: Whether it belongs to the core path.
+        outcomes: What it is evidence of.
+    """
+
+    name: str
+    asks: str
+    judge: Measured | Found | Telling
+    truth: Any
+    form: str
+    points: float
+    hints: tuple[str, ...] = ()
+    core: bool = True
+    outcomes: tuple[str, ...] = ("experiment",)
+
+    def question(self) -> Question:
+        """The question: a public gate, and a hidden case with the number of somebody's arm."""
+        from .question import Call, Question, Test  # which know this judge
+
+        tests = (
+            Test(self.form, (Call(()),), 0.0),
+            Test(
+                "it is true of your own arm",
+                (Call((), expected=self._expected(), hidden=True),),
+                also="whether it is true of your own arm",
+            ),
+        )
+        return Question(
+            self.name,
+            self.points,
+            self.asks,
+            self.judge,
+            tests,
+            hints=self.hints,
+            core=self.core,
+            outcomes=self.outcomes,
+        )
+
+    def _expected(self) -> Any:
+        return self.truth[0][0] if isinstance(self.judge, Telling) else self.truth
+
+    def brief(self) -> str:
+        """What stands above the place for the answer."""
+        points = f"{self.points:g} point{'' if self.points == 1 else 's'}"
+        where = "core" if self.core else "extension"
+        hint = f'- Stuck? `hint("{self.name}", 1)`.' if self.hints else ""
+        form = f"- Write down {self.form}, as plain numbers; your program is not run again."
+        head = f"**Find out: `{self.name}`** · {points} · {where}"
+        return "\n".join([head, "", self.asks, "", form, *filter(None, [hint])])
+
+    def cell(self) -> str:
+        """The cell that the student fills in."""
+        return f"{self.name} = None"
+
+    def solved(self) -> str:
+        """The cell as the demonstration's arm wants it."""
+        return f"{self.name} = {self.truth!r}"
+
+
+def personal(question: Question, arm: OwnArm) -> Question:
+    """The question with what is true of somebody's arm; any other question as it is."""
+    judge = question.judge
+    if isinstance(judge, Measured):
+        expected = judge.expected(arm)
+    elif isinstance(judge, Found | Telling):
+        expected = judge.expected(arm.bugs)
+    else:
+        return question
+    tests = tuple(
+        replace(
+            test,
+            cases=tuple(
+                replace(case, expected=expected) if case.hidden else case for case in test.cases
+            ),
+        )
+        for test in question.tests
+    )
+    return replace(question, tests=tests)

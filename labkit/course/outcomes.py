@@ -1,0 +1,15 @@
+"""What a student can do after the course, and which question is evidence of it."""
+
+from __future__ import annotations
+
+OUTCOMES = {
+    "frames": "express points, poses and errors of orientation in named frames, and test them",
+    "motion": "plan a motion within limits of speed and acceleration, and predict its peaks",
+    "model": "build an arm's Jacobian and dynamics, and prove them by energy and by experiment",
+    "control": "choose and write a control law, and its gains from a frequency and a margin",
+    "contact": "predict the rest force at a wall from a stiffness, and verify it within 10 %",
+    "sensing": "tell a sensor's bias, spread and age apart, and predict across the age",
+    "experiment": "design an experiment that identifies a number or a fault of an arm",
+    "evidence": "state a claim with a number, its unit and an interval, or that it is undecided",
+}
+"""Eight outcomes, by the name that a question's ``outcomes`` gives them."""

@@ -1,0 +1,194 @@
+"""An arm of one's own: no two handles have the same one; who knows the secret draws it again.
+
+Payload, stiction, lag and a wall follow from the HMAC of the handle under the term's secret.  What
+students get holds each number as a sealed text, so that nobody reads one by accident; whoever
+unseals it has cheated themselves of the experiment, and the grader cannot tell.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import hmac
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..arm import Arm
+from ..errors import LabkitError, OutOfRange
+from ..log import Log
+from ..model import Model
+from ..plant import BAXTER, Plant
+from ..scene import TIP_RADIUS, Wall
+from ..world import World
+from .bugs import CAUSES, MOVES, Bug
+from .layout import PUBLIC_SEED
+
+FILE = "arms.json"
+"""Beside the notebooks' folders: the sealed arms of a term, by the hash of each handle."""
+DEMO = "demo"
+"""The handle of the public arm, for self-study and for a course without a term."""
+
+RANGES = {
+    "payload": (0.2, 0.8),
+    "stiction": (0.6, 1.6),
+    "lag": (0.03, 0.09),
+    "wall": (0.04, 0.09),
+}
+"""From where to where each number is drawn; below `OwnArm` says what it is."""
+
+
+BUGS = 3
+"""So many misbehaving runs everybody gets, of `CAUSES` times `MOVES`."""
+ONSETS = (0.3, 0.8)
+"""In which part of a run the mistake comes in, in [s]: the arm is under way."""
+
+
+@dataclass(frozen=True)
+class OwnArm:
+    """What is particular about somebody's arm; the rest is Baxter's.
+
+    Attributes:
+        payload: Point mass at the tip, in [kg].
+        stiction: Dry friction of s0, in [N m]; that of the other joints is scaled alike.
+        lag: Time constant of the velocity mode, in [s].
+        wall: Distance from the resting tip to the wall in front of it, along x, in [m].
+        bugs: Three misbehaving runs to find the cause of.
+    """
+
+    payload: float
+    stiction: float
+    lag: float
+    wall: float
+    bugs: tuple[Bug, ...] = ()
+
+    @property
+    def plant(self) -> Plant:
+        """Baxter with these numbers."""
+        scale = self.stiction / BAXTER.stiction[0]
+        return replace(
+            BAXTER,
+            name="own",
+            payload=self.payload,
+            stiction=tuple(scale * x for x in BAXTER.stiction),
+            velocity_lag=self.lag,
+        )
+
+
+def draw(secret: int, handle: str) -> OwnArm:
+    """The arm of a handle, by HMAC-SHA256 under the term's secret."""
+    digest = hmac.new(str(secret).encode(), handle.encode(), hashlib.sha256).digest()
+    shares = (int.from_bytes(digest[8 * k : 8 * k + 8], "big") / 2.0**64 for k in range(4))
+    numbers = (a + x * (b - a) for x, (a, b) in zip(shares, RANGES.values(), strict=True))
+    random = np.random.default_rng(list(digest))
+    causes = random.choice(list(CAUSES), BUGS, replace=False)
+    bugs = (
+        Bug(str(cause), int(move), round(float(onset), 2), int(seed))
+        for cause, move, onset, seed in zip(
+            causes,
+            random.integers(len(MOVES), size=BUGS),
+            random.uniform(*ONSETS, BUGS),
+            random.integers(1000, size=BUGS),
+            strict=True,
+        )
+    )
+    return OwnArm(*numbers, tuple(bugs))
+
+
+def sealed(secret: int, handles: Mapping[str, str] | Iterable[str]) -> dict[str, str]:
+    """What students get, for `FILE`.
+
+    Args:
+        secret: The term's seed.
+        handles: Of students or teams; or, by each student's name, the handle of their team.
+    """
+    pairs = handles if isinstance(handles, Mapping) else {handle: handle for handle in handles}
+    return {_hashed(who): _seal(draw(secret, handle), who) for who, handle in pairs.items()}
+
+
+def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
+    """Your own arm, at rest in its ready pose before its wall.
+
+    Args:
+        handle: Yours, or your team's; "demo" is a public arm to practise on.
+        seed: Of the noise of its sensors.
+
+    Returns:
+        An arm that calls itself Baxter's; what is particular about it is for you to find out.
+
+    Raises:
+        LabkitError: The file of arms is not there, or does not know the handle.
+    """
+    own = _own(handle)
+    known = replace(BAXTER, name="own")
+    model = Model("left", known)
+    tip = model.pose(model.robot.ready)[:3, 3]
+    wall = Wall(tip + [own.wall + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
+    arm = Arm("left", own.plant, seed, q0=model.robot.ready, world=World(things=[wall]))
+    arm.plant, arm.model = known, model  # what is known of it
+    return arm
+
+
+def my_bug(number: int, handle: str = DEMO) -> Log:
+    """One of your misbehaving runs: a law that was right at first.
+
+    Args:
+        number: From 1 to 3.
+        handle: As for `my_arm`.
+
+    Raises:
+        OutOfRange: There is no such run.
+        LabkitError: As for `my_arm`.
+    """
+    if number not in range(1, BUGS + 1):
+        raise OutOfRange(f"there are the runs 1 to {BUGS}, and no run {number!r}")
+    return _own(handle).bugs[number - 1].log()
+
+
+def _own(handle: str) -> OwnArm:
+    return draw(PUBLIC_SEED, DEMO) if handle == DEMO else _unsealed(handle)
+
+
+def _unsealed(handle: str) -> OwnArm:
+    folder = Path.cwd()
+    files = [place / FILE for place in (folder, *folder.parents[:2]) if (place / FILE).exists()]
+    if not files:
+        raise LabkitError(
+            f"there is no {FILE} here or in the folder above; it came with the notebooks of your "
+            f"course. To practise, take lk.my_arm({DEMO!r})"
+        )
+    arms = json.loads(files[0].read_text(encoding="utf-8"))
+    text = arms.get(_hashed(handle))
+    if text is None:
+        raise LabkitError(
+            f"{FILE} has no arm for {handle!r}; write your handle as your course gave it to you"
+        )
+    sealed = json.loads(_mixed(base64.b64decode(text), handle))
+    return OwnArm(**sealed | {"bugs": tuple(Bug(**bug) for bug in sealed["bugs"])})
+
+
+def _hashed(handle: str) -> str:
+    return hashlib.sha256(handle.encode()).hexdigest()[:16]
+
+
+def _seal(arm: OwnArm, handle: str) -> str:
+    return base64.b64encode(_mixed(json.dumps(asdict(arm)).encode(), handle)).decode()
+
+
+def _mixed(data: bytes, handle: str) -> bytes:
+    """The data with a stream of bytes laid over it, which the handle starts; twice is once."""
+    stream = np.random.default_rng(list(handle.encode())).bytes(len(data))
+    return bytes(a ^ b for a, b in zip(data, stream, strict=True))
+
+
+def handles_of(course: Path) -> dict[str, str]:
+    """The handle of each student of a term; empty where no arms were given out."""
+    path = course / "course_private" / "handles.json"
+    if not path.exists():
+        return {}
+    found: Any = json.loads(path.read_text(encoding="utf-8"))
+    return {str(student): str(handle) for student, handle in found.items()}

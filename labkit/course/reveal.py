@@ -1,0 +1,137 @@
+"""What a notebook says of predictions: commit to one, then see it laid over the truth."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from ..errors import LabkitError
+from .messages import wrapped
+from .predictions import Choose, Curve, Form, Number, Rank
+from .student import desk, shell
+
+
+def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
+    """Commit to a prediction; or, with the truth, lay the prediction over it.
+
+    Args:
+        name: The prediction's name.
+        said: What you believe; None shows controls to choose it with.
+        truth: What came out: a letter, letters, a number, or a curve as (places, heights).
+
+    Returns:
+        What you committed to, None if nothing; of a reveal, always None.
+
+    Raises:
+        UnknownName: There is no such prediction.
+    """
+    place = desk()
+    form = place.question(name).judge
+    if not isinstance(form, Form):
+        raise LabkitError(f"{name} is a task, not a prediction; write check({name!r}, {name})")
+    if truth is not None:
+        _reveal(name, form, truth)
+        return None
+    first = place.committed.get(name)
+    if name in place.revealed and first is not None and said != first:
+        print(wrapped(f"The arm has answered, so your first prediction stays: {first!r}."))
+        return first
+    if said is None:
+        _controls(name, form)
+        return None
+    if found := form.problem(said):
+        print(wrapped(f"{name}: {found}."))
+    else:
+        place.committed[name] = said
+    return said
+
+
+def _reveal(name: str, form: Form, truth: Any) -> None:
+    """The prediction beside the truth; without a prediction, no truth."""
+    place = desk()
+    said = place.committed.get(name)
+    if said is None:
+        print(wrapped(f"{name}: commit to a prediction above, then run this cell again."))
+        return
+    place.revealed.add(name)
+    if isinstance(form, Curve):
+        _overlay(form, said, truth)
+        return
+    print(wrapped(f"You predicted: {form.words(said)}."))
+    print(wrapped(f"The arm says:  {form.words(truth)}."))
+    if isinstance(form, Number):
+        print(wrapped(f"Your number is {said / truth:.2g} times the arm's." if truth else ""))
+    else:
+        agrees = said == truth
+        print("That is what you said." if agrees else "That is not what you said. Look again: why?")
+
+
+def _overlay(form: Curve, said: Any, truth: Any) -> None:
+    """Draw both curves."""
+    import matplotlib.pyplot as plt
+
+    from .. import plotting
+
+    places, heights = (np.asarray(x, dtype=float) for x in truth)
+    plt.figure(figsize=(7, 2.8), layout="constrained")
+    plt.plot(places, heights, label="the arm")
+    plt.plot(form.at, said, "o--", mfc="none", label="your prediction")
+    plt.xlabel(form.along)
+    plt.ylabel(form.height)
+    plt.legend(frameon=False)
+    came = form.words(np.interp(form.at, places, heights))
+    plotting.show(f"{form.height} over {form.along}. You said {form.words(said)}. It was {came}.")
+
+
+def _controls(name: str, form: Form) -> None:
+    """Controls for the mouse and for keys; running the cell again writes down what they say."""
+    notebook = shell()
+    if notebook is None:
+        return
+    chosen = desk().chosen.pop(name, None)
+    if chosen is not None:
+        text = f'{name} = predict("{name}", {json.dumps(chosen)})'
+        notebook.set_next_input(text, replace=True)
+        print("Written down. Run this cell once more to commit to it.")
+        return
+    import ipywidgets as widgets
+    from IPython.display import display
+
+    note = widgets.Label("Choose, then run this cell again.")
+    parts = _inputs(form, widgets)
+
+    def changed(_: Any) -> None:
+        values = [part.value for part in parts]
+        said = values if isinstance(form, Curve) else values[0]
+        if not form.problem(said):
+            desk().chosen[name] = said
+            note.value = f"{form.words(said)}: run this cell again to write it down."
+
+    for part in parts:
+        part.observe(changed, "value")
+    box = widgets.HBox if isinstance(form, Curve) else widgets.VBox
+    display(widgets.VBox([box(parts), note]))
+
+
+def _inputs(form: Form, widgets: Any) -> list[Any]:
+    """One control for each value of a prediction."""
+    match form:
+        case Choose(options):
+            pairs = [(f"({letter}) {text}", letter) for letter, text in options.items()]
+            layout = widgets.Layout(width="auto")
+            return [widgets.RadioButtons(options=pairs, value=None, layout=layout)]
+        case Rank():
+            return [widgets.Text(placeholder=form.how, layout=widgets.Layout(width="30em"))]
+        case Number(unit, least, most):
+            return [widgets.BoundedFloatText(least, min=least, max=most, description=unit)]
+        case Curve(at, _, height, least, most):
+            middle, step = (least + most) / 2, (most - least) / 50
+            return [
+                widgets.FloatSlider(
+                    middle, min=least, max=most, step=step, description=f"{x:g}",
+                    orientation="vertical", tooltip=f"{height} at {x:g}",
+                )
+                for x in at
+            ]  # fmt: skip

@@ -1,0 +1,61 @@
+"""What notebook 05 lets students predict."""
+
+from labkit.course import Choose, Identification, Measured, Number, Prediction
+
+PREDICTIONS = (
+    Prediction(
+        "wall_force",
+        "The target lies 3 cm behind a wall. The position mode would press with all that its motors "
+        "have. With springs of 300 N/m at the tip, how hard does the tip press?",
+        Number("N", 0.0, 100.0),
+        truth=8.3,
+    ),
+    Prediction(
+        "four_times_the_mass",
+        "A hand pushes with 10 N and keeps pushing. The tip pretends to 5 kg, then to 20 kg; its "
+        "springs stay the same. After two seconds, how far away is the heavy tip?",
+        Choose(
+            {
+                "a": "a quarter as far as the light one",
+                "b": "half as far",
+                "c": "as far",
+                "d": "farther",
+            }
+        ),
+        truth="c",
+    ),
+    Identification(
+        "my_payload",
+        "Your arm carries its own weight, but somebody has left something in its gripper. How heavy "
+        "is it? Its joints have dry friction, so a single pose tells little.",
+        Measured("payload", "kg", 0.0, 3.0, 0.12),
+        truth=0.334,
+        form="one number, in kg",
+        points=3.0,
+        hints=(
+            "What you must command at rest is the load's torque, J^T times its weight, and friction. "
+            "Which of the two changes its sign when you come from the other side?",
+            "Let s1 and e1 swing slowly about the ready pose with springs at the joints "
+            "(`lk.control.springs`), and average the commanded torque over whole swings.",
+            "Compare the averages of s1 and e1 with J^T (0, 0, 9.81), for one kilogram, by least "
+            "squares. A second of averaging is not enough; take several swings.",
+        ),
+    ),
+    Identification(
+        "my_wall",
+        "A wall stands somewhere in front of your arm, at right angles to x. How far can the tip move "
+        "forwards from its ready pose before it touches?",
+        Measured("wall", "m", 0.0, 0.5, 0.004),
+        truth=0.0586,
+        form="one number, in m",
+        points=2.0,
+        hints=(
+            "Go forwards slowly and watch the force that the joints feel "
+            "(`lk.metrics.felt_wrench`).",
+            "The wall gives way, by F / k. Where the arm comes to rest is therefore not where it "
+            "touched.",
+            "Take the force off that was felt before the contact, and read off the place where it "
+            "begins to rise; or subtract F / `contact_stiffness(wall)`, 3,333 N/m here.",
+        ),
+    ),
+)

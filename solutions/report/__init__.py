@@ -1,0 +1,1 @@
+"""The report, notebook 08."""

@@ -1,0 +1,57 @@
+"""What notebook 04 lets students predict."""
+
+from labkit.course import Choose, Found, Identification, Number, Prediction, Telling
+
+RUN = (
+    "Your {} misbehaving run: which mistake came into the law, and at which time does it first show? "
+    "Write the letter and the time in s."
+)
+INTERVAL = (
+    "Plot the error of each joint. It is smooth and small, and then it is not: between 0.3 and 1.0 s.",
+    "What kind of error: of all joints or of one, with the sign of gravity, with the speed, growing by "
+    "itself, only while the target accelerates?",
+    "Run the suspects yourself, with `labkit.course.bugs.tells_apart`, and compare.",
+)
+
+PREDICTIONS = (
+    Prediction(
+        "gravity_twice",
+        "The arm carries its own weight. Your law does not know, and adds g(q) as well. Springs of "
+        "80 N m/rad hold each joint. Where is the tip after 1.5 s?",
+        Choose({"a": "where it was", "b": "lower", "c": "higher"}),
+        truth="c",
+    ),
+    Prediction(
+        "unknown_load",
+        "Somebody puts 0.5 kg into the gripper, and the model does not know. Computed torque with "
+        "kp = 40 1/s² holds the arm. How far does the tip sag?",
+        Number("mm", 0.0, 1000.0),
+        truth=21.0,
+    ),
+    *(
+        Identification(
+            f"bug_{k + 1}",
+            RUN.format(("first", "second", "third")[k]),
+            Found(k),
+            truth=truth,
+            form='a letter and a time, such as ("b", 1.25)',
+            points=1.0,
+            hints=INTERVAL,
+            outcomes=("experiment", "control"),
+        )
+        for k, truth in enumerate((("c", 0.76), ("h", 0.55), ("f", 0.85)))
+    ),
+    Identification(
+        "experiment",
+        "An experiment for the first run: its cause, the next suspect, and a start and a move that "
+        "tell the two apart. `start` is by how much each joint begins beside its target, `move` where "
+        "it goes and comes back from, both in rad, seven numbers each. The machine runs both laws; "
+        "they must differ by five times the noise.",
+        Telling(0),
+        truth=("cb", [0.0] * 7, [0.3, 0.2, 0.0, -0.3, 0.2, 0.2, 0.4]),
+        form='suspects, start and move, such as ("ad", [0, 0, 0, 0, 0, 0, 0], [0.3, 0, 0, 0, 0, 0, 0])',
+        points=2.0,
+        core=False,
+        outcomes=("experiment", "control"),
+    ),
+)

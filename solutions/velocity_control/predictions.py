@@ -1,0 +1,36 @@
+"""What notebook 03 lets students predict."""
+
+from labkit.course import Curve, Identification, Measured, Number, Prediction
+
+PREDICTIONS = (
+    Prediction(
+        "with_more_d",
+        "A joint is let go 0.2 rad from its target, which stands still. With kp = 3 and kd = 0 the "
+        "error dies away as exp(-3 t): 0.2, 0.08, 0.03, 0.01, ... rad. Draw it for kp = 3 and kd = 3.",
+        Curve((0.0, 0.3, 0.6, 0.9, 1.2, 1.5), "time [s]", "error [rad]", -0.2, 0.3),
+        truth=[0.2, 0.17, 0.13, 0.1, 0.08, 0.07],
+    ),
+    Prediction(
+        "worst_elbow",
+        "The elbow stretches from 0.8 rad to 0 while the tip must move at 10 cm/s in its hardest "
+        "direction. At which angle of the elbow do the joints turn fastest, without damping?",
+        Number("rad", 0.0, 0.8),
+        truth=0.15,
+    ),
+    Identification(
+        "my_lag",
+        "How long do the motors of *your* arm take to follow a commanded speed? Command a step, look "
+        "at the log, and give the time constant of the lag.",
+        Measured("lag", "s", 0.0, 0.5, 0.005),
+        truth=0.033,
+        form="one number, in s",
+        points=3.0,
+        hints=(
+            "A joint that follows with the time constant τ has covered 63 % of a step of its speed "
+            "after τ, and in steady motion its angle is v τ behind.",
+            "`log.q` and `log.dq` hold the angles and speeds as they were, not as the controller saw "
+            "them; so they are not late. Let one joint turn at 0.4 rad/s for a second.",
+            "Average t - (q(t) - q(0)) / v over the second half of the run.",
+        ),
+    ),
+)

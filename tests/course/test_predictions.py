@@ -1,0 +1,57 @@
+"""Predictions: what counts as one, what is shown when, and what a grader makes of it."""
+
+import pytest
+
+from labkit.course import Choose, Curve, Number, Outcome, Prediction, Rank, mark, predict
+from labkit.course import student as desk
+from labkit.course.reply import Here
+from labkit.course.serialize import question_data, read_question
+
+TWO = {"a": "up", "b": "down"}
+FORMS = [
+    (Choose(TWO), "b", "c"),
+    (Rank(TWO, "the first"), "ba", "bb"),
+    (Number("mm", 0.0, 9.0), 3, 10.0),
+    (Curve((0.0, 1.0), "t [s]", "e [rad]", 0.0, 1.0), [0.1, 0.2], [0.1]),
+]
+each = pytest.mark.parametrize(("form", "said", "nonsense"), FORMS)
+
+
+def verdict(form, said):
+    """What a grader says of a value, the question having travelled as data."""
+    question = read_question(question_data(Prediction("x", "?", form, said).question()))
+    return mark(question, Here(said, ()))
+
+
+@each
+def test_committing_earns_the_point_whatever_is_said(form, said, nonsense):
+    """Anything of the right form is right, anything else is wrong, None is not attempted."""
+    assert verdict(form, said).earned == 1.0
+    assert verdict(form, nonsense).outcome is Outcome.WRONG
+    assert verdict(form, None).outcome is Outcome.NOT_ATTEMPTED
+
+
+@pytest.fixture
+def place(monkeypatch):
+    """A notebook with one prediction."""
+    question = Prediction("x", "?", Choose(TWO), "a").question()
+    made = desk.Desk({"x": question})
+    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    return made
+
+
+def test_the_truth_waits_for_a_prediction(place, capsys):
+    """Before anything is committed a reveal tells nothing of the truth."""
+    predict("x", truth="a")
+    assert "up" not in capsys.readouterr().out
+    assert predict("x", "b") == "b"
+    predict("x", truth="a")
+    said = capsys.readouterr().out
+    assert "You predicted: (b) down" in said and "The arm says:  (a) up" in said
+
+
+def test_the_first_prediction_stays(place):
+    """What is changed after the reveal is not what was committed to."""
+    predict("x", "b")
+    predict("x", truth="a")
+    assert predict("x", "a") == "b"
