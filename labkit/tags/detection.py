@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .camera import Camera
 
 _SQUARE = 6.0
-"""How many sigmas corners may be off those of a square; four corners leave two free, so it is rare."""
+"""How many sigmas corners may be off those of a square."""
 
 _NONE = Intrinsics().distortion
 
@@ -200,9 +200,7 @@ def reprojection_error(T_cm: Any, corners: Any, camera: Camera | Intrinsics, siz
     return float(np.sqrt(np.mean(np.sum(off**2, axis=1))))
 
 
-def pose_covariance(
-    T_cm: Any, camera: Camera | Intrinsics, size: float, noise: float
-) -> Array:
+def pose_covariance(T_cm: Any, camera: Camera | Intrinsics, size: float, noise: float) -> Array:
     """What an error of the corners means for the pose.
 
     Args:

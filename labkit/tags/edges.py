@@ -25,7 +25,7 @@ _ACROSS = np.linspace(-1.0, 1.0, _DEEP)[:, None]
 _WEIGHT = np.full(_DEEP, 1.0 / (_DEEP - 1))
 _WEIGHT[[0, -1]] *= 0.5  # the trapezoidal rule
 _GRAIN = 1.6  # how much more a corner is off than its sides' scatter says, by `make tag-bench`
-_CUT = 0.75  # [px] by which it is off for each unit of slope left at the rows' ends, by the same
+_CUT = 0.37  # [px] by which it is off for each unit of slope left at the rows' ends, by the same
 _STEEP = 0.11  # with more slope there, a row is too short for the blur, and the edge is lost
 _PURE = 0.2  # a row must begin dark and end light, to this share of the contrast
 
@@ -42,9 +42,7 @@ class Outline(NamedTuple):
     noise: float
 
 
-def sharpened(
-    picture: Picture, corners: Any, cells: int, lens: Intrinsics
-) -> Outline | None:
+def sharpened(picture: Picture, corners: Any, cells: int, lens: Intrinsics) -> Outline | None:
     """The corners of a dark square on light ground, found again from its sides.
 
     Args:

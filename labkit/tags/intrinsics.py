@@ -82,7 +82,7 @@ class Intrinsics:
         )
 
     def straightened(self, pixels: Any) -> Array:
-        """Where the same lens without distortion would show what appears at pixels, shape (n, 2)."""
+        """Where a lens without distortion would show what appears at pixels, shape (n, 2)."""
         if not any(self.distortion):
             return np.asarray(pixels)
         K, bent = self.matrix, np.array(self.distortion)

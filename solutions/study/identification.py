@@ -2,7 +2,7 @@ r"""Identification: move the arm, ask which friction explains the torques, and f
 
 On an arm that carries its own weight, the torque that was commanded is, joint by joint,
 
-.. math:: \tau_i - \left(M \ddot q + C \dot q\right)_i = b_i\,\dot q_i + f_i\,\operatorname{sgn} \dot q_i
+.. math:: \tau_i - (M \ddot q + C \dot q)_i = b_i\,\dot q_i + f_i\,\operatorname{sgn} \dot q_i
 
 which is linear in the two unknowns: least squares finds them (Siciliano, section 7.3).
 """
@@ -47,7 +47,11 @@ class Swing:
         k = np.arange(len(self.q0))
         rates = 2.0 * np.pi * np.array([0.11 + 0.02 * k, 0.29 - 0.015 * k])
         x, grown = min(t / 2.0, 1.0), np.zeros(3)
-        grown[:] = x**3 * (10 - 15 * x + 6 * x**2), 15 * x**2 * (1 - x) ** 2, 15 * x * (1 - x) * (1 - 2 * x)
+        grown[:] = (
+            x**3 * (10 - 15 * x + 6 * x**2),
+            15 * x**2 * (1 - x) ** 2,
+            15 * x * (1 - x) * (1 - 2 * x),
+        )
         s, c = np.sin(rates * t), np.cos(rates * t)
         wave, slope, bend = s.sum(axis=0), (rates * c).sum(axis=0), -(rates**2 * s).sum(axis=0)
         return Sample(
@@ -95,7 +99,12 @@ def fit(log: Log, model: Model) -> Friction:
     q = np.column_stack([np.interp(even, t, x) for x in log.measured.q[at].T])
     dq, ddq = (savgol_filter(q, 21, 3, deriv=k, delta=step, axis=0) for k in (1, 2))
     command = np.column_stack([np.interp(even, log.t, x) for x in log.command.T])
-    moved = np.array([model.inverse_dynamics(*row) - model.gravity(row[0]) for row in zip(q, dq, ddq, strict=True)])
+    moved = np.array(
+        [
+            model.inverse_dynamics(*row) - model.gravity(row[0])
+            for row in zip(q, dq, ddq, strict=True)
+        ]
+    )
     rest = savgol_filter(command, 21, 3, axis=0) - moved
     found, speeds, torques = [], [], []
     for speed, torque in zip(dq.T, rest.T, strict=True):
@@ -130,11 +139,16 @@ class Compensated:
         return JointTorque(self.law(state, target).value + extra)
 
 
-def compared(task: Task, friction: Friction, plant: Plant = BAXTER, seed: int = 0) -> dict[str, Log]:
+def compared(
+    task: Task, friction: Friction, plant: Plant = BAXTER, seed: int = 0
+) -> dict[str, Log]:
     """Joint impedance along a task without and with the compensation."""
     law = five(Model("left", plant), plant)["joint impedance"]
     logs = {}
-    for name, one in (("plain", law.controller), ("compensated", Compensated(law.controller, friction))):
+    for name, one in (
+        ("plain", law.controller),
+        ("compensated", Compensated(law.controller, friction)),
+    ):
         with Arm("left", plant, seed, q0=task.q0) as arm:
             logs[name] = run(arm, task.joints, one, rate=law.rate)
     return logs

@@ -1,4 +1,4 @@
-r"""Servoing by the image or by the pose, with the camera in the hand and a focal length that is off.
+r"""Servoing by the image or by the pose, with a hand camera whose focal length is off.
 
 For a point at (x, y) = (X/Z, Y/Z) the camera's twist (v, w) in its own axes moves the image by
 (Chaumette & Hutchinson 2006, eq. 11)

@@ -31,7 +31,7 @@ def laps(model: Model, q0: Any, count: int = 6, pull: float = 0.0, radius: float
     """
     q, start, dt = np.array(q0), model.pose(q0), 0.02
     out, steps = [q], round(5.0 / dt)
-    for lap in range(count):
+    for _ in range(count):
         for k in range(steps):
             a = 2.0 * np.pi * (k + 0.5) / steps
             J = model.tip_jacobian(q)

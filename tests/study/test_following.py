@@ -87,7 +87,7 @@ def followed(duration, plant=lk.IDEAL, noise=0.0, follower=Watched, **dials):
 
 @pytest.mark.slow
 def test_a_circling_board_is_followed_within_two_millimetres():
-    """0.15 m and 0.1 m/s for 20 s, 10 Hz, 100 ms late: within 2 mm, gently once it has caught up."""
+    """0.15 m and 0.1 m/s for 20 s, 10 Hz, 100 ms late: within 2 mm, gently once caught up."""
     log, error, guide, lookups = followed(20.0)
     settled = log.t >= 5.0
     rms = 1e3 * np.sqrt(np.mean(error[settled] ** 2))
