@@ -1,9 +1,9 @@
 r"""Passivity of a sampled spring and damper, and where contact with it really becomes unstable.
 
 A mass with physical damping b carries a spring K and a damper B that a computer makes from
-samples, T apart, the velocity by a backward difference: :math:`H(z) = K + B (z - 1)/(T z)`.  Whatever passive
-thing it touches, it is passive if and only if, for all :math:`0 \le \theta \le \pi` (Colgate &
-Schenkel 1997, theorem 1),
+samples, T apart, the velocity by a backward difference: :math:`H(z) = K + B (z - 1)/(T z)`.
+Whatever passive thing it touches, it is passive if and only if, for all
+:math:`0 \le \theta \le \pi` (Colgate & Schenkel 1997),
 
 .. math:: b > \frac{T}{2}\,\frac{1}{1 - \cos\theta}\,
    \operatorname{Re}\left[(1 - e^{-j\theta})\,H(e^{j\theta})\right] = \frac{KT}{2} - B\cos\theta
