@@ -161,9 +161,7 @@ class Camera:
         picture = np.full((self._wide.height, self._wide.width, 3), BACKGROUND, np.float32)
         return self._developed(*self._exposed(picture, robot, T_wc))
 
-    def _exposed(
-        self, picture: Any, robot: RobotVisuals, T_wc: Array
-    ) -> tuple[Any, list[Window]]:
+    def _exposed(self, picture: Any, robot: RobotVisuals, T_wc: Array) -> tuple[Any, list[Window]]:
         """A picture with the tags printed over it, as a mean over the exposure; and where."""
         if not self.exposure:
             return picture, self._print(picture, robot, T_wc, self.world.t)

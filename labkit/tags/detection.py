@@ -6,13 +6,15 @@ choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation"
 of their errors says how safe the choice is.
 
 The covariance is that of least squares, :math:`\sigma^2 (J^T J)^{-1}`, with J the derivative of the
-corners' pixels with respect to a small motion of the tag.
+corners' pixels with respect to a small motion of the tag, and sigma from the edges of this very
+picture.  A tag whose edges are not seen well, or whose corners are not those of a square as well as
+sigma says, is not reported: half hidden, it would be found in the wrong place.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -22,15 +24,17 @@ import numpy as np
 from .. import se3
 from ..errors import LabkitError, OutOfRange, TypeMismatch
 from ..shapes import Array, as_array, as_number, locked, shown
-from .edges import sharpened
+from .edges import Outline, sharpened
 from .intrinsics import Intrinsics
 from .tag import APRILTAG, Picture, as_picture, pattern, tag_corners
 
 if TYPE_CHECKING:
     from .camera import Camera
 
-CORNER_NOISE = 0.015
-"""Standard deviation of a corner's coordinate, in [px], without noise, by `make tag-bench`."""
+_SQUARE = 6.0
+"""How many sigmas corners may be off those of a square."""
+
+_NONE = Intrinsics().distortion
 
 _APRILTAG_OFFSET = 0.5  # OpenCV's AprilTag code counts pixels from their corners
 
@@ -50,6 +54,7 @@ class Detection:
     Attributes:
         id: Its number.
         corners: Its corners in the picture, clockwise from its upper left, shape (4, 2) in [px].
+        noise: Standard deviation of a corner's coordinate, as its edges tell it, in [px].
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
         other_T_cm: The pose that fits second best, shape (4, 4).
         error: What is left between the corners and the pose's, root mean square, in [px].
@@ -60,6 +65,7 @@ class Detection:
 
     id: int
     corners: Array
+    noise: float
     T_cm: Array
     other_T_cm: Array
     error: float
@@ -95,13 +101,14 @@ def detect_tags(
     for one in [size] if sizes is None else sizes.values():
         as_number(one, "size", above=0.0)
     cells = int(pattern(dictionary).markerSize) + 2
-    found = _corners(grey, dictionary, cells, [] if sizes is None else list(sizes))
+    found = _outlines(grey, dictionary, cells, [] if sizes is None else list(sizes), lens)
     seen = []
-    for number, corners in found:
+    for number, outline in found:
         side = size if sizes is None else sizes.get(number)
         if side is not None:
-            seen.append(_detection(number, corners, lens, float(side)))  # type: ignore[arg-type]
-    return tuple(sorted(seen, key=lambda d: (d.id, d.error)))
+            seen.append(_detection(number, outline, lens, float(side)))  # type: ignore[arg-type]
+    sure = [d for d in seen if d.error <= _SQUARE * d.noise]
+    return tuple(sorted(sure, key=lambda d: (d.id, d.error)))
 
 
 def find_tag(detections: Sequence[Detection], id: int) -> Detection:
@@ -145,8 +152,9 @@ def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Ar
         OutOfRange: No square looks like that from anywhere.
     """
     lens, pixels = _intrinsics(camera), as_array(corners, (4, 2), "corners")
+    straight = np.ascontiguousarray(lens.straightened(pixels))
     _, turns, places, _ = cv2.solvePnPGeneric(
-        tag_corners(size), pixels, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+        tag_corners(size), straight, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
     )
     if not turns:
         raise OutOfRange(
@@ -192,9 +200,7 @@ def reprojection_error(T_cm: Any, corners: Any, camera: Camera | Intrinsics, siz
     return float(np.sqrt(np.mean(np.sum(off**2, axis=1))))
 
 
-def pose_covariance(
-    T_cm: Any, camera: Camera | Intrinsics, size: float, noise: float = CORNER_NOISE
-) -> Array:
+def pose_covariance(T_cm: Any, camera: Camera | Intrinsics, size: float, noise: float) -> Array:
     """What an error of the corners means for the pose.
 
     Args:
@@ -209,31 +215,35 @@ def pose_covariance(
     lens, T = _intrinsics(camera), se3.as_pose(T_cm, "T_cm")
     arms = tag_corners(size) @ T[:3, :3].T
     turn, place = np.zeros(3), np.array(T[:3, 3])  # small turns of what is turned already
-    J = cv2.projectPoints(arms, turn, place, lens.matrix, None)[1][:, [3, 4, 5, 0, 1, 2]]
+    bent = np.array(lens.distortion)
+    J = cv2.projectPoints(arms, turn, place, lens.matrix, bent)[1][:, [3, 4, 5, 0, 1, 2]]
     return locked(np.array(as_number(noise, "noise", above=0.0) ** 2 * np.linalg.inv(J.T @ J)))
 
 
-def _detection(id: int, corners: Array, lens: Intrinsics, size: float) -> Detection:
-    first, other = tag_poses(corners, lens, size)
-    best = _polished(first, corners, lens, size)
+def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Detection:
+    flat, corners = replace(lens, distortion=_NONE), outline.corners
+    first, other = tag_poses(corners, flat, size)
+    best = _polished(first, corners, flat, size)
     error, first_error, other_error = (
-        reprojection_error(T, corners, lens, size) for T in (best, first, other)
+        reprojection_error(T, corners, flat, size) for T in (best, first, other)
     )
     return Detection(
         id=id,
-        corners=locked(corners),
+        corners=locked(lens.bent(corners) if any(lens.distortion) else corners),
+        noise=outline.noise,
         T_cm=best,
         other_T_cm=other,
         error=error,
         ratio=other_error / max(first_error, 1e-9),
-        covariance=pose_covariance(best, lens, size),
+        covariance=pose_covariance(best, flat, size, outline.noise),
     )
 
 
 def _polished(T_cm: Array, corners: Array, lens: Intrinsics, size: float) -> Array:
     """The nearest pose that fits the pixels best."""
     turn, place = se3.rotation_log(T_cm[:3, :3])[:, None], np.array(T_cm[:3, 3:])
-    return _pose(*cv2.solvePnPRefineLM(tag_corners(size), corners, lens.matrix, None, turn, place))
+    bent = np.array(lens.distortion)
+    return _pose(*cv2.solvePnPRefineLM(tag_corners(size), corners, lens.matrix, bent, turn, place))
 
 
 def _pose(turn: Any, place: Any) -> Array:
@@ -250,21 +260,17 @@ def _intrinsics(camera: Any) -> Intrinsics:
     return lens
 
 
-def _corners(
-    grey: Picture, dictionary: str, cells: int, wanted: list[int]
-) -> list[tuple[int, Array]]:
-    """Numbers and corners.  If one knows what to look for, half of the pixels may be enough."""
-    if wanted:
-        quick = _numbered(grey, dictionary, 2.0)
-        fine = [(number, sharpened(grey, corners, cells)) for number, corners in quick]
-        sharp = [(number, corners) for number, corners in fine if corners is not None]
+def _outlines(
+    grey: Picture, dictionary: str, cells: int, wanted: list[int], lens: Intrinsics
+) -> list[tuple[int, Outline]]:
+    """Numbers and outlines.  If one knows what to look for, half of the pixels may be enough."""
+    for decimate in (2.0, 0.0) if wanted else (0.0,):
+        found = _numbered(grey, dictionary, decimate)
+        fine = [(number, sharpened(grey, corners, cells, lens)) for number, corners in found]
+        sharp = [(number, outline) for number, outline in fine if outline is not None]
         if len(sharp) == len(fine) and {number for number, _ in sharp} >= set(wanted):
-            return sharp
-    result = []
-    for number, corners in _numbered(grey, dictionary, 0.0):
-        sharp_corners = sharpened(grey, corners, cells)
-        result.append((number, corners if sharp_corners is None else sharp_corners))
-    return result
+            break
+    return sharp
 
 
 def _numbered(grey: Picture, dictionary: str, decimate: float) -> list[tuple[int, Array]]:

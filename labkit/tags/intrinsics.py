@@ -82,13 +82,13 @@ class Intrinsics:
         )
 
     def straightened(self, pixels: Any) -> Array:
-        """Where the same lens without distortion would show what appears at pixels, shape (n, 2)."""
+        """Where a lens without distortion would show what appears at pixels, shape (n, 2)."""
         if not any(self.distortion):
             return np.asarray(pixels)
         K, bent = self.matrix, np.array(self.distortion)
         exact = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 1e-10)
         flat = np.asarray(pixels, dtype=float)[:, None]
-        return np.asarray(cv2.undistortPointsIter(flat, K, bent, np.eye(3), K, exact))[:, 0]
+        return np.asarray(cv2.undistortImagePoints(flat, K, bent, arg1=exact))[:, 0]
 
     def bent(self, pixels: Any) -> Array:
         """Where what a lens without distortion shows at pixels, shape (n, 2), really appears."""

@@ -14,12 +14,29 @@ from typing import Any
 
 import numpy as np
 
-from labkit import Chain, Circle, Hold, PosePath, Quintic, Trajectory, World, robot, se3
+from labkit import (
+    BAXTER,
+    Arm,
+    Chain,
+    Circle,
+    Hold,
+    Log,
+    Plant,
+    PosePath,
+    Quintic,
+    Trajectory,
+    World,
+    metrics,
+    robot,
+    run,
+    se3,
+)
 from labkit.paths import Spline
+from labkit.run import Controller
 from labkit.shapes import Array
 from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
-from labkit.tags.stream import TagStream, TagTarget
+from labkit.tags.stream import Count, TagStream, TagTarget
 from labkit.tags.tag import Tag
 
 from ..tags.following import TagFollower
@@ -83,6 +100,32 @@ def followed(seed: int) -> Chase:
 def sequential(seed: int) -> Chase:
     """The report's way (its Algorithm 1): look every 5 s for a second, then a line from rest."""
     return _record(seed, 0.2, 1.0, lambda: SequentialServoing(ready_pose(), OFFSET))
+
+
+def closed_loop(
+    seed: int, controller: Controller, follower: Any, *, plant: Plant = BAXTER, **dials: Any
+) -> tuple[Log, Array, Count]:
+    """Follow the tag with the arm in the picture, which may hide it.
+
+    Args:
+        seed: Of arm, camera and look-ups.
+        controller: Takes poses.
+        follower: Makes them of the readings.
+        plant: What the arm is like.
+        **dials: Of the look-ups, as `TagStream` takes them.
+
+    Returns:
+        The run; how far the tip was from its place above the true tag, shape (N,) in [m]; and how
+        the look-ups went.
+    """
+    with World() as world:
+        board, camera = staged(world, seed)
+        arm = Arm("left", plant, seed, q0=robot("left").ready, world=world)
+        lookups = TagStream(camera, board.tag, seed=seed, **dials)
+        log = run(arm, TagTarget(lookups, follower), controller, rate=RATE, duration=DURATION)
+        goal = np.array([board.pose_at(t)[:3, 3] for t in log.t]) + OFFSET
+        tips = metrics.tip_poses(log)[:, :3, 3]
+    return log, np.asarray(np.linalg.norm(goal - tips, axis=1)), lookups.count
 
 
 def _record(seed: int, rate: float, delay: float, make: Callable[[], Any]) -> Chase:

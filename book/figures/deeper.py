@@ -1,0 +1,225 @@
+"""Pages "Going deeper": friction, passivity, servoing by the image, and the seventh joint."""
+
+from __future__ import annotations
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit.plotting import STYLES
+from solutions.study import identification, image_servoing, passivity, redundancy, tasks
+
+from .page import figure, holds, numbers, table
+
+SEED = 4
+
+
+def friction() -> HTML:
+    """What the torques do not explain, against speed, and the line through it."""
+    model = lk.Model("left", lk.BAXTER)
+    found = identification.fit(identification.excite(seed=SEED), model)
+    true_dry = lk.BAXTER.each("stiction", 7)
+    off = np.abs(found.dry / true_dry - 1.0)
+    holds(off[:4].max() < 0.25, "the dry friction of shoulder and elbow is found to a quarter")
+    _, axes = plt.subplots(1, 2, figsize=(6.4, 3.0))
+    for ax, joint in zip(axes, (1, 5), strict=True):
+        x = np.linspace(0.05, np.abs(found.speed[joint]).max(), 2)
+        ax.plot(found.speed[joint], found.torque[joint], ".", color="#999999", markersize=3)
+        for sign in (-1.0, 1.0):
+            ax.plot(sign * x, sign * (found.viscous[joint] * x + found.dry[joint]), "C0-")
+        ax.set(xlabel="speed [rad/s]", ylabel="torque left over [N m]")
+        ax.set_title(model.robot.joint_names[joint])
+    numbers(
+        {"dry_off": 100 * off[:4].max(), "dry_s1": found.dry[1], "viscous_s1": found.viscous[1]}
+    )
+    told = ", ".join(
+        f"{name} {d:.2g} N m and {b:.2g} N m s/rad"
+        for name, d, b in zip(model.robot.joint_names, found.dry, found.viscous, strict=True)
+    )
+    return figure(
+        "What the motion does not explain of the torque, joint by joint, and the fitted friction.",
+        f"Two clouds of points, each in two halves joined by a jump at zero speed. Found: {told}.",
+    )
+
+
+def compensation() -> HTML:
+    """Joint impedance along the line, without and with the friction fed forward."""
+    model = lk.Model("left", lk.BAXTER)
+    found = identification.fit(identification.excite(seed=SEED), model)
+    logs = identification.compared(tasks.line(), found, seed=SEED)
+    off = {name: identification.error(log) for name, log in logs.items()}
+    holds(off["compensated"] <= 0.5 * off["plain"], "the compensation halves the error")
+    numbers(off, ".2g")
+    _, ax = plt.subplots(figsize=(6.0, 3.0))
+    for k, (name, log) in enumerate(logs.items()):
+        e = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
+        ax.plot(log.t, e, f"C{k}{STYLES[k]}", label=name)
+    ax.set(xlabel="time [s]", ylabel="error of the tip [mm]", ylim=(0, None))
+    ax.legend()
+    return figure(
+        "Joint impedance along the line on the realistic arm, without and with the friction found.",
+        f"Error over time. RMS without compensation {off['plain']:.2g} mm, with it "
+        f"{off['compensated']:.2g} mm.",
+    )
+
+
+MASS, SAMPLING = 8.0, 0.005
+
+
+def passive() -> HTML:
+    """Stiffness against physical damping: where it is passive, where it is stable."""
+    damping = np.linspace(1.0, 30.0, 16)
+    limit = 2.0 * damping / SAMPLING
+    alone = [passivity.stiffest(MASS, b, 0.0, SAMPLING) for b in damping]
+    damped = [passivity.stiffest(MASS, b, 60.0, SAMPLING) for b in damping]
+    wall = [passivity.stiffest(MASS, b, 60.0, SAMPLING, wall=5e5) for b in damping]
+    exact = [passivity.least_damping(K, B, SAMPLING) - K * SAMPLING / 2 - abs(B)
+             for K, B in ((300.0, 0.0), (300.0, 50.0), (2000.0, -20.0))]  # fmt: skip
+    holds(np.abs(exact).max() < 1e-3, "the general condition is b > KT/2 + |B| here")
+    holds(np.allclose(alone, limit, rtol=0.05), "without a damper both limits are one")
+    holds(min(damped) > 2.0 * limit[0], "with a damper it is stable where it is not passive")
+    holds(passivity.is_stable(passivity.loop(MASS, 5.0, 300.0, 60.0, SAMPLING, 5e5)),
+          "the lab's spring is stable at a wall of 500 kN/m")  # fmt: skip
+    numbers({"need_300": 300.0 * SAMPLING / 2}, ".2g")
+    numbers({"stable_5": round(np.interp(5.0, damping, damped), -3),
+             "stable_wall_5": round(np.interp(5.0, damping, wall), -2)}, ",.0f")  # fmt: skip
+    _, ax = plt.subplots(figsize=(6.0, 3.4))
+    ax.semilogy(damping, alone, "C0-", label="stable, no damper: also the passive limit 2b/T")
+    ax.semilogy(
+        damping, damped, "C1--", label="stable, damper of 60 N s/m: nowhere passive below 60"
+    )
+    ax.semilogy(damping, wall, "C2-.", label="the same, pressed to a wall of 500 kN/m")
+    ax.axhline(300.0, color="#999999", linestyle=":")
+    ax.text(30.0, 330.0, "the lab's spring", ha="right", fontsize="small")
+    ax.set(xlabel="physical damping b [N s/m]", ylabel="largest stiffness [N/m]", ylim=(200, 3e5))
+    ax.legend(fontsize="small")
+    return figure(
+        "A mass of 8 kg on a spring that a computer makes from samples 5 ms apart.",
+        f"Largest stable stiffness over physical damping. At 5 N s/m it is "
+        f"{np.interp(5.0, damping, alone):.2g} N/m without a damper, "
+        f"{np.interp(5.0, damping, damped):.2g} N/m with one of 60 N s/m and "
+        f"{np.interp(5.0, damping, wall):.2g} N/m with it against a wall.",
+    )
+
+
+def servoing() -> HTML:
+    """Who arrives with a focal length that is off by a fifth."""
+    off, rows = 0.2, []
+    _, ax = plt.subplots(figsize=(6.0, 3.2))
+    ends = {}
+    for k, way in enumerate(image_servoing.WAYS):
+        right, wrong = (image_servoing.approach(way, e) for e in (0.0, off))
+        ends[way] = 1e3 * wrong.distance[-1]
+        rows.append([way, f"{1e3 * right.distance[-1]:.2f}", f"{ends[way]:.2g}"])
+        t = image_servoing.DT * np.arange(len(wrong.distance))
+        ax.semilogy(t, 1e3 * wrong.distance, f"C{k}{STYLES[k]}", label=way)
+    holds(ends["image"] < 0.5, "by the image it arrives")
+    holds(ends["pose, goal measured"] > 20.0, "by the pose in metres it does not")
+    holds(ends["pose, goal shown"] < 0.5, "by the pose of a goal that was shown it does")
+    numbers({"servo_image": ends["image"], "servo_pose": ends["pose, goal measured"]}, ".2g")
+    ax.set(xlabel="time [s]", ylabel="from the goal [mm]", ylim=(1e-2, 300))
+    ax.legend(fontsize="small")
+    told = "; ".join(f"{way}: {end:.2g} mm" for way, end in ends.items())
+    return figure(
+        "Distance of the hand's camera from its goal, the focal length believed 20 % too long.",
+        f"Three falling curves on a logarithmic scale. At the end {told}.",
+    )
+
+
+def posture() -> HTML:
+    """The elbow's drift over laps of the tip, with and without a posture."""
+    model = lk.Model("left")
+    q0 = model.robot.ready
+    _, ax = plt.subplots(figsize=(6.0, 2.8))
+    ends = {}
+    for k, (pull, name) in enumerate(((0.0, "no posture"), (2.0, "posture, k = 2 1/s"))):
+        q = redundancy.laps(model, q0, count=5, pull=pull)
+        away = np.degrees(np.abs(q - q0).max(axis=1))
+        ends[name] = away[-1]
+        ax.plot(away, f"C{k}{STYLES[k]}o", label=name)
+    free, held = ends.values()
+    holds(free > 5.0 * held, "without a posture the elbow drifts, with one it returns")
+    numbers({"drift_free": free, "drift_held": held}, ".2g")
+    ax.set(xlabel="lap", ylabel="farthest joint from its start [°]")
+    ax.legend()
+    return figure(
+        "The tip goes round the same circle five times; joints at the end of each lap.",
+        f"After five laps a joint is {free:.2g} degrees off without a posture and {held:.2g} with.",
+    )
+
+
+def along_the_paths() -> HTML:
+    """Manipulability along the four paths."""
+    model = lk.Model("left")
+    _, ax = plt.subplots(figsize=(6.0, 3.0))
+    least = {}
+    for k, task in enumerate((tasks.line(), tasks.circle(), tasks.square(), _tag())):
+        t, w = redundancy.manipulability(model, task.joints)
+        ax.plot(t / t[-1], w, f"C{k}{STYLES[k]}", label=task.name)
+        least[task.name] = w.min()
+    holds(min(least.values()) > 0.02, "none of the four paths comes near a singularity")
+    numbers({"least_w": min(least.values())}, ".2g")
+    ax.set(xlabel="share of the time", ylabel="manipulability", ylim=(0, None))
+    ax.legend(ncols=2)
+    told = ", ".join(f"{name} {w:.2g}" for name, w in least.items())
+    return figure(
+        "Manipulability along the four paths.", f"Four smooth curves; the least values are: {told}."
+    )
+
+
+def _tag() -> tasks.Task:
+    T = tasks.ready_pose()
+    round_once = lk.Circle(T[:3, 3], T[:3, 3] - (0.0, 0.06, 0.0))
+    target = lk.Trajectory(lk.PosePath(round_once, T[:3, :3]), lk.Quintic(6.5))
+    return tasks.Task("tag", target, lk.robot("left").ready)
+
+
+def robust() -> HTML:
+    """What a damped inverse costs and saves near a singularity."""
+    model = lk.Model("left")
+    angles = np.linspace(0.02, 0.8, 79)
+    _, (above, below) = plt.subplots(2, 1, figsize=(6.0, 4.2), sharex=True)
+    peak, miss = {}, {}
+    for k, damping in enumerate((0.0, 1e-3, 1e-2)):
+        fast, missed = redundancy.stretched(model, angles, damping)
+        above.semilogy(angles, fast, f"C{k}{STYLES[k]}", label=f"λ² = {damping:g}")
+        below.plot(angles, 1e3 * missed, f"C{k}{STYLES[k]}")
+        peak[damping], miss[damping] = fast.max(), 1e3 * missed.max()
+    holds(peak[0.0] > 5.0 * peak[1e-2], "damping calms the joints")
+    holds(miss[0.0] < 1.0 < miss[1e-3] < miss[1e-2], "and the tip pays for it")
+    holds(peak[0.0] > 100.0, "without damping a joint would pass 100 rad/s")
+    numbers({"peak_2": peak[1e-2], "miss_2": miss[1e-2]}, ".2g")
+    above.axhline(1.5, color="#999999", linestyle=":")
+    above.set_ylabel("fastest joint [rad/s]")
+    above.legend(fontsize="small")
+    below.set(xlabel="elbow angle e1 [rad]", ylabel="tip misses [mm/s]")
+    return figure(
+        "The tip is pulled outwards at 100 mm/s while the elbow is nearly straight.",
+        f"Above, the fastest joint: {peak[0.0]:.2g} rad/s at most without damping, "
+        f"{peak[1e-2]:.2g} with the strongest. Below, what the tip misses: 0 and "
+        f"{miss[1e-2]:.2g} mm/s at most.",
+    )
+
+
+def ways() -> HTML:
+    """What each way of servoing needs and what it forgives."""
+    return table(
+        ("Way", "compares", "needs", "wrong focal length"),
+        [
+            (
+                "by the image",
+                "corners with corners",
+                "a picture at the goal, a rough depth",
+                "arrives",
+            ),
+            (
+                "by the pose, goal in metres",
+                "pose with pose",
+                "a calibrated lens, the tag's size",
+                "stops beside it",
+            ),
+            ("by the pose, goal shown", "pose with pose", "a picture at the goal", "arrives"),
+        ],
+        "Three ways to bring a camera to a place",
+    )

@@ -1,0 +1,159 @@
+r"""Identification: move the arm, ask which friction explains the torques, and feed it forward.
+
+On an arm that carries its own weight, the torque that was commanded is, joint by joint,
+
+.. math:: \tau_i - (M \ddot q + C \dot q)_i = b_i\,\dot q_i + f_i\,\operatorname{sgn} \dot q_i
+
+which is linear in the two unknowns: least squares finds them (Siciliano, section 7.3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import savgol_filter
+
+from labkit import BAXTER, Arm, JointTorque, Log, Model, Plant, Sample, State, metrics, run
+from labkit.control import Command
+from labkit.run import Controller
+from labkit.shapes import Array
+
+from .gains import five
+from .tasks import Task
+
+MOVING = 0.05
+"""Below this speed, in [rad/s], a joint may stick, and says nothing about its friction."""
+SOFT = 0.01
+"""Over this speed, in [rad/s], the sign of the target's speed is rounded off."""
+
+
+@dataclass(frozen=True)
+class Swing:
+    """A motion that excites every joint: two sines each, slow enough for no limit to matter.
+
+    Attributes:
+        q0: About which joint angles, shape (n,) in [rad].
+        amplitude: Of each sine, in [rad].
+        duration: In [s].
+    """
+
+    q0: Array
+    amplitude: float = 0.12
+    duration: float = 12.0
+
+    def __call__(self, t: float) -> Sample:
+        """The joint angles at time ``t`` [s], which grow from rest within two seconds."""
+        k = np.arange(len(self.q0))
+        rates = 2.0 * np.pi * np.array([0.11 + 0.02 * k, 0.29 - 0.015 * k])
+        x, grown = min(t / 2.0, 1.0), np.zeros(3)
+        grown[:] = (
+            x**3 * (10 - 15 * x + 6 * x**2),
+            15 * x**2 * (1 - x) ** 2,
+            15 * x * (1 - x) * (1 - 2 * x),
+        )
+        s, c = np.sin(rates * t), np.cos(rates * t)
+        wave, slope, bend = s.sum(axis=0), (rates * c).sum(axis=0), -(rates**2 * s).sum(axis=0)
+        return Sample(
+            self.q0 + self.amplitude * grown[0] * wave,
+            self.amplitude * (grown[1] * wave + grown[0] * slope),
+            self.amplitude * (grown[2] * wave + 2.0 * grown[1] * slope + grown[0] * bend),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Friction:
+    """What least squares found.
+
+    Attributes:
+        viscous: b, shape (n,) in [N m s/rad].
+        dry: f, shape (n,) in [N m].
+        speed: The speeds that were used, joint by joint, in [rad/s].
+        torque: The torques that the motion does not explain, joint by joint, in [N m].
+    """
+
+    viscous: Array
+    dry: Array
+    speed: tuple[Array, ...]
+    torque: tuple[Array, ...]
+
+
+def excite(plant: Plant = BAXTER, seed: int = 0) -> Log:
+    """Let the arm swing under computed torque."""
+    model = Model("left", plant)
+    law, swing = five(model, plant)["joint torque"], Swing(model.robot.ready)
+    with Arm("left", plant, seed, q0=model.robot.ready) as arm:
+        return run(arm, swing, law.controller, rate=law.rate, duration=swing.duration)
+
+
+def fit(log: Log, model: Model) -> Friction:
+    """Fit the friction, from what the arm reports and what it was told, and from nothing else.
+
+    Args:
+        log: A run in torque mode of an arm that carries its own weight.
+        model: Of the arm; it must have the arm's rotors.
+    """
+    t, at = np.unique(log.measured.t.round(6), return_index=True)
+    step = float(np.median(np.diff(t)))
+    even = np.arange(t[0], t[-1], step)
+    q = np.column_stack([np.interp(even, t, x) for x in log.measured.q[at].T])
+    dq, ddq = (savgol_filter(q, 21, 3, deriv=k, delta=step, axis=0) for k in (1, 2))
+    command = np.column_stack([np.interp(even, log.t, x) for x in log.command.T])
+    moved = np.array(
+        [
+            model.inverse_dynamics(*row) - model.gravity(row[0])
+            for row in zip(q, dq, ddq, strict=True)
+        ]
+    )
+    rest = savgol_filter(command, 21, 3, axis=0) - moved
+    found, speeds, torques = [], [], []
+    for speed, torque in zip(dq.T, rest.T, strict=True):
+        use = np.abs(speed) > MOVING
+        A = np.column_stack([speed, np.sign(speed)])[use]
+        found.append(np.linalg.lstsq(A, torque[use], rcond=None)[0])
+        speeds.append(speed[use])
+        torques.append(torque[use])
+    viscous, dry = np.array(found).T
+    return Friction(viscous, dry, tuple(speeds), tuple(torques))
+
+
+@dataclass(frozen=True, eq=False)
+class Compensated:
+    """A torque controller plus the friction that the target's own motion will meet.
+
+    The target's speed is used, not the measured one: it has no noise, and at rest it is zero, so
+    that the compensation can never drive the arm by itself.
+
+    Attributes:
+        law: The controller, of joint angles.
+        friction: What to add.
+    """
+
+    law: Controller
+    friction: Friction
+
+    def __call__(self, state: State, target: Sample) -> Command:
+        """The command at this tick."""
+        dq = target.velocity
+        extra = self.friction.viscous * dq + self.friction.dry * np.tanh(dq / SOFT)
+        return JointTorque(self.law(state, target).value + extra)
+
+
+def compared(
+    task: Task, friction: Friction, plant: Plant = BAXTER, seed: int = 0
+) -> dict[str, Log]:
+    """Joint impedance along a task without and with the compensation."""
+    law = five(Model("left", plant), plant)["joint impedance"]
+    logs = {}
+    for name, one in (
+        ("plain", law.controller),
+        ("compensated", Compensated(law.controller, friction)),
+    ):
+        with Arm("left", plant, seed, q0=task.q0) as arm:
+            logs[name] = run(arm, task.joints, one, rate=law.rate)
+    return logs
+
+
+def error(log: Log) -> float:
+    """RMS position error of the tip, in [mm]."""
+    return 1e3 * metrics.rms(metrics.tip_error(log)[:, :3])

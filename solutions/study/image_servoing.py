@@ -1,0 +1,119 @@
+r"""Servoing by the image or by the pose, with a hand camera whose focal length is off.
+
+For a point at (x, y) = (X/Z, Y/Z) the camera's twist (v, w) in its own axes moves the image by
+(Chaumette & Hutchinson 2006, eq. 11)
+
+.. math:: \dot s = L\,V_c, \qquad L = \begin{bmatrix} -1/Z & 0 & x/Z & xy & -(1+x^2) & y \\
+   0 & -1/Z & y/Z & 1+y^2 & -xy & -x \end{bmatrix}
+
+Image-based: :math:`V_c = \lambda L^+ (s_d - s)`.  Position-based: the same with the error of the
+pose that the picture is believed to show.  Both are asked for joint speeds, :math:`J_c^+ V_c`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from labkit import Model, se3
+from labkit.shapes import Array
+from labkit.tags.detection import tag_pose
+from labkit.tags.intrinsics import Intrinsics
+from labkit.tags.tag import tag_corners
+
+SIZE = 0.1
+GAIN, DT, STEPS = 2.0, 0.02, 250
+Way = Literal["image", "pose, goal measured", "pose, goal shown"]
+WAYS: tuple[Way, ...] = ("image", "pose, goal measured", "pose, goal shown")
+
+
+@dataclass(frozen=True, eq=False)
+class Approach:
+    """How one way went.
+
+    Attributes:
+        distance: Of the camera from where it should be, at each step, shape (k,) in [m].
+        pixels: Corners in the picture at each step, shape (k, 4, 2) in [px].
+        wanted: Corners in the picture at the goal, shape (4, 2) in [px].
+    """
+
+    distance: Array
+    pixels: Array
+    wanted: Array
+
+
+def interaction(points: Any, depth: float) -> Array:
+    """L of points (x, y) = (X/Z, Y/Z), shape (n, 2), at a depth [m]; shape (2 n, 6)."""
+    x, y = np.asarray(points).T
+    zero, z = np.zeros_like(x), np.full_like(x, depth)
+    rows = np.stack([
+        np.stack([-1 / z, zero, x / z, x * y, -(1 + x**2), y], axis=1),
+        np.stack([zero, -1 / z, y / z, 1 + y**2, -x * y, -x], axis=1),
+    ], axis=1)  # fmt: skip
+    return rows.reshape(-1, 6)
+
+
+def approach(way: Way, focal_error: float = 0.0) -> Approach:
+    """Bring the hand's camera 25 cm before a tag, from aside and higher up.
+
+    Args:
+        way: By the image, or by the pose; the pose's goal measured in metres, or shown once, that
+            is, computed from a picture at the goal with the same wrong lens.
+        focal_error: By what share the robot's focal length is too long.
+    """
+    model = Model("left")
+    lens = Intrinsics()
+    told = Intrinsics(fx=lens.fx * (1.0 + focal_error), fy=lens.fy * (1.0 + focal_error))
+    T_tc = se3.inverse(model.robot.T_hand_tip) @ model.robot.T_hand_camera
+    q = np.array(model.robot.ready)
+    T_wg = model.pose(q) @ T_tc  # the goal of the camera
+    T_mg = se3.pose(  # not squarely: there the tilt of a tag is a guess
+        np.diag([1.0, -1.0, -1.0]) @ se3.rotation(np.array([0.5, 0.0, 0.0])),
+        np.array([0.0, 0.12, 0.22]),
+    )
+    T_wm = T_wg @ se3.inverse(T_mg)
+    wanted = _corners(se3.inverse(T_mg), lens)
+    goal = tag_pose(wanted, told, SIZE) if way == "pose, goal shown" else se3.inverse(T_mg)
+    away = se3.pose(se3.rotation(np.array([0.0, 0.0, 0.4])), np.array([0.06, -0.08, 0.1]))
+    q = model.inverse_kinematics(away_from(model.pose(q), away), q)
+    distance, pixels = [], []
+    for _ in range(STEPS):
+        T_wc = model.pose(q) @ T_tc
+        seen = _corners(se3.inverse(T_wc) @ T_wm, lens)
+        distance.append(float(np.linalg.norm(T_wc[:3, 3] - T_wg[:3, 3])))
+        pixels.append(seen)
+        if way == "image":
+            s, s_d = (_plane(p, told) for p in (seen, wanted))
+            V = GAIN * np.linalg.pinv(interaction(s, 0.25)) @ (s_d - s).ravel()
+        else:
+            T_cm = tag_pose(seen, told, SIZE)
+            T_cg = T_cm @ se3.inverse(goal)  # the goal camera in this one
+            V = GAIN * np.concatenate([T_cg[:3, 3], se3.rotation_log(T_cg[:3, :3])])
+        q = q + DT * _joint_speeds(model, q, T_wc, V)
+    return Approach(np.array(distance), np.array(pixels), wanted)
+
+
+def away_from(T_wt: Array, shift: Array) -> Array:
+    """A pose turned and moved, in the world's axes, about the tip."""
+    T = np.array(T_wt)
+    T[:3, :3] = shift[:3, :3] @ T_wt[:3, :3]
+    T[:3, 3] += shift[:3, 3]
+    return T
+
+
+def _corners(T_cm: Array, lens: Intrinsics) -> Array:
+    return lens.project(tag_corners(SIZE) @ T_cm[:3, :3].T + T_cm[:3, 3])
+
+
+def _plane(pixels: Array, lens: Intrinsics) -> Array:
+    return np.asarray((pixels - (lens.cx, lens.cy)) / (lens.fx, lens.fy))
+
+
+def _joint_speeds(model: Model, q: Array, T_wc: Array, V: Array) -> Array:
+    """Joint speeds that give the camera a twist V in its own axes, shape (6,)."""
+    J, R = model.tip_jacobian(q), T_wc[:3, :3]
+    arm = T_wc[:3, 3] - model.pose(q)[:3, 3]
+    Jc = np.vstack([J[:3] - se3.hat(arm) @ J[3:], J[3:]])
+    return np.asarray(np.linalg.pinv(Jc) @ np.concatenate([R @ V[:3], R @ V[3:]]))

@@ -1,0 +1,36 @@
+"""The studies behind the pages "Going deeper"."""
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from solutions.study import image_servoing, passivity, redundancy
+
+
+@pytest.mark.parametrize(("K", "B"), [(300.0, 0.0), (300.0, 50.0), (2000.0, -20.0)])
+def test_passivity_takes_half_of_k_t_and_all_of_the_damper(K, B):
+    """The general condition of Colgate and Schenkel gives b > K T / 2 + |B|."""
+    assert passivity.least_damping(K, B, 0.005) == pytest.approx(0.0025 * K + abs(B), abs=1e-3)
+
+
+def test_without_a_damper_the_passive_limit_is_the_stable_one():
+    assert passivity.stiffest(8.0, 5.0, 0.0, 0.005) == pytest.approx(2.0 * 5.0 / 0.005, rel=0.01)
+
+
+def test_a_loop_that_is_not_passive_is_stable_at_a_hard_wall():
+    assert passivity.least_damping(300.0, 60.0, 0.005) > 5.0
+    assert passivity.is_stable(passivity.loop(8.0, 5.0, 300.0, 60.0, 0.005, 5e5))
+
+
+def test_by_the_image_a_wrong_focal_length_does_no_harm_and_by_the_pose_it_does():
+    image, pose = (
+        image_servoing.approach(way, 0.2).distance[-1] for way in ("image", "pose, goal measured")
+    )
+    assert image < 5e-4 and pose > 0.02
+
+
+def test_a_posture_brings_the_elbow_back():
+    model = lk.Model("left")
+    q0 = model.robot.ready
+    free, held = (np.abs(redundancy.laps(model, q0, 2, k)[-1] - q0).max() for k in (0.0, 2.0))
+    assert free > 3.0 * held
