@@ -140,8 +140,8 @@ def class_report(
         failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
         pseudonym = pseudonyms(course)
-        how = {"called": str, "fewest": 1} if names else {"called": pseudonym, "fewest": FEWEST}
-        _write(report(assignment, marks, problems, **how), to)
+        called, fewest = str if names else pseudonym, 1 if names else FEWEST
+        _write(report(assignment, marks, problems, called, fewest), to)
         if jplag:
             written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)
