@@ -58,6 +58,6 @@ def test_validate(course, student, word):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["source", "solution"])
 def test_what_a_release_leaves_validates_as_it_lies(course, kind):
-    """nbgrader's own first check passes on the source and on the solved notebook."""
+    """The first check that nbgrader offers passes on the source and on the solved notebook."""
     _, said = nbgrader(getattr(course, kind) / NAME, "validate", f"{NAME}.ipynb")
     assert "Success" in said, said[-1500:]
