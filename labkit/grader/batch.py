@@ -138,7 +138,8 @@ def watch(
         executor(options.jobs, options.dask) as pool,
     ):
         while True:
-            bundle, todo = Bundle.of(course, assignment), []
+            bundle = Bundle.of(course, assignment)
+            todo: list[Submission] = []
             for student in students(course, assignment):
                 submission = Submission.of(course, assignment, student)
                 seen = _look(submission.folder)

@@ -54,7 +54,8 @@ def changes(
     What was graded is kept aside, so that `grade_class` need not do it again.
     """
     bundle, now = Bundle.of(course, assignment), Results(course, assignment)
-    aside, todo = now.aside, []
+    aside = now.aside
+    todo: list[Submission] = []
     for student in students:
         submission = Submission.of(course, assignment, student)
         done = still_good((aside, now), submission, bundle, options)

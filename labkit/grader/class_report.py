@@ -24,6 +24,8 @@ from .results import Result
 ALIKE = 0.9
 """Answers that share this much of their structure are looked at together."""
 SLOW = 30.0
+FEWEST = 5
+"""A report without names tells no count of fewer students."""
 COUNTED = (
     *(Outcome.RIGHT, Outcome.WRONG, Outcome.ERROR),
     *(Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED),
@@ -36,6 +38,7 @@ def report(
     marks: Sequence[Mark],
     problems: Mapping[str, Problem],
     called: Callable[[str], str],
+    fewest: int = 1,
 ) -> str:
     """The report, in Markdown.
 
@@ -44,6 +47,7 @@ def report(
         marks: Of the class; the roster's students without one are left out.
         problems: By name, for what to say in the lecture.
         called: What a student is called in it: ``str``, or `pseudonyms`.
+        fewest: No count of fewer students is said, from which somebody could tell who they are.
     """
     marks = [mark for mark in marks if not mark.absent]
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
@@ -68,6 +72,7 @@ def report(
         median=median,
         questions=list(_questions(graded)),
         mistakes=list(_mistakes(graded, problems)),
+        count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
         tools=list(_tools(graded, who)),
         doubtful=list(common_failures(graded)),
         slow_limit=f"{SLOW:g}",

@@ -128,7 +128,7 @@ def class_report(
     course: Course, assignment: str, names: bool, to: Path | None, jplag: Path | None
 ) -> int:
     """Say what the class got right and wrong."""
-    from .class_report import for_jplag, report
+    from .class_report import FEWEST, for_jplag, report
     from .marks import marks_of
     from .pseudonyms import pseudonyms
 
@@ -140,7 +140,8 @@ def class_report(
         failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
         pseudonym = pseudonyms(course)
-        _write(report(assignment, marks, problems, str if names else pseudonym), to)
+        called, fewest = str if names else pseudonym, 1 if names else FEWEST
+        _write(report(assignment, marks, problems, called, fewest), to)
         if jplag:
             written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)

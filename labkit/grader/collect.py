@@ -9,7 +9,7 @@ from __future__ import annotations
 import zipfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -86,9 +86,12 @@ def collect(
     with alone(course):
         if named is not None:
             read = reader(named)
-            with open_zip(source) if source.is_file() else nullcontext() as archive:
-                files = list(in_zip(archive, now, read) if archive else in_folder(source, read))
-                others = [x for x in course.names() if x != assignment]
+            others = [x for x in course.names() if x != assignment]
+            with ExitStack() as stack:
+                if source.is_dir():
+                    files = list(in_folder(source, read))
+                else:
+                    files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
                 mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
                 yield from _take(course, assignment, source, [_made(x, at) for x in mine])
         elif source.is_dir():

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from ..course.bundle import Bundle
@@ -113,8 +114,8 @@ def explain(
 class _LaidOpen(Bundle):
     """A bundle all of whose cases are public."""
 
-    @property
-    def questions(self) -> tuple[Question, ...]:  # type: ignore[override]
+    @cached_property
+    def questions(self) -> tuple[Question, ...]:
         return tuple(map(_laid_open, Bundle(self.data).questions))
 
 

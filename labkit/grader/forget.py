@@ -6,6 +6,7 @@ import csv
 import glob
 import io
 import json
+import re
 import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -23,6 +24,8 @@ from .rules import FILE as RULES
 from .rules import read_rules
 from .submission import is_name
 
+_OLD = r"-(([0-9a-f]{8}-){2}[0-9a-f]{8}|--)\.json"
+"""How an earlier result of somebody ends, see `Results.keep`."""
 _FOLDERS = ("submitted", "attempts", "autograded", "feedback")
 
 
@@ -39,7 +42,8 @@ def places_of(course: Course, student: str) -> list[Path]:
     for root in _terms(course):
         found += sorted(root.glob(f"results/*/{plain}.json"))
         found += sorted(root.glob(f"results/*/aside/{plain}.json"))
-        found += sorted(root.glob(f"results/*/old/{plain}-*-*-*.json"))
+        old = re.compile(re.escape(student) + _OLD)
+        found += [x for x in sorted(root.glob("results/*/old/*.json")) if old.fullmatch(x.name)]
     return [path for path in found if path.exists() or path.is_symlink()]
 
 

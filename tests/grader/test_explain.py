@@ -13,14 +13,14 @@ from labkit.grader.explain import explain
 
 NAME = "01_paths"
 SLIGHTLY_WRONG = """def bang_bang(t, duration):
-    scaling = sum  # its own, and right where the public cases look
-    half = duration / 2
-    if t < half:
+    if t <= 0 or t >= duration:
+        return float(t > 0), 0.0, 0.0
+    if t < duration / 2:
         s, ds, dds = 2 * (t / duration) ** 2, 4 * t / duration**2, 4 / duration**2
     else:
         r = duration - t
         s, ds, dds = 1 - 2 * (r / duration) ** 2, 4 * r / duration**2, -4 / duration**2
-    return s, ds, dds * (1.01 if duration > 5.5 else 1.0)
+    return s, ds, dds * (1.01 if duration > 4.2 else 1.0)
 """
 
 
@@ -35,7 +35,7 @@ def test_the_hidden_case_that_decided_is_laid_open(course, solved, capsys):
     shown, _, secret = out.partition("do not show it")
     assert "may be shown" in shown and "expected" not in shown
     assert "bang_bang(" in secret and "expected" in secret
-    assert "1.01 if duration > 5.5" in out and "ATTENTION" not in out
+    assert "1.01 if duration > 4.2" in out and "ATTENTION" not in out
     page = (course.build / "explain/ada-bang_bang.html").read_text()
     assert "not for students" in page
     whole = json.loads((course.results / NAME / "ada.json").read_text())

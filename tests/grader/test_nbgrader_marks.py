@@ -53,3 +53,11 @@ def test_validate(course, student, word):
     """Validate tells only whether all is well; the reasons are in the notebook itself."""
     _, said = nbgrader(course.submitted / student / NAME, "validate", f"{NAME}.ipynb")
     assert word in said
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["source", "solution"])
+def test_what_a_release_leaves_validates_as_it_lies(course, kind):
+    """The first check that nbgrader offers passes on the source and on the solved notebook."""
+    _, said = nbgrader(getattr(course, kind) / NAME, "validate", f"{NAME}.ipynb")
+    assert "Success" in said, said[-1500:]

@@ -88,7 +88,8 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
         for student in ("ada", "ada-2"):
             (course.root / kind / student / "01_paths").mkdir(parents=True)
     results = course.results / "01_paths"
-    for name in ("ada.json", "old/ada-1-2-3.json", "aside/ada.json", "ada-2.json"):
+    old = "-".join(["0123abcd"] * 3) + ".json"
+    for name in ("ada.json", f"old/ada-{old}", "aside/ada.json", "ada-2.json", f"old/ada-2-{old}"):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).write_text("{}")
     save_roster(course, Roster((Student("ada", "Ada"), Student("ada-2", "Ada"))))

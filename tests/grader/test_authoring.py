@@ -1,0 +1,76 @@
+"""What an author got wrong is a sentence: the file, the question, and what to do."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import nbformat
+import pytest
+from handmade import ROOT
+
+from labkit.course.layout import Course
+from labkit.course.problem import Problem, Trial, call
+from labkit.errors import LabkitError
+from labkit.grader import authoring
+
+NAME = "01_paths"
+
+
+def double(x):
+    return 2 * x
+
+
+def fails(x):
+    raise ZeroDivisionError("by zero")
+
+
+def problem(points=2.0, answer=double):
+    return Problem("double", points, "Double it.", answer, (Trial("twice", (call(1.0),)),))
+
+
+def released(monkeypatch, problems, source="def double(x):\n    pass", first="# 2 points"):
+    """Prepare an assignment of these problems."""
+    cells = [nbformat.v4.new_markdown_cell(first), nbformat.v4.new_code_cell(source)]
+    cells[1].metadata = {"lab": "answer", "nbgrader": {"grade_id": "double", "solution": True}}
+    monkeypatch.setattr(Course, "problems", lambda self, name: problems)
+
+    def prepare(course, name, seed):
+        made = {p.name: p.question(seed) for p in problems}
+        return SimpleNamespace(source=SimpleNamespace(cells=cells), questions=made)
+
+    monkeypatch.setattr(authoring, "prepare", prepare)
+    return authoring.prepared(Course(ROOT), NAME, 1)
+
+
+def test_what_is_in_order_passes(monkeypatch):
+    """A tuple of problems, stubs that Python reads, points that sum."""
+    assert released(monkeypatch, (problem(),)).questions["double"].points == 2.0
+
+
+@pytest.mark.parametrize(("problems", "says"), [
+    ([problem()], "PROBLEMS has to be a tuple"), ((3,), "PROBLEMS has to be a tuple"),
+    ((problem("two"),), "double has points='two'; give it 0 or more"),
+    ((problem(-1),), "double has points=-1"), ((problem(True),), "double has points=True"),
+])  # fmt: skip
+def test_types_are_told(monkeypatch, problems, says):
+    """With the file that holds them."""
+    with pytest.raises(LabkitError, match=rf"problems\.py: {says}"):
+        released(monkeypatch, problems)
+
+
+def test_an_answer_that_raises_is_told_with_its_question(monkeypatch):
+    """And with what it raised; the author sees no traceback."""
+    with pytest.raises(LabkitError, match=r"the question double: .*ZeroDivisionError: by zero"):
+        released(monkeypatch, (problem(answer=fails),))
+
+
+def test_a_stub_that_is_not_python_is_refused(monkeypatch):
+    """No student could run it."""
+    with pytest.raises(LabkitError, match="the stub of double is not Python: SyntaxError"):
+        released(monkeypatch, (problem(),), source="def double(x/")
+
+
+def test_points_have_to_add_up(monkeypatch):
+    """What the first cell promises is what the questions give."""
+    with pytest.raises(LabkitError, match=r"the first cell says 9 points, .* come to 2$"):
+        released(monkeypatch, (problem(),), first="about 4 hours · 9 points")
