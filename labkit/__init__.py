@@ -32,7 +32,7 @@ from .world import World
 
 if TYPE_CHECKING:
     from . import plotting, replay
-    from .replay.live import live
+    from .replay import live
     from .tags import *  # noqa: F403
 
 __version__ = "0.1.0"

@@ -72,6 +72,12 @@ class Hand:
         self._point, self._to, self.at = None, None, None
         self.force = np.zeros(3)
 
+    def seen(self) -> dict[str, Any]:
+        """What it does, in plain numbers for who draws it."""
+        if self.at is None:
+            return {"at": None, "force": None}
+        return {"at": self.at.round(4).tolist(), "force": self.force.round(3).tolist()}
+
     def act(self) -> None:
         """Pull during the next physics step."""
         if self._point is None:

@@ -101,11 +101,8 @@ class Kinematics:
         q, point = as_array(q, self._joints, "q"), as_array(point, (3,), "point")
         pin.computeJointJacobians(self._pin, self._data, q)
         joint = min(body, n - 1) + 1
-        T = (
-            self._data.oMi[joint] * pin.SE3(self.robot.T_hand_tip)
-            if body >= n
-            else (self._data.oMi[joint])
-        )
+        T = self._data.oMi[joint]
+        T = T * pin.SE3(self.robot.T_hand_tip) if body >= n else T
         p = T.act(point)
         J = pin.getJointJacobian(self._pin, self._data, joint, pin.LOCAL_WORLD_ALIGNED)
         return p, J[:3] - se3.hat(p - self._data.oMi[joint].translation) @ J[3:]

@@ -157,6 +157,8 @@ def dials(
     """
     import ipywidgets
 
+    from .replay.saved import in_its_place
+
     def drawn() -> dict[str, Any]:
         figure, caption.value = draw(**{name: slider.value for name, slider in sliders.items()})
         plt.close(figure)
@@ -170,7 +172,9 @@ def dials(
     }
     caption = ipywidgets.HTML()
     span = ", ".join(f"{name} from {a:g} to {b:g}" for name, (a, b, _) in ranges.items())
-    _display(ipywidgets.VBox([*sliders.values(), caption]), f"Dials: {span}")
+    words = f"Dials: {span}"
+    display(in_its_place(f"{words}; run the cell to turn them."), raw=True)
+    _display(ipywidgets.VBox([*sliders.values(), caption]), words)
     figure = display(**drawn(), display_id=True)
     for slider in sliders.values():
         slider.observe(lambda change: figure.update(**drawn()), "value")

@@ -70,5 +70,7 @@ def test_boxes_are_words_where_no_widget_can_be_shown(shown):
     lk.plotting.dials(lambda kd: (plt.figure(), ""), kd=(0.0, 2.0, 1.0))
     lk.plotting.progress("pushing", 10.0)
     words = [x["text/plain"] for x in shown if "text/plain" in x]
-    assert words == ["Dials: kd from 0 to 2", "pushing …"]
-    assert "application/vnd.jupyter.widget-view+json" in shown[0]
+    told = "Dials: kd from 0 to 2"
+    assert words == [f"{told}; run the cell to turn them.", told, "pushing …"]
+    assert 'class="lk-saved"' in shown[0]["text/html"]
+    assert "application/vnd.jupyter.widget-view+json" in shown[1]

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from .figure import recorded_html, viewer_scripts
-from .live import live
 from .motion import Motion
 from .recorded import motion_of
+from .view import live
 from .widget import show
 
 __all__ = ["Motion", "live", "motion_of", "recorded_html", "show", "viewer_scripts"]

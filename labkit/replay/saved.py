@@ -10,6 +10,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Callable
 from html import escape
+from io import BytesIO
 from typing import Any
 
 import numpy as np
@@ -21,8 +22,8 @@ LIFT = 0.6
 """Power of the picture's brightness, below 1 to lighten what is dark."""
 
 _STYLE = """<style>
-.jp-OutputArea-child:has(.lk-saved):has(+ .jp-OutputArea-child :is(.lk-player, .lk-demo)),
-.jp-OutputArea-child:has(.lk-saved) + .jp-OutputArea-child:not(:has(:is(.lk-player, .lk-demo)))
+.jp-OutputArea-child:has(.lk-saved):has(+ .jp-OutputArea-child :is(.lk-player, .widget-box)),
+.jp-OutputArea-child:has(.lk-saved) + .jp-OutputArea-child:not(:has(:is(.lk-player, .widget-box)))
 { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
 .lk-saved { margin: 0; } .lk-saved img { max-width: 100%; border-radius: 8px; background: #e9edf2; }
 body[data-jp-theme-light="false"] .lk-saved img { background: #8a95a2; }
@@ -49,13 +50,21 @@ class Saved:
 
     def fallback(self) -> dict[str, str]:
         """The picture and its caption as an output."""
-        picture = base64.b64encode(self.picture()).decode()
-        words = escape(self.words)
-        page = (
-            f'<figure class="lk-saved"><img alt="{words}" src="data:image/png;base64,{picture}">'
-            f"<figcaption>{words}</figcaption></figure>{_STYLE}"
-        )
-        return {"text/plain": self.words, "text/html": page}
+        return in_its_place(self.words, self.picture())
+
+
+def in_its_place(words: str, picture: bytes | None = None) -> dict[str, str]:
+    """An output that stands for the widget after it, where there is no kernel.
+
+    Args:
+        words: What is to be seen there.
+        picture: A PNG file's bytes, if there is one.
+    """
+    told = escape(words)
+    data = base64.b64encode(picture or b"").decode()
+    shown = f'<img alt="{told}" src="data:image/png;base64,{data}">' if picture else ""
+    page = f'<figure class="lk-saved">{shown}<figcaption>{told}</figcaption></figure>{_STYLE}'
+    return {"text/plain": words, "text/html": page}
 
 
 def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
@@ -67,7 +76,7 @@ def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
         *paths: Points of lines, each of shape (K, 3) in [m], red first, then black.
         around: Further points that must be in sight, shape (K, 3) in [m].
     """
-    import cv2
+    from PIL import Image, ImageDraw
 
     from ..arm import Arm
     from ..tags import Camera, Intrinsics, looking_at
@@ -85,14 +94,15 @@ def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
         if robot.name in SIDES:
             picture = np.array(camera.image())
         T_cw = np.linalg.inv(camera.T_wc)
-    for points, colour in zip(paths, ((179, 0, 27), (31, 35, 40)), strict=False):
-        pixels = lens.project(points @ T_cw[:3, :3].T + T_cw[:3, 3])
-        drawn = np.rint(8 * pixels).astype(np.int32).reshape(-1, 1, 2)
-        cv2.polylines(picture, [drawn], False, colour, 2, cv2.LINE_AA, shift=3)
     ground = (picture == 255).all(axis=2)
     light = 255.0 * (picture / 255.0) ** LIFT  # a black gripper shows its shape
-    whole = np.dstack([light[:, :, ::-1], np.where(ground, 0.0, 255.0)]).astype(np.uint8)
-    return bytes(cv2.imencode(".png", whole)[1])
+    whole = Image.fromarray(np.dstack([light, np.where(ground, 0.0, 255.0)]).astype(np.uint8))
+    for points, colour in zip(paths, ("#b3001b", "#1f2328"), strict=False):
+        pixels = lens.project(points @ T_cw[:3, :3].T + T_cw[:3, 3])
+        ImageDraw.Draw(whole).line(list(map(tuple, pixels.tolist())), colour, 3)
+    file = BytesIO()
+    whole.save(file, "PNG", optimize=True)
+    return file.getvalue()
 
 
 def _direction(robot: Robot) -> Array:

@@ -6,34 +6,27 @@ the page.  What can go wrong ends the run with a sentence and leaves the arm at 
 
 from __future__ import annotations
 
-import ctypes
 import threading
 import time
-import traceback
 from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from pathlib import Path
 from queue import Empty, SimpleQueue
-from statistics import median
 from typing import Any
 
 import numpy as np
 
 from ..arm import Arm
 from ..driven import Simulated
-from ..errors import LabkitError
 from ..hand import Hand
 from ..log import Log
 from ..run import loop
 from .dials import Dial, Dialled
 from .surroundings import Surroundings
+from .watch import PATIENCE, Watch, sentence
 
 FRESH = 0.2
 """A hand of which nothing was heard for this long, in [s], lets go."""
-
-PATIENCE = 1.0
-"""A law that has not returned after this long, in [s], is ended."""
 
 LONGEST = 120.0
 """A run is at most this long, in [s]; then the next begins where it ended."""
@@ -48,14 +41,6 @@ STEP = 0.05
 """What the button "Step" advances, in [s]."""
 
 _OVER = 10**9  # a tick later than the last of any run
-
-
-class _Ended(BaseException):
-    """Thrown into a law that does not return; no `except Exception` of a student's stops it."""
-
-
-class TooSlow(LabkitError):
-    """A law takes longer than its tick."""
 
 
 class Session(Simulated):
@@ -82,15 +67,13 @@ class Session(Simulated):
         self._hand = Hand(arm)
         self._usual, self._q0 = arm.plant, np.array(arm.truth().q)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
-        self._thread: threading.Thread | None = None
+        self._thread = threading.Thread()
         self.logs: list[Log] = []
         self.state, self.note = "ready", ""
         self._keep = self._over = self._again = False
-        self._steps_left = 0
+        self._steps_left, self._heard, self._held = 0, 0.0, 0.0
         self._changes: list[Callable[[], Any]] = []
-        self._heard = self._held = 0.0
-        self._calls, self._within = 0, False
-        self._times: deque[float] = deque(maxlen=round(1.0 / self.period))
+        self._watch = Watch(self.period, lambda note: show({"kind": "note", "note": note}))
         self._real = deque([(0.0, 0.0)], maxlen=30)
 
     # From any thread
@@ -101,19 +84,16 @@ class Session(Simulated):
         if message["kind"] == "hand":
             message = {**message, "heard": self._heard}
         self._inbox.put(message)
-        if message["kind"] in ("go", "step") and not self._alive():
+        if message["kind"] in ("go", "step") and not self._thread.is_alive():
             self._thread = threading.Thread(target=self._main, name="labkit live", daemon=True)
             self._thread.start()
-            threading.Thread(target=self._watch, args=(self._thread,), daemon=True).start()
+            self._watch.over(self._thread)
 
     def close(self) -> None:
         """End it; the arm is at rest and free for other cells."""
         self._inbox.put({"kind": "close"})
-        if self._alive() and self._thread is not threading.current_thread():
-            self._thread.join(2 * PATIENCE)  # type: ignore[union-attr]
-
-    def _alive(self) -> bool:
-        return self._thread is not None and self._thread.is_alive()
+        if self._thread.is_alive() and self._thread is not threading.current_thread():
+            self._thread.join(2 * PATIENCE)
 
     # In the thread
 
@@ -139,21 +119,17 @@ class Session(Simulated):
         self._over = self._again = False
         self.plant = self.arm.plant
         self._began = time.monotonic()
-        self._times.clear()
         try:
             log = loop(self, self.around.target, self._law, LONGEST)
         except BaseException as error:
             if self.state != "closed":
                 self._rest(error)
             return
-        if self._again:
-            self.around.begin_again()
-        else:
-            self.around.since += float(log.t[-1])
+        self.around.go_on(0.0 if self._again else float(log.t[-1]))
         if self._keep:
             self._keep = False
             self.logs.append(log)
-            self._picture(f"kept: {log!r}")
+            self._picture()
 
     def _rest(self, error: BaseException) -> None:
         """Put the arm to rest and say why."""
@@ -161,39 +137,24 @@ class Session(Simulated):
         self.arm.recover()
         if getattr(error, "log", None) is not None:  # of an arm that ran away
             self.logs.append(error.log)  # type: ignore[attr-defined]
-        self.state, self.note = "stopped", _sentence(error, self._law.name)
+        self.state, self.note = "stopped", sentence(error, self._law.name)
         self._picture()
-
-    def lost_ticks(self, ticks: int) -> list[bool]:
-        """As the arm loses them."""
-        return self.arm.lost_ticks(ticks)
 
     def begin(self) -> float:
         """A run begins."""
-        self.law_begins()
+        self._watch.begins(self._law.name)
         return 0.0
 
     def stop(self) -> None:
         """A run that only makes room for the next does not stop the arm."""
-        self._within = False
+        self._watch.ends()
         if self.state != "running":
             super().stop()
 
-    def law_begins(self) -> None:
-        """From here on the law computes, and the watch looks at the time."""
-        self._calls += 1
-        self._since, self._within = time.perf_counter(), True
-
     def advance(self, k: int) -> tuple[int, float, bool]:
         """Take the physics of a tick, read what came, and wait for the wall's clock."""
-        self._within = False
-        self._times.append(time.perf_counter() - self._since)
-        if len(self._times) == self._times.maxlen and median(self._times) > self.period:
-            raise TooSlow(
-                f"it takes {1e3 * median(self._times):.1f} ms, and it is asked every "
-                f"{1e3 * self.period:g} ms; make it quicker, or give live(..., rate=...) a lower "
-                "rate"
-            )
+        self._watch.ends()
+        self._watch.check_pace()
         if time.monotonic() - self._held > FRESH:
             self._hand.let_go()
         self.around.approach(self.period)
@@ -207,7 +168,7 @@ class Session(Simulated):
             self._obey(wait=True)
             self._began = time.monotonic() - t
         self._pace(t)
-        self.law_begins()
+        self._watch.begins(self._law.name)
         return (_OVER if self._over or self.state != "running" else k), t, cut
 
     def _pace(self, t: float) -> None:
@@ -236,8 +197,7 @@ class Session(Simulated):
 
     def _on_go(self, message: dict[str, Any]) -> None:
         self.state, self.note = "running", ""
-        self._real.clear()
-        self._real.append((time.monotonic(), self.arm.world.t))
+        self._real = deque([(time.monotonic(), self.arm.world.t)], maxlen=30)
 
     def _on_pause(self, message: dict[str, Any]) -> None:
         self.state = "paused" if self.state == "running" else self.state
@@ -292,64 +252,19 @@ class Session(Simulated):
 
     # What the page draws
 
-    def _picture(self, note: str = "") -> None:
-        self._show(self.numbers(note))
+    def _picture(self) -> None:
+        self._show(self.numbers())
 
-    def numbers(self, note: str = "") -> dict[str, Any]:
+    def numbers(self) -> dict[str, Any]:
         """The session as the page draws it."""
         (a, x), (b, y) = self._real[0], self._real[-1]
-        at = self._hand.at
-        held = at is not None
-        stale = held and time.monotonic() - self._held > FRESH
-        T_wd = self.around.wanted()
-        q = self.arm.truth().q
-        error = None if T_wd is None else float(np.linalg.norm(self.arm.tip()[0] - T_wd[:3, 3]))
         return {
             "kind": "frame",
-            "t": round(self.arm.world.t, 4),
-            "q": np.round(q, 5).tolist(),
             "state": self.state,
-            "note": note or self.note,
+            "note": self.note,
             "law": self._law.name,
-            "force": np.round(self._hand.force, 3).tolist() if held else None,
-            "at": None if at is None else np.round(at, 4).tolist(),
-            "stale": stale,
-            "error": error,
             "pace": round((y - x) / (b - a), 3) if b > a else None,
-            "things": self.around.things(),
             "kept": len(self.logs),
+            **self.around.seen(),
+            **self._hand.seen(),
         }
-
-    # In the watch's thread
-
-    def _watch(self, thread: threading.Thread) -> None:
-        """End a law that does not return: seen in the same call for `PATIENCE`, look after look."""
-        looks, call = 0, -1
-        while thread.is_alive():
-            time.sleep(0.05)
-            looks = looks + 1 if self._within and self._calls == call else 0
-            call = self._calls
-            if looks and looks % round(PATIENCE / 0.05) == 0:
-                late = f"{self._law.name} has not returned for {PATIENCE:g} s; it is being ended"
-                self._show({"kind": "note", "note": late})
-                ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                    ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
-                )
-
-
-def _sentence(error: BaseException, name: str) -> str:
-    """What stopped the arm, and in which line of the student's."""
-    if isinstance(error, _Ended):
-        what = f"{name} did not return; does every loop in it come to its end?"
-    elif isinstance(error, LabkitError):
-        what = str(error).replace("error.log", "view.log")
-    else:
-        what = f"{type(error).__name__}: {error}"
-    steps = traceback.extract_tb((error.__cause__ or error).__traceback__)
-    own = [step.line for step in steps if step.line and not _library(step.filename)]
-    return f"{what} (line: {own[-1]})" if own else what
-
-
-def _library(file: str) -> bool:
-    """Whether a line of code, by its file, is labkit's or an installed package's."""
-    return file.startswith(str(Path(__file__).parents[1])) or "site-packages" in file

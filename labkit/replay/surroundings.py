@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from ..arm import Arm
 from ..scene import Spring, Table, Wall
@@ -39,6 +38,10 @@ class Surroundings:
         if hasattr(self._target, "duration"):
             self.since = 0.0
 
+    def go_on(self, seconds: float) -> None:
+        """Let the next run begin this much later in the target's time."""
+        self.since += seconds
+
     def target(self, t: float) -> Any:
         """The target, moved by who took hold of it; a closed path goes round for ever."""
         t += self.since
@@ -62,6 +65,16 @@ class Surroundings:
         if isinstance(sample, Sample) and sample.position.size == self._arm.robot.n:
             return self._arm.model.pose(sample.position)
         return None
+
+    def seen(self) -> dict[str, Any]:
+        """The arm and all around it, in plain numbers for who draws it."""
+        arm, T_wd = self._arm, self.wanted()
+        return {
+            "t": round(arm.world.t, 4),
+            "q": arm.truth().q.round(5).tolist(),
+            "error": None if T_wd is None else float(np.linalg.norm(arm.tip()[0] - T_wd[:3, 3])),
+            "things": self.things(),
+        }
 
     def things(self) -> dict[str, Any]:
         """What the page draws, by name."""
@@ -125,6 +138,8 @@ def _moved(thing: Any, position: Array) -> Any:
 
 
 def _placed(kind: str, T: Array) -> dict[str, Any]:
+    from scipy.spatial.transform import Rotation  # a slow import, for who looks around
+
     turn = Rotation.from_matrix(T[:3, :3]).as_quat()
     return {
         "kind": kind,

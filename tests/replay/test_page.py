@@ -1,8 +1,11 @@
 """The HTML of the static book and the notebook's widget, without a browser."""
 
+import base64
 import json
 from html.parser import HTMLParser
+from io import BytesIO
 
+import numpy as np
 import pytest
 from figures.embed import (
     Dial,
@@ -13,6 +16,7 @@ from figures.embed import (
     run_files,
     shared_files,
 )
+from PIL import Image
 from samples import swing
 
 from labkit.errors import OutOfRange, TypeMismatch, UnknownName
@@ -108,3 +112,29 @@ def test_the_widget_sends_the_files_when_asked_and_keeps_them_out_of_its_state()
             show(other)
         with pytest.raises(TypeMismatch, match="motion is"):
             widget.motion = other
+
+
+def test_a_saved_notebook_keeps_picture_and_words():
+    """Before the widget stands an output with a picture and a caption, which needs no kernel."""
+    motion = swing(1.0)
+    kept = show(motion).fallback()
+    page = Reader(kept["text/html"])
+    (image,) = [attributes for tag, attributes in page.elements if tag == "img"]
+    assert motion.title in image["alt"]
+    assert motion.description in kept["text/plain"]
+    picture = Image.open(BytesIO(base64.b64decode(image["src"].split(",")[1])))
+    pixels = np.array(picture)
+    assert picture.size == (640, 400)
+    assert 0.02 < np.mean(pixels[:, :, 3] > 0) < 0.98, "the arm covers a part of it"
+    assert (pixels == [179, 0, 27, 255]).all(axis=2).any(), "the tip's path is drawn"
+
+
+def test_a_saved_run_is_one_file_with_all_that_plays_it(tmp_path):
+    """`save` writes a page that asks for nothing else."""
+    motion = swing(1.0)
+    show(motion).save(tmp_path / "run.html")
+    text = (tmp_path / "run.html").read_text()
+    page = Reader(text)
+    assert not [a for _, a in page.elements if "src" in a or "href" in a]
+    assert "globalThis.labkitRobot" in text
+    assert motion.title in text

@@ -23,8 +23,8 @@ class Equations:
     def __init__(self, robot, plant, dt):
         self.model, self.dt = lk.Model(robot, plant), dt
 
-    def place(self, q):
-        self.q, self.dq = np.array(q), np.zeros(7)
+    def place(self, q, dq):
+        self.q, self.dq = np.array(q), np.array(dq)
 
     def state(self):
         return self.q.copy(), self.dq.copy()

@@ -145,6 +145,11 @@ export class LiveArm {
   /** A picture in numbers came from the kernel. */
   show(frame) {
     const before = this.state;
+    if (frame.kept > this.frame?.kept) this.speak("Kept as view.log.", 0);
+    if (frame.state === "running" && performance.now() - (this.here ?? -1e9) > 1e4) { // somebody looks on
+      this.here = performance.now();
+      this.send({ kind: "here" });
+    }
     Object.assign(this, { frame, state: frame.state, things: frame.things });
     this.start.textContent = frame.state === "running" ? "Pause" : "Start";
     if (this.picture.works) this.draw(frame);
@@ -154,7 +159,7 @@ export class LiveArm {
       while (this.rows[0][0] < frame.t - SHOWN) this.rows.shift();
     }
     this.readout.textContent = this.numbers();
-    const stale = frame.stale || (this.held && frame.state === "running" && !frame.force && this.old());
+    const stale = this.held && frame.state === "running" && !frame.force && this.old();
     this.say(frame.note || (stale ? "The kernel is busy with another cell: what you pull arrives later, and until then there is no force." : ""),
       frame.state === "stopped");
     if (before !== frame.state) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);

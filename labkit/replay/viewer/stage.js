@@ -146,6 +146,7 @@ export class Stage {
   ray({ clientX, clientY }) {
     const box = this.canvas.getBoundingClientRect();
     const caster = new THREE.Raycaster();
+    caster.params.Line.threshold = 0.005; // three's own is a metre
     caster.setFromCamera(new THREE.Vector2(
       2 * (clientX - box.left) / box.width - 1, 1 - 2 * (clientY - box.top) / box.height), this.camera);
     return caster;

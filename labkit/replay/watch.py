@@ -1,0 +1,96 @@
+"""The watch over a live law: one that is too slow or never returns is ended, in words."""
+
+from __future__ import annotations
+
+import ctypes
+import threading
+import time
+import traceback
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from statistics import median
+
+from ..errors import LabkitError
+
+PATIENCE = 1.0
+"""A law that has not returned after this long, in [s], is ended."""
+
+_LOOK = 0.05  # between two looks, in [s]
+
+
+class _Ended(BaseException):
+    """Thrown into a law that does not return; no `except Exception` of a student's stops it."""
+
+
+class TooSlow(LabkitError):
+    """A law takes longer than its tick."""
+
+
+class Watch:
+    """Looks at how long a law takes, call by call."""
+
+    def __init__(self, period: float, say: Callable[[str], None]) -> None:
+        """Watch a law that is called once in a period [s]; ``say`` tells of one that is stuck."""
+        self._period, self._say = period, say
+        self._calls, self._within, self._since, self._name = 0, False, 0.0, ""
+        self._times: deque[float] = deque(maxlen=round(1.0 / period))
+
+    def begins(self, name: str) -> None:
+        """From here on the law of this name computes."""
+        self._calls += 1
+        self._name, self._since, self._within = name, time.perf_counter(), True
+
+    def ends(self) -> None:
+        """It returned, or its run is over."""
+        if self._within:
+            self._times.append(time.perf_counter() - self._since)
+        self._within = False
+
+    def check_pace(self) -> None:
+        """Raise `TooSlow` if half of the calls of a second take longer than a period."""
+        if len(self._times) == self._times.maxlen and median(self._times) > self._period:
+            took = 1e3 * median(self._times)
+            self._times.clear()
+            raise TooSlow(
+                f"{self._name} takes {took:.1f} ms, and it is asked every {1e3 * self._period:g} "
+                "ms; make it quicker, or give live(..., rate=...) a lower rate"
+            )
+
+    def over(self, thread: threading.Thread) -> None:
+        """Watch over the laws of ``thread`` as long as it lives."""
+        threading.Thread(target=self._look, args=(thread,), daemon=True).start()
+
+    def _look(self, thread: threading.Thread) -> None:
+        """End a law that is seen in the same call for `PATIENCE`, look after look.
+
+        Looks are counted, not seconds: where another cell holds Python's lock, this waits too.
+        """
+        looks, call = 0, -1
+        while thread.is_alive():
+            time.sleep(_LOOK)
+            looks = looks + 1 if self._within and self._calls == call else 0
+            call = self._calls
+            if looks and looks % round(PATIENCE / _LOOK) == 0:
+                self._say(f"{self._name} has not returned for {PATIENCE:g} s; it is being ended")
+                ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                    ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
+                )
+
+
+def sentence(error: BaseException, name: str) -> str:
+    """What stopped the arm, and in which line of the student's."""
+    if isinstance(error, _Ended):
+        what = f"{name} did not return; does every loop in it come to its end?"
+    elif isinstance(error, LabkitError):
+        what = str(error).replace("error.log", "view.log")
+    else:
+        what = f"{type(error).__name__}: {error}"
+    steps = traceback.extract_tb((error.__cause__ or error).__traceback__)
+    own = [step.line for step in steps if step.line and not _library(step.filename)]
+    return f"{what} (line: {own[-1]})" if own else what
+
+
+def _library(file: str) -> bool:
+    """Whether a line of code, by its file, is labkit's or an installed package's."""
+    return file.startswith(str(Path(__file__).parents[1])) or "site-packages" in file

@@ -1,0 +1,152 @@
+"""The live arm's page without a kernel: what keys and pointer say, and what is told to them."""
+
+import json
+from pathlib import Path
+
+import pytest
+from figures.embed import shared_files
+
+import labkit as lk
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def data():
+    """What the page is given for an arm with a wall, two laws and a dial."""
+    robot = lk.robot("left")
+    T = lk.Model(robot).pose(robot.ready)
+    wall = lk.Wall(T[:3, 3] + [0.1, 0.0, 0.0], (-1.0, 0.0, 0.0), size=(0.3, 0.3))
+
+    def soft(state, target, factor):
+        return lk.JointVelocity(robot.zeros)
+
+    with lk.Arm(robot, q0=robot.ready, world=lk.World(things=[wall])) as arm:
+        laws = {"soft": soft, "stiff": lk.control.hold(robot.ready)}
+        view = lk.live(arm, laws, lk.Hold(T, 1.0), title="Feel it", factor=(0.0, 2.0, 1.0))
+        return view.data
+
+
+@pytest.fixture
+def page(chromium, data):
+    """The arm in a page; `sent` is what it said to the kernel, `tell` is what the kernel says."""
+    page = chromium.new_page(viewport={"width": 800, "height": 1000})
+    page.set_content("<!doctype html><html lang='en'><body><div id='a'></div></body></html>")
+    page.set_default_timeout(120_000)  # a guard against hanging only
+    for name in ("viewer.js", "robot.js"):
+        page.add_script_tag(content=shared_files()[name].read_text())
+    page.evaluate(
+        """(data) => {
+            window.sent = [];
+            const link = { send: (m) => sent.push(m), hear: (f) => { window.tell = f; } };
+            labkitViewer.mount(document.getElementById("a"), data, undefined, link);
+        }""",
+        json.loads(data),
+    )
+    page.wait_for_selector("[data-ready]")
+    yield page
+    page.close()
+
+
+def sent(page, kind):
+    return [message for message in page.evaluate("sent") if message["kind"] == kind]
+
+
+def frame(data, **changes):
+    return {**json.loads(data)["first"], **changes}
+
+
+def test_keys_push_as_the_pointer_does(page):
+    """With keys alone: choose the elbow, 12 N, along y; pressed again it ends."""
+    page.get_by_label("Push at").select_option("elbow (e1)")
+    page.get_by_label("Force in newtons").fill("12")
+    button = page.get_by_role("button", name="Push along plus y")
+    button.focus()
+    page.keyboard.press("Enter")
+    page.wait_for_function("sent.filter((m) => m.kind === 'hand').length > 2")  # it holds on
+    assert sent(page, "hand")[0] == {
+        "kind": "hand", "link": 3, "local": [0, 0, 0], "force": [0, 12, 0],
+    }  # fmt: skip
+    assert button.get_attribute("aria-pressed") == "true"
+    page.keyboard.press("Enter")
+    assert "force" not in sent(page, "hand")[-1]
+    assert button.get_attribute("aria-pressed") == "false"
+
+
+def test_a_pointer_on_the_arm_pulls_and_beside_it_turns_the_view(page):
+    """Down on the hand it takes hold of it and pulls where it goes; on nothing it turns."""
+    spot = """(at) => {
+        const { picture } = document.querySelector("[data-ready]").labkit;
+        const box = picture.stage.canvas.getBoundingClientRect();
+        const p = picture.stage.camera.position.clone().set(...at ?? picture.frames.left_w1.p);
+        p.project(picture.stage.camera);
+        return [box.x + (p.x + 1) * box.width / 2, box.y + (1 - p.y) * box.height / 2];
+    }"""
+    x, y = page.evaluate(spot)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 60, y)
+    pulls = sent(page, "hand")
+    assert pulls[0]["link"] in (4, 5, 6, 7)
+    assert pulls[-1]["to"] != pulls[0]["to"]
+    page.mouse.up()
+    assert "to" not in sent(page, "hand")[-1]
+    rig = "document.querySelector('[data-ready]').labkit.picture.stage.rig"
+    before, count = page.evaluate(f"{rig}.azimuth"), len(sent(page, "hand"))
+    box = page.locator("canvas").first.bounding_box()
+    page.mouse.move(box["x"] + 10, box["y"] + 10)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 90, box["y"] + 10)
+    page.mouse.up()
+    assert page.evaluate(f"{rig}.azimuth") != before
+    assert len(sent(page, "hand")) == count
+
+
+def test_buttons_and_dials_are_told_to_the_kernel(page):
+    """Start, step, reset, keep, the other law and a dial."""
+    for name in ("Start", "Step", "Reset", "Keep this run", "Stop"):
+        page.get_by_role("button", name=name, exact=True).click()
+    page.get_by_label("Controller").select_option("stiff")
+    page.get_by_label("factor, typed").fill("1.5")
+    page.get_by_label("factor, typed").press("Enter")
+    page.wait_for_function("sent.some((m) => m.kind === 'dial')")
+    kinds = [m["kind"] for m in page.evaluate("sent")]
+    assert kinds == ["go", "step", "reset", "keep", "close", "law", "dial"]
+    assert sent(page, "dial")[0] == {"kind": "dial", "name": "factor", "value": 1.5}
+
+
+def test_force_and_sentence_are_shown_and_said(page, data):
+    """The force in newtons stands at its arrow; a stopped law's sentence is beside the picture."""
+    first = frame(data)
+    tip = json.loads(data)["first"]["things"]["target"]["position"]
+    told = frame(data, state="running", force=[0, 10, 0], at=tip, error=0.0333, t=1.0)
+    page.evaluate("(f) => tell(f)", told)
+    page.locator(".lk-tag", has_text="10.0 N").wait_for()
+    assert "33.3 mm from the target · your force 10.0 N" in page.inner_text(".lk-readout")
+    words = "soft lost the arm at t = 1.000 s"
+    page.evaluate("(f) => tell(f)", frame(data, state="stopped", note=words, t=1.1))
+    assert page.inner_text(".lk-say") == words
+    page.locator("[role=status]").filter(has_text=words).wait_for(state="attached")
+    assert first["state"] == "ready"
+
+
+def test_without_a_kernel_it_says_so(chromium, data):
+    """In a page without a kernel the arm stands still, and says what to do."""
+    page = chromium.new_page()
+    page.set_default_timeout(120_000)
+    page.set_content("<!doctype html><html lang='en'><body><div id='a'></div></body></html>")
+    for name in ("viewer.js", "robot.js"):
+        page.add_script_tag(content=shared_files()[name].read_text())
+    page.evaluate(
+        "(data) => { labkitViewer.mount(document.getElementById('a'), data); }", json.loads(data)
+    )
+    assert "needs a running kernel" in page.inner_text(".lk-say")
+    assert page.get_by_role("button", name="Start").is_disabled()
+    page.close()
+
+
+def test_a_live_page_breaks_no_rule_of_access(page):
+    """No finding of axe's in the live arm's controls."""
+    page.evaluate((ROOT / "tests/vendor/axe.min.js").read_text())
+    found = page.evaluate("axe.run('#a', {preload: false})")
+    assert [(v["id"], v["nodes"][0]["html"][:200]) for v in found["violations"]] == []
