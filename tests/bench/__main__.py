@@ -16,6 +16,7 @@ from . import (
     drake,
     engines,
     grading,
+    live,
     notebooks,
     realistic,
     start,
@@ -34,6 +35,7 @@ MEASUREMENTS = (
     campaign,
     camera,
     viewer,
+    live,
     notebooks,
     grading,
 )
