@@ -31,4 +31,5 @@
 }
 @media print { .lk-live .lk-offer { display: none; } }
 .lk-plots[hidden] { display: none; }
+.lk-live .lk-check { white-space: normal; }
 `;var hi={open:(...s)=>new D(...s),stiffness:ds,age:ss,singular:ps};async function pi(s,t,e,i,o){if(e.dress(),!globalThis.labkitLiveStyled){let n=new CSSStyleSheet;n.replaceSync(us),document.adoptedStyleSheets=[...document.adoptedStyleSheets,n],globalThis.labkitLiveStyled=!0}return hi[t.piece??"open"](s,t,await ce(),e,i,o)}globalThis.labkitLive={mount:pi,Session:H,run:Ve};})();
