@@ -5,13 +5,17 @@ import { placeOn } from "./session.js";
 
 const PULL = { stiffness: 250, damping: 8 }; // N/m and N s/m of the spring to the pointer
 const REACH = 0.2; // how far it stretches at most, in [m]
+const NEAR = 0.035; // in [m]
 const PUSH = 1; // how long a push by button lasts, in [s] of the arm's time
 
 export const AXES = { "+x": [1, 0, 0], "−x": [-1, 0, 0], "+y": [0, 1, 0], "−y": [0, -1, 0], "+z": [0, 0, 1], "−z": [0, 0, -1] };
 
 /** Let pointers take hold of the arm, or of `things` {name: {move(point), end()}}; calls `touched` as they do. */
 export function hold(picture, sessions, things, touched) {
-  picture.grab((picked) => {
+  picture.grab((found) => {
+    // The target's frame begins at the tip: near it the hand is meant, its arrows move the target.
+    const near = found.thing === "target" && length(subtract(found.at, picture.tip.p)) < NEAR;
+    const picked = near ? picture.atTip() : found;
     if (picked.thing) {
       const thing = things[picked.thing];
       return thing && { move: (event) => thing.move(picture.dragged(event, picked.at)), end: () => thing.end?.() };

@@ -41,10 +41,14 @@ class Stiffness extends Panel {
     const { gains } = this.settings, keys = { one: ["K"], three: ["Kx", "Ky", "Kz"], position: [] }[this.mode];
     this.gainbox.replaceChildren(...keys.map((key) => this.dial(
       { label: key, unit: "N/m", min: 30, max: 3000, ratio: true, value: gains[key] ?? 300 },
-      (x) => { this.change({ gains: { ...this.settings.gains, [key]: x } }); this.since = this.session.loop.t; }).element));
+      (x) => { this.change({ gains: { ...this.settings.gains, [key]: x } }); }).element));
   }
 
-  change(what) { super.change(what); this.since = this.session.loop.t; }
+  change(what) {
+    super.change(what);
+    Object.assign(this, { since: this.session.loop.t, told: false });
+  }
+
   recompute() {} // what counts here is where the arm comes to rest
   settled() { return this.session.loop.t - (this.since ?? 0) > 2; }
 

@@ -72,6 +72,7 @@ def test_a_mouse_pulls_the_hand_and_lets_it_go(live):
     """Dragged, the hand leaves its target and the force is shown; let go, it returns."""
     page = live("live")
     choose(page, "Path", "stay")
+    page.wait_for_function(BACK)
     x, y = tip_on_screen(page)
     page.mouse.move(x, y)
     page.mouse.down()
@@ -86,6 +87,7 @@ def test_a_finger_pulls_the_hand(live):
     """The same by touch."""
     page = live("live", phone=True, has_touch=True)
     choose(page, "Path", "stay")
+    page.wait_for_function(BACK)
     x, y = tip_on_screen(page)
     touch = page.context.new_cdp_session(page)
 
@@ -142,7 +144,6 @@ def test_no_single_stiffness_keeps_both_limits_and_two_do(live):
     verdict = page.locator(".lk-kept", has_text="At rest")
 
     def settled():
-        page.wait_for_function("document.querySelector('.lk-live').live.told === false")
         page.wait_for_function("document.querySelector('.lk-live').live.told === true")
         return json.loads(
             page.evaluate(
