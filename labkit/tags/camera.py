@@ -13,7 +13,7 @@ from ..errors import Closed, LabkitError, OutOfRange, TypeMismatch
 from ..shapes import Array, as_number, as_vector, locked, shown
 from ..world import World
 from .board import Board
-from .intrinsics import Intrinsics
+from .intrinsics import Intrinsics, without_distortion
 from .paper import paper
 from .rendering import FAR, NEAR, Window, brightness, draw
 from .surface import Surface, joined
@@ -86,7 +86,7 @@ class Camera:
         self.samples = samples
         self.blur = as_number(blur, "blur", least=0.0)
         self.exposure = as_number(exposure, "exposure", least=0.0)
-        self._wide, self._corner = _without_distortion(self.intrinsics)
+        self._wide, self._corner = without_distortion(self.intrinsics)
         self._random = np.random.default_rng(seed)
         self._hand: Arm | None = None
         self.place(T_wc)
@@ -277,19 +277,6 @@ class Camera:
         levels: Picture = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
         levels.setflags(write=False)
         return levels
-
-
-def _without_distortion(lens: Intrinsics) -> tuple[Intrinsics, Array | None]:
-    """A lens without distortion that sees all that ``lens`` sees, and its first pixel in that."""
-    if not any(lens.distortion):
-        return lens, None
-    v, u = np.indices((lens.height, lens.width))
-    rim = np.ones_like(u, bool)
-    rim[1:-1, 1:-1] = False
-    seen = lens.straightened(np.column_stack([u[rim], v[rim]]))
-    low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
-    wide, tall = (int(n) for n in high - low + 1)
-    return Intrinsics(wide, tall, lens.fx, lens.fy, lens.cx - low[0], lens.cy - low[1]), low
 
 
 def _held(arm: Arm, q: Array) -> Array:

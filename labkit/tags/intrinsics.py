@@ -122,3 +122,16 @@ class Intrinsics:
             bent = np.array(self.distortion)
             return np.asarray(cv2.projectPoints(p, np.zeros(3), np.zeros(3), K, bent)[0])[:, 0]
         return np.asarray((p[:, :2] / p[:, 2:]) * K.diagonal()[:2] + K[:2, 2])
+
+
+def without_distortion(lens: Intrinsics) -> tuple[Intrinsics, Array | None]:
+    """A lens without distortion that sees all that ``lens`` sees, and its first pixel in that."""
+    if not any(lens.distortion):
+        return lens, None
+    v, u = np.indices((lens.height, lens.width))
+    rim = np.ones_like(u, bool)
+    rim[1:-1, 1:-1] = False
+    seen = lens.straightened(np.column_stack([u[rim], v[rim]]))
+    low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
+    wide, tall = (int(n) for n in high - low + 1)
+    return Intrinsics(wide, tall, lens.fx, lens.fy, lens.cx - low[0], lens.cy - low[1]), low
