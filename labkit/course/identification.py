@@ -129,6 +129,7 @@ class Identification:
 def personal(question: Question, arm: OwnArm) -> Question:
     """The question with what is true of somebody's arm; any other question as it is."""
     judge = question.judge
+    expected: Any
     if isinstance(judge, Measured):
         expected = judge.expected(arm)
     elif isinstance(judge, Found | Telling):

@@ -186,12 +186,12 @@ def source_notebook(
         if name is not None:
             asked.append(name)
         if "why" in cell.metadata or "task" in cell.metadata:
-            cells += _why(path, name, cell)
+            cells += _why(path, str(name), cell)
         elif name in foretold and "question" not in cell.metadata:
             cells += _written_down(foretold[name])
         elif name in questions and "question" in cell.metadata:
-            _check_stub(path, name, cell)
-            cells += _asked(questions[name], cell)
+            _check_stub(path, str(name), cell)
+            cells += _asked(questions[str(name)], cell)
         elif name is not None:
             raise LabkitError(f"{path.name} asks {name!r}, which has no Problem or Prediction")
         else:

@@ -96,7 +96,8 @@ def draw(secret: int, handle: str) -> OwnArm:
             strict=True,
         )
     )
-    return OwnArm(*numbers, tuple(bugs))
+    payload, stiction, lag, wall = numbers
+    return OwnArm(payload, stiction, lag, wall, tuple(bugs))
 
 
 def sealed(secret: int, handles: Mapping[str, str] | Iterable[str]) -> dict[str, str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 import traceback
 from collections.abc import Iterator
-from numbers import Real
 from pathlib import Path
 
 from ..course.layout import Course
@@ -44,7 +43,11 @@ def _check_types(path: Path, problems: object) -> None:
         raise LabkitError(f"{file}: PROBLEMS has to be a tuple of Problem(...)")
     for problem in problems:
         points = problem.points
-        if isinstance(points, bool) or not isinstance(points, Real) or not 0 <= points <= 1000:
+        if (
+            isinstance(points, bool)
+            or not isinstance(points, int | float)
+            or not 0 <= points <= 1000
+        ):
             raise LabkitError(f"{file}: {problem.name} has points={points!r}; give it 0 or more")
 
 

@@ -14,10 +14,10 @@ from .marks import marks_of
 from .rules import read_rules
 
 
-class StudentPage(HTMLExporter):  # type: ignore[misc]
+class StudentPage(HTMLExporter):
     """Makes of an autograded notebook what `labkit feedback` makes of its result."""
 
-    def from_filename(
+    def from_filename(  # type: ignore[override]
         self, filename: str, resources: dict[str, Any] | None = None, **_: Any
     ) -> tuple[str, dict[str, Any]]:
         """The page, and what a writer needs to know.

@@ -266,8 +266,9 @@ class Camera:
             v, u = np.indices((lens.height, lens.width)).reshape(2, -1)
             seen = (lens.straightened(np.column_stack([u, v])) - self._corner).astype(np.float32)
             at = seen.reshape(lens.height, lens.width, 2)
-            picture = cv2.remap(picture, at, None, cv2.INTER_CUBIC)
-            drawn = cv2.remap(drawn, at, None, cv2.INTER_NEAREST)
+            nothing: Any = None  # the second map is in the first
+            picture = cv2.remap(picture, at, nothing, cv2.INTER_CUBIC)
+            drawn = np.asarray(cv2.remap(drawn, at, nothing, cv2.INTER_NEAREST))
         if self.blur:
             picture = cv2.GaussianBlur(picture, (0, 0), self.blur)
         if self.noise and drawn.any():

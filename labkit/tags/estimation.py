@@ -40,7 +40,7 @@ def first_estimate(t: float, position: Any, noise: Any, *spread: float) -> Estim
             to estimate it too, of the acceleration's, in [m/s^2].
     """
     variances = [as_number(s, "spread", above=0.0) ** 2 for s in spread]
-    covariance = np.kron(np.diag([0.0, *variances]), np.eye(3))
+    covariance: Array = np.kron(np.diag([0.0, *variances]), np.eye(3)).astype(float)
     covariance[:3, :3] = as_array(noise, (3, 3), "noise")
     mean = np.concatenate([as_array(position, (3,), "position"), np.zeros(3 * len(spread))])
     return Estimate(t, locked(mean), locked(covariance))

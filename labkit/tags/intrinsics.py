@@ -88,7 +88,8 @@ class Intrinsics:
         K, bent = self.matrix, np.array(self.distortion)
         exact = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 40, 1e-10)
         flat = np.asarray(pixels, dtype=float)[:, None]
-        return np.asarray(cv2.undistortImagePoints(flat, K, bent, arg1=exact))[:, 0]
+        straight = cv2.undistortImagePoints(flat, K, bent, arg1=exact)
+        return np.asarray(straight, dtype=float)[:, 0]
 
     def bent(self, pixels: Any) -> Array:
         """Where what a lens without distortion shows at pixels, shape (n, 2), really appears."""
@@ -120,7 +121,8 @@ class Intrinsics:
         K: Array = self.matrix
         if any(self.distortion):
             bent = np.array(self.distortion)
-            return np.asarray(cv2.projectPoints(p, np.zeros(3), np.zeros(3), K, bent)[0])[:, 0]
+            seen = cv2.projectPoints(p, np.zeros(3), np.zeros(3), K, bent)[0]
+            return np.asarray(seen, dtype=float)[:, 0]
         return np.asarray((p[:, :2] / p[:, 2:]) * K.diagonal()[:2] + K[:2, 2])
 
 

@@ -66,6 +66,7 @@ def approach(way: Way, focal_error: float = 0.0) -> Approach:
     model = Model("left")
     lens = Intrinsics()
     told = Intrinsics(fx=lens.fx * (1.0 + focal_error), fy=lens.fy * (1.0 + focal_error))
+    assert model.robot.T_hand_camera is not None  # Baxter has one
     T_tc = se3.inverse(model.robot.T_hand_tip) @ model.robot.T_hand_camera
     q = np.array(model.robot.ready)
     T_wg = model.pose(q) @ T_tc  # the goal of the camera

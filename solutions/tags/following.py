@@ -66,13 +66,13 @@ def carry_forward(mean: Any, covariance: Any, age: float, noise: float) -> tuple
     covariance = as_array(covariance, (len(mean), len(mean)), "covariance")
     tau, q = as_number(age, "age"), as_number(noise, "noise", least=0.0)
     order = range(len(mean) // 3)
-    F = [[tau ** (j - i) / factorial(j - i) if j >= i else 0.0 for j in order] for i in order]
+    rows = [[tau ** (j - i) / factorial(j - i) if j >= i else 0.0 for j in order] for i in order]
     left = [order[-1] - i for i in order]  # how often the noise is integrated to reach each row
-    Q = [
+    noises = [
         [tau ** (a + b + 1) / (factorial(a) * factorial(b) * (a + b + 1)) for b in left]
         for a in left
     ]
-    F, Q = np.kron(F, np.eye(3)), q * np.kron(Q, np.eye(3))
+    F, Q = np.kron(rows, np.eye(3)), q * np.kron(noises, np.eye(3))
     return F @ mean, F @ covariance @ F.T + Q
 
 
