@@ -50,15 +50,25 @@ ORDER = [
     {"replay.view"},
     {"replay"},
     {"labkit"},
-    {"course.verdict", "course.source", "course.advice", "course.calling"},
-    {"course.judges", "course.withheld"},
+    {
+        "course.verdict",
+        "course.source",
+        "course.advice",
+        "course.calling",
+        "course.seed",
+        "course.outcomes",
+    },
+    {"course.judges", "course.withheld", "course.forms"},
+    {"course.bugs"},
+    {"course.own_arm"},
     {"course.equivalence"},
     {"course.question"},
-    {"course.serialize", "course.messages"},
+    {"course.serialize", "course.messages", "course.predictions", "course.identification"},
     {"course.reply", "course.notebook"},
     {"course.marking"},
     {"course.student", "course.problem"},
-    {"course.handin", "course.layout", "course.solved", "course.refusals"},
+    {"course.handin", "course.layout", "course.solved", "course.refusals", "course.reveal"},
+    {"course.hand_in"},
     {"course.bundle", "course.margins"},
     {"course.release", "course.report_card"},
     {"course.cli"},
@@ -70,8 +80,15 @@ UPSTAIRS = {"grader", "__main__"}
 """The grader and the command line, which neither lab nor course knows."""
 # What simulates, what knows the equations, what draws and what sees.
 MODEL = {"kinematics", "model", "urdf"}
-DRAW = {"plotting", "replay", "grader.drawing"}
-SEE = {"tags.rendering", "tags.tag", "tags.detection", "tags.edges"}
+DRAW = {"plotting", "replay", "grader.drawing", "course.reveal"}
+SEE = {
+    "tags.rendering",
+    "tags.tag",
+    "tags.detection",
+    "tags.edges",
+    "tags.camera",
+    "tags.intrinsics",
+}
 
 
 def names(path):

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
+from .forms import Choose, Curve, Measured, Number, Rank
 from .hand_in import hand_in
-from .identification import Identification, Measured
+from .identification import Identification
 from .judges import AtMost, Close, Gains, Within
 from .marking import fingerprint, mark
 from .own_arm import my_arm, my_bug
-from .predictions import Choose, Curve, Number, Prediction, Rank
+from .predictions import Prediction
 from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed
 from .reveal import predict

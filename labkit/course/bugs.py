@@ -18,7 +18,7 @@ from ..plant import Plant
 from ..run import run
 from ..shapes import Array, as_array
 from ..trajectory import Chain, Hold, Sample, Trajectory
-from .predictions import Choose
+from .forms import Choose
 from .verdict import Difference, Kind
 
 PLANT = Plant(name="textbook", armature=0.05, viscous=0.7, velocity_noise=0.01)

@@ -12,9 +12,10 @@ from typing import Any
 from ..errors import LabkitError
 from ..formats import check_stamp, stamp
 from .identification import personal
-from .layout import PUBLIC_SEED, Course
+from .layout import Course
 from .own_arm import draw, handles_of
 from .question import Question
+from .seed import PUBLIC_SEED
 from .serialize import question_data, read_question
 
 

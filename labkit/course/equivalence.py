@@ -11,9 +11,8 @@ from ..control import JointTorque
 from ..errors import OutOfRange
 from ..shapes import Array
 from .bugs import Found, Telling
-from .identification import Measured
+from .forms import Form, Measured
 from .judges import AtMost, Close, Gains, Within, value
-from .predictions import Form
 from .verdict import Difference, Kind, Value
 
 MOST_COEFFICIENTS = 50

@@ -3,57 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .bugs import Found, Telling
-from .predictions import Number
-from .verdict import Difference, Kind
-
-if TYPE_CHECKING:
-    from .own_arm import OwnArm
-    from .question import Question
-
-
-@dataclass(frozen=True)
-class Measured:
-    """A measured number, within a tolerance of the arm's; without an expected one, any plausible.
-
-    Attributes:
-        of: Which number of an `OwnArm`.
-        unit: Of it.
-        least: Less than this nobody could measure.
-        most: More than this nobody could measure.
-        tolerance: Largest difference, in the same unit.
-    """
-
-    of: str
-    unit: str
-    least: float
-    most: float
-    tolerance: float
-
-    def __call__(self, answer: Any, expected: Any) -> Difference | None:
-        """None if it is near enough, else how it differs."""
-        found = Number(self.unit, self.least, self.most).problem(answer)
-        if found:
-            return Difference(Kind.REFUSED, found=found)
-        if expected is None or abs(answer - expected) <= self.tolerance:
-            return None
-        return Difference(Kind.NUMBERS, found=float(answer), several=True)
-
-    def same(self, answer: Any, other: Any) -> bool:
-        """Whether two numbers are the same one."""
-        return bool(answer == other)
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """How far it is off, in tolerances."""
-        if self(answer, None) is not None:
-            return float("inf")
-        return 0.0 if expected is None else abs(answer - expected) / self.tolerance
-
-    def expected(self, arm: OwnArm) -> float:
-        """What is right for somebody's arm."""
-        return float(getattr(arm, self.of))
+from .forms import Measured
+from .own_arm import OwnArm
+from .question import Call, Question, Test
 
 
 @dataclass(frozen=True)
@@ -84,8 +39,6 @@ class Identification:
 
     def question(self) -> Question:
         """The question: a public gate, and a hidden case with the number of somebody's arm."""
-        from .question import Call, Question, Test  # which know this judge
-
         tests = (
             Test(self.form, (Call(()),), 0.0),
             Test(

@@ -15,9 +15,6 @@ if TYPE_CHECKING:
     from .predictions import Prediction
     from .problem import Problem
 
-PUBLIC_SEED = 2019
-"""The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
-
 
 @dataclass(frozen=True)
 class Course:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 
 from ..control import COMMANDS
 from ..errors import ControllerError
-from .predictions import COMMITTED
+from .forms import COMMITTED
 from .question import Loop, Question, Test, Tuned, in_brief
 from .verdict import Difference, Kind, Outcome, TestResult, Value, Verdict
 from .withheld import spoken

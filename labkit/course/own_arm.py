@@ -26,7 +26,7 @@ from ..plant import BAXTER, Plant
 from ..scene import TIP_RADIUS, Wall
 from ..world import World
 from .bugs import CAUSES, MOVES, Bug
-from .layout import PUBLIC_SEED
+from .seed import PUBLIC_SEED
 
 FILE = "arms.json"
 """Beside the notebooks' folders: the sealed arms of a term, by the hash of each handle."""

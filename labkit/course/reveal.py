@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import LabkitError
+from .forms import Choose, Curve, Form, Number, Rank
 from .messages import wrapped
-from .predictions import Choose, Curve, Form, Number, Rank
 from .student import desk, shell
 
 

@@ -12,7 +12,8 @@ from zoneinfo import ZoneInfo
 import click
 
 from ..course.cli import PATH, verb
-from ..course.layout import PUBLIC_SEED, Course
+from ..course.layout import Course
+from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 
 Option = Callable[[Callable[..., int]], Callable[..., int]]

@@ -11,7 +11,8 @@ from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
-from ..course.layout import PUBLIC_SEED, Course
+from ..course.layout import Course
+from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 from . import attempts, identity, pseudonyms, roster
 from .release import release

@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from labkit.course.layout import PUBLIC_SEED, Course
+from labkit.course.layout import Course
 from labkit.course.marking import mark
 from labkit.course.problem import Problem
+from labkit.course.seed import PUBLIC_SEED
 from labkit.course.verdict import Verdict
 from labkit.recordings import DATA
 

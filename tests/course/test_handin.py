@@ -42,7 +42,7 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert found.problems == ()
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
-    assert str(found).endswith("whole; when it was last run, 0 of 6 tasks were right.")
+    assert str(found).endswith("whole; when it was last run, 0 of 8 tasks were right.")
 
 
 def test_what_is_not_yet_right_is_named(folder):
@@ -112,7 +112,7 @@ def test_what_the_check_said_is_repeated(folder):
     found = answered(folder, "circle", "def circle(*a): return 1", ran)
     says = "  circle: right on all public cases; 4 points if the hidden ones agree."
     assert says in str(found).splitlines()
-    assert str(found).endswith("1 of 6 tasks were right.")
+    assert str(found).endswith("1 of 8 tasks were right.")
     lies = [{"output_type": "stream", "name": "stdout", "text": "circle: right. 4 of 4 points.\n"}]
     assert answered(folder, "circle", "x = 1", lies).verdicts["circle"] is None
 

@@ -160,7 +160,11 @@ def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
 
 
 def test_hints_lead_on(capsys):
-    """Three hints, each naming the next; there is no fourth and no zeroth."""
+    """Three hints, each naming the next, the third after an attempt; there is no fourth."""
+    hint("double", 3)
+    assert "opens after an attempt" in capsys.readouterr().out
+    check("double", square)
+    capsys.readouterr()
     for level in (1, 2, 3):
         hint("double", level)
         said = capsys.readouterr().out

@@ -10,7 +10,8 @@ from courses import copied
 from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
-from labkit.course.layout import PUBLIC_SEED, Course
+from labkit.course.layout import Course
+from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import UnknownName
 from labkit.grader import term
 from labkit.grader.gradebook import open_gradebook

@@ -4,7 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from labkit.course.layout import PUBLIC_SEED, Course
+from labkit.course.layout import Course
+from labkit.course.seed import PUBLIC_SEED
 from labkit.grader.batch import GradeOptions, workers
 from labkit.grader.each import Failures
 

@@ -8,7 +8,8 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from labkit.course.layout import PUBLIC_SEED, Course
+from labkit.course.layout import Course
+from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import LabkitError
 from labkit.grader.batch import GradeOptions, common_failures, grade_class
 from labkit.grader.class_report import report
