@@ -76,7 +76,8 @@ def test_a_bad_effect_per_joint_is_named(field, value):
 @pytest.mark.parametrize("field", PER_JOINT)
 def test_a_plant_of_another_number_of_joints_is_refused_by_the_arm(field):
     with pytest.raises(LabkitError, match=f"{field}.*give 7 numbers, not 6"):
-        lk.Arm(plant=lk.Plant(**{field: np.arange(6.0)}))
+        springs = {"armature": 0.1, "joint_stiffness": 100.0}
+        lk.Arm(plant=lk.Plant(**springs | {field: np.arange(1.0, 7.0)}))
 
 
 @pytest.mark.parametrize(

@@ -153,9 +153,13 @@ def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Ar
     """
     lens, pixels = _intrinsics(camera), as_array(corners, (4, 2), "corners")
     straight = np.ascontiguousarray(lens.straightened(pixels))
-    _, turns, places, _ = cv2.solvePnPGeneric(
-        tag_corners(size), straight, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
-    )
+    for nudge in (0.0, 1e-7):  # OpenCV divides by zero where the corners are an upright square
+        straight[0] += nudge
+        _, turns, places, _ = cv2.solvePnPGeneric(
+            tag_corners(size), straight, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+        )
+        if np.isfinite(turns).all():
+            break
     if not turns:
         raise OutOfRange(
             f"no square has its corners at the pixels {pixels.tolist()}; are they four different "

@@ -24,8 +24,9 @@ _ALONG = np.linspace(0.12, 0.88, _ROWS)[:, None]  # the corners themselves are r
 _ACROSS = np.linspace(-1.0, 1.0, _DEEP)[:, None]
 _WEIGHT = np.full(_DEEP, 1.0 / (_DEEP - 1))
 _WEIGHT[[0, -1]] *= 0.5  # the trapezoidal rule
-_GRAIN = 1.6  # how much more a corner is off than its sides' scatter says, by `make tag-bench`
-_CUT = 0.37  # [px] by which it is off for each unit of slope left at the rows' ends, by the same
+_GRAIN = 1.6  # how much more a corner is off than its sides' scatter says, as rendered
+_CUT = 0.37  # [px] by which it is off for each unit of slope left at the rows' ends, as rendered
+_LEAST = 0.01  # [px]; the sides of a tag square to the picture do not scatter at all
 _STEEP = 0.11  # with more slope there, a row is too short for the blur, and the edge is lost
 _PURE = 0.2  # a row must begin dark and end light, to this share of the contrast
 
@@ -99,7 +100,8 @@ def _sides(picture: Picture, corners: Array, cells: int, lens: Intrinsics) -> An
     slope = np.mean(ends, axis=(0, 2))
     if slope.max() > _STEEP:
         return None
-    return *lines[:2], float(np.hypot(_GRAIN * lines[2], _CUT * slope.mean()))
+    noise = max(_LEAST, float(np.hypot(_GRAIN * lines[2], _CUT * slope.mean())))
+    return *lines[:2], noise
 
 
 def _lines(points: Array, keep: Any) -> tuple[Array, Array, float] | None:

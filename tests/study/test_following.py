@@ -96,7 +96,7 @@ def test_a_circling_board_is_followed_within_two_millimetres():
     print(f"RMS {rms:.2f} mm, peak {peak / GENTLE:.2f} v^2/R, jump {max(guide.jumps):.1e}")
     assert lookups.count.unseen <= 0.02 * lookups.count.taken
     assert rms <= 2.0
-    assert peak <= 2.0 * GENTLE and acceleration.max() <= guide.acceleration
+    assert peak <= 3.0 * GENTLE and acceleration.max() <= guide.acceleration
     assert max(guide.jumps) <= 1e-9
 
 
