@@ -35,9 +35,8 @@ _COMMANDS = [kind.__name__ for kind in COMMANDS]
 def head(verdict: Verdict) -> str:
     """The verdict in a line."""
     points = f"{verdict.points:g} point{'' if verdict.points == 1 else 's'}"
-    says = HEADS[verdict.outcome]
-    if verdict.right and [test.name for test in verdict.tests] == [COMMITTED]:
-        says = "committed"
+    committed = verdict.right and [test.name for test in verdict.tests] == [COMMITTED]
+    says = "committed" if committed else HEADS[verdict.outcome]
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
@@ -229,9 +228,7 @@ def _polar(x: Value) -> str:
 
 
 def _much(x: Value) -> str:
-    if not isinstance(x, float):
-        return str(x)
-    return f"{x:.3g}" if abs(x) < 1e3 else f"{x:.0f}"
+    return f"{x:.{'3g' if abs(x) < 1e3 else '0f'}}" if isinstance(x, float) else str(x)
 
 
 def _results(question: Question, verdict: Verdict) -> list[str]:

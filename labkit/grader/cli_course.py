@@ -13,10 +13,8 @@ import click
 
 from ..course.cli import PATH, verb
 from ..course.layout import Course
-from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 
-Option = Callable[[Callable[..., int]], Callable[..., int]]
 SEED = click.IntRange(min=0)
 
 
@@ -148,68 +146,6 @@ def _say(sentences: Iterable[str]) -> None:
         print(sentence)
 
 
-@verb("--to ../handout")
-@click.option("--to", type=PATH, required=True, metavar="DIR", help="A folder that is new.")
-@of_course
-def export_course(course: Course, to: Path) -> int:
-    """Write a repository for students, and a private one."""
-    from .student_bundle import export_course
-
-    student, private = export_course(course, to)
-    print(f"for students, without answers: {student}\nprivate, everything: {private}")
-    return 0
-
-
-def _functions(of: str) -> Option:
-    """An option that takes more known answers from a file."""
-    says = f"A Python file with a dict {of.upper()} = {{question: [functions]}}."
-    return click.option(f"--{of}", type=PATH, metavar="FILE", help=says)
-
-
-@verb("01_paths --mistakes seen_in_class.py")
-@names
-@click.option(
-    "--seed", type=SEED, default=PUBLIC_SEED, help=f"Of the first draw; {PUBLIC_SEED} by default."
-)
-@click.option("--draws", type=click.IntRange(1), default=20, help="How many; 20 by default.")
-@click.option("--to", type=PATH, metavar="DIR", help="Where to write it; default: build.")
-@_functions("mistakes")
-@_functions("variants")
-@of_course
-def report_card(
-    course: Course,
-    names: tuple[str, ...],
-    seed: int,
-    draws: int,
-    to: Path | None,
-    mistakes: Path | None,
-    variants: Path | None,
-) -> int:
-    """Say how well the checks tell right from wrong.
-
-    Without a NAME it looks at all assignments.
-    """
-    from ..course.report_card import functions_from, make, write
-
-    card = make(
-        course,
-        names or course.names(),
-        seed,
-        functions_from(mistakes, "MISTAKES") if mistakes else None,
-        functions_from(variants, "VARIANTS") if variants else None,
-        progress=lambda row: print(
-            f"{row.assignment} {row.question}: {row.rejected} of {row.mistakes} mistakes rejected, "
-            f"{row.accepted} of {row.variants} right answers accepted",
-            flush=True,
-        ),
-        draws=draws,
-    )
-    table, page = write(card, to or course.root / "build")
-    print(page.read_text(encoding="utf-8"))
-    print(f"written: {table} and {page}")
-    return int(any(row.failures for row in card.rows))
-
-
 @verb("import participants.csv")
 @click.argument("action", type=click.Choice(["import"]), metavar="import")
 @click.argument("file", type=PATH, metavar="FILE.csv")
@@ -305,7 +241,4 @@ def doctor() -> int:
     return 1 if bad else 0
 
 
-COMMANDS = (
-    *(doctor, term, release, student_bundle, students, collect),
-    *(report_card, export_course),
-)
+COMMANDS = (doctor, term, release, student_bundle, students, collect)

@@ -22,15 +22,7 @@ from .clean import safe_name
 from .exchange import read_time
 from .identity import all_lms_users, alone, lms_users, places, remember
 from .platforms import LmsUser
-from .roster import (
-    FILE,
-    Roster,
-    Student,
-    read_roster,
-    same_name,
-    save_roster,
-    tell_gradebook,
-)
+from .roster import FILE, Roster, Student, read_roster, same_name, save_roster, tell_gradebook
 from .rules import read_rules
 
 _Mark = tuple[str, object]
