@@ -25,7 +25,6 @@ from labkit.run import RUNAWAY  # noqa: E402
 from labkit.tags.tag import Tag  # noqa: E402
 from solutions.study import gains, tag_task, tasks  # noqa: E402
 from solutions.study.baseline import server  # noqa: E402
-from solutions.tags.following import TagFollower  # noqa: E402
 
 NAMES = {
     "workspace velocity": "workspaceVelocity",
@@ -113,9 +112,7 @@ def geometry(name: str) -> Any:
 
 
 def tag_data() -> dict[str, Any]:
-    """The tag's circle and the follower's numbers."""
-    follower = TagFollower(np.eye(4), np.zeros(3))
-    names = ("horizon", "coast", "acceleration", "accel_noise", "speed")
+    """The circle of the tag and the place of the tip above it."""
     return {
         "duration": tag_task.DURATION,
         "rate": tag_task.RATE,
@@ -123,7 +120,6 @@ def tag_data() -> dict[str, Any]:
         "radius": tag_task.RADIUS,
         "offset": tag_task.OFFSET.tolist(),
         "size": Tag().size,
-        "follower": {name: getattr(follower, name) for name in names},
     }
 
 

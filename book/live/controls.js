@@ -30,4 +30,3 @@ export const ARM_DIALS = [
   { key: "noise", label: "Noise ×", unit: "Baxter's", min: 0, max: 5 },
   { key: "speed", label: "Top speed", unit: "m/s", min: 0.05, max: 0.6 },
 ];
-export const PLACES = { line: "line", circle: "circle", square: "square", tag: "tag (drag it)", stay: "stay (drag the target)" };

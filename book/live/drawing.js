@@ -1,0 +1,64 @@
+// The picture of a live panel: the arm, its path, the things around it, and forces as arrows.
+import { subtract } from "./algebra.js";
+import { Form } from "./form.js";
+import { hold } from "./hands.js";
+import { TAG } from "./numbers.js";
+import { READY, wallAt } from "./settings.js";
+
+const NEWTON = 0.01; // metres of arrow for a newton
+
+export class Drawing extends Form {
+  draw3d(robot) {
+    const { picture } = this;
+    picture.embody(robot);
+    picture.pose("left", this.session.arm.q);
+    const { rig } = picture.stage;
+    const reach = 0.17;
+    rig.around([READY.p.map((x) => x - reach), READY.p.map((x) => x + reach)]);
+    Object.assign(rig.motion, this.config.view);
+    rig.use("Motion");
+    hold(picture, () => this.sessions, {
+      wall: { move: (p) => { const at = p[0] - READY.p[0]; this.walldial.set(1000 * at); this.change({ wall: at }); } },
+      tag: { move: (p) => { for (const { chase } of this.sessions) chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); } },
+      target: { move: (p) => {
+        if (this.settings.path !== "stay") return;
+        this.change({ place: p.map((x, k) => Math.max(-0.15, Math.min(0.15, x - READY.p[k]))) });
+      } },
+    }, () => this.pause(false));
+    this.drawPath();
+  }
+
+  /** The path of the target, dashed. */
+  drawPath() {
+    const { viewer, picture, session } = this;
+    if (!picture.works) return;
+    if (this.path) { picture.stage.scene.remove(this.path); viewer.dispose(this.path); }
+    const rows = Array.from({ length: 121 }, (_, k) => session.goal((k / 120.001) * session.lap));
+    this.path = viewer.line(rows, { colour: 0xc77700, width: 2.5, dash: 0.012, gap: 0.008 });
+    this.path.visible = this.settings.path !== "stay";
+    picture.stage.scene.add(this.path);
+    picture.stage.draw();
+  }
+
+  /** The arms as they are now, what stands around them, and what pushes. */
+  drawNow(now) {
+    const { picture } = this;
+    picture.pose("left", this.session.arm.q);
+    if (this.other) this.ghost.pose(this.other.arm.q);
+    this.furnish(now);
+    for (const name of ["hand", "push", "wall"]) {
+      const force = now.forces.find((f) => f.name === name);
+      picture.arrow(name, force?.at ?? now.p, force ? force.force.map((x) => NEWTON * x) : [0, 0, 0], force ? `${force.size.toFixed(1)} N` : "");
+    }
+  }
+
+  furnish(now) {
+    const things = { target: { kind: "target", position: now.goal } };
+    if (this.session.chase) things.tag = { kind: "tag", position: subtract(now.goal, TAG.offset), size: TAG.size };
+    if (this.settings.wall !== undefined) {
+      const { point, size } = wallAt(this.settings.wall);
+      things.wall = { kind: "face", position: point, quaternion: [0, -Math.SQRT1_2, 0, Math.SQRT1_2], size };
+    }
+    this.picture.furnish({ ...things, ...this.more?.(now) });
+  }
+}

@@ -1,0 +1,77 @@
+// The fields of a live panel: what one chooses, dials and pushes.
+import { ARM_DIALS, gainDials } from "./controls.js";
+import { dial } from "./dial.js";
+import { AXES, pushTips } from "./hands.js";
+import { NAMES } from "./settings.js";
+import { SCALINGS } from "./paths.js";
+
+export const ARMS = { ideal: "ideal arm", baxter: "realistic arm" };
+const PATHS = ["line", "circle", "square", "tag", "stay"];
+const key = (names, label) => Object.keys(names).find((k) => names[k] === label);
+
+export class Form {
+  /** What stands under the picture, in order. */
+  parts() {
+    return [this.buttons(), this.choices(), this.fieldset("Gains", this.gainbox), this.hands(), this.details(), this.numbers,
+      this.curves.element, this.said];
+  }
+
+  fieldset(name, ...children) { return this.h("fieldset", {}, this.h("legend", {}, name), ...children); }
+
+  buttons() {
+    const { h } = this;
+    const button = (text, onclick) => h("button", { type: "button", onclick }, text);
+    this.play = button("Pause", () => this.pause(this.playing));
+    this.play.classList.add("lk-play");
+    this.keeper = button("Keep this run", () => this.keep());
+    return h("div", { class: "lk-bar" }, this.play, button("Step 0.1 s", () => { this.pause(true); this.live(0.1); this.tell(); }),
+      button("From the start", () => this.restart()), this.keeper);
+  }
+
+  choices() {
+    const { h, viewer, settings } = this;
+    const only = this.config.controllers ?? Object.keys(NAMES);
+    this.selects = {
+      plant: viewer.choice({ label: "Arm", values: Object.values(ARMS), value: ARMS[settings.plant],
+        onchange: (label) => this.preset(key(ARMS, label)) }),
+      path: viewer.choice({ label: "Path", values: this.config.paths ?? PATHS, value: settings.path,
+        onchange: (path) => this.change({ path }) }),
+      controller: viewer.choice({ label: "Controller", values: only.map((name) => NAMES[name]), value: NAMES[settings.controller],
+        onchange: (label) => { this.change({ controller: key(NAMES, label), gains: {} }); this.showGains(); } }),
+      shape: viewer.choice({ label: "Time scaling", values: SCALINGS, value: settings.shape,
+        onchange: (shape) => this.change({ shape }) }) };
+    return h("div", { class: "lk-livebar" }, Object.values(this.selects).map((c) => c.element));
+  }
+
+  dial(spec, oninput) { return dial({ h: this.h, unique: this.viewer.unique }, { ...spec, oninput }); }
+
+  showGains() {
+    const { plant, controller, gains } = this.settings;
+    const dials = gainDials(plant, controller).map((spec) => this.dial({ ...spec, value: gains[spec.key] ?? spec.value },
+      (x) => this.change({ gains: { ...this.settings.gains, [spec.key]: x } })));
+    const none = "The position mode has no gains to choose: it goes where it is told as fast as its motors can still brake.";
+    this.gainbox.replaceChildren(...(dials.length ? dials.map((d) => d.element) : [this.h("p", { class: "lk-kept" }, none)]));
+  }
+
+  hands() {
+    const { h } = this;
+    const newtons = this.dial({ label: "Force", unit: "N", min: 1, max: 40, value: 10 }, () => {});
+    const push = (axis) => { pushTips(this.sessions, axis, newtons.get()); this.pause(false); this.say(`Pushing the tip with ${newtons.get()} N along ${axis} for a second.`); this.tell(900); };
+    const buttons = Object.keys(AXES).map((axis) => h("button", { type: "button", "aria-label": `Push along ${axis}`, onclick: () => push(axis) }, axis));
+    return this.fieldset("Push the tip, or drag the arm in the picture", newtons.element, h("div", { class: "lk-pushes" }, buttons));
+  }
+
+  details() {
+    const { h, settings } = this;
+    this.armdials = Object.fromEntries(ARM_DIALS.map((spec) => [spec.key,
+      this.dial({ ...spec, value: settings[spec.key] }, (x) => this.change({ [spec.key]: x }))]));
+    const wall = this.dial({ label: "Wall at", unit: "mm", min: -50, max: 150, value: 1000 * (settings.wall ?? 0.05) },
+      (x) => this.change(this.settings.wall === undefined ? {} : { wall: x / 1000 }));
+    const there = h("input", { type: "checkbox", checked: settings.wall !== undefined,
+      onchange: () => this.change({ wall: there.checked ? wall.get() / 1000 : undefined }) });
+    this.walldial = wall;
+    return h("details", { open: this.config.open }, h("summary", {}, "The arm and its surroundings"),
+      this.fieldset("Arm", h("div", { class: "lk-dials" }, Object.values(this.armdials).map((d) => d.element))),
+      this.fieldset("Wall before the tip", h("label", { class: "lk-check" }, there, "stands"), wall.element));
+  }
+}
