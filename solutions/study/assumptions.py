@@ -34,7 +34,7 @@ CLAIMS: Mapping[str, tuple[Sequence[str], Sequence[str]]] = {
     "joint velocity over workspace velocity": (("workspace velocity",), ("joint velocity",)),
     "joint impedance over workspace impedance": (("workspace impedance",), ("joint impedance",)),
     "the three over both impedances": (IMPEDANCE, THREE),
-    **{f"built-in way over {way}": ((way,), (BASELINE,)) for way in FIVE},
+    **{f"built-in method over {way}": ((way,), (BASELINE,)) for way in FIVE},
 }
 """The first way's error minus the second's: positive where the claim, "better than", is true."""
 

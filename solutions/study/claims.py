@@ -7,7 +7,7 @@ over its seeds.  A difference is *held* where its interval lies above zero, *did
 lies below, else *undecided*.  Twelve claims at 95 % each would decide one in two by luck alone:
 the intervals of a family of m claims are those of 1 - 0.05 / m (Bonferroni), so 95 % is for all.
 
-A task counts for a claim if both ways were told the same target: the built-in way cannot follow a
+A task counts for a claim if both ways were told the same target: the built-in method cannot follow a
 goal that moves, so on the tag it is told another one, and claims about it rest on the three paths.
 """
 
@@ -177,7 +177,7 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
     worse = "the impedance controllers track worse than the other three"
     asked += [(worse, rows, IMPEDANCE, THREE)]
     asked += [
-        (f"the built-in way tracks better than {way}", planned, (way,), ("baseline",))
+        (f"the built-in method tracks better than {way}", planned, (way,), ("baseline",))
         for way in (*THREE, *IMPEDANCE)
     ]
     found = [
