@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .problem import Problem
 
 PUBLIC_SEED = 2019
-"""The seed of the demonstration; it is no secret, so hidden cases made with it are none."""
+"""The seed of the demonstration; it is public, so hidden cases made with it are not secret."""
 
 
 @dataclass(frozen=True)

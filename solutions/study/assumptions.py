@@ -1,8 +1,8 @@
 """Which verdicts hang on which assumption: ``python -m solutions.study.assumptions``.
 
 Each number of the plant that nobody measured goes to the least and to the most that is plausible
-(`labkit.plant.EVIDENCE`), alone, the gains staying as they are; then every way follows the line
-again.  A verdict that turns over hangs on that number.
+(`labkit.plant.EVIDENCE`), alone, the gains staying as they are; then every method follows the
+line again.  A verdict that turns over hangs on that number.
 """
 
 from __future__ import annotations

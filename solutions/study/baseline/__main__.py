@@ -1,4 +1,4 @@
-"""Record the built-in method for those who have no planner: ``python -m solutions.study.baseline``."""
+"""Record the built-in method, for all without a planner: ``python -m solutions.study.baseline``."""
 
 from __future__ import annotations
 
