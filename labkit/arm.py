@@ -100,8 +100,8 @@ class Arm:
         name = self.robot.name
         if name in [arm.robot.name for arm in self.world.arms]:
             raise LabkitError(
-                f"this world has a {name} arm already, and two would stand in one place; use that "
-                "one, or make a new World too"
+                f"this world has a {name} arm already, and two would occupy the same place; "
+                "use that one, or make a new World too"
             )
 
     # What a controller may use
@@ -239,7 +239,7 @@ class Arm:
         return self.model.pose(q)[:3, 3], self.model.tip_jacobian(q)[:3] @ dq
 
     def check_open(self) -> None:
-        """Raise `Closed` if the world it stands in was closed, or is in another thread's hands."""
+        """Raise `Closed` if the arm's world was closed, or belongs to another thread."""
         if self.world.closed:
             raise Closed("this arm's world was closed; make a new Arm")
         if self.world.owner is not None:
@@ -305,7 +305,7 @@ class Arm:
         return self._known
 
     def close(self) -> None:
-        """Close the world it stands in."""
+        """Close the arm's world."""
         self.world.close()
 
     def __enter__(self) -> Arm:

@@ -34,7 +34,7 @@ class State(_State):
         dq: Joint speeds, shape (n,) in [rad/s], read-only.
         tau_ext: What the world outside puts on the joints, as the arm estimates it from its torque
             sensors, shape (n,) in [N m], read-only; `Model.tip_wrench` makes it a wrench.
-            None is none.
+            None means that the arm gives no estimate.
     """
 
     __slots__ = ()

@@ -131,7 +131,7 @@ class Real:
             ]
             t = as_number(t, "the time of its state")
         except (LabkitError, ValueError) as error:
-            what = f"the arm's answer at t = {self._now:.3f} s is none: {error}"
+            what = f"the arm's answer at t = {self._now:.3f} s is not a state: {error}"
             raise ArmLost(f"{what}; {self._rest()}") from error
         if t != self._latest:
             self._latest, self._since = t, self._now
@@ -166,7 +166,7 @@ class Real:
         self.stop()
 
     def stop(self) -> None:
-        """Leave the arm at rest; one that is lost was told already."""
+        """Leave the arm at rest; a lost arm has received the command already."""
         if not self._lost:
             self._asked(self._arm.stop)
 

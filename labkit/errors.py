@@ -101,7 +101,7 @@ class Diverged(ControllerError):
 
 
 class ArmLost(LabkitError, RuntimeError):
-    """A real arm stopped answering, or its answer is none; the log up to then is kept as `log`."""
+    """A real arm gave no answer, or one that is not a state; `log` keeps the run up to then."""
 
     log: object = None
 

@@ -18,13 +18,13 @@ def stamp() -> dict[str, int]:
     return {"format": FORMAT, "physics": PHYSICS}
 
 
-def check_stamp(data: Mapping[str, Any], what: str, mend: str) -> None:
+def check_stamp(data: Mapping[str, Any], what: str, remedy: str) -> None:
     """Refuse a file that another version of labkit wrote.
 
     Args:
-        data: What stands in it.
+        data: What the file holds.
         what: What it is called, such as "checks.json".
-        mend: What to do about an older one, an imperative.
+        remedy: What to do about an older one, an imperative.
 
     Raises:
         LabkitError: Its format or its physics has another number than this labkit's.
@@ -33,5 +33,5 @@ def check_stamp(data: Mapping[str, Any], what: str, mend: str) -> None:
         found = data.get(name, 1)
         if found != mine:
             newer = isinstance(found, int) and found > mine
-            todo = "install the labkit that it came with" if newer else mend
+            todo = "install the labkit that it came with" if newer else remedy
             raise LabkitError(f"{what} has {name} {found!r}, this labkit reads {mine}; {todo}")

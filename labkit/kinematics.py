@@ -352,7 +352,7 @@ class Kinematics:
         if at_limit.size:
             i = at_limit[0]
             return (
-                f"cannot be reached: joint {self.robot.joint_names[i]} stands at its limit of "
+                f"cannot be reached: joint {self.robot.joint_names[i]} is at its limit of "
                 f"{q[i]:.4g} rad {off}; change the orientation, or start from another q0"
             )
         return f"was not found from this q0 {off}; start from another q0"

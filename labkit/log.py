@@ -107,7 +107,7 @@ _ROWS = ("t", "q", "dq", "tau", "command", "saturated")
 
 
 def _read(about: dict[str, Any], columns: dict[str, Any]) -> dict[str, Any]:
-    """The fields of a log from what stands in its file."""
+    """The fields of a log from the contents of its file."""
     wide = {x: locked(a if a.dtype == bool else a.astype(np.float64)) for x, a in columns.items()}
     target = {c.__name__: c for c in (Sample, PoseSample)}[about["target"]]
     robot = about.get("robot") or about["side"]  # the name until 0.2
@@ -152,7 +152,7 @@ class Recorder:
         row: Any = (truth.q, truth.dq, torque, command.value, *given, *report[1:])
         self._times.append(t)
         self._reported.append(report.t)
-        self._rows.append(b"".join(row))  # last: a tick that is interrupted is none
+        self._rows.append(b"".join(row))  # last: an interrupted tick does not count
 
     def cut(self, saturated: bool) -> None:
         """Write down whether a limit cut what the arm did since the latest tick."""

@@ -14,7 +14,7 @@ from .world import whole_steps
 
 
 class Reports:
-    """States on their way from the joints to whoever asks: seldom, late and noisy.
+    """States on their way from the joints to the controller: seldom, late and noisy.
 
     Attributes:
         every: Physics steps between two reports; 0 for an arm whose state is always at hand.

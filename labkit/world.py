@@ -1,4 +1,4 @@
-"""The world: a clock, and what stands in it."""
+"""The world: a clock, the arms and all other things."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class World:
         engine: The physics engine that moves its arms, "pybullet" or "mujoco".
         closed: Whether it was closed.
         things: What was put into it, the arms apart.
-        arms: The arms that stand in it.
+        arms: The arms that were put into it.
         shown: What only cameras see.
         owner: The number of the one thread that may move it, such as that of `live`; None is any.
     """

@@ -169,7 +169,7 @@ def test_a_joint_at_its_limit_is_named_with_the_limit(model):
     over = T[:3, :3] @ se3.rotation([0.0, 0.0, 1.2])
     path = lk.PosePath(lk.Line(T[:3, 3], T[:3, 3]), T[:3, :3], over)
     name = model.robot.joint_names
-    with pytest.raises(Unreachable, match=rf"joint ({'|'.join(name)}) stands at its limit of"):
+    with pytest.raises(Unreachable, match=rf"joint ({'|'.join(name)}) is at its limit of"):
         model.joint_trajectory(lk.Trajectory(path, lk.Quintic(2.0)), down)
 
 

@@ -47,7 +47,7 @@ def _named(path: Path) -> Iterator[str]:
 
 
 def picture() -> HTML:
-    """The rows, each above what it stands on."""
+    """The rows, each above the rows that it imports from."""
     row_of = {name: k for k, (_, names) in enumerate(LAYERS) for name in names}
     drawn = set(row_of)
     arrows = {(a, b) for a in drawn for b in imported(a) & drawn}

@@ -1,4 +1,4 @@
-"""Sentences and what they rest on: a number that is told, a conclusion that is drawn.
+"""Sentences and what they rest on: the numbers they state, the conclusions they draw.
 
 A sentence with a number shows one that `told` was given; a sentence with a comparison holds the
 words of a `claim` with its check.  Both are kept in `told.json` beside this file as they were when
@@ -48,7 +48,7 @@ def claim(conclusion: str, check: Callable[..., Any], **data: Any) -> None:
     """Note a conclusion of the prose.
 
     Args:
-        conclusion: Words that stand in the page as they stand here.
+        conclusion: Words that the page contains exactly as they are given here.
         check: Called with ``data``; whether the conclusion holds.
         data: What it is drawn from, each a number or a sequence of numbers.
 
@@ -92,7 +92,7 @@ def near(x: Numbers, y: Numbers) -> bool:
 
 
 def kept() -> Mapping[str, list[float]]:
-    """What was told when the sentences were last read."""
+    """The numbers and data as they were when somebody last read the sentences."""
     found: Mapping[str, list[float]] = json.loads(KEPT.read_text()) if KEPT.exists() else {}
     return found
 

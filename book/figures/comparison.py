@@ -41,7 +41,7 @@ def _mean(way: str, task: str, plant: str, name: str) -> float:
 
 
 def _on_paths(way: str, plant: str) -> float:
-    """The error over all tasks but the tag, where not every way is told the same."""
+    """The error over all tasks but the tag, where not all methods receive the same target."""
     paths = (task for task in campaign.TASKS if task != "tag")
     return float(np.mean([_mean(way, task, plant, "late_rms_mm") for task in paths]))
 
@@ -106,7 +106,7 @@ def _seeds() -> str:
 
 
 def one_table(name: str, plant: str) -> HTML:
-    """One number of every way on every task: mean over the seeds and its range."""
+    """One number of every method on every task: mean over the seeds and its range."""
     body = []
     for way in WAYS:
         cells = []
@@ -124,7 +124,7 @@ def tables(plant: str) -> HTML:
 
 
 def bars() -> HTML:
-    """Tracking error of every way on the paths, on both arms."""
+    """Tracking error of every method on the paths, on both arms."""
     _, ax = plt.subplots(figsize=(6.2, 3.8))
     told = []
     for k, (plant, hatch) in enumerate((("ideal", "//"), ("baxter", ""))):
@@ -168,13 +168,13 @@ def claims() -> HTML:
 def verdicts_told() -> None:
     """Numbers and conclusions about the verdicts."""
     judged = {v["claim"]: v for v in found()["verdicts"]}
-    v = judged["the built-in way tracks better than joint velocity"]
+    v = judged["the built-in method tracks better than joint velocity"]
     pairs = [t["mean"] for t in v["tasks"]]
     x = v["overall"]
     number("built_in_mean", x["mean"], "+.2f")
     number("built_in_half", x["half_width"], ".2f")
     claim(
-        "on each of the three paths it did not hold",
+        "on each of the three paths the claim did not hold",
         lambda d: all(a < 0.0 for a in d),
         d=pairs,
     )
@@ -184,7 +184,7 @@ def verdicts_told() -> None:
         mean=x["mean"],
         half=x["half_width"],
     )
-    torque = judged["the built-in way tracks better than joint torque"]
+    torque = judged["the built-in method tracks better than joint torque"]
     claim(
         "the tasks' means agree in sign and not in size",
         lambda d, mean, half: min(d) > 0.0 and max(d) > 1.5 * min(d) and abs(mean) < half,

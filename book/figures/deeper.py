@@ -203,7 +203,7 @@ def robust() -> HTML:
 
 
 def ways() -> HTML:
-    """What each way of servoing needs and what it forgives."""
+    """What each method of visual servoing needs and what it tolerates."""
     return table(
         ("Way", "compares", "needs", "wrong focal length"),
         [

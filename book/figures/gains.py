@@ -119,7 +119,7 @@ def _list(values: tuple[float, ...]) -> str:
 
 
 def explorer(folder: str, poster: str) -> HTML:
-    """The explorer, whose runs stand in book/static/runs, behind a picture of the arm."""
+    """The explorer, which loads its runs from book/static/runs, behind a picture of the arm."""
     facts = json.loads((Path(__file__).parents[1] / "static/runs/facts.json").read_text())
     runs = {tuple(map(int, key.split("-"))): None for key in facts}
     told = {tuple(map(int, key.split("-"))): text for key, text in facts.items()}

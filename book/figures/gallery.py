@@ -1,4 +1,4 @@
-"""The galleries: every way through one task, one run each, on scales that can be compared."""
+"""The galleries: one run of every method through one task, on scales that can be compared."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from .page import figure, holds, replay, table
 FILMS = Path(__file__).parents[2] / "build/campaign.json"
 SHOWN = (*FIVE, BASELINE)
 LATE = 1.0
-"""From when on errors are counted, in [s]: before, every way comes from beside the path."""
+"""When the counting of errors begins, in [s]; until then every method still approaches the path."""
 
 
 def all_ways(task: str) -> HTML:
-    """The errors of every way in one drawing."""
+    """The errors of every method in one drawing."""
     _, ax = plt.subplots(figsize=(6.2, 3.8))
     for k, way in enumerate(SHOWN):
         log = run_of(way, task)
@@ -193,7 +193,7 @@ def _panels(way: str, task: str) -> list[tuple[str, np.ndarray, np.ndarray | Non
 
 @cache
 def _limits(task: str) -> list[tuple[float, float]]:
-    """Limits of the panels that hold every way."""
+    """Limits of the panels that show the runs of all methods in full."""
     found = []
     for panels in zip(*(_panels(way, task) for way in SHOWN), strict=True):
         values = np.concatenate([panel[1].ravel() for panel in panels])

@@ -72,7 +72,7 @@ def _sideways(log: lk.Log) -> np.ndarray:
 
 
 def push() -> HTML:
-    """The arm answers a push as the spring that it was told to be."""
+    """The arm answers a push like the spring that was commanded."""
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     told, shown = [], []
     for k, stiffness in enumerate((150.0, 300.0, 600.0)):
@@ -195,7 +195,7 @@ def check_yourself() -> HTML:
         Question(
             "The spring has the wrong sign: F = −K e, with e = target − actual. What happens?",
             [
-                ("The arm is softer", "It is no spring at all: it pushes away."),
+                ("The arm is softer", "It is not a spring at all: it pushes away."),
                 ("The arm leaves", "Yes: the further, the harder it pushes."),
             ],
             1,

@@ -15,7 +15,7 @@ class Symbol(NamedTuple):
         code: How it is written in code.
         latex: How it is written in formulas.
         meaning: What it is.
-        shape: Of the array, as docstrings write it; empty for what is no single array.
+        shape: Of the array, as docstrings write it; empty for what is not a single array.
         unit: As docstrings write it; empty where there is none.
     """
 

@@ -90,7 +90,7 @@ def figure(caption: str, alt: str, words: str = "", fig: Any = None) -> HTML:
 
     Args:
         caption: Under the figure.
-        alt: One or two sentences for whoever does not see it, with the figure's own numbers.
+        alt: One or two sentences for readers who cannot see it, with the figure's own numbers.
         words: A longer description, opened on demand.
         fig: Which; None is the current one.
     """
@@ -190,7 +190,7 @@ class Question:
 
     Attributes:
         text: The question; mathematics between \\( and \\).
-        answers: Answers in the order shown, each with what to say to whoever chooses it.
+        answers: Answers in the order shown, each with the reply to a reader who chooses it.
         right: Which one is right, from 0.
     """
 

@@ -79,7 +79,7 @@ def hangs() -> HTML:
     )
     where = [_crosses(error, level) for level in (joint, torque)]
     claim(
-        "Above it the built-in way is the better of the two",
+        "Above it the built-in method is the better of the two",
         lambda at, ends: ends[0] < at[0] < ends[1] and ends[0] < at[1] < at[0],
         at=where,
         ends=[min(error), max(error)],

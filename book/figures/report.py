@@ -159,5 +159,5 @@ def impedance() -> None:
         log = lk.run(arm, lk.Hold(T_wd, 3.0), law_2, rate=1000)
     moved = -metrics.tip_error(log)[-1, :3]
     stiffness = float(force[1] / moved[1])
-    holds(abs(stiffness / 300.0 - 1.0) < 0.02, "the arm is as stiff as it was told, sensor or not")
+    holds(abs(stiffness / 300.0 - 1.0) < 0.02, "the arm is as stiff as commanded, sensor or not")
     numbers({"felt": stiffness, "moved_mm": 1e3 * moved[1]})

@@ -130,7 +130,7 @@ def _law(
 ) -> Callable[[State, Sample], JointTorque]:
     """Computed torque, with one mistake from some time on."""
     if cause and cause not in CAUSES:
-        raise LabkitError(f"{cause!r} is no cause; choose one of {', '.join(CAUSES)}")
+        raise LabkitError(f"{cause!r} is not a cause; choose one of {', '.join(CAUSES)}")
     before: list[State] = []
     last = target(target.duration)
 

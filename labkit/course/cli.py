@@ -36,7 +36,7 @@ class Verb(click.Command):
             return self._stop(f"{package} is missing; type: pip install 'labkit[instructor]'")
         except KeyboardInterrupt:
             return self._stop("stopped", code=130)
-        except BrokenPipeError:  # whoever was reading has seen enough
+        except BrokenPipeError:  # the reader of the output has seen enough
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
             return 1
         except OSError as error:  # a folder that does not exist, a full disk

@@ -12,11 +12,11 @@ from .handin import look
 def hand_in(name: str) -> None:
     """Say what a look at the saved file finds, and print a receipt.
 
-    Whoever shows a receipt can prove with the file which work was done by then: the hash is that of
+    With a receipt and the file students can prove which work was done by then: the hash is that of
     the file, and the time is that of the last save.
 
     Args:
-        name: Of the notebook that lies in the working directory, without ``.ipynb``.
+        name: Of the notebook in the working directory, without ``.ipynb``.
 
     Raises:
         LabkitError: The file is missing or is not a notebook.

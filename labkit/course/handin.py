@@ -47,7 +47,7 @@ class HandIn:
 
     Attributes:
         assignment: Which.
-        problems: What to mend before handing in, sentences.
+        problems: What to correct before handing in, sentences.
         notes: What is worth knowing.
         verdicts: The last verdict in the file for each question, None where it was not run.
     """
@@ -63,12 +63,12 @@ class HandIn:
         return [head(v) if v else f"{name}: not run" for name, v in self.verdicts.items()]
 
     def __str__(self) -> str:
-        lines = [f"[mend] {text}" for text in self.problems]
+        lines = [f"[fix] {text}" for text in self.problems]
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
         right = sum(v is not None and v.right for v in self.verdicts.values())
         end = (
-            "mend the above first."
+            "correct the above first."
             if self.problems
             else f"whole; when it was last run, {right} of {len(self.verdicts)} tasks were right."
         )
@@ -134,7 +134,7 @@ def look(path: Path) -> HandIn:
 
 
 def _cells_of(cells: list[dict[str, Any]], question: str) -> tuple[list[str], list[str]]:
-    """What is to be mended in the cells of a question, and what is worth knowing of them."""
+    """What must be corrected in the cells of a question, and what is worth knowing of them."""
     problems, notes = [], []
     ids = Counter(map(grade_id, cells))
     if not any(defines(cell, question) for cell in cells):

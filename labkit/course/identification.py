@@ -62,7 +62,7 @@ class Identification:
         return self.truth[0][0] if isinstance(self.judge, Telling) else self.truth
 
     def brief(self) -> str:
-        """What stands above the place for the answer."""
+        """The text above the place for the answer."""
         points = f"{self.points:g} point{'' if self.points == 1 else 's'}"
         where = "core" if self.core else "extension"
         hint = f'- Stuck? `hint("{self.name}", 1)`.' if self.hints else ""

@@ -19,7 +19,7 @@ from ..trajectory import PoseSample, Sample
 from .verdict import Difference, Kind, Value
 
 FEW = 9
-"""So many numbers are compared as a whole; of more than these, the worst is told."""
+"""Up to this many numbers are shown together; of a longer answer only the worst is shown."""
 
 
 @dataclass(frozen=True)

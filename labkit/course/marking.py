@@ -217,7 +217,7 @@ def _failure(error: BaseException) -> _Failure:
 
 
 _OUTCOMES = {"NotImplementedError": Outcome.NOT_ATTEMPTED, "ArgumentChanged": Outcome.WRONG}
-"""Of exceptions that are no error."""
+"""Outcomes of exceptions that do not count as errors of the answer."""
 
 
 def _try(

@@ -55,7 +55,7 @@ def uses(withheld: Iterable[str]) -> str:
 def tell(
     question: Question, verdict: Verdict, printed: str = "", leans_on: tuple[str, ...] = ()
 ) -> str:
-    """Everything that a student is told.
+    """Everything that a student reads after a check.
 
     Args:
         question: What was asked.
@@ -78,7 +78,7 @@ def tell(
         lines += _mistake(verdict)
     if leans_on and verdict.outcome is not Outcome.RIGHT:
         names = ", ".join(leans_on)
-        lines.append(f"  Note: it uses your {names}, which is not right yet; mend that first.")
+        lines.append(f"  Note: it uses your {names}, which is not right yet; correct that first.")
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         lines.append(f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees it.')
@@ -163,7 +163,7 @@ def _words(d: Difference) -> tuple[str, str, str, str]:
     text = ""
     match d.kind:
         case Kind.NUMBERS if d.expected is None:
-            text = f"got {_brief(d.found)}, which is none of the right ones"
+            text = f"got {_brief(d.found)}, which is not one of the right values"
         case Kind.NUMBERS:
             index = ", ".join(f"{k:g}" for k in d.at)
             at = f"at index {f'({index})' if len(d.at) > 1 else index} " if d.at else ""
@@ -186,7 +186,7 @@ def _words(d: Difference) -> tuple[str, str, str, str]:
             parts = f"{len(d.parts)} things ({', '.join(d.parts)})"
             text = f"{of}it should be {parts}, not {_brief(d.found)}"
         case Kind.NOTHING:
-            text = "it gave nothing back (None); does every way through it end in a return?"
+            text = "it returned nothing (None); does every path through it end in a return?"
         case Kind.RAISED:
             text = f" raised {d.found or d.error}"
         case Kind.REFUSED | Kind.CHANGED:
@@ -251,7 +251,7 @@ def _results(question: Question, verdict: Verdict) -> list[str]:
 
 
 def _again(test: Test, difference: Difference, before: list[Difference]) -> bool:
-    """Whether that was told before; a run stops as the single calls did, in the arm's words."""
+    """Whether the student has read that already: a run stops as the single calls did."""
     if difference.kind is Kind.RAISED and any(isinstance(x, Loop | Tuned) for x in test.cases):
         if difference.error == ControllerError.__name__:
             return bool(before)

@@ -112,7 +112,7 @@ def checks(cell: Cell, name: str) -> bool:
 
 
 def verdict_metadata(verdict: Verdict) -> dict[str, Any]:
-    """The metadata of an output that shows a verdict, for whoever reads the file."""
+    """The metadata of an output that shows a verdict, for programs that read the file."""
     return {_OUTPUT: {**stamp(), "verdict": record_data(verdict)}}
 
 
@@ -255,7 +255,7 @@ WHY_POINTS = 2.0
 
 
 def brief(question: Question) -> str:
-    """What stands above a stub: the task, the points, how it is tried, what is withheld."""
+    """The text above a stub: the task, the points, how it is tried, what is withheld."""
     points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
     part = "core" if question.core else "extension"
     lines = [f"**Your turn: `{question.name}`** · {points} · {part}", "", question.asks]

@@ -1,8 +1,8 @@
 """An arm of one's own: no two handles have the same one; who knows the secret draws it again.
 
 Payload, stiction, lag and a wall follow from the HMAC of the handle under the term's secret.  What
-students get holds each number as a sealed text, so that nobody reads one by accident; whoever
-unseals it has cheated themselves of the experiment, and the grader cannot tell.
+students get holds each number as a sealed text, so that nobody reads one by accident.  A
+student who unseals it has missed the experiment, and the grader cannot tell.
 """
 
 from __future__ import annotations

@@ -33,7 +33,7 @@ class Prediction:
         return Question(self.name, self.points, self.asks, self.form, (test,))
 
     def brief(self) -> str:
-        """What stands above the place for it."""
+        """The text above the place for the prediction."""
         form = self.form
         options = form.options.items() if isinstance(form, Choose | Rank) else ()
         head = f"**Predict first: `{self.name}`** · 1 point for committing, right or wrong"

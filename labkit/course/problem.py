@@ -35,7 +35,7 @@ class Trial:
     Attributes:
         name: What it looks at.
         public: Cases that the student sees.
-        hidden: Makes the cases that he does not, from a generator.
+        hidden: Makes the cases that the student does not see, from a generator.
         also: The class of the hidden cases, in words.
         weight: Share of the points; 0 is a gate.
     """
@@ -78,7 +78,7 @@ class Problem:
         withheld: Names that would answer it.
         hints: From the idea to nearly there, three of them.
         wrong: Known mistakes.
-        variants: Right answers written otherwise; every one must pass.
+        variants: Right answers in another form; every one must pass.
         expected: What to compare with, where that is not the answer's own output.
         free_share: Share of the points that the notebook's stand-in, or the public cases learnt by
             heart, may earn.  Say why where it is above 0.

@@ -137,7 +137,7 @@ class Choice:
         """The worst error that the chosen gains give, in [mm].
 
         Raises:
-            LabkitError: The answer is no pair of gains that were recorded.
+            LabkitError: The answer is not a pair of gains that were recorded.
         """
         try:
             Kp, Kd = answer

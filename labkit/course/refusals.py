@@ -62,7 +62,7 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
     earned = _earned(question, by_heart(question))
     if earned > most:
         yield (
-            f"whoever learns its public cases by heart earns {earned:g} of {question.points:g} "
+            f"an answer that memorises its public cases earns {earned:g} of {question.points:g} "
             f"points, and {most:g} are stated; give the tests that pay hidden cases"
         )
     earned = 0.0 if text is None else _stand_in_earns(question, text)
@@ -101,7 +101,7 @@ def by_heart(question: Question) -> Callable[..., Any]:
     }
 
     def recite(*args: Any, **kwargs: Any) -> Any:
-        """The answer that stands in ``checks.json``; for any other call the first one."""
+        """The answer from ``checks.json``; for any other call the first one."""
         return known.get(_key(args, kwargs), next(iter(known.values()), None))
 
     return recite

@@ -23,7 +23,7 @@ from .withheld import Withheld
 LONGEST = 400
 """Characters of an exception's message that are kept."""
 MOST_ITEMS = 100_000
-"""Of an answer that is no list but behaves as one."""
+"""Items that are read of an answer that is not a list but behaves as one."""
 
 
 class TimeUp(BaseException):

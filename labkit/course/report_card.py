@@ -205,7 +205,7 @@ def functions_from(file: Path, table: str) -> Functions:
     """
     spec = importlib.util.spec_from_file_location("answers_from_outside", file)
     if spec is None or spec.loader is None or not file.exists():
-        raise LabkitError(f"{file} is no Python file; give one with a dict {table}")
+        raise LabkitError(f"{file} is not a Python file; give one with a dict {table}")
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
@@ -217,7 +217,7 @@ def functions_from(file: Path, table: str) -> Functions:
         raise LabkitError(f"{file} has no dict {table}; {form}")
     for question, functions in found.items():
         if not isinstance(functions, list | tuple) or not all(map(callable, functions)):
-            raise LabkitError(f"{table}[{question!r}] of {file} is no list of functions; {form}")
+            raise LabkitError(f"{table}[{question!r}] of {file} is not a list of functions; {form}")
     return found
 
 

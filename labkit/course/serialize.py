@@ -135,7 +135,7 @@ def encode(value: Any) -> Any:
         What `json.dumps` takes; numbers keep every bit.
 
     Raises:
-        TypeMismatch: It is none of these.
+        TypeMismatch: The value is of another type.
     """
     if value is None or isinstance(value, bool | str):
         return value

@@ -38,16 +38,16 @@ def read_checks(folder: Path) -> dict[str, Any]:
         LabkitError: It is not there, or damaged.
     """
     file = folder / FILE
-    mend = "fetch the assignment's whole folder again"
+    remedy = "fetch the assignment's whole folder again"
     try:
         data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     except (FileNotFoundError, ValueError) as error:
         there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
         raise LabkitError(
             f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
-            f"beside it, so {mend}"
+            f"beside it, so {remedy}"
         ) from None
-    check_stamp(data, f"{FILE} in {folder.name!r}", mend)
+    check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
     return data
 
 

@@ -2,7 +2,8 @@
 
 The text of an answer is searched for them, and while it is tried they stop working for the
 student's code.  labkit's own code goes on using them, because inputs may be made of them.  This
-keeps an honest student honest; whoever goes around it is listed for the instructor, not stopped.
+keeps an honest student honest; a student who goes around it is listed for the instructor, not
+stopped.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Attempts: every notebook that was handed in, and the rule by which one of them counts.
 
-Each lies in ``attempts/STUDENT/ASSIGNMENT/TIME-HASH/`` as it was handed in.  Beside it
+Each is kept in ``attempts/STUDENT/ASSIGNMENT/TIME-HASH/`` as it was handed in.  Beside it
 ``attempt.json`` says when a platform showed it, and what it was called.  Nothing there is ever
 overwritten or deleted; the same content is the same attempt, however often it comes.
 

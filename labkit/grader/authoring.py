@@ -21,7 +21,7 @@ def prepared(course: Course, name: str, seed: int) -> Prepared:
     """What `prepare` makes, or in one sentence why an author's mistake is in the way.
 
     Raises:
-        LabkitError: The text, the problems, an answer or a known mistake needs mending.
+        LabkitError: The text, the problems, an answer or a known mistake must be corrected.
     """
     path = course.notebook_source(name)
     try:

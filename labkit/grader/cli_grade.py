@@ -133,7 +133,7 @@ def _handed_in(
         failures.add("not graded", misnamed(course, assignment))
     if set(who) - set(found) or not (who or failures.code):
         raise LabkitError(
-            f"nothing of {student or 'anybody'} lies in submitted/*/{assignment}; "
+            f"nothing of {student or 'anybody'} is in submitted/*/{assignment}; "
             "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
         )
     return who

@@ -1,7 +1,7 @@
 """Figures of the feedback page: Matplotlib's SVG, in the colours of the page, light or dark.
 
 Any numbers can be drawn.  Those that are not finite are left out; very large and very small ones
-are divided by a power of ten, which stands at the axis.
+are divided by a power of ten, which is written at the axis.
 """
 
 from __future__ import annotations

@@ -231,7 +231,7 @@ def _says(one: Entry, other: Entry) -> str:
     differ = " and ".join(
         f"{a} here and {b} there" for a, b in pairs if a and b and a.casefold() != b.casefold()
     )
-    return f"{same} stands in both, with {differ}"
+    return f"{same} is in both, with {differ}"
 
 
 def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:

@@ -32,7 +32,7 @@ def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
     with ExitStack() as stack:
         if dask is None:
             pool: Executor = LocalExecutor(workers)
-            if "PYTHONSAFEPATH" not in os.environ:  # workers import nothing that lies in the
+            if "PYTHONSAFEPATH" not in os.environ:  # workers import nothing from the
                 os.environ["PYTHONSAFEPATH"] = "1"  # working folder, perhaps a submission's
                 stack.callback(os.environ.pop, "PYTHONSAFEPATH", None)
         else:

@@ -26,7 +26,7 @@ from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits, slowness
 from .submission import Submission
 
-_ALONE = "this page shows hidden cases, so it is for whoever teaches and not for students"
+_ALONE = "this page shows hidden cases, so it is for teachers and not for students"
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Explanation:
         given = "not marked" if self.line.score is None else f"{self.line.score:g}"
         origin = f" ({self.line.origin})" if self.line.origin else ""
         yield f"{self.mark.student}, {self.told.name}: {given} of {self.line.points:g}{origin}"
-        yield "\nWhat the student was told, and may be shown:"
+        yield "\nWhat the student has read, and may be shown:"
         yield from map(wrapped, summary(self.told))
         hidden = {test.name for test in self.told.tests if test.hidden}
         if hidden:
@@ -92,7 +92,7 @@ def explain(
     name = bundle.data["assignment"]
     mark = next(marks_of(course, name, student), None)
     if mark is None or mark.result is None:
-        why = (mark and mark.missing) or f"nothing of {student} lies in submitted/*/{name}"
+        why = (mark and mark.missing) or f"nothing of {student} is in submitted/*/{name}"
         raise LabkitError(f"there is no mark to explain: {why}")
     if mark.result.rejected:
         raise LabkitError(f"{name} of {student} was rejected: {mark.result.rejected}")

@@ -30,7 +30,7 @@ from .rules import settle_lateness
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
-    """Write results into the gradebook, and a notebook for each; every student by himself.
+    """Write results into the gradebook, and a notebook for each; each student separately.
 
     Args:
         course: The course.
@@ -227,7 +227,7 @@ def quiet_database() -> Iterator[None]:
 
 
 def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
-    """When a submission came in, as whoever collected it says; and a note if that is unreadable."""
+    """When a submission came in, as its collector says; and a note if that is unreadable."""
     text = read_stamp(course.submitted / result.student / result.assignment)
     when = read_time(text)
     bad = f"timestamp.txt says {text[:40]!r}, which is not a time; counted as in time"

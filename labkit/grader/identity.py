@@ -1,12 +1,13 @@
 """Whom a platform means: its users, by the folder that holds their work, the same all term.
 
-A person has the folder that the roster says.  Whoever is not in the roster, or is there twice, gets
-a folder of their own that is nobody else's, and is named.  Without a roster Canvas's users and
-those of the exchange are known by what stays the same all term; Moodle's participants have another
-number in each assignment, so they are known by name, and by the number where two have one name.
+A person has the folder that the roster says.  Students who are missing from the
+roster, or are there twice, get folders of their own that nobody else has, and are named.  Without a
+roster Canvas's users and those of the exchange are known by what stays the same all term; Moodle's
+participants have another number in each assignment, so they are known by name, and by the number
+where two have one name.
 
-The users whose work was collected stand in ``course_private/lms.json``, by assignment and by
-folder.  Git ignores the file, and it goes with the term.
+``course_private/lms.json`` lists the users whose work was collected, by assignment and by folder.
+Git ignores the file, and it goes with the term.
 """
 
 from __future__ import annotations

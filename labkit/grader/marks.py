@@ -159,7 +159,7 @@ class Mark:
 
 
 def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterator[Mark]:
-    """Everybody in the roster, and whoever else handed in or is graded, in order of name.
+    """Everybody in the roster, and all others who handed in or are graded, in order of name.
 
     Args:
         course: The course.

@@ -28,7 +28,7 @@ class Plan:
         notes: What was unusual, by question; under "" what concerns the whole notebook.
         own: The student's own cells: the released cell ``after`` which each stands, its ``type``
             and ``source``.
-        written: For each cell that a person marks, by its name, what stands in it.
+        written: For each cell that a person marks, by its name, its text.
         looks: What each step does with names, see `labkit.course.source.look`.
         tricks: What in the student's own cells may be a way around a withheld tool, sentences.
     """
@@ -71,7 +71,7 @@ def plan(cells: Sequence[Cell], manifest: Sequence[Cell]) -> Plan:
                 places[m["grade_id"]] = place
     in_order = [places[m["grade_id"]] for m in manifest if m.get("grade_id") in places]
     if in_order != sorted(in_order):
-        notes.setdefault("", []).append("the cells stand in another order than in the release")
+        notes.setdefault("", []).append("the cells are in another order than in the release")
     needed = _needed(code, places.values())
     by_hand = {m["grade_id"]: _at(cells, m) for m in manifest if "points" in m}
     steps = [Step(k - len(setup), source) for k, source in enumerate(setup)]
@@ -117,7 +117,7 @@ def _own(
 
 
 def _at(cells: Sequence[Cell], m: Mapping[str, Any]) -> list[int]:
-    """Where a cell of the release stands in a submission, by its name or its id."""
+    """Where a cell of the release is in a submission, by its name or its id."""
     named = [k for k, cell in enumerate(cells) if cell["grade_id"] == m["grade_id"]]
     return named or [
         k for k, cell in enumerate(cells) if not cell["grade_id"] and cell["id"] == m["id"]
@@ -146,7 +146,7 @@ def _answer(
         place = max(written)
         lonely = {k for k in stubs if len(own[k]["binds"]) == 1}
         if stubs:
-            notes.append(f"an empty {name} stands there too; it is passed over")
+            notes.append(f"there is an empty {name} too; it is passed over")
         if place not in at_home:
             notes.append(f"{name} was found by its name, outside its own cell")
         return place, lonely

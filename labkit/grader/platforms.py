@@ -61,8 +61,8 @@ class LmsUser:
     Attributes:
         system: "moodle", "canvas", "exchange", or "files" of no platform.
         number: Canvas's number of the user; Moodle's of the participant, one for each assignment;
-            the name of the user in the exchange, or what stands in a file's name.
-        name: As it stands in the download.
+            the name of the user in the exchange, or the text of a file's name.
+        name: As the download writes it.
     """
 
     system: str
@@ -100,7 +100,7 @@ def readings(entry: str) -> tuple[Named, ...]:
     """The ways to read a name: none if it is nobody's, two if it could be either of two people's.
 
     Args:
-        entry: The name of the file with its folders, as it stands in the download.
+        entry: The name of the file with its folders, as the download writes it.
     """
     if match := _MOODLE.fullmatch(entry):
         who = LmsUser("moodle", match["number"], person(match["name"]))
@@ -205,7 +205,7 @@ def _name(entry: zipfile.ZipInfo) -> str:
 
 
 def _refused(entry: zipfile.ZipInfo, name: str) -> str:
-    """What is wrong with an entry, whoever's it is."""
+    """What is wrong with an entry, no matter whose it is."""
     if stat.S_ISLNK(entry.external_attr >> 16):
         return "not taken; it is a link"
     if entry.flag_bits & 1:

@@ -90,13 +90,13 @@ def release(course: Course, name: str, seed: int) -> Released:
 
 
 def generate(course: Course, name: str) -> None:
-    """Let nbgrader make the students' copy of what lies in its source folder."""
+    """Let nbgrader make the students' copy of the files in its source folder."""
     shutil.rmtree(course.release / name, ignore_errors=True)
     api = nbgrader_api(course)
     result = api.generate_assignment(name, force=True, create=True)
     if not result["success"]:
         raise LabkitError(
-            f"nbgrader could not make {name}: {reason(result)}; mend that and release it again"
+            f"nbgrader could not make {name}: {reason(result)}; correct that and release it again"
         )
     path = course.release / name / f"{name}.ipynb"
     notebook = nbformat.read(path, as_version=4)

@@ -110,7 +110,7 @@ class Result:
         notes: What was unusual about the whole.
         cells: Cells that failed or were stopped, with their sentence.
         own: The student's own cells, where they stood.
-        written: What stands in each cell that a person marks, by its name.
+        written: The text of each cell that a person marks, by its name.
         tricks: What may be a way around a withheld tool, for the instructor, sentences.
         isolation: What kept it apart while it ran.
         versions: Of what graded it.

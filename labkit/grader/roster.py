@@ -1,6 +1,6 @@
 """The roster: who is in the class, and how platforms know them.
 
-It stands in ``course_private/roster.csv``, which git ignores, with the columns of nbgrader's own
+It is kept in ``course_private/roster.csv``, which git ignores, with the columns of nbgrader's own
 list of students and two more; a person can read and edit it.  It goes with the term.
 """
 

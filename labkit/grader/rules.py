@@ -40,8 +40,8 @@ class Late(_Table, frozen=True):
 
     Attributes:
         percent_per_day: Of the points earned, for each day begun.
-        at_most: No more than so many percent.
-        grace_minutes: So late is in time.
+        at_most: The largest deduction, in percent.
+        grace_minutes: Work that is late by no more than this counts as in time.
     """
 
     percent_per_day: _Share = 0.0
@@ -138,7 +138,7 @@ def read_rules(course: Course) -> Rules:
     }
     if unknown:
         raise LabkitError(
-            f"{path} names {min(unknown)!r}, which is no assignment; there are "
+            f"{path} names {min(unknown)!r}, which is not an assignment; there are "
             f"{', '.join(course.names())}"
         )
     return rules

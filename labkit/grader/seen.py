@@ -1,4 +1,4 @@
-"""What a student may see of his own work: runs of the arm and numbers, on public cases alone.
+"""What students may see of their own work: runs of the arm and numbers, on public cases alone.
 
 It goes into the result file, small, so that a page can be made from the result and nothing else.
 """
@@ -21,9 +21,9 @@ LARGEST = 60_000
 RATES = (25.0, 12.5, 6.25, 3.0)
 """Samples per second of a motion; the finest that fits is taken."""
 FEWEST = 50
-"""A short motion gets so many samples at least."""
+"""Samples that even a short motion gets."""
 MOST = 400
-"""So many numbers of an answer are kept beside those expected."""
+"""Numbers of an answer that are kept at most, beside those expected."""
 
 
 def runs(question: Question, tried: Tried) -> tuple[Run, ...]:

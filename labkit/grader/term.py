@@ -144,7 +144,7 @@ class Archive:
 
 
 def archives(course: Course, older: float = 0.0) -> list[Archive]:
-    """The terms that ended so many years ago or earlier; all of them by default."""
+    """The terms that ended at least ``older`` years ago; all of them by default."""
     found = []
     for folder in sorted(_private(course).glob("archive-*")):
         ended = date.fromisoformat(folder.name.removeprefix("archive-")[:10])

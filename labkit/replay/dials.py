@@ -60,7 +60,7 @@ def read_dials(
         laws: What reads those that are not the plant's.
 
     Raises:
-        TypeMismatch: A range is none.
+        TypeMismatch: A dial is not given a range.
         OutOfRange: A start is outside its range.
         UnknownName: No law has such an argument, and neither has the plant.
     """

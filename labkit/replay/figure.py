@@ -45,7 +45,7 @@ def figure_html(
     Args:
         data: What the viewer reads, as JSON.
         caption: Text under it.
-        alt: One or two sentences for whoever does not see it.
+        alt: One or two sentences for readers who cannot see it.
         description: A paragraph, opened on demand.
         poster: Address of a picture for print, for phones before the tap and for browsers without
             WebGL.

@@ -59,7 +59,7 @@ class Session(Simulated):
         rate: float,
         show: Callable[[dict[str, Any]], None],
     ) -> None:
-        """A session that has not begun; ``show`` is told each picture, in numbers."""
+        """A session that has not begun; ``show`` receives each picture, in numbers."""
         super().__init__(arm, rate)
         self.arm, self._dials, self._show = arm, dials, show
         self._law = Dialled(laws, dials)

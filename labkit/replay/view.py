@@ -32,9 +32,9 @@ def live(
 ) -> Any:
     """The arm in real time, to be pulled at with the mouse, by touch or by keys.
 
-    Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell; other cells
-    that use it are told so.  A law that raises, loses the arm, is too slow or never returns leaves
-    it at rest and is named beside the picture.
+    Nothing runs before "Start" is pressed.  From then on the arm belongs to the cell; its
+    use in other cells raises an error.  A law that raises, loses the arm, is too slow or never
+    returns leaves it at rest and is named beside the picture.
 
     Args:
         arm: A simulated arm, best one made for this cell; it starts where it is.

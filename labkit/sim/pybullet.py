@@ -36,7 +36,7 @@ class PyBullet:
         still = {"linearDamping": 0.0, "angularDamping": 0.0, "jointDamping": 0.0}
         for joint in (-1, *self._joints):
             bullet.changeDynamics(self._arm, joint, **still, **here)
-        for joint in self._joints:  # an empty range of angles is none
+        for joint in self._joints:  # an empty range of angles means no limits
             free = {"jointLowerLimit": 1.0, "jointUpperLimit": -1.0, "maxJointVelocity": inf}
             bullet.changeDynamics(self._arm, joint, **free, **here)
         motors = {"forces": [0.0] * len(self._joints), **here}

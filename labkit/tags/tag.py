@@ -1,7 +1,7 @@
 """AR tags: a square pattern with a number, of a stated size, to print or to put on a `Board`.
 
 The tag's frame m sits in the middle of the black square: x to the right, y up, z out of the paper
-towards whoever looks at it.  Its size is the side of the black square, as in OpenCV and AprilTag;
+towards the viewer.  Its size is the side of the black square, as in OpenCV and AprilTag;
 the white border around it does not count.
 """
 

@@ -1,10 +1,10 @@
 # %% [markdown]
 # # 07 · Which controller is better?
 #
-# The report of 2019 put seven ways to move the arm side by side, looked at the plots and wrote that its
-# own controllers "obtained superior performance". On another page it wrote that the built-in way
-# "performs slightly better in most cases". No number stands beside either sentence. This notebook is
-# about earning the right to write such a sentence, or the one that is more often true: *we cannot tell*.
+# The report of 2019 put seven methods of moving the arm side by side, looked at the plots and wrote that its
+# own controllers "obtained superior performance". On another page it wrote that the built-in method
+# "performs slightly better in most cases". Neither sentence comes with a number. This notebook
+# is about earning the right to write such a sentence, or the one that is more often true: *we cannot tell*.
 #
 # | | |
 # |---|---|
@@ -35,7 +35,7 @@ from labkit import loop, recordings
 # %% [markdown]
 # ## One number for a run
 #
-# Here is Baxter's built-in way on the line, as it was recorded: a planner made a path, a time
+# Here is Baxter's built-in method on the line, as it was recorded: a planner made a path, a time
 # parameterisation put it on a schedule, and the arm's own trajectory server followed.
 
 # %%
@@ -51,7 +51,7 @@ lk.plotting.show(lk.plotting.describe(log, model))
 # %%
 other_mode = {"velocity mode": recordings.load("baseline_line_velocity")}
 lk.replay.show(
-    lk.replay.motion_of(log, "The built-in way on the line", label="position mode", ghosts=other_mode)
+    lk.replay.motion_of(log, "The built-in method on the line", label="position mode", ghosts=other_mode)
 )
 
 # %% [markdown]
@@ -80,7 +80,7 @@ def rms_error(log, model):
 
 
 # %% [markdown]
-# The built-in way was recorded on other paths too, and on the line in a second mode. Its targets are
+# The built-in method was recorded on other paths too, and on the line in a second mode. Its targets are
 # joint angles; the tip's target poses follow from them. One number for each run, by your function. (If
 # it is not ready, the largest error stands in.)
 
@@ -340,7 +340,7 @@ ax.set_xticks([3, 5, 10, 20], ["3", "5", "10", "20"])
 ax.minorticks_off()
 ax.set_xlabel("RMS error on the circle, one ring for each seed [mm]")
 means = ", ".join(f"{way} {np.mean(errors):.1f} mm" for way, errors in table.items())
-lk.plotting.show(f"The errors of each way on the circle; on average {means}.")
+lk.plotting.show(f"The errors of each method on the circle; on average {means}.")
 
 # %% [markdown]
 # From rows like these write a verdict on each claim. The claim is always that the *first* error is the
@@ -387,19 +387,19 @@ claims = {
     "workspace velocity is worse than joint velocity": ("workspace velocity", "joint velocity"),
     "workspace impedance is worse than joint impedance": ("workspace impedance", "joint impedance"),
     "joint impedance is worse than joint torque": ("joint impedance", "joint torque"),
-    "the built-in way is worse than joint velocity": ("baseline", "joint velocity"),
-    "the built-in way is worse than joint torque": ("baseline", "joint torque"),
+    "the built-in method is worse than joint velocity": ("baseline", "joint velocity"),
+    "the built-in method is worse than joint torque": ("baseline", "joint torque"),
 }
 
 
 def tasks_of(a, b):
-    """Where both were told the same: on the tag the built-in way follows an old line of its own."""
+    """Where both have the same target: on the tag the built-in method follows an old line of its own."""
     paths = ["circle", "line", "square"]
     return paths if "baseline" in (a, b) else [*paths, "tag"]
 
 
 def on(way, task):
-    """The errors of one way on one task, a seed each."""
+    """The errors of one method on one task, one for each seed."""
     return [row["late_rms_mm"] for row in rows if row["way"] == way and row["task"] == task]
 
 
@@ -415,8 +415,9 @@ for claim, (a, b) in claims.items():
 # %% [markdown]
 # Two rows for each claim, because there are two questions. *On this line, is it worse?* Five seeds are five
 # looks at one line, and they can settle that. *Is it worse at tracking?* Then the tasks are the units, each by
-# its mean, and there are three or four of them, however many seeds each had. Whoever pools them to fifteen or
-# twenty pairs takes looks at one line for lines, and gets an interval several times too narrow.
+# its mean, and there are three or four of them, however many seeds each had. If you pool them to fifteen or
+# twenty pairs, you count several looks at one line as several lines, and the interval becomes several times too
+# narrow.
 #
 # And five claims are five chances to be wrong: at 95 % each, luck alone decides about one in four such lists.
 # Ask of each interval $1 - 0.05/5$ instead of 0.95, and 95 % holds for the five together:
@@ -430,7 +431,7 @@ for n in (3, 4, 5):
 
 # %% [markdown]
 # With your own verdicts in place: the report's two sentences are both in this list, for single tasks. Which of
-# its controllers is better than the built-in way depends on which one is meant, and on which path; over the
+# its controllers is better than the built-in method depends on which one is meant, and on which path; over the
 # tasks some of it is undecided, and would be with five hundred seeds. A fourth and a fifth path would tell more
 # than any number of seeds. So name the two, the task and the number, say what your units are, and say
 # how sure you are.

@@ -23,11 +23,11 @@ UNSEEN = read_trials(Path(__file__).with_name("trials.json"))
 UNSEEN_LIMIT = 3.9
 """Worst error allowed on unseen cases, in [mm]: without D gains of 12.4 to 38 reach it."""
 RESERVE = 1.3
-"""So many times the chosen Kp must reach it too, which leaves 12.4 to 29."""
+"""This multiple of the chosen Kp must reach it too, which leaves 12.4 to 29."""
 
 
 def stiffer(trials: Trials, factor: float) -> Trials:
-    """The same trials where each Kp does what so many times Kp did.
+    """The same trials where each Kp does what ``factor`` times Kp did.
 
     On an arm that takes `factor` times as long for everything, its path included, gains per second
     do just that.  What lies beyond the recorded gains is lost.
@@ -50,7 +50,7 @@ def drawn_log(
 ) -> lk.Log:
     """A short log whose tip misses its target by a given error, (3,) in [m].
 
-    An arm that moves is tilted as well, which is no error of position.
+    An arm that moves is tilted as well; the tilt does not count as an error of position.
     """
     q0 = model.robot.ready
     q = q0 + (random.uniform(-0.2, 0.2, (rows, 7)) if moving else np.zeros((rows, 7)))
@@ -166,7 +166,7 @@ def tables(random: Random) -> Iterator[Call]:
                 [y + z for y, z in zip(b, noise, strict=True)],
             ]
         yield call(table)
-    for n, edge in ((5, 2.78), (3, 4.30), (10, 2.26)):  # so many standard errors decide
+    for n, edge in ((5, 2.78), (3, 4.30), (10, 2.26)):  # this number of standard errors decides
         errors = (-1.3 * edge, -0.93 * edge, 0.93 * edge, 1.3 * edge)
         yield call({f"claim {k}": _apart(random, n, t) for k, t in enumerate(errors)})
 

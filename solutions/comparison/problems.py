@@ -174,8 +174,8 @@ OPEN_LOOP = Problem(
     hints=(
         "Three things stand one after another: a speed that follows its command with a lag, an "
         "integrator from speed to angle, a delay. Transfer functions in a row multiply.",
-        "control.tf([kp], [lag, 1, 0]) holds gain, lag and integrator. The delay is no ratio of "
-        "polynomials; control.pade(delay, 4) gives one that is close.",
+        "control.tf([kp], [lag, 1, 0]) holds gain, lag and integrator. The delay is not a ratio "
+        "of polynomials; control.pade(delay, 4) gives one that is close.",
         "A lag and an integrator make a second-order denominator with no constant term. The "
         "delay multiplies; where it is 0 there is nothing to approximate.",
     ),
@@ -394,8 +394,8 @@ CHOOSE_GAINS = Problem(
         ),
         Wrong(
             "a tenth off the lowest point",
-            "A tenth is no margin: a state that is a little older takes more. Take a third of the largest "
-            "Kp that was safe.",
+            "A tenth is too small a margin: a state that is a little older needs more. Take a third of the "
+            "largest Kp that was safe.",
             mistakes.Lowest(0.9),
             "Say how large your margin is, and against what.",
         ),

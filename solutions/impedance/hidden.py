@@ -156,7 +156,7 @@ def pushed_arms(random: Random) -> Iterator[Case]:
 
 
 def _shaped(random: Random, *, times: float, wrench: float, moving: bool) -> Call:
-    """With M_d so many times the arm's own inertia; 0 takes one of its own."""
+    """With M_d as ``times`` the arm's own inertia; 0 takes another M_d."""
     what = {"speed": 1.0, "twist": 0.5, "ddx": 2.0} if moving else {}
     model, state, target = _tip(random, shift=0.05, turn=0.2, **what)
     inertia = times * model.operational_inertia(state.q)

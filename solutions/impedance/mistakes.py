@@ -61,7 +61,7 @@ def spring_to_the_origin(
 
 @dataclass(frozen=True)
 class OneMass:
-    """The mass with its parts weighed: 1 is right, 0 left out, -1 turned round.
+    """The mass with its parts weighed: 1 is right, 0 left out, -1 reversed.
 
     Attributes:
         spring: Of the spring.
@@ -237,7 +237,7 @@ def brakes_the_motion(
 
 @dataclass(frozen=True)
 class TipLaw:
-    """The impedance with its parts weighed: 1 is right, 0 left out, -1 turned round.
+    """The impedance with its parts weighed: 1 is right, 0 left out, -1 reversed.
 
     Attributes:
         e: Of the error.
@@ -294,7 +294,7 @@ class TipLaw:
 
 @dataclass(frozen=True)
 class ShapedLaw:
-    """The shaped impedance with its parts weighed: 1 is right, 0 left out, -1 turned round.
+    """The shaped impedance with its parts weighed: 1 is right, 0 left out, -1 reversed.
 
     Attributes:
         e: Of the errors of pose and twist.

@@ -94,8 +94,8 @@ MSD = Problem(
     hints=(
         "Three forces act on the mass: the hand's, the spring's and the damper's. Draw them for a mass "
         "to the right of its target.",
-        "With e = x_d - x the spring pulls with k e and the damper with b ė. If nobody pushes and there "
-        "is no error, the mass must move just as its target does.",
+        "With e = x_d - x the spring pulls with k e and the damper with b ė. If nobody pushes and the "
+        "error is zero, the mass must move just as its target does.",
         "Write Newton's law for the error, not for the mass: with nobody pushing, the error "
         "obeys the damped spring. Then solve for ddx, and check the sign of the hand's force "
         "with a target at rest.",
@@ -142,14 +142,14 @@ MSD = Problem(
             "Newton.",
         ),
         Wrong(
-            "all springs and dampers turned round",
+            "all springs and dampers reversed",
             "Beside its target the mass is driven farther away: e is target minus actual, and "
             "then every gain comes with a plus.",
             mistakes.OneMass(spring=-1.0, damper=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the damper turned round",
+            "the damper reversed",
             "The damper drives the mass where it should brake: b (dx_d - dx).",
             mistakes.OneMass(damper=-1.0),
             "One sign for every error.",
@@ -173,7 +173,7 @@ MSD = Problem(
             "Units tell: N and m/s².",
         ),
         Wrong(
-            "the target's acceleration turned round",
+            "the target's acceleration reversed",
             "Without error and without push the mass must move as its target does.",
             mistakes.OneMass(feed=-1.0),
             "Draw the mass to the right of its target.",
@@ -273,7 +273,7 @@ OPERATIONAL_INERTIA = Problem(
             "1 / M divides each number; the inverse of a matrix is np.linalg.inv, or better a "
             "solve.",
             mistakes.inverse_by_element,
-            "numpy does what it is told.",
+            "In numpy, / divides element by element.",
         ),
         Wrong(
             "only the diagonal of M",
@@ -409,8 +409,8 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "Euler angles subtracted",
-            "The difference of roll, pitch and yaw is no rotation vector; with the gripper down it even "
-            "has the wrong signs. lk.se3.pose_error takes the logarithm.",
+            "The difference of roll, pitch and yaw is not a rotation vector; with the gripper down it "
+            "even has the wrong signs. lk.se3.pose_error takes the logarithm.",
             mistakes.euler_subtraction,
             "Position errors alone never show it.",
         ),
@@ -429,13 +429,13 @@ WORKSPACE_IMPEDANCE = Problem(
             "What do the two ends of the damper hold?",
         ),
         Wrong(
-            "springs and dampers turned round",
+            "springs and dampers reversed",
             "e and ė are target minus actual, and then every gain comes with a plus.",
             mistakes.TipLaw(e=-1.0, de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the dampers turned round",
+            "the dampers reversed",
             "ė is the target's twist minus J q̇: as it is, the dampers drive.",
             mistakes.TipLaw(de=-1.0),
             "One sign for every error.",
@@ -533,7 +533,7 @@ SHAPED_IMPEDANCE = Problem(
     core=False,
     outcomes=("contact",),
     asks="As `workspace_impedance`, but the tip is to feel as heavy as `inertia`, M_d of shape (6, 6). "
-    "For that the law is told the measured `wrench` of the hand on the arm, shape (6,), world "
+    "For that the law receives the measured `wrench` of the hand on the arm, shape (6,), world "
     "axes.",
     answer=answers.shaped_impedance,
     expected=_at_tip(answers.shaped_impedance),
@@ -617,7 +617,7 @@ SHAPED_IMPEDANCE = Problem(
             "Λ a = F_motors + F_hand.",
         ),
         Wrong(
-            "the wrench inside turned round",
+            "the wrench inside reversed",
             "The hand pushes the tip where it pushes: in M_d⁻¹ (D ė + K e + F) the wrench has a "
             "plus.",
             mistakes.ShapedLaw(inside=-1.0),
@@ -662,7 +662,7 @@ SHAPED_IMPEDANCE = Problem(
             "Small is not nought: try it fast.",
         ),
         Wrong(
-            "springs and dampers turned round",
+            "springs and dampers reversed",
             "e and ė are target minus actual, and then every gain comes with a plus.",
             mistakes.ShapedLaw(e=-1.0),
             "One sign for every error.",
@@ -771,7 +771,7 @@ APPARENT_STIFFNESS = Problem(
         Wrong(
             "the regression the other way round, or of both",
             "This puts the noise into the displacement, by a fit of the displacement to the force or by "
-            "total least squares. It is in the force, so the force stands on the left, alone.",
+            "total least squares. It is in the force, so the force alone belongs on the left.",
             mistakes.other_regression,
             "Least squares is not symmetric: errors belong to the left side.",
         ),

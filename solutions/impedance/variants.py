@@ -1,4 +1,4 @@
-"""Right answers of notebook 05, written otherwise."""
+"""Right answers of notebook 05, in another form."""
 
 from __future__ import annotations
 

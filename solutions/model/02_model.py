@@ -36,7 +36,7 @@ import numpy as np
 # ## Seven bodies
 #
 # The arm is seven bodies, each turning about the z axis of its own frame. `model.links(q)` lists
-# them as they stand at the angles `q`: mass, inertia, pose, and how their centre of mass moves.
+# them in their places at the angles `q`: mass, inertia, pose, and how their centre of mass moves.
 
 # %%
 arm = lk.Arm("left")
@@ -310,8 +310,8 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# (The real Baxter adds its own gravity compensation to whatever torque it is sent, so there the right
-# amount to add is none. This simulated arm, `lk.IDEAL`, does not.)
+# (The real Baxter adds its own gravity compensation to whatever torque it is sent, so there you
+# must add nothing. This simulated arm, `lk.IDEAL`, does not.)
 #
 # ## Coriolis: what turning does to turning
 #

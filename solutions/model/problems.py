@@ -193,7 +193,7 @@ GRAVITY = Problem(
             "This is what gravity does. Asked is what holds against it: positive where raising the "
             "arm takes work.",
             mistakes.falls_faster,
-            "g(q) = +∂V/∂q stands on the side of the motors' torque.",
+            "g(q) = +∂V/∂q is on the same side of the equation as the motors' torque.",
         ),
         Wrong(
             "all the weight at the hand",

@@ -67,7 +67,7 @@ mine = lk.my_arm(HANDLE)
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | no figure, or nobody could repeat it | a figure without units, or settings are missing | axes, units, settings; the prediction stands in the figure | as before, and the figure shows at one glance whether the claim holds |
+# | no figure, or nobody could repeat it | a figure without units, or settings are missing | axes, units, settings; the prediction is drawn in the figure | as before, and the figure shows at one glance whether the claim holds |
 #
 # ### BEGIN SOLUTION
 # Five seeds, lk.Hold at the ready pose for 3 s, rate 200 Hz; the figure shows the sag over time and our 14 mm as a dashed line.

@@ -1,8 +1,8 @@
 """Which verdicts hang on which assumption: ``python -m solutions.study.assumptions``.
 
 Each number of the plant that nobody measured goes to the least and to the most that is plausible
-(`labkit.plant.EVIDENCE`), alone, the gains staying as they are; then every way follows the line
-again.  A verdict that turns over hangs on that number.
+(`labkit.plant.EVIDENCE`), alone, the gains staying as they are; then every method follows the
+line again.  A verdict that turns over hangs on that number.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ CLAIMS: Mapping[str, tuple[Sequence[str], Sequence[str]]] = {
     "joint velocity over workspace velocity": (("workspace velocity",), ("joint velocity",)),
     "joint impedance over workspace impedance": (("workspace impedance",), ("joint impedance",)),
     "the three over both impedances": (IMPEDANCE, THREE),
-    **{f"built-in way over {way}": ((way,), (BASELINE,)) for way in FIVE},
+    **{f"built-in method over {way}": ((way,), (BASELINE,)) for way in FIVE},
 }
 """The first way's error minus the second's: positive where the claim, "better than", is true."""
 

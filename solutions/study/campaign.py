@@ -1,9 +1,9 @@
 """The report's comparison, run honestly: ``make campaign``.
 
-Seven ways to follow every task, on the ideal arm and on Baxter's, over seeds.  A seed draws where
+Seven methods follow every task, on the ideal arm and on Baxter's, over seeds.  A seed draws where
 the arm begins (about 10 mm off the path), the measurement noise and the ticks that come late; one
-seed means the same start for every way, so their differences can be taken in pairs.  Gains stand in
-`gains`; what the report claimed of the outcome is judged in `claims`.
+seed means the same start for every method, so their differences can be taken in pairs.  The gains
+are in `gains`; `claims` judges what the report claimed of the outcome.
 """
 
 from __future__ import annotations
@@ -149,7 +149,7 @@ def numbers(way: str, task: str, plant: str, seed: int) -> Mapping[str, Any]:
 
 
 def measured(log: Log, wanted: Any) -> dict[str, Any]:
-    """What is told of a run.
+    """The numbers that describe a run.
 
     Args:
         log: The run.

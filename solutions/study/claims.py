@@ -1,14 +1,16 @@
 """What the report claimed of its controllers, judged by paired differences.
 
-A pair is one task and one seed, run both ways from the same start.  Seeds of one task are no tasks:
-they draw the start and the noise anew, and nothing else.  So each task has a verdict of its own,
-over its seeds, and what is said of tracking in general has the tasks as its units, each by the mean
-over its seeds.  A difference is *held* where its interval lies above zero, *did not hold* where it
-lies below, else *undecided*.  Twelve claims at 95 % each would decide one in two by luck alone:
-the intervals of a family of m claims are those of 1 - 0.05 / m (Bonferroni), so 95 % is for all.
+A pair is one task and one seed, run with both methods from the same start.  Seeds of one task do
+not count as tasks: they draw the start and the noise anew, and nothing else.  So each task has
+a verdict of its own, over its seeds, and what is said of tracking in general has the tasks as its
+units, each by the mean over its seeds.  A difference is *held* where its interval lies above zero,
+*did not hold* where it lies below, else *undecided*.  Twelve claims at 95 % each would decide one
+in two by luck alone: the intervals of a family of m claims are those of 1 - 0.05 / m (Bonferroni),
+so 95 % is for all.
 
-A task counts for a claim if both ways were told the same target: the built-in way cannot follow a
-goal that moves, so on the tag it is told another one, and claims about it rest on the three paths.
+A task counts for a claim if both methods received the same target.  The built-in method cannot
+follow a goal that moves, so on the tag it receives another one, and claims about it rest on the
+three paths.
 """
 
 from __future__ import annotations
@@ -177,7 +179,7 @@ def verdicts(rows: Sequence[Row], gains: Sequence[Row], noise: Sequence[Row]) ->
     worse = "the impedance controllers track worse than the other three"
     asked += [(worse, rows, IMPEDANCE, THREE)]
     asked += [
-        (f"the built-in way tracks better than {way}", planned, (way,), ("baseline",))
+        (f"the built-in method tracks better than {way}", planned, (way,), ("baseline",))
         for way in (*THREE, *IMPEDANCE)
     ]
     found = [

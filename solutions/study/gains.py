@@ -44,7 +44,7 @@ def five(model: Model, plant: Plant | None = None) -> dict[str, Candidate]:
     """The five controllers of the course.
 
     Args:
-        model: What they are told of the arm.
+        model: What they know of the arm.
         plant: What the arm is like; None takes the model's own plant.
     """
     plant = plant or model.plant

@@ -2,7 +2,7 @@
 
 A *cell* names what to do (``{"controller": "joint velocity PD", "seed": 0, ...}``); a *job* is a
 function of those names that gives numbers.  Everything random in a job comes from its cell, so the
-rows are the same bit for bit whoever works them through, and in whatever order.
+rows are the same bit for bit, whichever worker computes them and in whatever order.
 """
 
 from __future__ import annotations

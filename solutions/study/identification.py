@@ -87,7 +87,7 @@ def excite(plant: Plant = BAXTER, seed: int = 0) -> Log:
 
 
 def fit(log: Log, model: Model) -> Friction:
-    """Fit the friction, from what the arm reports and what it was told, and from nothing else.
+    """Fit the friction, from the reports and the commands of the arm and from nothing else.
 
     Args:
         log: A run in torque mode of an arm that carries its own weight.

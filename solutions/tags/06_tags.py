@@ -19,8 +19,8 @@
 # > **Box: samples.** A reference is a function of time that gives `lk.Sample(position, velocity,
 # > acceleration)`, three arrays.
 #
-# Every cell below runs from the start, solved or not: where your part is missing, something given stands in
-# and says so. Only the functions are marked.
+# Every cell below runs from the start, solved or not: where your part is missing, something given takes its
+# place and says so. Only the functions are marked.
 
 # %% setup=true
 import labkit as lk

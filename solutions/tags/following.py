@@ -181,7 +181,7 @@ class TagFollower:
 
         Args:
             t: Now, in [s].
-            goal: Where to be and how to move at so many seconds after the horizon.
+            goal: Where to be and how to move, a function of the seconds after the horizon.
         """
         here, duration = self._reference(t), self.horizon
         while _peak(here, goal(duration - self.horizon), duration) > self.acceleration:

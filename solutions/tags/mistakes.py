@@ -76,7 +76,7 @@ class PoseOf:
 
 
 def rotation_transposed(pixels: Any, K: Any, size: float) -> Array:
-    """The rotation turned round, the translation left."""
+    """The rotation transposed, the translation left as it is."""
     T = tag_pose(pixels, K, size)
     return se3.pose(T[:3, :3].T, T[:3, 3])
 
@@ -207,7 +207,7 @@ def _euler(R: Array) -> Array:
 
 
 def euler_subtracted(estimates: Any, truth: Any) -> tuple[Array, Array]:
-    """Subtracts Euler angles: a tag that faces the camera stands at their branch cut."""
+    """Subtracts Euler angles: a tag that faces the camera is at their branch cut."""
     errors = np.array(
         [
             np.concatenate([truth[:3, 3] - T[:3, 3], _euler(truth[:3, :3]) - _euler(T[:3, :3])])
@@ -276,7 +276,7 @@ def speeds_up_for_ever(t: float, reference: Sample, goal: Sample, duration: floa
 
 
 def acceleration_kept(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
-    """After the end the velocity is constant, and an acceleration is told all the same."""
+    """After the end the velocity is constant, but the acceleration that is returned is not zero."""
     x = blend(t, reference, goal, duration)
     return Sample(x.position, x.velocity, goal.acceleration) if t > duration else x
 

@@ -33,7 +33,7 @@ TAG_CORNERS = Problem(
     withheld=("labkit.tags.tag.tag_corners",),
     hints=(
         "Draw the square, mark the middle, and write the coordinates of the upper left corner first.",
-        "Half a side to the left is -size/2 in x, half a side up is +size/2 in y. All of it lies in z = 0.",
+        "Half a side to the left is -size/2 in x, half a side up is +size/2 in y. The tag is in the plane z = 0.",
         "Draw the square with x to the right and y upwards, and write down half a side with "
         "its sign for each corner, beginning upper left and going round as the hands of a "
         "clock.",
@@ -270,14 +270,14 @@ QUALITY = Problem(
         ),
         Wrong(
             "the turn backwards",
-            "This turns from the truth to the estimate: the truth stands on the left of the product.",
+            "This turns from the truth to the estimate: the truth is on the left of the product.",
             mistakes.turn_backwards,
             "One sign of the error, said loudly.",
         ),
         Wrong(
             "logarithms subtracted",
-            "The difference of two rotation vectors is no turn, least of all near half a turn, where "
-            "they jump.",
+            "The difference of two rotation vectors is not a rotation vector, least of all near half "
+            "a turn, where they jump.",
             mistakes.logarithms_subtracted,
             "Orientations are compared by a product.",
         ),
@@ -399,7 +399,7 @@ BLEND = Problem(
         ),
         Wrong(
             "waits at the goal",
-            "After the end the place must go on with the velocity that is told.",
+            "After the end the place must go on with the velocity of the goal.",
             mistakes.waits_at_the_goal,
             "Velocity is the slope of position, or somebody lies.",
         ),

@@ -1,4 +1,4 @@
-"""Right answers of notebook 06, written otherwise."""
+"""Right answers of notebook 06, in another form."""
 
 from __future__ import annotations
 

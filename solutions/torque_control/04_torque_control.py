@@ -13,7 +13,7 @@
 # | **Time** | core about 4 hours, all about 5 · 29 points |
 #
 # Every cell below runs from the start, solved or not: where your part is missing, something given
-# stands in and says so. After each stub a check tells you in words what it found. Only the functions
+# takes its place and says so. After each stub a check tells you in words what it found. Only the functions
 # are marked, so play with everything else as you like.
 
 # %% setup=true
@@ -94,7 +94,7 @@ for name, log in loose.items():
 # the target's own motion takes: put the target's motion into the equation above, at the angles where the
 # arm is. This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
 # Note whose speed stands behind $C$: with the target's, the energy in springs and error never grows. That
-# alone is no proof that the arm arrives, for the energy also stays wherever the error stands still; Murray,
+# alone does not prove that the arm arrives, for the energy also stays wherever the error stands still; Murray,
 # Li and Sastry close the gap (proposition 4.10). The report that this lab grew out of printed the arm's own
 # speed there: then their proof does not apply, and it takes enough damping, $K_d > \dot M / 2$.
 
@@ -327,7 +327,7 @@ dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping
 # ## The torque stands still between two ticks
 #
 # A computer looks, computes a torque, and then the motor keeps that torque until the next look: 5 ms at
-# 200 Hz. For a heavy joint that is no time at all. For a light one it can be too long: the torque that
+# 200 Hz. For a heavy joint that is very short. For a light one it can be too long: the torque that
 # was to stop it drives it past and on. Whether it swings in or blows up, the *eigenvalues* of the step
 # from one sample to the next tell. If all lie inside the unit circle, the error dies out in the end, though
 # it may grow at first.

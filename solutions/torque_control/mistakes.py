@@ -71,7 +71,7 @@ def model_at_the_target(
 def the_reports_gravity(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """M J^T (0, 0, 0.981, 0, 0, 0): the report's gravity, which is no torque."""
+    """M J^T (0, 0, 0.981, 0, 0, 0): the report's gravity, which is not a torque."""
     q = state.q
     tau = right.augmented_pd(state, target, model, kp=kp, kd=kd, arm_compensates=True).value
     if not arm_compensates:
@@ -81,14 +81,14 @@ def the_reports_gravity(
 
 @dataclass(frozen=True)
 class AugmentedLaw:
-    """The augmented law with its parts weighed: 1 is right, 0 left out, -1 turned round.
+    """The augmented law with its parts weighed: 1 is right, 0 left out, -1 reversed.
 
     Attributes:
         e: Of the error of the angles.
         de: Of the error of the speeds.
         coriolis: Of C.
         weight: Of g.
-        beside: Of what stands beside the diagonal of M.
+        beside: Of the elements of M off the diagonal.
         diagonal: Of the diagonal of M.
         switch: Whether the switch is read the other way.
         swapped: Whether kp and kd are.
@@ -130,7 +130,7 @@ class AugmentedLaw:
 
 @dataclass(frozen=True)
 class ComputedLaw:
-    """Computed torque with its parts weighed: 1 is right, 0 left out, -1 turned round.
+    """Computed torque with its parts weighed: 1 is right, 0 left out, -1 reversed.
 
     Attributes:
         e: Of the error of the angles.
@@ -213,7 +213,7 @@ def carries_twice(
 def weightless(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """No gravity, whoever carries it."""
+    """No gravity, even where the law must carry it."""
     return right.computed_torque(state, target, model, kp=kp, kd=kd, arm_compensates=True)
 
 

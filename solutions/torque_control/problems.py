@@ -45,7 +45,7 @@ def _return(kp: float, kd: float, settle: float, most: float) -> Loop:
 
 
 HINTS_SWITCH = (
-    "Whoever carries the weight, it must be carried once: add model.gravity(state.q) only where "
+    "The arm or the law carries the weight, but not both: add model.gravity(state.q) only where "
     "arm_compensates is False."
 )
 
@@ -116,7 +116,7 @@ AUGMENTED_PD = Problem(
     ),
     wrong=(
         Wrong(
-            "the error turned round",
+            "the error reversed",
             "The springs push the arm away from its target. Here e is target minus actual, and then "
             "every gain comes with a plus.",
             mistakes.actual_minus_target,
@@ -148,7 +148,7 @@ AUGMENTED_PD = Problem(
             "The torque that the motion itself takes is missing, so the arm lags until the springs "
             "provide it.",
             mistakes.no_motion_terms,
-            "Feed-forward does the work, feedback mends the rest.",
+            "Feed-forward does the work, feedback corrects the rest.",
         ),
         Wrong(
             "damps the motion, not the error",
@@ -166,7 +166,7 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "the report's gravity",
-            "M J' (0, 0, 0.981, ...) is no torque (look at its units), only the tip feels it, and it "
+            "M J' (0, 0, 0.981, ...) is not a torque (look at its units), only the tip feels it, and it "
             "comes to a few percent of the weight. Use model.gravity.",
             mistakes.the_reports_gravity,
             "Units would have told.",
@@ -179,19 +179,19 @@ AUGMENTED_PD = Problem(
             "Two laws, two theorems: gains in N m/rad here, in 1/s² there.",
         ),
         Wrong(
-            "the springs turned round",
+            "the springs reversed",
             "Target minus actual, for the angles too: as it is, the springs push away.",
             mistakes.AugmentedLaw(e=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the dampers turned round",
+            "the dampers reversed",
             "Target minus actual, for the speeds too: as it is, the dampers drive.",
             mistakes.AugmentedLaw(de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the switch turned round",
+            "the switch reversed",
             "arm_compensates is True where the arm carries its own weight. Then the law adds none.",
             mistakes.AugmentedLaw(switch=True),
             "Say aloud who carries the weight.",
@@ -313,25 +313,25 @@ COMPUTED_TORQUE = Problem(
             "Feed-forward.",
         ),
         Wrong(
-            "the error turned round",
+            "the error reversed",
             "The arm runs away from its target. Here e is target minus actual.",
             mistakes.runs_away,
             "Settle the sign of e once, aloud.",
         ),
         Wrong(
-            "the error of the angles turned round",
+            "the error of the angles reversed",
             "Target minus actual, for the angles too.",
             mistakes.ComputedLaw(e=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the error of the speeds turned round",
+            "the error of the speeds reversed",
             "Target minus actual, for the speeds too: as it is, kd drives.",
             mistakes.ComputedLaw(de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the switch turned round",
+            "the switch reversed",
             "arm_compensates is True where the arm carries its own weight. Then the law adds "
             "none. (model.inverse_dynamics holds g already; take it off only where the arm "
             "compensates.)",
@@ -571,7 +571,7 @@ SAMPLED_JOINT = Problem(
             "That takes the torque from the end of the step, which no computer knows yet. It is "
             "stable whatever the gains, and the arm is not.",
             mistakes.implicit_step,
-            "A stable formula is no stable arm.",
+            "A stable formula does not make a stable arm.",
         ),
     ),
     variants=(variants.held_by_exponential, variants.held_in_lists),
@@ -642,8 +642,8 @@ GRAVITY_FACTOR = Problem(
         ),
         Wrong(
             "the regression the other way round",
-            "This explains the model by the torques. The noise is in the torques, and turned round it "
-            "makes the factor too large.",
+            "This explains the model by the torques. The noise is in the torques, so this "
+            "fit makes the factor too large.",
             mistakes.other_regression,
             "Least squares is not symmetric: errors belong to the left side.",
         ),
@@ -696,7 +696,7 @@ GRAVITY_FACTOR = Problem(
             "how far from 1",
             "The factor itself is asked.",
             mistakes.what_is_missing,
-            "1 is right, 0 is none.",
+            "1 is right; 0 leaves gravity out.",
         ),
     ),
     variants=(variants.factor_by_lstsq,),
@@ -794,7 +794,7 @@ CHOOSE_GAINS = Problem(
         ),
         Wrong(
             "the pair the other way round",
-            "kp first, then kd: as it stands there is hardly a spring, and a damper that shakes the "
+            "kp first, then kd: in this order the spring is very weak, and the damper shakes the "
             "arm.",
             mistakes.pair_turned_round,
             "Table 1 of the report has the same slip.",

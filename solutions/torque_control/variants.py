@@ -1,4 +1,4 @@
-"""Right answers of notebook 04, written otherwise."""
+"""Right answers of notebook 04, in another form."""
 
 from __future__ import annotations
 

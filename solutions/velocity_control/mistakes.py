@@ -47,7 +47,7 @@ def gains_swapped(state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk
 
 @dataclass(frozen=True)
 class JointLaw:
-    """The joint law with its parts weighed: 1 is right, 0 left out, -1 turned round.
+    """The joint law with its parts weighed: 1 is right, 0 left out, -1 reversed.
 
     Attributes:
         e: Weight of the error of the angles.
@@ -229,7 +229,7 @@ class WorkspaceLaw:
     """The workspace law with another error.
 
     Attributes:
-        place: Weight of the error of position; -1 is turned round.
+        place: Weight of the error of position; -1 reverses it.
         turn: The error of orientation, of (R_wd, R_wt).
         power: Of the damping.
     """

@@ -116,13 +116,13 @@ JOINT_VELOCITY_PD = Problem(
             "Units tell: kp is in 1/s, kd has none.",
         ),
         Wrong(
-            "the error of the angles turned round",
+            "the error of the angles reversed",
             "Target minus actual, for the angles too: as it is, kp pushes the arm away.",
             mistakes.JointLaw(e=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the error of the speeds turned round",
+            "the error of the speeds reversed",
             "Target minus actual, for the speeds too: as it is, kd drives on what it should brake.",
             mistakes.JointLaw(de=-1.0),
             "One sign for every error.",
@@ -170,7 +170,7 @@ DECAY_RATE = Problem(
     wrong=(
         Wrong(
             "D makes it faster",
-            "The other way round. The speed stands on both sides: (1 + kd) de/dt = -kp e. Here D only "
+            "The other way round. The speed is on both sides: (1 + kd) de/dt = -kp e. Here D only "
             "slows.",
             mistakes.faster_with_d,
             "In a velocity loop D brakes the very speed that closes the error.",
@@ -191,7 +191,7 @@ DECAY_RATE = Problem(
         ),
         Wrong(
             "the rate with a minus",
-            "The minus stands in exp(-r t) already: an error that dies away has an r above zero.",
+            "exp(-r t) already contains the minus: an error that dies away has an r above zero.",
             mistakes.minus_the_rate,
             "A pole and a decay rate differ by their sign.",
         ),
@@ -254,7 +254,7 @@ DAMPED_INVERSE = Problem(
         "eigenvalue near zero. What could you add to J Jᵀ so that it has none?",
         "Add damping times the identity of size 6 to J Jᵀ before you invert it.",
         "Set the gradient to zero and solve. Of the two forms, one inverts a 7 by 7 matrix "
-        "and one a 6 by 6; both are right, and the damping stands on the diagonal.",
+        "and one a 6 by 6; both are right, and the damping belongs on the diagonal.",
     ),
     wrong=(
         Wrong(
@@ -268,7 +268,7 @@ DAMPED_INVERSE = Problem(
             "That is the plain pseudo-inverse, np.linalg.pinv(J). Near e1 = 0 it asks for speeds that "
             "no joint has.",
             mistakes.undamped,
-            "An exact inverse is no use where there is none.",
+            "Where no exact inverse exists, its formula does not help.",
         ),
         Wrong(
             "the damping squared",
@@ -427,7 +427,7 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Damping trades a little of the tip's error for possible speeds.",
         ),
         Wrong(
-            "the error of position turned round",
+            "the error of position reversed",
             "Target minus actual, for the position too: as it is, the tip flees its target.",
             mistakes.WorkspaceLaw(place=-1.0),
             "One sign for every error.",
@@ -435,7 +435,7 @@ WORKSPACE_VELOCITY_PD = Problem(
         Wrong(
             "the turn backwards",
             "This is the turn from the target to the tip. The target comes first: "
-            "orientation_error(R_wd, R_wt), and R_wd stands on the left of the product.",
+            "orientation_error(R_wd, R_wt), and R_wd is on the left of the product.",
             mistakes.WorkspaceLaw(turn=mistakes.turned_back),
             "Say from where to where a rotation turns.",
         ),
@@ -447,15 +447,15 @@ WORKSPACE_VELOCITY_PD = Problem(
             "Frames that cancel: R_wd R_tw is a turn in world axes.",
         ),
         Wrong(
-            "position and turn both turned round",
+            "position and turn both reversed",
             "All six numbers have the other sign: target minus actual.",
             mistakes.WorkspaceLaw(place=-1.0, turn=mistakes.turned_back),
             "One sign for every error.",
         ),
         Wrong(
             "logarithms subtracted",
-            "The difference of two rotation vectors is no turn, unless both turn about the same axis. "
-            "First the product of the rotations, then its logarithm.",
+            "The difference of two rotation vectors is a rotation vector only if both turn about the "
+            "same axis. First the product of the rotations, then its logarithm.",
             mistakes.WorkspaceLaw(turn=mistakes.logarithms_subtracted),
             "Orientations are compared by a product.",
         ),

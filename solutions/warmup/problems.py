@@ -58,7 +58,7 @@ JOINT_ERROR = Problem(
     wrong=(
         Wrong(
             "actual minus target",
-            "The sign is turned round. A gain times this error drives the arm away from its target.",
+            "The sign is wrong. A gain times this error drives the arm away from its target.",
             mistakes.actual_minus_target,
             "One convention for the whole course: target minus actual.",
         ),
@@ -279,7 +279,7 @@ ORIENTATION_ERROR = Problem(
         "You look for the rotation E with E R_wt = R_wd, in world axes. Solve for E; a rotation's "
         "inverse is its transpose. Then lk.se3.rotation_log reads axis and angle from E.",
         "Solve E R_wt = R_wd for E; the inverse of a rotation is its transpose. Check on a "
-        "turn of 0.1 rad which side the transpose must stand on.",
+        "turn of 0.1 rad on which side the transpose belongs.",
     ),
     wrong=(
         Wrong(
@@ -312,21 +312,21 @@ ORIENTATION_ERROR = Problem(
         ),
         Wrong(
             "the matrices subtracted",
-            "R_wd - R_wt is no rotation, and its skew part is not the turn between them.",
+            "R_wd - R_wt is not a rotation, and its skew part is not the turn between them.",
             mistakes.matrices_subtracted,
             "Orientations are compared by a product.",
         ),
         Wrong(
             "two rotation vectors subtracted",
             "The logarithms of two orientations are turns about different axes, and their "
-            "difference is no turn. Multiply first, R_wd R_wtᵀ, then take one logarithm.",
+            "difference is not a rotation vector. Multiply first, R_wd R_wtᵀ, then take one logarithm.",
             mistakes.logarithms_subtracted,
             "Orientations are compared by a product.",
         ),
         Wrong(
             "the wrong one transposed",
             "R_wdᵀ R_wt goes from the desired to the actual orientation, in the tool's axes. "
-            "The actual one is undone, R_wtᵀ, and stands on the right.",
+            "The actual one is undone, and R_wtᵀ belongs on the right.",
             mistakes.backwards_in_tool_axes,
             "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
         ),

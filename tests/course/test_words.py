@@ -114,5 +114,5 @@ def test_a_test_that_nobody_can_see_is_told():
 def test_the_same_failure_is_told_once():
     """What went wrong in the same way again is not told again."""
     words = said(lambda x: None)
-    assert words.count("it gave nothing back (None)") == 1
+    assert words.count("it returned nothing (None)") == 1
     assert words.count(": the same") == 2

@@ -46,5 +46,5 @@ def test_what_cannot_be_explained_is_a_sentence(course):
     """A question that is none, a student who handed in nothing."""
     with pytest.raises(UnknownName, match="band_bang"):
         explain(course, "ada", "band_bang")
-    with pytest.raises(LabkitError, match="nothing of ada lies in submitted"):
+    with pytest.raises(LabkitError, match="nothing of ada is in submitted"):
         explain(course, "ada", "bang_bang")

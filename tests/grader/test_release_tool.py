@@ -199,7 +199,7 @@ def test_public_cases_by_heart_pay_only_what_is_stated():
     """A table of the public calls with their answers earns what no hidden case takes away."""
     bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
     by_test, by_heart = refused(bare)
-    assert "learns its public cases by heart earns 1 of 2 points, and 0 are stated" in by_heart
+    assert "memorises its public cases earns 1 of 2 points, and 0 are stated" in by_heart
     stated = {"inverse_transform": replace(bare["inverse_transform"], free_share=0.5)}
     assert refused(bare | stated) == [by_test]
 

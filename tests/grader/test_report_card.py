@@ -93,7 +93,7 @@ def test_what_cannot_be_read_is_a_sentence(tmp_path):
     with pytest.raises(LabkitError, match="does not run: SyntaxError"):
         functions_from(tmp_path / "cut.py", "MISTAKES")
     (tmp_path / "number.py").write_text("MISTAKES = {'joint_error': [1]}")
-    with pytest.raises(LabkitError, match="is no list of functions"):
+    with pytest.raises(LabkitError, match="is not a list of functions"):
         functions_from(tmp_path / "number.py", "MISTAKES")
     with pytest.raises(UnknownName):
         make(COURSE, ["00_warmup"], 5, {"treble": [abs]})

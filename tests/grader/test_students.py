@@ -90,7 +90,7 @@ def test_a_list_that_cannot_be_read_is_a_sentence(tmp_path, text, words):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("name,login\nAda,x\nBob,x\n", "lines 2 and 3 contradict each other: x stands in both"),
+        ("name,login\nAda,x\nBob,x\n", "lines 2 and 3 contradict each other: x is in both"),
         ("name,login,email\nAda,a,x@u\nAda,b,X@u\n", "with a here and b there"),
         ("name\nLi Wei\nWei Li\n", "are both Wei Li, and nothing tells them apart"),
         ("name,login,email\nKim,a,\nKim,,x@u\n", "nothing tells them apart"),

@@ -98,6 +98,7 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
 
     monkeypatch.setattr(labkit, "run", short_run)
     notebook, out, names = fill(name, parts), StringIO(), {"__name__": "__main__"}
+    nbformat.write(notebook, folder / f"{name}.ipynb")  # which its last cell looks at
     with redirect_stdout(out):
         for cell in notebook.cells:
             if cell.cell_type == "code":

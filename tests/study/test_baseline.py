@@ -1,4 +1,4 @@
-"""The built-in way: what it sees, where it goes, how fast, who drives."""
+"""The built-in method: what it sees, where it goes, how fast, who drives."""
 
 import json
 import subprocess

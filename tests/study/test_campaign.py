@@ -199,12 +199,12 @@ def test_every_claim_of_the_report_gets_a_verdict_from_rows():
     ]
     found = {v.claim: v.overall.outcome for v in verdicts(rows, gains, noise)}
     assert found["joint velocity tracks better than workspace velocity"] is Outcome.HELD
-    assert found["the built-in way tracks better than joint torque"] is Outcome.DID_NOT_HOLD
+    assert found["the built-in method tracks better than joint torque"] is Outcome.DID_NOT_HOLD
     assert found["four times the gain converges faster on the realistic arm"] is Outcome.HELD
     assert found["noise limits Kd: through the noise, Kd = 1 makes the arm shake"] is Outcome.HELD
     assert len(found) == 13
     planned = {v.claim: v for v in verdicts(rows, gains, noise)}
-    on = planned["the built-in way tracks better than joint torque"].tasks
+    on = planned["the built-in method tracks better than joint torque"].tasks
     assert {t.of for t in on} == {"line", "circle", "square"}, "on the tag it is told another goal"
 
 

@@ -3,7 +3,7 @@
 Shown, read-only, are the folders with the system's programs and libraries, those of each Python
 that takes part (a virtual environment and what it was made from), the system's fonts, and labkit.
 The rest of the disk is not there: no ``/usr/share``, no ``/opt``, no ``/home``.  Where a course or
-a checkout lies in a shown folder, an empty one covers it.
+a checkout is inside a shown folder, an empty one covers it.
 """
 
 from __future__ import annotations

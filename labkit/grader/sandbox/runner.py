@@ -87,7 +87,7 @@ class Notebook:
     def _execute(self, name: str, source: str) -> None:
         text = plain(source)
         linecache.cache[name] = (len(text), None, text.splitlines(True), name)
-        code = compile(text, name, "exec", flags=0x2000)  # await may stand at the top level
+        code = compile(text, name, "exec", flags=0x2000)  # await is allowed at the top level
         found = eval(code, self.names)
         if inspect.iscoroutine(found):
             asyncio.run(found)

@@ -20,7 +20,7 @@ from .protocol import Disconnected, MessageTooLarge, ProtocolError, Timeout
 
 MAX_STARTS = 6
 MAX_LOST = 3
-"""After so many calls that died or hung, a question is not asked any more."""
+"""After this number of calls that died or hung, a question is not asked any more."""
 LEAST_SHARE = 0.05
 """Share of the time of all cells that each still has once those before it have spent it."""
 _EXCEPTIONS = {"ArgumentChanged", "LinAlgError"} | {
@@ -173,7 +173,7 @@ class Session:
 
     def _run_cells(self) -> int | None:
         """Run all cells; return the number of one that the process did not outlive."""
-        again = []  # cells that met a NameError: theirs may stand in another order
+        again = []  # cells that met a NameError: their order may be another one
         for step in self.steps:
             if step.number not in self._deadly:
                 kind = self._run(step)

@@ -1,4 +1,4 @@
-"""The built-in way, to compare with: plan, time, execute, as MoveIt and Rethink's server do.
+"""The built-in method, to compare with: plan, time, execute, as MoveIt and Rethink's server do.
 
 Needs the extra ``labkit[baseline]`` (ompl, toppra); its recorded runs need nothing.
 """

@@ -1,4 +1,4 @@
-"""Record the built-in way for those who have no planner: ``python -m solutions.study.baseline``."""
+"""Record the built-in method, for all without a planner: ``python -m solutions.study.baseline``."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from . import RATE, PlanningScene, PositionServer, VelocityServer, along, plan, 
 
 
 def drive(task: Task, server: PositionServer | VelocityServer, seed: int = 0) -> tuple[Log, Log]:
-    """The built-in way from neutral through a task: the log of the approach, and of the task."""
+    """The built-in method from neutral through a task: the log of the approach, and of the task."""
     with Arm(task.side, BAXTER, seed) as arm:
         scene = PlanningScene(task.side, (Table(),))
         approach = quickest(plan(scene, arm.robot.neutral, task.q0, seed=seed))

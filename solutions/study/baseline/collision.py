@@ -54,7 +54,7 @@ class PlanningScene:
 
     Attributes:
         robot: Names and limits of the arm.
-        obstacles: What stands there besides Baxter's own body.
+        obstacles: All things around the arm besides Baxter's own body.
         margin: How near two shapes may come, in [m].
     """
 

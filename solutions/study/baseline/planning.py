@@ -50,7 +50,7 @@ def plan(scene: PlanningScene, start: Any, goal: Any, *, seed: int = 0) -> Splin
     Raises:
         Blocked: Start or goal would hit something; says what.
         JointLimitExceeded: Start or goal is out of a joint's range.
-        NoWay: None was found; says what stands in the straight way.
+        NoWay: None was found; says what blocks the straight way.
     """
     start = scene.require_free(start, "start")
     goal = scene.require_free(goal, "goal")
