@@ -37,7 +37,7 @@ def authored(tmp_path_factory):
         f"  to be marked by hand: {WHY}, 2 points",
         f"  to be marked by hand: {REPORT}, 4 points",
     ]
-    assert made.points == 26
+    assert made.points == 30
     return Course(root)
 
 

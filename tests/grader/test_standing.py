@@ -144,7 +144,7 @@ def test_a_rejected_submission_is_the_same_everywhere(marked, capsys):
     """Page, gradebook and table all say 0, and page and table say why."""
     assert verb(marked, capsys, "feedback")[0] == 0
     page = (marked.root / "feedback" / "carl" / NAME / f"{NAME}.html").read_text()
-    assert "0 of 20 points" in page and "the file is empty" in page
+    assert "0 of 24 points" in page and "the file is empty" in page
     with open_gradebook(marked) as book:
         grades = book.find_submission_notebook(NAME, NAME, "carl").grades
         assert {g.auto_score for g in grades} == {0.0}
@@ -158,7 +158,7 @@ def test_a_submission_that_vanished_keeps_its_mark(marked, capsys):
     shutil.rmtree(marked.submitted / "ada")
     code, out, err = verb(marked, capsys, "export")
     assert code == 0
-    assert table(out)["ada"]["score"] == "20.0"
+    assert table(out)["ada"]["score"] == "24.0"
     assert "ada: nothing of theirs is in submitted/; the mark stays as it was" in err
     assert verb(marked, capsys, "feedback")[0] == 0
     assert (marked.root / "feedback" / "ada" / NAME / f"{NAME}.html").exists()
