@@ -97,7 +97,7 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     code, out, _ = verb(marked, capsys, "export")
     rows = table(out)
     assert (rows["ada"]["score"], rows["ada"]["circle"]) == ("", "")
-    assert (rows["bob"]["score"], rows["carl"]["score"]) == ("10.0", "0.0")
+    assert (rows["bob"]["score"], rows["carl"]["score"]) == ("11.0", "0.0")
 
 
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
