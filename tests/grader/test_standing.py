@@ -177,7 +177,7 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
         book.find_grade("circle-check", NAME, NAME, "bob").manual_score = 4.0
         book.db.commit()
     code, out, _ = verb(marked, capsys, "export")
-    assert (code, table(out)["bob"]["score"]) == (0, "12.0")
+    assert (code, table(out)["bob"]["score"]) == (0, "13.0")
     with open_gradebook(marked) as book:
         notebook = book.find_notebook(NAME, NAME)
         book.db.add(
@@ -193,5 +193,5 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
         book.find_grade("essay", NAME, NAME, "bob").manual_score = 2.0
         book.db.commit()
     code, out, err = verb(marked, capsys, "export")
-    assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "14.0")
+    assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "15.0")
     assert "no mark: ada: no mark for essay; give it by hand, in formgrader" in err
