@@ -27,6 +27,7 @@ from .exchange import read_stamp, read_time
 from .nbgrader_api import nbgrader_api
 from .results import Result, write
 from .rules import settle_lateness
+from .whys import settle_whys
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
@@ -58,6 +59,7 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
             if isinstance(done, Failed):
                 book.db.rollback()
             said += [done] if isinstance(done, Failed) else done
+        settle_whys(course, book, assignment)
         settle_lateness(course, book, assignment)
     return said
 

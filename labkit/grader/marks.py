@@ -23,6 +23,7 @@ from .roster import Student, read_roster
 from .rules import settle_lateness
 from .standing import grade_again, standing
 from .submission import is_name, plain_name, students
+from .whys import settle_whys
 
 
 @dataclass(frozen=True)
@@ -171,6 +172,7 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterat
     stand = {one.student: one for one in standing(course, assignment, only)}
     full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
+        settle_whys(course, book, assignment)
         settle_lateness(course, book, assignment)
         there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
         full = max((float(s.max_score) for s in there.values()), default=full)

@@ -18,9 +18,9 @@ def _cell(name, source, **flags):
     return nbformat.from_dict({**cell, "metadata": {"lab": "written", "nbgrader": about}})
 
 
-def with_hand_marked(path, questions):
+def with_hand_marked(path, questions, predictions):
     """What `source_notebook` makes, and at its end what a person marks: 2 points, and 4."""
-    notebook = source_notebook(path, questions)
+    notebook = source_notebook(path, questions, predictions)
     why = _cell(WHY, "Because the arm is short.", grade=True, solution=True, points=2)
     task = _cell(REPORT, f"Report below.\n\n{SCHEME}", task=True, locked=True, points=4)
     notebook.cells += [why, task]

@@ -15,6 +15,8 @@ from labkit.grader.marks import mark_of
 from labkit.grader.results import Answer, Result, Results
 
 NAME = "01_paths"
+WHY = "why_a_quarter"
+"""Its text that a person marks where it is drawn; of this class nobody's is."""
 NOTEBOOK = {"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
 
 
@@ -24,7 +26,10 @@ def notebook_of(student):
 
 
 def result_of(course, student, *, share=1.0, rejected="", data=None, **more):
-    """What came of a student's notebook: this share of every question's points."""
+    """What came of a student's notebook: this share of every question's points.
+
+    Who has all of them also wrote why.
+    """
     bundle = Bundle.of(course, NAME)
     data = notebook_of(student) if data is None else data
     if rejected:
@@ -44,7 +49,12 @@ def result_of(course, student, *, share=1.0, rejected="", data=None, **more):
         for q in bundle.questions
     )
     score = round(sum(q.verdict.earned for q in questions), 2)
-    made = {"hashes": hashes(data, bundle), "seconds": {"all": 1.0, "student": 0.5}}
+    written = {WHY: "Twice the time, a quarter of the acceleration."} if share == 1.0 else {}
+    made = {
+        "written": written,
+        "hashes": hashes(data, bundle),
+        "seconds": {"all": 1.0, "student": 0.5},
+    }
     seed = bundle.data["seed"]
     return Result(NAME, student, score, bundle.points, seed, questions=questions, **(made | more))
 

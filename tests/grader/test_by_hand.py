@@ -37,7 +37,7 @@ def authored(tmp_path_factory):
         f"  to be marked by hand: {WHY}, 2 points",
         f"  to be marked by hand: {REPORT}, 4 points",
     ]
-    assert made.points == 26
+    assert made.points == 30
     return Course(root)
 
 
@@ -136,15 +136,15 @@ def test_page_export_and_report_have_formgraders_mark(written, capsys):
     give(written, "bob", "circle-check", 4.0)
     assert not graded(written, "ada", **{WHY: "Because *friction* <b>eats</b> it.", REPORT: ""})
     assert verb(written, capsys, "feedback")[0] == 0
-    assert row(written, capsys, "ada")["score"] == "15.0"
-    assert row(written, capsys, "bob")["score"] == "12.0"
-    assert "15 of 26 points." in page(written, "ada")
-    assert "12 of 26 points." in page(written, "bob")
+    assert row(written, capsys, "ada")["score"] == "16.0"
+    assert row(written, capsys, "bob")["score"] == "13.0"
+    assert "16 of 30 points." in page(written, "ada")
+    assert "13 of 30 points." in page(written, "bob")
     assert "1.5 by hand; 0.5 extra credit" in page(written, "ada")
     assert "4 by hand, instead of 2" in page(written, "bob")
     assert "Say *why*." in page(written, "ada") and "&lt;b&gt;eats" in page(written, "ada")
     report = verb(written, capsys, "class-report")[1]
-    assert "Mean 13.5, median 13.5 of 26 points; 12 to 15." in report
+    assert "Mean 14.5, median 14.5 of 30 points; 13 to 16." in report
 
 
 def test_another_answer_is_looked_at_again(written, capsys):
@@ -155,7 +155,7 @@ def test_another_answer_is_looked_at_again(written, capsys):
     assert said == (
         f"ada: {WHY} was marked 1 by hand, and the answer is another one now; look at it again"
     )
-    assert row(written, capsys, "ada")["score"] == "12.0"
+    assert row(written, capsys, "ada")["score"] == "13.0"
     assert f"ada ({WHY})" in verb(written, capsys, "feedback")[2]
 
 
@@ -170,7 +170,7 @@ def test_a_cell_by_hand_can_be_added_and_goes_only_unmarked(course, monkeypatch)
         release(course, NAME, 7)
     record(course, NAME, [result])
     with open_gradebook(course) as book:
-        assert book.find_submission(NAME, "ada").max_score == 26
+        assert book.find_submission(NAME, "ada").max_score == 30
         assert book.find_grade(WHY, NAME, NAME, "ada").auto_score == 0.0
     give(course, "ada", REPORT, 1.0, "see me")
     with pytest.raises(Exception, match="report would go"):

@@ -152,7 +152,7 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
     ) as run:
         if processes == 7:  # it is at the second submission
             hand_in(course, NAME, "bob", add(copy.deepcopy(solved), "while True: pass"))
-            assert "ada: 20 of 20" in run.stdout.readline()
+            assert "ada: 22 of 22" in run.stdout.readline()
         everything = below(run.pid, at_least=processes)
         run.send_signal(getattr(signal, name))
         wait_until_gone(everything)

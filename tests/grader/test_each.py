@@ -59,12 +59,12 @@ def test_a_lone_surrogate_costs_nobody_a_mark(course, solved, capsys, monkeypatc
     solved["cells"].append(text)
     hand_in(course, NAME, "bob", json.dumps(solved).encode())
     assert verb(course, capsys, "grade")[0] == 0
-    assert scores(course) == {"ada": 20.0, "bob": 20.0}
+    assert scores(course) == {"ada": 24.0, "bob": 24.0}
     assert verb(course, capsys, "feedback")[0] == 0
     assert verb(course, capsys, "class-report", "--names")[0] == 0
     code, out, _ = verb(course, capsys, "export")
     assert code == 0
-    assert [x.split(",")[-2] for x in out.splitlines()[2:]] == ["20.0", "20.0"]
+    assert [x.split(",")[-2] for x in out.splitlines()[2:]] == ["24.0", "24.0"]
     written = course.root / "autograded" / "bob" / NAME / f"{NAME}.ipynb"
     page = course.root / "feedback" / "bob" / NAME / f"{NAME}.html"
     assert written.read_text("utf-8").count("\ufffd") == 2
@@ -81,9 +81,9 @@ def test_a_result_that_cannot_be_written_is_rolled_back_alone(course, part):
     if "source" in part:
         (failed,) = bad
         assert str(failed).startswith("bob: UnicodeEncodeError")
-        assert scores(course) == {"ada": 20.0, "carl": 20.0}
+        assert scores(course) == {"ada": 24.0, "carl": 24.0}
     assert record(course, NAME, list(Results(course, NAME))) == []  # read from the disk: clean
-    assert scores(course) == dict.fromkeys(CLASS, 20.0)
+    assert scores(course) == dict.fromkeys(CLASS, 24.0)
 
 
 @pytest.mark.slow
@@ -98,12 +98,12 @@ def test_a_row_that_fails_leaves_the_others_and_is_mended(marked, capsys, monkey
     assert code == 1
     assert out.count("as before") == 3
     assert err.splitlines()[-1] == "not in the gradebook: bob: Permission denied"
-    assert {s: x for s, x in scores(marked).items() if s != "bob"} == {"ada": 20.0, "carl": 20.0}
+    assert {s: x for s, x in scores(marked).items() if s != "bob"} == {"ada": 24.0, "carl": 24.0}
     code, out, err = verb(marked, capsys, "export")
     assert (code, err.count("no mark: bob")) == (1, 1)
     assert "\nbob,,,,,,,,," in out
     assert verb(marked, capsys, "grade")[0] == 0
-    assert scores(marked) == dict.fromkeys(CLASS, 20.0)
+    assert scores(marked) == dict.fromkeys(CLASS, 24.0)
 
 
 def test_a_page_that_fails_is_named_and_the_others_are_written(marked, capsys, monkeypatch):
@@ -134,8 +134,8 @@ def test_grading_again_keeps_the_others(marked, capsys, monkeypatch):
     spoil(monkeypatch, results, "write", PermissionError(errno.EACCES, "Permission denied"))
     code, out, err = verb(marked, capsys, "grade", "--lower", "--jobs", "2")
     assert (code, err) == (1, "not graded: bob: Permission denied\n")
-    assert "ada: 0 of 20 (was 20)" in out
-    assert scores(marked) == {"ada": 0.0, "bob": 20.0, "carl": 0.0}
+    assert "ada: 0 of 22 (was 22)" in out
+    assert scores(marked) == {"ada": 0.0, "bob": 24.0, "carl": 0.0}
 
 
 def test_what_concerns_everybody_is_raised():
@@ -175,7 +175,7 @@ def test_a_damaged_gradebook_is_a_sentence(marked, capsys, damage):
         assert "gradebook.db is damaged: " in err and "restore a copy" in err
     assert {x: x.read_bytes() for x in kept} == kept
     path.write_bytes(before)
-    assert scores(marked) == dict.fromkeys(CLASS, 20.0)
+    assert scores(marked) == dict.fromkeys(CLASS, 24.0)
 
 
 HOSTILE = (

@@ -63,7 +63,7 @@ def test_nbgrader_copies_no_link_and_no_special_file(course, solved, capsys):
         assert not (folder / "all").is_dir()
     assert secret.exists()
     with open_gradebook(course) as book:
-        assert book.find_submission(NAME, "carl").score == 20
+        assert book.find_submission(NAME, "carl").score == 22
 
 
 @pytest.mark.slow
@@ -73,10 +73,10 @@ def test_nbgrader_and_labkit_agree(course, solved, capsys):
     hand_in(course, NAME, "bob", b"{")
     code, said = nbgrader(course.root, "autograde", NAME, "--create", "--student", "ada")
     assert code == 0, said[-2000:]
-    assert Results(course, NAME).get("ada").score == 20
+    assert Results(course, NAME).get("ada").score == 22
     assert main(["export", NAME, "--course", str(course.root)]) == 1
     out, err = capsys.readouterr()
-    assert "\nada," in out and out.split("\nada,")[1].splitlines()[0].endswith(",20.0,")
+    assert "\nada," in out and out.split("\nada,")[1].splitlines()[0].endswith(",24.0,")
     assert "no mark: bob: handed in and not graded" in err
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
-    assert "ada: 20 of 20 (as before)" in capsys.readouterr().out
+    assert "ada: 22 of 22 (as before)" in capsys.readouterr().out

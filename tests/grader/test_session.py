@@ -211,10 +211,11 @@ def test_an_honest_answer_five_times_slower_than_ours_is_marked(torque):
     notebook = json.loads((torque.solution / name / f"{name}.ipynb").read_text())
     for one in bundle.questions:
         source = "".join(cell_of(notebook, one.name)["source"])
-        put(notebook, one.name, f"{source}\n{SLOWER}\n{one.name} = _slower({one.name})")
+        if f"def {one.name}(" in source:  # and no value that was written down
+            put(notebook, one.name, f"{source}\n{SLOWER}\n{one.name} = _slower({one.name})")
     with Sandbox(imports(bundle.data["cells"])) as sandbox:
         result = grade(raw(notebook), "ada", bundle, sandbox, Limits().scaled(slowness()))
-    assert result.score == 20, [q.verdict for q in result.questions]
+    assert result.score == bundle.points, [q.verdict for q in result.questions]
 
 
 EMOJI = "\U0001f600"

@@ -97,7 +97,7 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     code, out, _ = verb(marked, capsys, "export")
     rows = table(out)
     assert (rows["ada"]["score"], rows["ada"]["circle"]) == ("", "")
-    assert (rows["bob"]["score"], rows["carl"]["score"]) == ("10.0", "0.0")
+    assert (rows["bob"]["score"], rows["carl"]["score"]) == ("11.0", "0.0")
 
 
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
@@ -144,7 +144,7 @@ def test_a_rejected_submission_is_the_same_everywhere(marked, capsys):
     """Page, gradebook and table all say 0, and page and table say why."""
     assert verb(marked, capsys, "feedback")[0] == 0
     page = (marked.root / "feedback" / "carl" / NAME / f"{NAME}.html").read_text()
-    assert "0 of 20 points" in page and "the file is empty" in page
+    assert "0 of 24 points" in page and "the file is empty" in page
     with open_gradebook(marked) as book:
         grades = book.find_submission_notebook(NAME, NAME, "carl").grades
         assert {g.auto_score for g in grades} == {0.0}
@@ -158,7 +158,7 @@ def test_a_submission_that_vanished_keeps_its_mark(marked, capsys):
     shutil.rmtree(marked.submitted / "ada")
     code, out, err = verb(marked, capsys, "export")
     assert code == 0
-    assert table(out)["ada"]["score"] == "20.0"
+    assert table(out)["ada"]["score"] == "24.0"
     assert "ada: nothing of theirs is in submitted/; the mark stays as it was" in err
     assert verb(marked, capsys, "feedback")[0] == 0
     assert (marked.root / "feedback" / "ada" / NAME / f"{NAME}.html").exists()
@@ -177,7 +177,7 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
         book.find_grade("circle-check", NAME, NAME, "bob").manual_score = 4.0
         book.db.commit()
     code, out, _ = verb(marked, capsys, "export")
-    assert (code, table(out)["bob"]["score"]) == (0, "12.0")
+    assert (code, table(out)["bob"]["score"]) == (0, "13.0")
     with open_gradebook(marked) as book:
         notebook = book.find_notebook(NAME, NAME)
         book.db.add(
@@ -193,5 +193,5 @@ def test_a_mark_by_hand_counts_and_a_question_without_one_is_missing(marked, cap
         book.find_grade("essay", NAME, NAME, "bob").manual_score = 2.0
         book.db.commit()
     code, out, err = verb(marked, capsys, "export")
-    assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "14.0")
+    assert (code, table(out)["ada"]["score"], table(out)["bob"]["score"]) == (1, "", "15.0")
     assert "no mark: ada: no mark for essay; give it by hand, in formgrader" in err

@@ -126,7 +126,7 @@ def test_tables(term, capsys):
     assert main(["export", NAME, "--course", str(term.root)]) == 0
     head, full, *_ = capsys.readouterr().out.splitlines()
     assert head.startswith("student,bang_bang,trapezoid")
-    assert full.endswith("20.0,")
+    assert full.endswith("24.0,")
 
 
 def test_nothing_becomes_a_formula():

@@ -32,7 +32,9 @@ INSIDE = (
 )
 OURS = ("labkit", "numpy", "pinocchio", "builtins", "sys")
 """Modules that no answer changes."""
-STUDENTS = {"labkit.course"} | {f"labkit.course.{name}" for name in ("check", "hint", "use")}
+STUDENTS = {"labkit.course"} | {
+    f"labkit.course.{name}" for name in ("check", "hint", "predict", "use")
+}
 
 _WORTH_A_LOOK = re.compile(
     r"__|\b(_\w|eval|exec|compile|getattr|setattr|vars|sys|os|operator|labkit|pinocchio)"

@@ -1,0 +1,53 @@
+"""Whys: a person marks two of a student's; each of the others has its points for being there.
+
+Nobody knows before the deadline which two, for they are drawn under the term's seed.
+"""
+
+from __future__ import annotations
+
+import hmac
+import re
+from collections.abc import Iterable
+from typing import Any
+
+from ..course.bundle import Bundle
+from ..course.layout import Course
+
+DRAWN = 2
+"""So many whys of each student a person marks, of all those of the course."""
+_WHY = re.compile(r'^# %% \[markdown\].*\bwhy="(\w+)"', re.MULTILINE)
+
+
+def drawn(seed: int, student: str, whys: Iterable[str]) -> frozenset[str]:
+    """Which of the course's whys a person marks, by HMAC-SHA256 under the term's seed."""
+
+    def rank(name: str) -> bytes:
+        return hmac.digest(str(seed).encode(), f"{student}/{name}".encode(), "sha256")
+
+    return frozenset(sorted(whys, key=rank)[:DRAWN])
+
+
+def settle_whys(course: Course, book: Any, assignment: str) -> None:
+    """Give full points in the gradebook to the whys that were written and are not drawn.
+
+    A mark that somebody gave by hand stays, and so does the 0 of a why that is blank.
+
+    Raises:
+        LabkitError: There is such a why, and the assignment was not released here.
+    """
+    waiting = [
+        (submission.student.id, grade)
+        for submission in book.assignment_submissions(assignment)
+        for notebook in submission.notebooks
+        for grade in notebook.grades
+        if grade.needs_manual_grade and grade.auto_score is None and grade.manual_score is None
+    ]
+    if not waiting:
+        return
+    texts = [course.notebook_source(name).read_text(encoding="utf-8") for name in course.names()]
+    whys = {name for text in texts for name in _WHY.findall(text)}
+    seed = int(Bundle.of(course, assignment).data["seed"])
+    for student, grade in waiting:
+        if grade.name in whys - drawn(seed, student, whys):
+            grade.auto_score, grade.needs_manual_grade = grade.max_score, False
+    book.db.commit()

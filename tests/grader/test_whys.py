@@ -1,0 +1,46 @@
+"""Whys: a person marks two of each student's, and nothing waits for the others."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import replace
+
+from handmade import hand_in
+from made import NAME, WHY, notebook_of, result_of
+
+from labkit.__main__ import main
+from labkit.grader.gradebook import open_gradebook, record
+from labkit.grader.results import Results
+from labkit.grader.whys import DRAWN, drawn
+
+WHYS = [f"why_{k}" for k in range(8)]
+
+
+def test_two_of_eight_are_drawn_evenly_and_for_good():
+    """Each student's two are the same whenever they are drawn, and each why is drawn as often."""
+    students = [f"student-{k}" for k in range(800)]
+    found = [drawn(7, student, WHYS) for student in students]
+    assert {len(one) for one in found} == {DRAWN}
+    assert found == [drawn(7, student, reversed(WHYS)) for student in students]
+    assert found != [drawn(8, student, WHYS) for student in students]
+    counts = Counter(name for one in found for name in one)
+    assert all(150 <= counts[name] <= 250 for name in WHYS)  # 200 are expected
+
+
+def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
+    """One that is written and not drawn has its points; a blank one has 0; the drawn one waits."""
+    texts = {"ada": "Because it is so.", "bob": "", "eve": "Because it is so."}
+    for student, text in texts.items():
+        data = notebook_of(student)
+        hand_in(course, NAME, student, data)
+        written = {WHY: text} if text else {}
+        result = replace(result_of(course, student, data=data), written=written)
+        Results(course, NAME).keep(result)
+        record(course, NAME, [result])
+    with open_gradebook(course) as book:
+        grades = {s: book.find_grade(WHY, NAME, NAME, s) for s in texts}
+        found = {s: (g.auto_score, g.needs_manual_grade) for s, g in grades.items()}
+    assert found == {"ada": (2.0, False), "bob": (0.0, False), "eve": (None, True)}
+    assert main(["feedback", NAME, "--course", str(course.root)]) == 2
+    said = capsys.readouterr().err
+    assert f"eve ({WHY})" in said and "ada" not in said
