@@ -7,6 +7,7 @@ import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -92,8 +93,21 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     cells, released = read_cells(mine), read_cells(new)
     if to.exists():
         raise LabkitError(f"{to} is there already; give another name with --to")
-    notebook = json.loads(new.read_text(encoding="utf-8")) | {"cells": merge(cells, released)}
+    release = json.loads(new.read_text(encoding="utf-8"))
+    if not _is_valid(release):
+        raise LabkitError(f"{new.name} is not a release; fetch the assignment's folder again")
+    notebook = release | {"cells": merge(cells, released)}
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
     print(f"{to}: the new release with your work; look it through, then run it all")
     return 0
+
+
+def _is_valid(notebook: dict[str, Any]) -> bool:
+    """Whether data is what Jupyter would write."""
+    from nbformat.validator import isvalid
+
+    try:
+        return bool(isvalid(notebook, version=4, version_minor=5))
+    except TypeError:  # an id or a cell's type that is not text
+        return False

@@ -212,7 +212,8 @@ def merge(mine: list[dict[str, Any]], new: list[dict[str, Any]]) -> list[dict[st
         if place is not None:
             anchor = place
         elif _is_own(cell, new):
-            after.setdefault(anchor, []).append(copy.deepcopy(cell))
+            number = sum(map(len, after.values()))
+            after.setdefault(anchor, []).append(copy.deepcopy(cell) | {"id": f"own-{number:04d}"})
     result = after.get(-1, [])
     for k, cell in enumerate(merged):
         result += [cell, *after.get(k, [])]

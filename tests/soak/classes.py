@@ -13,7 +13,10 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from labkit.course.layout import Course
+
 from . import hostile
+from .attacks.place import handed_out, solved_code
 
 NAME = "01_paths"
 SECRET = 1000
@@ -100,9 +103,8 @@ def copied(course: Path, root: Path) -> Path:
 
 
 def notebook(course: Path, which: str, name: str = NAME) -> hostile.Notebook:
-    """A notebook: "solved", or "blank" as it was handed out."""
-    place = {"solved": "build/course/solution", "blank": "assignments"}[which]
-    work = json.loads((course / place / name / f"{name}.ipynb").read_text("utf-8"))
+    """A notebook: "solved" in all its code, or "blank" as it was handed out."""
+    work = {"solved": solved_code, "blank": handed_out}[which](Course(course), name)
     for cell in work["cells"]:
         cell["source"] = "".join(cell["source"])
     return work

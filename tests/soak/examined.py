@@ -47,7 +47,7 @@ class Step:
 
 LAYOUTS = ("questions", "nbgrader", "canvas", "moodle", "moodle-worksheet")
 EXPORTS = tuple(Step(f"export --layout {layout}") for layout in LAYOUTS)
-GRADE, FEEDBACK = Step("grade", needed=True), Step("feedback")
+GRADE, FEEDBACK = Step("grade", needed=True), Step("feedback --unmarked")
 REPORT, REGRADE = Step("class-report --to aside/report.md"), Step("grade --diff")
 LABKIT = (
     Step("collect downloads/moodle.zip", needed=True),
@@ -55,7 +55,7 @@ LABKIT = (
     Step("collect downloads/inbound --unverified", needed=True),
     GRADE,
     Step("grade --json"),
-    Step("feedback --moodle aside/back.zip"),
+    Step("feedback --unmarked --moodle aside/back.zip"),
     *EXPORTS,
     REPORT,
     Step("class-report --names --jplag aside/jplag"),
@@ -225,7 +225,9 @@ class Examined:
                 if kind.table != "ENTRIES" and not named:
                     yield kind, "neither graded nor named"
             elif result["score"] < least and not (result["rejected"] and kind.table in _REFUSED):
-                why = result["rejected"] or [q["notes"] for q in result["questions"]]
+                why = result["rejected"] or [
+                    q["notes"] or q["verdict"] for q in result["questions"]
+                ]
                 yield kind, f"{result['score']} of {full}, though right: {str(why)[:200]!a}"
 
 

@@ -9,7 +9,7 @@ import re
 
 import pytest
 from soak.attacks.identity import ADA, IMPOSTORS, MOODLE, write_zip
-from soak.attacks.place import NAME
+from soak.attacks.place import NAME, full_marks, handed_out, solved_code
 from soak.attacks.undefended import COMMANDS
 
 from labkit.__main__ import main
@@ -34,8 +34,7 @@ TWIN = f"Ada Lovelace_43{MOODLE}{NAME}.ipynb"
 
 def work(course, who, *, solved):
     """A notebook that is known by its bytes."""
-    folder = course.solution if solved else course.release
-    notebook = json.loads((folder / NAME / f"{NAME}.ipynb").read_text())
+    notebook = solved_code(course) if solved else handed_out(course)
     kept = [c for c in notebook["cells"] if c["metadata"]["lab"] in ("answer", "check")]
     return json.dumps(notebook | {"cells": kept, "metadata": {"who": who}}).encode()
 
@@ -135,7 +134,7 @@ def _marks(course, impostor, capsys):
     }[impostor.system]
     mine = [row for row in rows if row[column] == number]
     assert len(mine) == 1
-    assert "20.0" in mine[0].values()
+    assert str(full_marks(course)[0]) in mine[0].values()
 
 
 def test_a_name_taken_over_in_another_assignment_is_not_believed(course, tmp_path, capsys):

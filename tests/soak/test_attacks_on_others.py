@@ -7,8 +7,8 @@ import shutil
 from types import SimpleNamespace
 
 import pytest
-from soak.attacks.defended import FULL, HONEST, defended, suspected, wins
-from soak.attacks.place import SEED, place, release_into
+from soak.attacks.defended import HONEST, defended, suspected, wins
+from soak.attacks.place import SEED, full_marks, place, release_into
 from soak.attacks.sets import ATTACKS, GOALS, SAMPLE
 from soak.attacks.undefended import COMMANDS, WINS, undefended
 
@@ -45,15 +45,15 @@ def test_no_attack_wins_here(graded):
     assert not {name: what for name, what in found.items() if what}
 
 
-def test_nobody_else_is_harmed(graded):
+def test_nobody_else_is_harmed(graded, released):
     """Whoever did their work among the attackers has full marks in result, export and page."""
-    of = graded.of
+    of, (full, points) = graded.of, full_marks(released)
     assert not of.failed
     assert {who: of.results.get(who, {}).get("score") for who in HONEST} == dict.fromkeys(
-        HONEST, FULL
+        HONEST, full
     )
-    assert {who: of.marks.get(who) for who in HONEST} == dict.fromkeys(HONEST, str(FULL))
-    assert all(f"{FULL:g} of {FULL:g} points" in of.pages.get(who, "") for who in HONEST)
+    assert {who: of.marks.get(who) for who in HONEST} == dict.fromkeys(HONEST, str(full))
+    assert all(f"{full:g} of {points:g} points" in of.pages.get(who, "") for who in HONEST)
     assert not of.stolen
 
 

@@ -110,10 +110,10 @@ def test_no_file_beside_a_notebook_is_run(course, tmp_path, name):
     loot = tmp_path / "loot"
     (folder / name).parent.mkdir(exist_ok=True)
     (folder / name).write_text(FILES[name].format(loot=str(loot)))
-    here = str(Path(sys.executable).parent)
-    env = dict(os.environ, PYTHONPATH=str(ROOT), PATH=f"{here}:{os.environ['PATH']}")
+    env = dict(os.environ, PYTHONPATH=str(ROOT))
+    labkit = [sys.executable, "-P", "-m", "labkit"]  # as its program does: no working folder
     for words in (["grade", NAME, "--student", "mallory"], ["export", NAME], ["feedback", NAME]):
-        done = subprocess.run([f"{here}/labkit", *words], cwd=folder, env=env, capture_output=True)
+        done = subprocess.run([*labkit, *words], cwd=folder, env=env, capture_output=True)
         assert not loot.exists(), words
         assert b"Traceback" not in done.stderr
     undefended(folder, name, env)

@@ -11,9 +11,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from soak.attacks.defended import wins_of
+from soak.attacks.defended import MORE, wins_of
 from soak.attacks.family import Family
-from soak.attacks.place import NAME, place
+from soak.attacks.place import NAME, full_marks, place
 from soak.attacks.sets import ATTACKS
 from soak.attacks.undefended import COMMANDS
 
@@ -116,7 +116,7 @@ def _run(verb, course):
     out = io.StringIO()
     try:
         with redirect_stdout(out), redirect_stderr(out):
-            code = main([verb, NAME, "--course", str(course.root)])
+            code = main([verb, NAME, *MORE.get(verb, []), "--course", str(course.root)])
     except BaseException as error:
         code = f"{type(error).__name__}: {error}"[:300]
     return code, out.getvalue()
@@ -145,10 +145,12 @@ def test_every_honest_mark_is_exported(graded):
 
 def test_every_honest_page_is_written(graded):
     """Each page says the mark, or why there is none."""
+    points = full_marks(graded.course)[1]
     for who, about in _deserved(graded.course).items():
         page = graded.course.root / "feedback" / who / NAME / f"{NAME}.html"
         text = page.read_text()
-        assert ("Not graded" if about["rejected"] else f"{about['score']:g} of 20 points") in text
+        assert f"{about['score']:g} of {points:g} points" in text
+        assert about["rejected"] == ("could not be graded" in text)
 
 
 def test_no_attacker_gains(graded):

@@ -28,7 +28,8 @@ from labkit.grader.sandbox.limits import Limits
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)
 HONEST = ("adam", "s0", VICTIM)
 """Before, among and after the attackers in the alphabet; the last is the one whom some are after."""
-FULL = 20.0
+MORE = {"feedback": ["--unmarked"], "class-report": ["--names"]}
+"""Options of the verbs; attacks leave text that nobody marks."""
 MOST = 2_000_000
 """Bytes of a result file."""
 NOT_SAID = ("source", "own", "motion", "versions", "hashes")
@@ -115,7 +116,7 @@ def _grade(here: Place, students: list[str], jobs: int, made: Class) -> None:
 
 def _run(verb: str, here: Place, made: Class) -> None:
     """One verb of the instructor's, with whatever comes of it."""
-    more = ["--names"] if verb == "class-report" else []
+    more = MORE.get(verb, [])
     out = io.StringIO()
     try:
         with redirect_stdout(out), redirect_stderr(out):
@@ -165,7 +166,8 @@ def suspected(report: str) -> list[str]:
 def told(made: Class, student: str) -> bool:
     """Whether result and class report say that a withheld tool, or a way around it, was used."""
     result = made.results[student]
-    in_result = result["tricks"] or any(q["withheld"] for q in result["questions"])
+    verdicts = [question["verdict"] for question in result["questions"]]
+    in_result = result["tricks"] or any(verdict["withheld"] for verdict in verdicts)
     return bool(in_result) and any(student in line for line in suspected(made.report))
 
 

@@ -19,6 +19,7 @@ from soak.attacks.attack import CANARY, Attack, Notebook
 from soak.attacks.others import VICTIM
 
 from labkit.course.layout import Course
+from labkit.course.notebook import about, grade_id, kind
 from labkit.grader.release import release
 
 NAME = "01_paths"
@@ -48,14 +49,41 @@ class Place:
 
     def notebook(self, *, solved: bool = False) -> Notebook:
         """The assignment as it is handed out, or solved."""
-        folder = self.course.solution if solved else self.course.release
-        return json.loads((folder / NAME / f"{NAME}.ipynb").read_text())
+        return solved_code(self.course) if solved else handed_out(self.course)
 
     def hand_in(self, student: str, notebook: Notebook, assignment: str = NAME) -> None:
         """Put a notebook where the grader looks for it."""
         folder = self.course.submitted / student / assignment
         folder.mkdir(parents=True, exist_ok=True)
         (folder / f"{assignment}.ipynb").write_text(json.dumps(notebook))
+
+
+def handed_out(course: Course, assignment: str = NAME) -> Notebook:
+    """An assignment as students get it."""
+    return _read(course.release, assignment)
+
+
+def solved_code(course: Course, assignment: str = NAME) -> Notebook:
+    """An assignment with all code right and no text, which would wait for a person's mark."""
+    right = {grade_id(c): c["source"] for c in _read(course.solution, assignment)["cells"]}
+    notebook = handed_out(course, assignment)
+    for cell in notebook["cells"]:
+        if kind(cell) == "answer":
+            cell["source"] = right[grade_id(cell)]
+    return notebook
+
+
+def full_marks(course: Course) -> tuple[float, float]:
+    """What right code earns, and what there is to earn with the text that a person marks."""
+    cells = handed_out(course)["cells"]
+    code, text = (
+        sum(about(c)["points"] for c in cells if kind(c) == which) for which in ("check", "why")
+    )
+    return float(code), float(code + text)
+
+
+def _read(folder: Path, assignment: str) -> Notebook:
+    return json.loads((folder / assignment / f"{assignment}.ipynb").read_text("utf-8"))
 
 
 def release_into(root: Path, assignment: str = NAME, seed: int = SEED) -> Course:
@@ -117,8 +145,8 @@ def _plant(course: Course) -> None:
     _write(root / "course_private" / "term.json", json.dumps({"seed": SEED, "canary": CANARY}))
     _write(root / "home" / ".ssh" / "id_ed25519", CANARY)
     _write(root / "home/.local/share/jupyter/runtime/kernel-1.json", CANARY)
-    solved = json.loads((course.solution / NAME / f"{NAME}.ipynb").read_text())
-    solved["cells"][0]["source"] += f"\n\n{CANARY}"
+    solved = solved_code(course)
+    solved["cells"][0]["source"] = [*solved["cells"][0]["source"], f"\n\n{CANARY}"]
     folder = course.submitted / VICTIM / NAME
     _write(folder / f"{NAME}.ipynb", json.dumps(solved))
     _write(folder / "submission_secret.txt", CANARY)
