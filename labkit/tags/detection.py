@@ -152,7 +152,7 @@ def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Ar
         OutOfRange: No square looks like that from anywhere.
     """
     lens, pixels = _intrinsics(camera), as_array(corners, (4, 2), "corners")
-    straight = np.ascontiguousarray(lens.straightened(pixels))
+    straight = np.array(lens.straightened(pixels))
     for nudge in (0.0, 1e-7):  # OpenCV divides by zero where the corners are an upright square
         straight[0] += nudge
         _, turns, places, _ = cv2.solvePnPGeneric(

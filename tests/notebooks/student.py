@@ -123,6 +123,7 @@ def run_kernel(name, parts, folder):
 
     shutil.copy(COURSE.release / name / desk.FILE, folder)
     notebook = fill(name, parts)
+    nbformat.write(notebook, folder / f"{name}.ipynb")  # which its last cell looks at
     notebook.cells.append(
         nbformat.v4.new_code_cell(
             "import resource as _r\nprint(_r.getrusage(_r.RUSAGE_SELF).ru_maxrss / 1024)"
