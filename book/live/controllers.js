@@ -15,8 +15,14 @@ export function nearness(J, threshold) {
   return 1 - (smallestSingularValue(J) / threshold) ** 2;
 }
 
+/** Joint speeds of the damped inverse, which lets a radian count as much as `lever` metres. */
+export function dampedSpeeds(J, V, lambda2, lever) {
+  const counts = [1, 1, 1, lever, lever, lever];
+  return apply(dampedInverse(J.map((row, i) => scale(counts[i], row)), lambda2), times(counts, V));
+}
+
 /** u = J^+ (V_d + Kp e + Kd (V_d - J dq)) + (I - J^+ J) k (q_posture - q). */
-export const workspaceVelocity = (model, { Kp, Kd, posture, pull, damping, threshold }) => (state, target) => {
+export const workspaceVelocity = (model, { Kp, Kd, posture, pull, damping, lever, threshold }) => (state, target) => {
   const { q, dq } = state;
   const J = model.tipJacobian(q);
   const e = model.poseError(target.pose, q);
@@ -25,7 +31,7 @@ export const workspaceVelocity = (model, { Kp, Kd, posture, pull, damping, thres
   const exact = dampedInverse(J, 0);
   const free = subtract(wish, apply(exact, apply(J, wish))); // what of the wish the tip does not feel
   const lambda2 = nearness(J, threshold) * damping;
-  return velocity(add(free, apply(lambda2 ? dampedInverse(J, lambda2) : exact, V)));
+  return velocity(add(free, lambda2 ? dampedSpeeds(J, V, lambda2, lever) : apply(exact, V)));
 };
 
 /** u = dq_d + Kp e + Kd de. */

@@ -1,15 +1,17 @@
 // "Where the impossible goes": the elbow is stretched, joint speeds grow, and damping turns them into path error.
-import { add, apply, dampedInverse, scale, subtract, length } from "./algebra.js";
+import { add, apply, scale, subtract, length } from "./algebra.js";
+import { dampedSpeeds } from "./controllers.js";
 import { ASKED, ERROR } from "./curves.js";
 import { inverseKinematics } from "./inverse.js";
 import { Model } from "./model.js";
-import { ROBOT } from "./numbers.js";
+import { CONTROLLERS, ROBOT } from "./numbers.js";
 import { Panel } from "./panel.js";
 import { predictBox } from "./predict.js";
 
 const ELBOW = 3; // e1
 const LIMIT = 1.5; // rad/s, of Baxter's quickest large joints
 const SPEED = 0.1; // of the tip, in [m/s]
+const LEVER = CONTROLLERS.ideal.workspaceVelocity.gains.lever;
 const model = new Model(ROBOT);
 const posed = (e1) => ROBOT.ready.map((x, i) => (i === ELBOW ? e1 : x));
 
@@ -22,7 +24,7 @@ function outwards(q) {
 /** Joint speeds for a tip speed of 10 cm/s outwards at an elbow angle, and what of that speed is lost, in [mm/s]. */
 export function atElbow(e1, lambda2) {
   const q = posed(e1), J = model.tipJacobian(q), V = [...scale(SPEED, outwards(q)), 0, 0, 0];
-  const dq = apply(dampedInverse(J, lambda2), V);
+  const dq = dampedSpeeds(J, V, lambda2, LEVER);
   return { quickest: Math.max(...dq.map(Math.abs)), lost: 1000 * length(subtract(V, apply(J, dq)).slice(0, 3)) };
 }
 
