@@ -294,9 +294,9 @@ lk.plotting.show(
 
 # %%
 def largest_acceleration(duration):
-    """Of the tip on the circle, in [m/s^2]."""
-    samples = [my_compose(ring, lk.Quintic(duration), t) for t in np.linspace(0.0, duration, 301)]
-    return max(np.linalg.norm(x.acceleration) for x in samples)
+    """Of a tip that follows such a circle exactly, in [m/s^2]."""
+    target = lk.Trajectory(lk.Circle(start, start + [0.0, -0.15, 0.0]), lk.Quintic(duration))
+    return max(np.linalg.norm(target(t).acceleration) for t in np.linspace(0.0, duration, 301))
 
 
 predict("twice_the_time", truth=largest_acceleration(12.0) / largest_acceleration(6.0))
