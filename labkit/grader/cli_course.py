@@ -198,9 +198,9 @@ def collect(
     named: str | None,
     at: str | None,
 ) -> int:
-    """Take downloads from Moodle, Canvas or the exchange, or files from anywhere.
+    """Take what students handed in, from anywhere.
 
-    The exchange is nbgrader's; give its inbound folder. Clones of GitHub Classroom, or any folder
+    Downloads are Moodle's, Canvas's or nbgrader's exchange; give its inbound folder. Clones of GitHub Classroom, or any folder
     or zip of files, need --named. Nothing that was handed in is lost: all of it is under attempts/.
 
     Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
