@@ -200,8 +200,9 @@ def collect(
 ) -> int:
     """Take what students handed in, from anywhere.
 
-    Downloads are Moodle's, Canvas's or nbgrader's exchange; give its inbound folder. Clones of GitHub Classroom, or any folder
-    or zip of files, need --named. Nothing that was handed in is lost: all of it is under attempts/.
+    Downloads are Moodle's, Canvas's or nbgrader's exchange; give its inbound folder. Clones of
+    GitHub Classroom, or any folder or zip of files, need --named. Nothing that was handed in is
+    lost: all of it is under attempts/.
 
     Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
     (named at the end), 2 if nothing could be done.
