@@ -198,11 +198,19 @@ def collect(
     named: str | None,
     at: str | None,
 ) -> int:
+<<<<<<< HEAD
     """Take downloads of a platform, or any folder of files.
 
     Platforms are Moodle, Canvas and nbgrader's exchange; of the exchange give the inbound folder.
     Clones of GitHub Classroom, or any folder or zip of files, need --named. Nothing that was handed
     in is lost: all of it is under attempts/.
+=======
+    """Take what students handed in, from anywhere.
+
+    Downloads are Moodle's, Canvas's or nbgrader's exchange; give its inbound folder. Clones of
+    GitHub Classroom, or any folder or zip of files, need --named. Nothing that was handed in is
+    lost: all of it is under attempts/.
+>>>>>>> fixg
 
     Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
     (named at the end), 2 if nothing could be done.
