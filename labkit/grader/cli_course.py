@@ -63,7 +63,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
         used = seed_for(course, name) if seed is None else seed
         print(release(course, name, used), flush=True)
         seeds.add(used)
-    print("tried: known mistakes, stand-ins, memorised public cases; more by: labkit report-card")
+    print("tried: known mistakes, stand-ins, public cases by heart; more by: labkit report-card")
     for warning in filter(None, map(public_warning, seeds)):
         print(warning)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
@@ -198,19 +198,11 @@ def collect(
     named: str | None,
     at: str | None,
 ) -> int:
-<<<<<<< HEAD
-    """Take downloads of a platform, or any folder of files.
-
-    Platforms are Moodle, Canvas and nbgrader's exchange; of the exchange give the inbound folder.
-    Clones of GitHub Classroom, or any folder or zip of files, need --named. Nothing that was handed
-    in is lost: all of it is under attempts/.
-=======
     """Take what students handed in, from anywhere.
 
     Downloads are Moodle's, Canvas's or nbgrader's exchange; give its inbound folder. Clones of
     GitHub Classroom, or any folder or zip of files, need --named. Nothing that was handed in is
     lost: all of it is under attempts/.
->>>>>>> fixg
 
     Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
     (named at the end), 2 if nothing could be done.
