@@ -55,8 +55,8 @@ def live():
         arm.close()
 
 
-def until(frames, found):
-    """Wait for a picture for which ``found`` is true; the first such."""
+def until(frames, found, tell=lambda: None):
+    """Wait for a picture for which ``found`` is true, telling meanwhile; the first such."""
     limit = time.monotonic() + 60.0  # a guard against hanging only
     seen = 0
     while time.monotonic() < limit:
@@ -64,6 +64,7 @@ def until(frames, found):
             seen += 1
             if found(frame):
                 return frame
+        tell()
         time.sleep(0.01)
     raise AssertionError(f"it never came; the last was {frames[-1:]}")
 
@@ -123,8 +124,8 @@ def test_the_force_ends_when_nothing_is_heard(live):
     """A hand whose page fell silent lets go, and the pictures go on."""
     session, frames = live({"springs": springy})
     session.tell({"kind": "go"})
-    push(session, [0.0, 10.0, 0.0])
-    pushed = until(frames, lambda f: f["force"] == [0.0, 10.0, 0.0])
+    force = [0.0, 10.0, 0.0]
+    pushed = until(frames, lambda f: f["force"] == force, tell=lambda: push(session, force))
     gone = until(frames, lambda f: f["t"] > pushed["t"] and f["force"] is None)
     assert gone["state"] == "running"
     assert FRESH <= 0.2
