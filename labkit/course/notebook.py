@@ -37,6 +37,8 @@ def read_cells(path: Path) -> list[dict[str, Any]]:
     Raises:
         LabkitError: It is not there, or is not a notebook.
     """
+    if path.exists() and not path.is_file():  # who opens a pipe waits for ever
+        raise LabkitError(f"{path} is a folder, a pipe or a device; give a notebook's file")
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
         return [
