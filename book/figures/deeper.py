@@ -50,7 +50,7 @@ def compensation() -> HTML:
     logs = identification.compared(tasks.line(), found, seed=SEED)
     off = {name: identification.error(log) for name, log in logs.items()}
     holds(off["compensated"] < off["plain"], "the compensation lowers the error")
-    numbers(off, ".2g")
+    numbers({"uncompensated": off["plain"], "compensated": off["compensated"]}, ".2g")
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, (name, log) in enumerate(logs.items()):
         e = 1e3 * np.linalg.norm(lk.metrics.tip_error(log)[:, :3], axis=1)
