@@ -15,7 +15,6 @@ from IPython.display import HTML
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import AXES, STYLES
-from labkit.replay.motion import JOINT_NAMES
 from solutions.study import campaign
 from solutions.study.campaign import BASELINE, FIVE
 
@@ -106,7 +105,7 @@ def everything(way: str, task: str) -> HTML:
     for ax, (label, values, target), limits in zip(
         axes, _panels(way, task), _limits(task), strict=True
     ):
-        names = AXES if values.shape[1] == 3 else JOINT_NAMES
+        names = AXES if values.shape[1] == 3 else lk.robot("left").joint_names
         for k, name in enumerate(names):
             if target is not None:
                 ax.plot(

@@ -7,7 +7,6 @@ import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
-from labkit.replay.motion import JOINT_NAMES
 
 from .embed import demo_html
 from .page import Question, figure, holds, numbers, picture, quiz, table
@@ -111,7 +110,7 @@ def gravity() -> HTML:
     rows = np.array(torque)
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, style in ((1, "-"), (3, "--"), (5, "-.")):
-        ax.plot(angles, rows[:, k], f"C{k}{style}", label=JOINT_NAMES[k])
+        ax.plot(angles, rows[:, k], f"C{k}{style}", label=lk.robot("left").joint_names[k])
     ax.set(xlabel="shoulder s1 [rad]", ylabel="g(q) [N m]")
     ax.legend(ncols=3)
     most = rows[np.abs(rows[:, 1]).argmax(), 1]

@@ -11,7 +11,6 @@ from IPython.display import HTML
 import labkit as lk
 from labkit import metrics
 from labkit.plotting import STYLES
-from labkit.replay.motion import JOINT_NAMES
 from solutions.study.joint_torque import AugmentedPD, ComputedTorque
 
 from .page import Question, figure, holds, number, numbers, quiz, replay, table, tracking
@@ -39,7 +38,7 @@ def responses() -> HTML:
         with lk.Arm("left", lk.IDEAL, q0=q0 - 0.1) as arm:
             log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)
         e = metrics.joint_error(log) / 0.1
-        for k, joint in enumerate(JOINT_NAMES):
+        for k, joint in enumerate(lk.robot("left").joint_names):
             ax.plot(log.t, e[:, k], f"C{k}{STYLES[k % 4]}", label=joint, linewidth=1.4)
         ax.set(xlabel="time [s]", title=name)
         spread[name] = float(np.ptp(e, axis=1).max())

@@ -145,9 +145,14 @@ def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Ar
         OutOfRange: No square looks like that from anywhere.
     """
     lens, pixels = _intrinsics(camera), as_array(corners, (4, 2), "corners")
-    _, turns, places, _ = cv2.solvePnPGeneric(
-        tag_corners(size), pixels, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
-    )
+    square = tag_corners(size)
+    for nudge in (0.0, 1e-7):  # OpenCV divides by zero where the corners are an upright square
+        seen = pixels + np.eye(4, 2) * nudge
+        _, turns, places, _ = cv2.solvePnPGeneric(
+            square, seen, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+        )
+        if np.isfinite(turns).all():
+            break
     if not turns:
         raise OutOfRange(
             f"no square has its corners at the pixels {pixels.tolist()}; are they four different "

@@ -47,8 +47,12 @@ def paper(
     share = (level[around[0]] != _OUTSIDE).astype(float)
     white = np.maximum(level[around[0]], 0.0)
     i, j = np.nonzero(edge)
-    inner = (np.arange(samples) + 0.5) / samples
-    du, dv = (x.ravel() for x in np.meshgrid(inner, inner))
+    # No two points in one row or column, so that an edge along the rows is placed as well as any.
+    first, second = (x.ravel() for x in np.indices((samples, samples)))
+    du, dv = (
+        (first + (second + 0.5) / samples) / samples,
+        (second + (first + 0.5) / samples) / samples,
+    )
     fine, _ = _levels(tag, to_tag, u[j][:, None] + du, v[i][:, None] + dv)
     on = fine != _OUTSIDE
     share[edge] = on.mean(axis=1)

@@ -131,7 +131,7 @@ def test_long_motions_are_thinned_until_they_fit():
 
 
 def test_an_arm_that_ran_away_is_shown_up_to_then():
-    """A damper with the wrong sign loses the arm; what it did before is a motion of finite numbers."""
+    """A damper with the wrong sign loses the arm; its motion up to then has finite numbers."""
 
     def away(state, target):
         return lk.JointTorque(10.0 * (target.position - state.q) + 50.0 * state.dq)

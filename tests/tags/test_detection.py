@@ -178,3 +178,15 @@ def test_what_cannot_be_used_is_refused_in_a_sentence(ask, error, says):
     with pytest.raises(error, match=says) as caught:
         ask(np.zeros((480, 640), np.uint8))
     assert isinstance(caught.value, LabkitError)
+
+
+def test_an_upright_square_has_a_pose_too():
+    """Corners without any tilt, on whole pixels, are where OpenCV's own formula divides by zero."""
+    lens = LENS
+    u, v, half = lens.cx, lens.cy, 22.0
+    corners = np.array(
+        [[u - half, v - half], [u + half, v - half], [u + half, v + half], [u - half, v + half]]
+    )
+    for T_cm in tag_poses(corners, lens, 0.1):
+        assert np.isfinite(T_cm).all()
+        np.testing.assert_allclose(T_cm[2, 3], lens.fx * 0.1 / 44.0, rtol=1e-4)
