@@ -131,7 +131,7 @@ class Real:
             ]
             t = as_number(t, "the time of its state")
         except (LabkitError, ValueError) as error:
-            what = f"the arm's answer at t = {self._now:.3f} s is not a state: {error}"
+            what = f"the arm's answer at t = {self._now:.3f} s cannot be used: {error}"
             raise ArmLost(f"{what}; {self._rest()}") from error
         if t != self._latest:
             self._latest, self._since = t, self._now

@@ -23,8 +23,10 @@ from .model import Model
 from .shapes import Array
 
 LOW, SLIP_UP, STICK, SLIP_DOWN, HIGH = range(1, 6)
-"""Where a joint stands: at its lower stop, given all there is upwards, at its target, given all
-there is downwards, at its upper stop."""
+"""Where a joint stands, from its lower stop to its upper one.
+
+Between the stops it is given all there is upwards, is at its target, or is given all there is
+downwards."""
 
 QUICK = 50.0
 """A joint that could not reach a stop at this speed, in [rad/s], will not meet it in this step."""

@@ -33,7 +33,7 @@ FACE = 0.02
 """Thickness of a wall or a table top, in [m]."""
 
 CREEP = 1e-4
-"""Speed up to which dry friction grows, in [m/s]: what is held by it creeps, slower than this."""
+"""Speed up to which dry friction grows, in [m/s]; what is held by it creeps, slower than this."""
 
 
 def contact_stiffness(thing: _Slab) -> float:

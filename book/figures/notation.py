@@ -29,10 +29,10 @@ class Symbol(NamedTuple):
 SYMBOLS = (
     Symbol("t", "t", "time", "", "s"),
     Symbol("s", "s", "place along a path, from 0 to 1"),
-    Symbol("q", "q", "joint angles, s0 s1 e0 e1 w0 w1 w2", "(7,)", "rad"),
-    Symbol("dq", r"\dot q", "joint speeds", "(7,)", "rad/s"),
-    Symbol("ddq", r"\ddot q", "joint accelerations", "(7,)", "rad/s^2"),
-    Symbol("tau", r"\tau", "motor torques", "(7,)", "N m"),
+    Symbol("q", "q", "joint angles; Baxter's are s0 s1 e0 e1 w0 w1 w2", "(n,)", "rad"),
+    Symbol("dq", r"\dot q", "joint speeds", "(n,)", "rad/s"),
+    Symbol("ddq", r"\ddot q", "joint accelerations", "(n,)", "rad/s^2"),
+    Symbol("tau", r"\tau", "motor torques", "(n,)", "N m"),
     Symbol("e", r"e = x_d - x", "error, target minus actual, always"),
     Symbol("T_wt", "T_{wt}", "pose of the tip in the world; p_w = T_wt p_t", "(4, 4)", ""),
     Symbol("T_wd", "T_{wd}", "desired pose of the tip in the world", "(4, 4)", ""),
@@ -40,10 +40,10 @@ SYMBOLS = (
     Symbol("R_wt", "R_{wt}", "orientation of the tip in the world", "(3, 3)", ""),
     Symbol("R_wd", "R_{wd}", "desired orientation of the tip in the world", "(3, 3)", ""),
     Symbol("V", "V = (v, \\omega)", "twist: linear part first, then angular", "(6,)", ""),
-    Symbol("J", "J(q)", "tip Jacobian in world axes, (v, w) rows", "(6, 7)", ""),
-    Symbol("M", "M(q)", "mass matrix", "(7, 7)", "kg m^2"),
-    Symbol("C", r"C(q, \dot q)", "Coriolis matrix", "(7, 7)", "kg m^2/s"),
-    Symbol("g", "g(q)", "torque that holds the arm against gravity", "(7,)", "N m"),
+    Symbol("J", "J(q)", "tip Jacobian in world axes, (v, w) rows", "(6, n)", ""),
+    Symbol("M", "M(q)", "mass matrix", "(n, n)", "kg m^2"),
+    Symbol("C", r"C(q, \dot q)", "Coriolis matrix", "(n, n)", "kg m^2/s"),
+    Symbol("g", "g(q)", "torque that holds the arm against gravity", "(n,)", "N m"),
     Symbol("Lambda", r"\Lambda(q)", "inertia felt at the tip", "(6, 6)", ""),
     Symbol("Kp", "K_p", "gain on the error"),
     Symbol("Kd", "K_d", "gain on the error's rate"),
@@ -51,7 +51,7 @@ SYMBOLS = (
 """In the order of the conventions page."""
 
 ERRORS = (
-    Symbol("e_q", "e_q = q_d - q", "joint error", "(7,)", "rad"),
+    Symbol("e_q", "e_q = q_d - q", "joint error", "(n,)", "rad"),
     Symbol("e_p", "e_p = p_d - p", "position error of the tip, world axes", "(3,)", "m"),
     Symbol(
         "e_o",

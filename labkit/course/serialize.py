@@ -81,7 +81,7 @@ _MADE_BY: dict[str, Callable[..., Any]] = {
     "Model": lambda side, plant: Model(side, plant),
     "Log": lambda side, **columns: Log(**columns, robot=robot(side)),
 }
-"""What makes them of these, where it is not their type: the course knows arms by Baxter's names."""
+"""What makes them of these, where it is not their type; the course knows arms by Baxter's names."""
 
 Kinds = Mapping[str, Any]
 """Types by their names."""

@@ -152,11 +152,11 @@ def tag_poses(corners: Any, camera: Camera | Intrinsics, size: float) -> list[Ar
         OutOfRange: No square looks like that from anywhere.
     """
     lens, pixels = _intrinsics(camera), as_array(corners, (4, 2), "corners")
-    straight = np.array(lens.straightened(pixels))
+    straight, square = np.array(lens.straightened(pixels)), tag_corners(size)
     for nudge in (0.0, 1e-7):  # OpenCV divides by zero where the corners are an upright square
-        straight[0] += nudge
+        seen = straight + np.eye(4, 2) * nudge
         _, turns, places, _ = cv2.solvePnPGeneric(
-            tag_corners(size), straight, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+            square, seen, lens.matrix, None, flags=cv2.SOLVEPNP_IPPE_SQUARE
         )
         if np.isfinite(turns).all():
             break
