@@ -209,7 +209,7 @@ def functions_from(file: Path, table: str) -> Functions:
     module = importlib.util.module_from_spec(spec)
     try:
         spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise LabkitError(f"{file} does not run: {type(error).__name__}: {error}") from error
     found: Functions | None = getattr(module, table, None)
     form = f"write {table} = {{question: [functions]}}"

@@ -21,6 +21,15 @@ LARGEST = 2_000_000
 _UNSAFE = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ufeff\ud800-\udfff]")
 """What a terminal obeys, what turns the direction of writing, what is no UTF-8."""
 _TRACEBACK = "Traceback (most recent call last)"
+_CHAINED = re.compile(r"exception (occurred|was the direct cause of the following exception):\s*$")
+_REFUSAL = re.compile(
+    r"/nbformat/|/dateutil/|in get_existing_timestamp|^\s*IsADirectoryError: "
+    r"|^\s*UnicodeEncodeError: .*surrogates|NbGraderException: |^\s*labkit\.[\w.]+: \w",
+    re.MULTILINE,
+)
+"""In nbgrader's traceback over one submission, after which it goes on, for it has no other way to
+say why: the file is no notebook, its time is no time, its name is no text, or nbgrader or labkit
+refuses it in a sentence."""
 _WARNING = re.compile(r"^\S+\.py:\d+: \w*Warning", re.MULTILINE)
 _VOID = frozenset(
     ["area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "wbr"]
@@ -48,9 +57,11 @@ def told(ended: Ended, codes: Sequence[int] = (0, 1)) -> Iterator[tuple[str, str
         if not lines[-1].startswith(f"{typed}: "):
             yield "", f"{typed}: exit code 2 without a sentence: {_last(ended.err)}"
     before, *raised = ended.text.split(_TRACEBACK)
+    blamed = ""
     for text in raised:
-        if ended.words[0] != "nbgrader" or not _is_refusal(before, text):
-            yield _blamed(before), f"{typed}: a traceback: {_raised(text)}"
+        blamed = blamed if _CHAINED.search(before) else _blamed(before)
+        if ended.words[0] != "nbgrader" or not (blamed and _REFUSAL.search(text)):
+            yield blamed, f"{typed}: a traceback: {_raised(text)}"
         before = text
     if ended.words[0] == "labkit" and (found := _WARNING.search(ended.text)):
         yield "", f"{typed}: a warning of Python's: {found.group()}"
@@ -63,15 +74,6 @@ def _blamed(before: str) -> str:
     """The line in which nbgrader says at whose work it was when it failed."""
     said = [x for x in before.split("\n")[-3:] if "There was an error processing" in x]
     return said[-1] if said else ""
-
-
-def _is_refusal(before: str, text: str) -> bool:
-    """Whether nbgrader so refuses one submission, and goes on: it has no other way to say why.
-
-    Where labkit takes part in it, it is a sentence of labkit's.
-    """
-    said = re.search(r"^\s*labkit\.[\w.]+: \w", text, re.MULTILINE)
-    return bool(_blamed(before)) and ("/labkit/" not in text or said is not None)
 
 
 def _last(text: bytes) -> str:

@@ -13,8 +13,8 @@ from labkit.course.layout import Course
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.release import release
 
-NAMES = Course(ROOT).names()
-CASES = [pytest.param(n, marks=() if n == "01_paths" else pytest.mark.soak) for n in NAMES]
+pytestmark = pytest.mark.soak
+CASES = Course(ROOT).names()
 
 BY_HEART = """
 def {name}(*args, **kwargs):

@@ -164,7 +164,10 @@ def expected(x, full):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("count", [6, pytest.param(60, marks=pytest.mark.soak)])
-@pytest.mark.parametrize("way", [moodle, canvas, exchange, github, loose])
+@pytest.mark.parametrize(
+    "way",
+    [moodle, exchange, *(pytest.param(x, marks=pytest.mark.soak) for x in (canvas, github, loose))],
+)
 def test_one_class_has_one_set_of_marks(released_once, tmp_path, capsys, way, count):
     """Handed in twice, some late, an older download last, namesakes, an extension, a mark by hand.
 

@@ -85,7 +85,9 @@ def _overflows(won: Won) -> bool:
     return not math.isfinite(max(numbers) - min(numbers))
 
 
-COMMANDS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]|^\[9/9\]", re.M)
+COMMANDS = re.compile(
+    r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069]|^\[9/9\] everybody", re.M
+)
 """What a terminal takes for more than text, or a reader for a line of the grader's."""
 
 WINS: dict[str, Callable[[Won], bool]] = {
