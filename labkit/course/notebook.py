@@ -223,10 +223,16 @@ def _asked(question: Question, stub: Cell) -> Iterator[dict[str, Any]]:
 
 
 def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]]:
-    """The three cells of a value; nbgrader has nothing to clear in its answer."""
+    """The three cells of a value; the students' copy has `BLANK` in place of the solved cell."""
     yield _cell("markdown", asked.brief(), "brief", {})
-    yield _cell("code", asked.cell(), "answer", _nbgrader(asked.name))
+    cell = _cell("code", asked.solved(), "answer", _nbgrader(asked.name, solution=True))
+    cell["metadata"][BLANK] = asked.cell()
+    yield cell
     yield _check(asked.name, asked.points)
+
+
+BLANK = "blank"
+"""In a source cell's metadata: what students get in its place, where a stub would be too much."""
 
 
 def _check(name: str, points: float) -> dict[str, Any]:

@@ -6,29 +6,21 @@ import ast
 import copy
 import inspect
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from ..errors import LabkitError
-from .identification import Identification
 from .notebook import Notebook, grade_id, kind
-from .predictions import Prediction
 from .problem import Problem
 from .source import names_defined
 
 
-def solution_notebook(
-    source: Notebook,
-    problems: Mapping[str, Problem],
-    predictions: Iterable[Prediction | Identification] = (),
-) -> Notebook:
+def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:
     """The solved notebook: the answers' own source in place of the stubs, model texts for whys."""
     notebook = copy.deepcopy(source)
-    foretold = {x.name: x.solved() for x in predictions}
     for cell in notebook.cells:
-        if kind(cell) == "answer":
-            name = grade_id(cell)
-            cell.source = foretold[name] if name in foretold else inlined(problems[name])
+        if kind(cell) == "answer" and grade_id(cell) in problems:
+            cell.source = inlined(problems[grade_id(cell)])
         elif kind(cell) == "why":
             cell.source = "\n".join(cell.source.splitlines()[1:-1])
     return notebook

@@ -14,7 +14,7 @@ from pathlib import Path
 import nbformat
 
 from ..course.layout import Course
-from ..course.notebook import manifest
+from ..course.notebook import BLANK, manifest
 from ..course.release import write
 from ..errors import LabkitError
 from .authoring import prepared
@@ -103,6 +103,7 @@ def generate(course: Course, name: str) -> None:
     source = nbformat.read(course.source / name / f"{name}.ipynb", as_version=4)
     for cell, original in zip(notebook.cells, source.cells, strict=True):
         cell["id"] = original["id"]
+        cell["source"] = cell["metadata"].pop(BLANK, cell["source"])
     notebook.metadata = source.metadata
     nbformat.write(notebook, path)
 

@@ -19,8 +19,12 @@ def _cell(name, source, **flags):
 
 
 def with_hand_marked(path, questions, predictions):
-    """What `source_notebook` makes, and at its end what a person marks: 2 points, and 4."""
+    """What `source_notebook` makes; in place of its why, at its end: 2 points by hand, and 4."""
     notebook = source_notebook(path, questions, predictions)
+    (why,) = (k for k, cell in enumerate(notebook.cells) if cell.metadata["lab"] == "why")
+    del notebook.cells[why - 1 : why + 1]
+    first = notebook.cells[0]
+    first.source = first.source.replace("24 points", "28 points")
     why = _cell(WHY, "Because the arm is short.", grade=True, solution=True, points=2)
     task = _cell(REPORT, f"Report below.\n\n{SCHEME}", task=True, locked=True, points=4)
     notebook.cells += [why, task]

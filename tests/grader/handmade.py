@@ -12,6 +12,8 @@ from pathlib import Path
 from labkit.grader.sandbox.limits import Limits
 
 ROOT = Path(__file__).parents[2]
+FULL = 22.0
+"""What the machine gives a right 01_paths; of its 24 points two are a why's."""
 QUICK = Limits(cell=2.0, call=1.0, question=20.0, wall=60.0)
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from attacks import CLASSES
-from handmade import QUICK, raw
+from handmade import FULL, QUICK, raw
 
 from labkit.course.messages import why
 from labkit.grader.grade import grade
@@ -57,4 +57,4 @@ def test_attacks_earn_nothing(kind, _blank, solved, released, bundle, sandbox):
         if os.geteuid() == 0 and processes_of(sandbox.uid):
             wrong.append((name, "left processes"))
     assert not wrong
-    assert grade(raw(solved), "honest", bundle, sandbox, QUICK).score == 20
+    assert grade(raw(solved), "honest", bundle, sandbox, QUICK).score == FULL

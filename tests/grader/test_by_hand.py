@@ -37,7 +37,7 @@ def authored(tmp_path_factory):
         f"  to be marked by hand: {WHY}, 2 points",
         f"  to be marked by hand: {REPORT}, 4 points",
     ]
-    assert made.points == 30
+    assert made.points == 28
     return Course(root)
 
 
@@ -138,13 +138,13 @@ def test_page_export_and_report_have_formgraders_mark(written, capsys):
     assert verb(written, capsys, "feedback")[0] == 0
     assert row(written, capsys, "ada")["score"] == "16.0"
     assert row(written, capsys, "bob")["score"] == "13.0"
-    assert "16 of 30 points." in page(written, "ada")
-    assert "13 of 30 points." in page(written, "bob")
+    assert "16 of 28 points." in page(written, "ada")
+    assert "13 of 28 points." in page(written, "bob")
     assert "1.5 by hand; 0.5 extra credit" in page(written, "ada")
     assert "4 by hand, instead of 2" in page(written, "bob")
     assert "Say *why*." in page(written, "ada") and "&lt;b&gt;eats" in page(written, "ada")
     report = verb(written, capsys, "class-report")[1]
-    assert "Mean 14.5, median 14.5 of 30 points; 13 to 16." in report
+    assert "Mean 14.5, median 14.5 of 28 points; 13 to 16." in report
 
 
 def test_another_answer_is_looked_at_again(written, capsys):

@@ -15,7 +15,7 @@ import nbformat
 import pytest
 from attacks import CLASSES
 from controls import CONTROLS, PLAIN, VICTIM, After
-from handmade import add, hand_in, nbgrader
+from handmade import FULL, add, hand_in, nbgrader
 from plain_nbgrader import pack_hidden
 
 from labkit.course.notebook import kind
@@ -169,5 +169,5 @@ def test_controls(graded):
     nbgraders, ours = graded
     assert not [kind for kind, one in CONTROLS.items() if not one.does(nbgraders, kind)]
     assert not [kind for kind, one in CONTROLS.items() if one.does(ours, kind)]
-    assert ours.scores == dict.fromkeys(CONTROLS, 0.0) | {VICTIM: 20.0}
+    assert ours.scores == dict.fromkeys(CONTROLS, 0.0) | {VICTIM: FULL}
     assert not ours.loot and not ours.calls and not ours.left

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from handmade import QUICK, add, cell_of, put, raw
+from handmade import FULL, QUICK, add, cell_of, put, raw
 
 from labkit.course import Call, Loop, question_data, read_question
 from labkit.course.bundle import Bundle
@@ -35,7 +35,7 @@ def marks(bundle, sandbox):
 
 def test_full_marks_and_none(marks, solved, blank):
     """The answers earn everything, the stubs nothing, and a stub is no error."""
-    assert marks(solved).score == 20
+    assert marks(solved).score == FULL
     result = marks(blank)
     assert result.score == 0
     assert {q.verdict.outcome for q in result.questions} == {"not attempted"}
@@ -64,7 +64,7 @@ def test_noise_costs_nothing(marks, solved):
     cell = cell_of(solved, "circle")
     add(solved, noise)
     cell["source"] = f"{noise}\n{''.join(cell['source'])}"
-    assert marks(solved).score == 20
+    assert marks(solved).score == FULL
 
 
 def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
@@ -76,7 +76,7 @@ def test_an_answer_may_lean_on_cells_of_any_kind(marks, solved):
     )
     add(solved, "def half(x):\n    return x / 2", at=2)
     add(solved, "def unit(x):\n    return x", at=len(solved["cells"]))
-    assert marks(solved).score == 20
+    assert marks(solved).score == FULL
     walk = next(c for c in solved["cells"] if "within_limits" in "".join(c["source"]))
     assert walk["metadata"]["lab"] == "walk"
     source = (
@@ -134,7 +134,7 @@ def test_one_question_lost(marks, solved, body, says):
     """Whatever happens to one question, it says so, and the others keep their points."""
     put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
     result = marks(solved)
-    assert result.score == 16
+    assert result.score == FULL - 4
     circle = next(q.verdict for q in result.questions if q.verdict.name == "circle")
     assert circle.outcome is Outcome.ERROR
     assert says in why(circle.tests[0])
@@ -143,7 +143,7 @@ def test_one_question_lost(marks, solved, body, says):
 def test_a_deadly_cell_is_left_out(marks, solved):
     """A cell that ends the process costs nothing else, and is named."""
     result = marks(add(solved, "import os\nos._exit(1)"))
-    assert result.score == 20
+    assert result.score == FULL
     assert [c["error"] for c in result.cells] == ["it ended the process"]
 
 
@@ -177,7 +177,7 @@ def test_big_pictures_are_welcome(bundle, sandbox, solved):
     walk = next(c for c in solved["cells"] if c["cell_type"] == "code")
     data = {"image/png": "A" * (30 * 2**20)}
     walk["outputs"] = [{"output_type": "display_data", "metadata": {}, "data": data}]
-    assert grade(raw(solved), "ada", bundle, sandbox, QUICK).score == 20
+    assert grade(raw(solved), "ada", bundle, sandbox, QUICK).score == FULL
 
 
 @pytest.mark.parametrize(
@@ -209,7 +209,7 @@ def test_rejected_in_one_sentence(data, says, bundle, sandbox):
 def test_odd_cells_harm_nobody(cell, marks, solved):
     """A cell of any form is passed over."""
     solved["cells"].insert(1, cell)
-    assert marks(solved).score == 20
+    assert marks(solved).score == FULL
 
 
 MAGICS = ("%%time", "%%capture", "%%capture out --no-stderr", "%%prun -q", "\n%%time\n%%capture")
@@ -221,7 +221,7 @@ def test_a_magic_that_runs_its_cell_costs_nothing(marks, solved, magic):
     for cell in solved["cells"]:
         if cell["metadata"]["lab"] == "answer":
             cell["source"] = f"{magic}\n{''.join(cell['source'])}"
-    assert marks(solved).score == 20
+    assert marks(solved).score == FULL
 
 
 @pytest.mark.parametrize("magic", ["%%timeit", "%%bash", "%%python", "%%writefile x.py"])
@@ -246,7 +246,7 @@ def test_a_mark_does_not_depend_on_what_cannot_be_shown(marks, solved):
             cell["metadata"]["nbgrader"]["solution"] = "\udfff"
     add(solved, "\ud83d = 1\n# \u2066 \u2028")
     result = marks(solved)
-    assert result.score == 20
+    assert result.score == FULL
     sources = [q.source for q in result.questions] + [own["source"] for own in result.own]
     assert all("x = '\\ud800'" in source for source in sources[:-1])
     for text in sources:

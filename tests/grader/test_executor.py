@@ -12,7 +12,7 @@ from concurrent.futures import CancelledError
 from pathlib import Path
 
 import pytest
-from handmade import QUICK, add, hand_in
+from handmade import FULL, QUICK, add, hand_in
 from processes import below, child, running, wait_until_gone
 
 from labkit.course.bundle import Bundle
@@ -104,7 +104,7 @@ def test_a_submission_that_takes_too_long_is_named(course, solved):
     with executor(2) as pool:
         late = pool.submit(grade_submission, task_of(course, "eve", solved, hurried))
         honest = pool.submit(grade_submission, task_of(course, "ada", solved))
-        assert honest.result(300.0).score == 20
+        assert honest.result(300.0).score == FULL
         with pytest.raises(LabkitError, match="took too long; look at the submission"):
             late.result(300.0)
 
@@ -204,7 +204,7 @@ def dying_bwrap(monkeypatch, tmp_path):
 def test_a_sandbox_killed_while_it_starts_is_made_again(dying_bwrap, here, task):
     """What the kernel ends at its start, for want of memory, costs a retry and no mark."""
     dying_bwrap(1)
-    assert here(task).score == 20
+    assert here(task).score == FULL
 
 
 def test_a_forkserver_killed_while_it_loads_is_made_again(here, task):
@@ -218,7 +218,7 @@ def test_a_forkserver_killed_while_it_loads_is_made_again(here, task):
 
     killer = threading.Thread(target=kill)
     killer.start()
-    assert here(task).score == 20
+    assert here(task).score == FULL
     killer.join()
 
 
@@ -227,7 +227,7 @@ def test_a_sandbox_killed_each_time_costs_one_submission(dying_bwrap, here, task
     dying_bwrap(2)
     with pytest.raises(LabkitError, match=r"lost 2 times \(it was killed while it started\)"):
         here(task)
-    assert here(task).score == 20
+    assert here(task).score == FULL
 
 
 def test_a_machine_without_rights_is_not_mistaken_for_one_without_memory(

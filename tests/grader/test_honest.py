@@ -50,7 +50,7 @@ def test_of_the_synthetic_class_only_cheats_are_suspected(released, bundle, blan
     suspected = set()
     for kind, make in kinds.KINDS.items():
         cells = json.loads(json.dumps(blank["cells"]))
-        draft = Unmarked("01_paths", problems, questions, np.random.default_rng(1), cells)
+        draft = Unmarked("01_paths", problems, (), questions, np.random.default_rng(1), cells)
         make(draft)
         found = read(draft.bytes())
         if "cells" in found:

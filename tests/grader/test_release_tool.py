@@ -82,9 +82,8 @@ def test_solutions_are_whole(name):
     """The solved notebook holds the answers' source, runs on its own, and no hidden cases."""
     problems = {p.name: p for p in COURSE.problems(name)}
     questions = {key: p.question(1) for key, p in problems.items()}
-    more = COURSE.predictions(name)
-    source = source_notebook(COURSE.notebook_source(name), questions, more)
-    solved = solution_notebook(source, problems, more)
+    source = source_notebook(COURSE.notebook_source(name), questions, COURSE.predictions(name))
+    solved = solution_notebook(source, problems)
     text = "\n".join(cell.source for cell in solved.cells)
     assert not [word for word in FORBIDDEN if word in text]
     for problem in problems.values():

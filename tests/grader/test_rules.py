@@ -123,7 +123,7 @@ def test_what_is_lost_by_when(minutes, lost):
 
 @pytest.mark.parametrize(("text", "says"), [
     ("[late]\npercent_per_dy = 3", "percent_per_dy"), ('zone = "Mars"', "Mars"),
-    ("due =\n", "line 1"), ("[assignments.99_no]", "no assignment"),
+    ("due =\n", "line 1"), ("[assignments.99_no]", "not an assignment"),
     ("[late]\nat_most = 200", "100"),
 ])  # fmt: skip
 def test_a_rule_that_nobody_can_follow_is_a_sentence(course, text, says):

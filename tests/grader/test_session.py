@@ -7,7 +7,7 @@ import shutil
 import time
 
 import pytest
-from handmade import QUICK, ROOT, add, cell_of, put, raw
+from handmade import FULL, QUICK, ROOT, add, cell_of, put, raw
 
 from labkit.course.bundle import Bundle
 from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
@@ -97,7 +97,7 @@ def test_an_answer_that_is_too_large_costs_its_question_only(body, words, solved
     """Long replies and replies of many values are refused before they are read."""
     put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
-    assert result.score == 16
+    assert result.score == FULL - 4
     assert words in says(result, "circle")
 
 
@@ -125,7 +125,7 @@ def test_an_endless_question_is_asked_no_more(body, solved, bundle, sandbox, ask
     """Whether it computes or waits, after a few lost calls no other one is put, and it is said."""
     put(solved, "circle", f"def circle(s, start, centre):\n    {body}")
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
-    assert result.score == 16
+    assert result.score == FULL - 4
     assert asked.count("circle") <= MAX_LOST
     assert "TimeoutError" in says(result, "circle")
 
@@ -140,7 +140,7 @@ def test_calls_that_are_lost_on_hidden_cases_count_too(solved, bundle, sandbox, 
     result = grade(raw(solved), "mallory", bundle, sandbox, limits)
     public = len(next(q for q in bundle.questions if q.name == "trapezoid").calls)
     assert public < asked.count("trapezoid") <= public + MAX_LOST < before
-    assert result.score < 20
+    assert result.score < FULL
 
 
 def test_the_limits_add_up():
@@ -165,7 +165,7 @@ def test_time_counts_for_a_question_whichever_call_it_is_spent_on(solved, bundle
     put(solved, "circle", "def circle(s, start, centre):\n    __import__('time').sleep(0.3)\n"
         "    return [0.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]")  # fmt: skip
     result = grade(raw(solved), "ada", bundle, sandbox, Limits(call=1.0, question=0.8))
-    assert result.score == 16
+    assert result.score == FULL - 4
     assert asked.count("circle") <= 3
 
 
@@ -175,7 +175,7 @@ def test_slow_cells_leave_time_for_the_answers(solved, bundle, sandbox):
         add(solved, "while True: pass")
     limits = Limits(cell=1.0, cells=1.5, wall=8.0)
     result = grade(raw(solved), "ada", bundle, sandbox, limits)
-    assert result.score == 20
+    assert result.score == FULL
     assert [cell["kind"] for cell in result.cells] == ["TimeUp"] * 12
 
 
@@ -253,7 +253,7 @@ def test_no_result_is_longer_than_two_megabytes(what, solved, bundle, sandbox):
     result = grade(raw(solved), "mallory", bundle, sandbox, QUICK)
     assert len(result.text().encode()) <= LARGEST
     assert not result.rejected
-    assert result.score == (0 if what == "sentences" else 20)
+    assert result.score == (0 if what == "sentences" else FULL)
     cut = any("more text than is kept" in note for note in result.notes)
     assert cut == (what in {"outputs", "own cells", "sources"})
     assert len(result.tricks) == 101 or what != "tricks"

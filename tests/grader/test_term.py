@@ -81,7 +81,9 @@ def test_feedback_page_shows_text_as_text(term):
     )
     found = Page(page(worst, said_by_hand(worst, circle=evil)))
     tags = {tag for tag, _ in found.tags}
-    assert not tags & {"script", "img", "iframe", "a", "object", "link"}
+    assert not tags & {"script", "img", "iframe", "object", "link"}
+    leads = {a["href"] for t, a in found.tags if t == "a"}
+    assert leads <= {f"#{q.verdict.name}" for q in worst.questions}
     policy = [a for t, a in found.tags if t == "meta" and "http-equiv" in a]
     assert "default-src 'none'" in policy[0]["content"]
     assert any(evil in words for words in found.words)
@@ -125,7 +127,7 @@ def test_tables(term, capsys):
         assert len({len(row) for row in table}) == 1
     assert main(["export", NAME, "--course", str(term.root)]) == 0
     head, full, *_ = capsys.readouterr().out.splitlines()
-    assert head.startswith("student,bang_bang,trapezoid")
+    assert head.startswith("student,bang_bang,peak_acceleration,trapezoid")
     assert full.endswith("24.0,")
 
 

@@ -19,6 +19,7 @@ from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
 from labkit.course.marking import mark
 from labkit.course.notebook import grade_id
+from labkit.course.predictions import Prediction
 from labkit.course.problem import Problem
 from labkit.course.question import Question
 from labkit.errors import LabkitError
@@ -37,6 +38,7 @@ class Draft:
     Attributes:
         assignment: Which.
         problems: By name.
+        foretold: The notebook's predictions.
         questions: The same as questions, hidden cases included.
         random: Where chance is needed.
         cells: The notebook's, as JSON data.
@@ -48,6 +50,7 @@ class Draft:
 
     assignment: str
     problems: dict[str, Problem]
+    foretold: Sequence[Prediction]
     questions: dict[str, Question]
     random: Random
     cells: list[dict[str, Any]]
@@ -77,6 +80,12 @@ class Draft:
         """Answer everything right."""
         for name, problem in self.problems.items():
             self.answer_with(name, problem.answer)
+        self.commit()
+
+    def commit(self) -> None:
+        """Commit to every prediction."""
+        for prediction in self.foretold:
+            self.answer(prediction.name, prediction.solved(), prediction.points)
 
     def anyhow(self) -> None:
         """Answer as people do: most right, some otherwise right, some wrong, some not at all."""
@@ -91,6 +100,8 @@ class Draft:
             elif luck < 0.6 and problem.variants:
                 choices = problem.variants
             self.answer_with(name, choices[int(self.random.integers(len(choices)))])
+        if self.random.uniform() < 0.8:
+            self.commit()
 
     def add(self, source: str) -> None:
         """Add a code cell near the start."""
@@ -127,6 +138,7 @@ def make_class(course: Course, assignment: str, seed: int, count: int = 40) -> d
     random = np.random.default_rng(seed)
     bundle = Bundle.of(course, assignment)
     problems = {problem.name: problem for problem in course.problems(assignment)}
+    foretold = [p for p in course.predictions(assignment) if isinstance(p, Prediction)]
     questions = {question.name: question for question in bundle.questions}
     released = course.release / assignment / f"{assignment}.ipynb"
     blank = json.loads(released.read_text(encoding="utf-8"))["cells"]
@@ -136,8 +148,8 @@ def make_class(course: Course, assignment: str, seed: int, count: int = 40) -> d
     expected: dict[str, Any] = {}
     for number, (kind, make) in zip(order, chosen, strict=True):
         student = f"student-{number + 1:03d}"
-        draft = Draft(assignment, problems, questions, random, copy.deepcopy(blank))
-        draft.expected = dict.fromkeys(problems, 0.0)
+        draft = Draft(assignment, problems, foretold, questions, random, copy.deepcopy(blank))
+        draft.expected = dict.fromkeys((*problems, *(p.name for p in foretold)), 0.0)
         make(draft)
         folder = course.submitted / student / assignment
         shutil.rmtree(folder, ignore_errors=True)

@@ -22,6 +22,7 @@ def _variant(number: int) -> Kind:
         for name, problem in draft.problems.items():
             choices = problem.variants or (problem.answer,)
             draft.answer_with(name, choices[number % len(choices)])
+        draft.commit()
 
     return make
 
