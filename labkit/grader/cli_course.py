@@ -132,7 +132,7 @@ def term(
             found = [one.folder for one in archives(course, older or 0.0)]
         for path in found:
             print(f"{'deleted' if yes else 'would go'}: {path.relative_to(course.root)}")
-        if not found:
+        if not found and student is None:
             print("there is nothing to forget")
         elif yes:
             _say(forget(course, found, student))
