@@ -116,7 +116,7 @@ def short(path):
     notebook = json.loads(path.read_text())
     kept = ("answer", "check")
     notebook["cells"] = [c for c in notebook["cells"] if kind(c) in kept]
-    return add(notebook, "from labkit.course import check", at=0)
+    return add(notebook, "from labkit.course import check, predict", at=0)
 
 
 def grade_with_nbgrader(course):
