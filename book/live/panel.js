@@ -11,6 +11,7 @@ const GHOST = 0x1f77d0;
 
 export class Panel extends Drawing {
   constructor(host, config, mujoco, viewer, robot, began) {
+    super();
     Object.assign(this, { host, config, mujoco, viewer, h: viewer.h, began, playing: true, alone: false });
     const plant = config.plant ?? "ideal";
     this.armdials = {};
