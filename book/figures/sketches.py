@@ -120,7 +120,8 @@ def loop() -> HTML:
     }  # fmt: skip
     for text, (x, y) in boxes.items():
         ax.text(x, y, text, ha="center", va="center", fontsize="small",
-                bbox={"boxstyle": "round,pad=0.45", "facecolor": "none", "edgecolor": FRAME})  # fmt: skip
+                bbox={"boxstyle": "round,pad=0.45", "facecolor": "none",
+                      "edgecolor": FRAME})  # fmt: skip
     for x in (1.0, 3.6):
         ax.plot(x, 1.0, "o", markersize=13, markerfacecolor="none", markeredgecolor=FRAME)
         ax.text(x, 1.0, "+" if x > 2 else "−", ha="center", va="center", fontsize="small")

@@ -69,6 +69,13 @@ def _durations(D: float) -> None:
         "0.075 s and the acceleration for 0.340 s", (0.075, 0.340), (1.875 * 0.01 / v, short), 1e-3
     )
     scaled = lk.Quintic(DURATION * 0.01 / D)
+    shows("= 0.131$ m", 0.131, lk.Quintic.PEAK_ACCELERATION * 0.04 / (1.875**2 * 0.5), 4e-3)
+    shows("= 0.760$ s; for 50 cm", 0.760, lk.Quintic.within(0.05, 0.2, 0.5).duration, 1e-3)
+    shows("= 4.69$ s", 4.69, lk.Quintic.within(0.5, 0.2, 0.5).duration, 1e-3)
+    shows(
+        "it takes $2\\sqrt{0.05/0.5} = 0.632$ s", 0.632, lk.Trapezoid(0.05, 0.2, 0.5).duration, 1e-3
+    )
+    shows("= 2.9$ s", 2.9, lk.Trapezoid(0.5, 0.2, 0.5).duration, 1e-6)
     asked = 0.01 * lk.Quintic.PEAK_ACCELERATION / scaled.duration**2
     shows("to 0.149 s for one centimetre", 0.149, scaled.duration, 4e-3)
     shows("asks the arm for 2.62 m/s², five times", (2.62, 5.0), (asked, asked / a), 0.05)
@@ -122,7 +129,7 @@ def model() -> None:
     shows("1.28 kg m² to 1.92 kg m²", (1.28, 1.92), (M[0, 0], far), 1e-6)
     shows("That is a factor of 1.5", 1.5, far / M[0, 0], 1e-6)
     shows("which is 23.5 N m", 23.5, g[0], 3e-3)
-    claim("so $g_2 = 0$", lambda g: 20.0 < g[0] and abs(g[1]) < 1e-6, g=g.tolist())
+    claim("so $g_2 = 0$", lambda g: g[0] > 20.0 and abs(g[1]) < 1e-6, g=g.tolist())
     shows("is $(-2.56,\\ 0.32)$ N m", (-2.56, 0.32), C @ dq, 1e-6)
     rate = (arm.mass_matrix(POSE + 1e-6 * dq) - arm.mass_matrix(POSE - 1e-6 * dq)) / 2e-6
     skew = rate - 2.0 * C
@@ -179,8 +186,8 @@ def velocity() -> None:
           (left[0.6], left[0.6] / left[0.0]), 0.03)  # fmt: skip
     _swing()
     crossing, lag = 4.95, lk.BAXTER.velocity_lag
-    shows("loop gain is one at $\\omega_c = 4.95$ rad/s", 5.0, crossing * hypot(1.0, lag * crossing),
-          2e-3)  # fmt: skip
+    shows("loop gain is one at $\\omega_c = 4.95$ rad/s", 5.0,
+          crossing * hypot(1.0, lag * crossing), 2e-3)  # fmt: skip
     phase = degrees(atan(lag * crossing)), degrees(crossing * DELAY)
     shows("which is 8.4°, the delay takes", 8.4, phase[0], 0.01)
     shows("which is 3.3°, and", (3.3, 78.3), (phase[1], 90.0 - sum(phase)), 0.02)
@@ -189,11 +196,22 @@ def velocity() -> None:
     free = np.eye(2) - np.linalg.pinv(J) @ J
     shows("joint to turn at 1 rad/s, $z = (1, 0)$", (0.2, -0.4), free[:, 0], 1e-6)
     _finite()
+    _wanted()
     cut, even = np.minimum((3.0, 0.9), 1.5), 0.5 * np.array((3.0, 0.9))
     shows("asked for 3.0 and 0.9 rad/s", (1.5, 0.9, 1.5, 0.45), (*cut, *even))
     shows("points 31° away from the x axis and the second 16.7°", (31.0, 16.7),
           [degrees(atan(y / x)) for x, y in (cut, even)], 4e-3)  # fmt: skip
     shows("another 5 ms old on average", (5.0, 2.5), (0.5e3 / lk.BAXTER.state_rate, 0.5e3 / 200.0))
+
+
+def _wanted() -> None:
+    """The exercise on damping: the lambda that keeps a limit, and what it costs elsewhere."""
+    least = 0.2 / (2.0 * 1.5)
+    ratios = np.geomspace(1e-3, 1.0, 999)
+    slow = max(0.2 * damped_inverse(np.array([[x]]), least**2)[0, 0] for x in ratios)
+    kept = 0.3 * damped_inverse(np.array([[0.3]]), least**2)[0, 0]
+    shows("gives $\\lambda \\ge 0.0667$", (0.0667, 1.5), (least, slow), 1e-3)
+    shows("= 4.7$ % is lost", 0.047, 1.0 - kept, 4e-3)
 
 
 def _swing() -> None:
