@@ -252,6 +252,11 @@ def elbow() -> HTML:
         damped=late[0],
         free=late[1],
     )
+    claim(
+        "has $\\sqrt{20}$ = 4.5 rad/s",
+        lambda pull: math.isclose(math.sqrt(pull), 4.5, rel_tol=0.01),
+        pull=law.pull,
+    )
     numbers({"elbow_late": late[1]}, ".2g")
     number("elbow_tip", moved[1], ".1g")
     ax.set(xlabel="time [s]", ylabel="e0 from its posture [rad]", ylim=(-0.24, 0.32))
@@ -284,6 +289,11 @@ def margins() -> None:
         lambda most, least: 0.0 < max(most) < 0.5 and least > 0.3,
         most=list(share.values()),
         least=least,
+    )
+    claim(
+        "four times as fast has lost the guarantee",
+        lambda most: 1.0 < 4.0 * most < 4.0,
+        most=share["square"],
     )
     random, worst = np.random.default_rng(1), 0.0
     for _ in range(10):
