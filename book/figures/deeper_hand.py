@@ -113,6 +113,18 @@ def freedom() -> None:
         lambda n: max(map(abs, (n[1], n[3], n[5]))) < 1e-6 and min(abs(n[0]), abs(n[4])) > 0.5,
         n=list(n),
     )
+    numbers({f"row_{joint}": J[5, k] for k, joint in ((0, "s0"), (2, "e0"), (4, "w0"), (6, "w2"))},
+            ".2f")  # fmt: skip
+    claim(
+        "Multiply each by its speed, and the sum is zero",
+        lambda row, speed: (
+            abs(sum(a * b for a, b in zip(row, speed, strict=True))) < 1e-9
+            and row[0] > 0.9
+            and row[3] < -0.9
+        ),
+        row=[float(J[5, k]) for k in (0, 2, 4, 6)],
+        speed=[float(n[k]) for k in (0, 2, 4, 6)],
+    )
     numbers({"sigma_least": sigma[-1], "sigma_most": sigma[0]}, ".2g")
     number("w_ready", float(np.prod(sigma)), ".2g")
 
