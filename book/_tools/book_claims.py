@@ -23,7 +23,11 @@ PAGES = (
     "index",
     "report",
     "plant",
-    *(f"chapters/{p.stem}" for p in (BOOK / "chapters").glob("*.md")),
+    *(
+        f"{folder}/{p.stem}"
+        for folder in ("chapters", "deeper")
+        for p in (BOOK / folder).glob("*.md")
+    ),
 )
 OUT = ROOT / "build/book_claims.json"
 _UNIT = r"mm|cm|m/s²?|m|N m|N/m|N|rad/s|rad|1/s|Hz|ms|s|kg|%|degrees|pixels|W|°|per second|per cent"
@@ -39,6 +43,7 @@ _CELL = re.compile(r"^```\{code-cell\}\n(?::[^\n]*\n)*(.*?)^```", re.M | re.S)
 def sentences(text: str) -> Iterator[str]:
     """The sentences of a page that show a number with a unit, or compare."""
     text = re.sub(r"\A---\n.*?\n---\n", "", text, flags=re.S)
+    text = re.sub(r"^\$\$[^\n]+\$\$[^\n]*$", "\n\n", text, flags=re.M)  # a formula of one line
     text = re.sub(r"^(```+|:::+|\$\$).*?^\1[^\n]*$", "\n\n", text, flags=re.M | re.S)
     for block in re.split(r"\n\s*\n|\n(?=[:|-] |\|)", text):
         plain = " ".join(block.split())

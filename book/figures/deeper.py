@@ -10,6 +10,7 @@ import labkit as lk
 from labkit.plotting import STYLES
 from solutions.study import identification, image_servoing, passivity, redundancy, tasks
 
+from .claims import claim
 from .page import figure, holds, numbers, table
 
 SEED = 4
@@ -21,6 +22,12 @@ def friction() -> HTML:
     found = identification.fit(identification.excite(seed=SEED), model)
     true_dry = lk.BAXTER.each("stiction", 7)
     off = np.abs(found.dry / true_dry - 1.0)
+    claim(
+        "viscous friction there comes out too large",
+        lambda found, true: all(x > true > 0.0 for x in found),
+        found=list(found.viscous[:4]),
+        true=float(lk.BAXTER.viscous[0]),
+    )
     holds(off[:4].max() < 0.25, "the dry friction of shoulder and elbow is found to a quarter")
     _, axes = plt.subplots(1, 2, figsize=(6.4, 3.0))
     for ax, joint in zip(axes, (1, 5), strict=True):
@@ -49,7 +56,12 @@ def compensation() -> HTML:
     found = identification.fit(identification.excite(seed=SEED), model)
     logs = identification.compared(tasks.line(), found, seed=SEED)
     off = {name: identification.error(log) for name, log in logs.items()}
-    holds(off["compensated"] < off["plain"], "the compensation lowers the error")
+    claim(
+        "the RMS error falls from",
+        lambda plain, compensated: 0.0 < compensated < 0.7 * plain,
+        plain=off["plain"],
+        compensated=off["compensated"],
+    )
     numbers({"uncompensated": off["plain"], "compensated": off["compensated"]}, ".2g")
     _, ax = plt.subplots(figsize=(6.0, 3.0))
     for k, (name, log) in enumerate(logs.items()):
@@ -77,8 +89,18 @@ def passive() -> HTML:
     exact = [passivity.least_damping(K, B, SAMPLING) - K * SAMPLING / 2 - abs(B)
              for K, B in ((300.0, 0.0), (300.0, 50.0), (2000.0, -20.0))]  # fmt: skip
     holds(np.abs(exact).max() < 1e-3, "the general condition is b > KT/2 + |B| here")
-    holds(np.allclose(alone, limit, rtol=0.05), "without a damper both limits are one")
-    holds(min(damped) > 2.0 * limit[0], "with a damper it is stable where it is not passive")
+    claim(
+        "without a wall the two limits are the same line",
+        lambda stable, passive: np.allclose(stable, passive, rtol=0.05) and min(passive) > 0.0,
+        stable=alone[::5],
+        passive=list(limit[::5]),
+    )
+    claim(
+        "the condition never holds in this figure",
+        lambda b, least: 0.0 < max(b) < 60.0 and least > 300.0,
+        b=[damping[0], damping[-1]],
+        least=min(damped),
+    )
     holds(passivity.is_stable(passivity.loop(MASS, 5.0, 300.0, 60.0, SAMPLING, 5e5)),
           "the lab's spring is stable at a wall of 500 kN/m")  # fmt: skip
     numbers({"need_300": 300.0 * SAMPLING / 2}, ".2g")
@@ -114,9 +136,11 @@ def servoing() -> HTML:
         rows.append([way, f"{1e3 * right.distance[-1]:.2f}", f"{ends[way]:.2g}"])
         t = image_servoing.DT * np.arange(len(wrong.distance))
         ax.semilogy(t, 1e3 * wrong.distance, f"C{k}{STYLES[k]}", label=way)
-    holds(ends["image"] < 0.5, "by the image it arrives")
-    holds(ends["pose, goal measured"] > 20.0, "by the pose in metres it does not")
-    holds(ends["pose, goal shown"] < 0.5, "by the pose of a goal that was shown it does")
+    claim(
+        "With a focal length that is believed 20 % too long",
+        lambda x: 0.0 < x[0] < 0.5 and x[1] > 20.0 and 0.0 < x[2] < 0.5,
+        x=[ends["image"], ends["pose, goal measured"], ends["pose, goal shown"]],
+    )
     numbers({"servo_image": ends["image"], "servo_pose": ends["pose, goal measured"]}, ".2g")
     ax.set(xlabel="time [s]", ylabel="from the goal [mm]", ylim=(1e-2, 300))
     ax.legend(fontsize="small")
@@ -139,7 +163,7 @@ def posture() -> HTML:
         ends[name] = away[-1]
         ax.plot(away, f"C{k}{STYLES[k]}o", label=name)
     free, held = ends.values()
-    holds(free > 5.0 * held, "without a posture the elbow drifts, with one it returns")
+    claim("After five laps", lambda free, held: free > 5.0 * held > 0.0, free=free, held=held)
     numbers({"drift_free": free, "drift_held": held}, ".2g")
     ax.set(xlabel="lap", ylabel="farthest joint [°]")
     ax.legend()
@@ -186,9 +210,14 @@ def robust() -> HTML:
         above.semilogy(angles, fast, f"C{k}{STYLES[k]}", label=f"λ² = {damping:g}")
         below.plot(angles, 1e3 * missed, f"C{k}{STYLES[k]}")
         peak[damping], miss[damping] = fast.max(), 1e3 * missed.max()
-    holds(peak[0.0] > 5.0 * peak[1e-2], "damping calms the joints")
-    holds(miss[0.0] < 1.0 < miss[1e-3] < miss[1e-2], "and the tip pays for it")
-    holds(peak[0.0] > 100.0, "without damping a joint would pass 100 rad/s")
+    claim(
+        "the fastest joint would have to pass 100 rad/s",
+        lambda peak, miss: (
+            peak[0] > 100.0 and peak[0] > 5.0 * peak[1] > 0.0 and 0.0 <= miss[0] < 1.0 < miss[1]
+        ),
+        peak=[peak[0.0], peak[1e-2]],
+        miss=[miss[0.0], miss[1e-2]],
+    )
     numbers({"peak_2": peak[1e-2], "miss_2": miss[1e-2]}, ".2g")
     above.axhline(1.5, color="#999999", linestyle=":")
     above.set_ylabel("fastest joint [rad/s]")
@@ -205,7 +234,7 @@ def robust() -> HTML:
 def ways() -> HTML:
     """What each method of visual servoing needs and what it tolerates."""
     return table(
-        ("Way", "compares", "needs", "wrong focal length"),
+        ("Method", "compares", "needs", "wrong focal length"),
         [
             (
                 "by the image",
@@ -221,5 +250,5 @@ def ways() -> HTML:
             ),
             ("by the pose, goal shown", "pose with pose", "a picture at the goal", "arrives"),
         ],
-        "Three ways to bring a camera to a place",
+        "Three methods of bringing a camera to a place",
     )

@@ -55,13 +55,14 @@ def interaction(points: Any, depth: float) -> Array:
     return rows.reshape(-1, 6)
 
 
-def approach(way: Way, focal_error: float = 0.0) -> Approach:
+def approach(way: Way, focal_error: float = 0.0, depth: float = 0.25) -> Approach:
     """Bring the hand's camera 25 cm before a tag, from aside and higher up.
 
     Args:
         way: By the image, or by the pose; the pose's goal measured in metres, or shown once, that
             is, computed from a picture at the goal with the same wrong lens.
         focal_error: By what share the robot's focal length is too long.
+        depth: Of the tag, as the method by the image believes it to be, in [m].
     """
     model = Model("left")
     lens = Intrinsics()
@@ -87,7 +88,7 @@ def approach(way: Way, focal_error: float = 0.0) -> Approach:
         pixels.append(seen)
         if way == "image":
             s, s_d = (_plane(p, told) for p in (seen, wanted))
-            V = GAIN * np.linalg.pinv(interaction(s, 0.25)) @ (s_d - s).ravel()
+            V = GAIN * np.linalg.pinv(interaction(s, depth)) @ (s_d - s).ravel()
         else:
             T_cm = tag_pose(seen, told, SIZE)
             T_cg = T_cm @ se3.inverse(goal)  # the goal camera in this one

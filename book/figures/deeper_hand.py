@@ -1,0 +1,163 @@
+"""Pages "Going deeper": what a student can check by hand, and the drawings for it."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from solutions.study import image_servoing
+
+from .claims import claim
+from .page import figure, number, numbers, table
+
+STIFFNESS, SLOW, SPEED, DEPTH = 300.0, 0.1, 0.1, 0.05
+"""Of the drawing: a spring [N/m], a very slow sampling [s], a hand [m/s], how deep it goes [m]."""
+
+
+def trip() -> HTML:
+    """A hand presses a sampled spring at constant speed and lets it out again."""
+    count = round(DEPTH / (SPEED * SLOW))
+    step = SPEED * SLOW
+    inwards = [(step * k, STIFFNESS * step * k) for k in range(count)]
+    outwards = [(DEPTH - step * k, STIFFNESS * (DEPTH - step * k)) for k in range(count)]
+    spent = sum(force * step for _, force in inwards)
+    returned = sum(force * step for _, force in outwards)
+    claim(
+        "returns more than it received",
+        lambda spent, returned, formula: (
+            0.0 < spent < returned and math.isclose(returned - spent, formula, rel_tol=1e-6)
+        ),
+        spent=spent,
+        returned=returned,
+        formula=STIFFNESS * SPEED * SLOW * DEPTH,
+    )
+    lab = 300.0 * 0.2 * 0.005 * 0.05
+    numbers({"trip_mj": 1e3 * lab, "trip_stored": 1e3 * 0.5 * 300.0 * 0.05**2}, ".3g")
+    number("trip_need", lab / (2.0 * 0.2 * 0.05), ".2g")
+    _, ax = plt.subplots(figsize=(6.0, 3.2))
+    for k, (name, parts, way) in enumerate((("in", inwards, 1.0), ("out", outwards, -1.0))):
+        x = np.array([(a, a + way * step) for a, _ in parts]).ravel()
+        f = np.array([(force, force) for _, force in parts]).ravel()
+        ax.plot(1e3 * x, f, f"C{k}{'-' if k == 0 else '--'}", label=f"on the way {name}")
+    x = np.array((0.0, DEPTH))
+    ax.plot(1e3 * x, STIFFNESS * x, color="#999999", linestyle=":", label="a real spring")
+    ax.set(xlabel="compression [mm]", ylabel="force [N]", ylim=(0, None))
+    ax.legend()
+    return figure(
+        "A spring of 300 N/m made from samples 0.1 s apart, pressed by 50 mm and let out again at "
+        "0.1 m/s.",
+        "Two staircases around the straight line of a real spring: the one on the way in is below "
+        f"it, the one on the way out above. Work in {1e3 * spent:.3g} mJ, work out "
+        f"{1e3 * returned:.3g} mJ.",
+    )
+
+
+def viscous_tip() -> None:
+    """The damping that viscous friction in the joints is at the tip."""
+    model = lk.Model("left")
+    J = model.tip_jacobian(model.robot.ready)
+    b = lk.BAXTER.viscous[0]
+    tip = [b / float(J[k] @ J[k]) for k in range(3)]
+    numbers({"tip_viscous_x": tip[0], "tip_viscous_z": tip[2]}, ".2g")
+    claim(
+        "enough for the spring alone and not for a damper beside it",
+        lambda b: all(0.75 < x < 60.0 for x in b),
+        b=tip,
+    )
+
+
+def projections() -> HTML:
+    """What a torque at e0 does to the tip, projected in two manners."""
+    rows, most = [], []
+    for name, plant in (("without rotors", lk.IDEAL), ("with rotors", lk.BAXTER)):
+        model = lk.Model("left", plant)
+        q = model.robot.ready
+        J, M = model.tip_jacobian(q), model.mass_matrix(q)
+        Jbar = np.linalg.solve(M, J.T) @ np.array(model.operational_inertia(q))
+        tau = np.eye(7)[2]
+        found = [
+            float(np.linalg.norm((J @ np.linalg.solve(M, tau - J.T @ (G.T @ tau)))[:3]))
+            for G in (np.linalg.pinv(J), Jbar)
+        ]
+        left = float(np.linalg.solve(M, tau - J.T @ (Jbar.T @ tau))[2])
+        rows.append((name, f"{found[0]:.2g}", f"{found[1]:.1e}", f"{left:.2g}"))
+        most.append(found)
+        key = name.split()[0]
+        numbers({f"pinv_{key}": found[0], f"elbow_{key}": left}, ".2g")
+    claim(
+        "The pseudo-inverse of the Jacobian is the wrong one here",
+        lambda wrong, right: min(wrong) > 0.1 and max(map(abs, right)) < 1e-9,
+        wrong=[x[0] for x in most],
+        right=[x[1] for x in most],
+    )
+    return table(
+        ("Arm", "tip, with J⁺ [m/s²]", "tip, with J̄ [m/s²]", "e0, with J̄ [rad/s²]"),
+        rows,
+        "Acceleration due to a torque of 1 N m at e0, after the projection",
+    )
+
+
+def freedom() -> None:
+    """The direction of the seventh freedom at the ready pose, and its manipulability."""
+    model = lk.Model("left")
+    J = model.tip_jacobian(model.robot.ready)
+    _, sigma, axes = np.linalg.svd(J)
+    n = axes[6] / axes[6][2]
+    numbers({"free_s0": -n[0], "free_w0": -n[4], "free_w2": n[6]}, ".2g")
+    claim(
+        "s1, e1 and w1 do not take part",
+        lambda n: max(map(abs, (n[1], n[3], n[5]))) < 1e-6 and min(abs(n[0]), abs(n[4])) > 0.5,
+        n=list(n),
+    )
+    numbers({f"row_{joint}": J[5, k] for k, joint in ((0, "s0"), (2, "e0"), (4, "w0"), (6, "w2"))},
+            ".2f")  # fmt: skip
+    claim(
+        "Multiply each by its speed, and the sum is zero",
+        lambda row, speed: (
+            abs(sum(a * b for a, b in zip(row, speed, strict=True))) < 1e-9
+            and row[0] > 0.9
+            and row[3] < -0.9
+        ),
+        row=[float(J[5, k]) for k in (0, 2, 4, 6)],
+        speed=[float(n[k]) for k in (0, 2, 4, 6)],
+    )
+    numbers({"sigma_least": sigma[-1], "sigma_most": sigma[0]}, ".2g")
+    number("w_ready", float(np.prod(sigma)), ".2g")
+
+
+def two_speeds() -> None:
+    """Friction from two instants: two equations with two unknowns."""
+    y = {v: 0.7 * v + 1.0 for v in (0.1, 0.3)}
+    viscous = (y[0.3] - y[0.1]) / 0.2
+    claim(
+        "1.07 N m at 0.1 rad/s and 1.21 N m at 0.3 rad/s",
+        lambda y: math.isclose(y[0], 1.07) and math.isclose(y[1], 1.21),
+        y=list(y.values()),
+    )
+    claim(
+        "the slope is 0.7 N m s/rad and what is left at zero speed is 1 N m",
+        lambda b, f: math.isclose(b, lk.BAXTER.viscous[0]) and math.isclose(f, 1.0),
+        b=viscous,
+        f=y[0.1] - 0.1 * viscous,
+    )
+
+
+def lens_by_hand() -> None:
+    """Where the camera stops whose depth is wrong by a fifth, and what a wrong depth costs."""
+    away = math.hypot(0.12, 0.22)
+    number("lens_away", 1e3 * away, ".3g")
+    number("lens_short", 1e3 * (away - away / 1.2), ".2g")
+    rate = {}
+    for share in (0.5, 1.0, 2.0):
+        d = image_servoing.approach("image", depth=0.25 * share).distance
+        rate[share] = float(-math.log(d[60] / d[20]) / (40 * image_servoing.DT))
+    numbers({"rate_half": rate[0.5], "rate_true": rate[1.0], "rate_double": rate[2.0]}, ".2g")
+    claim(
+        "It arrives in all three cases",
+        lambda r: 1.0 < r[0] < r[1] < r[2] < 4.0,
+        r=list(rate.values()),
+    )

@@ -1,0 +1,347 @@
+"""Chapter "Impedance": its drawings, its sums by hand, the elbow, and what passivity takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+from matplotlib.axes import Axes
+from scipy.linalg import eigh
+from scipy.optimize import fsolve
+
+import labkit as lk
+from labkit import metrics, se3
+from labkit.plotting import STYLES
+from labkit.scene import contact_stiffness
+from labkit.shapes import Array
+from solutions.study import experiments, tasks
+from solutions.study.gains import TIP_SPRING
+from solutions.study.workspace_impedance import WorkspaceImpedance
+
+from .claims import claim
+from .impedance import ROTORS
+from .page import figure, number, numbers, table
+
+JOINT_SPRINGS = np.array((200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0))
+"""Of the joint impedance controller on the ideal arm, in [N m/rad]."""
+
+
+def _coil(a: Array, b: Array, turns: int = 7, wide: float = 0.06) -> Array:
+    """A zigzag from a to b, shape (k, 2)."""
+    along = (b - a) / np.linalg.norm(b - a)
+    s = np.linspace(0.15, 0.85, 2 * turns)
+    side = np.outer(wide * (-1.0) ** np.arange(2 * turns), (-along[1], along[0]))
+    return np.vstack([a, a + np.outer(s, b - a) + side, b])
+
+
+def _push(ax: Axes, at: tuple[float, float], far: tuple[float, float], words: str) -> None:
+    ax.annotate("", at, far, arrowprops={"arrowstyle": "-|>", "color": "C2", "lw": 1.8})
+    ax.text(*far, words, ha="right", va="center", fontsize="small", color="C2")
+
+
+def drawing() -> HTML:
+    """A mass on a rail and the tip of an arm, each on a spring that a motor makes."""
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 2.9))
+    left.plot((0.0, 3.0), (0.0, 0.0), color="#57606a")
+    left.add_patch(plt.Rectangle((0.9, 0.05), 0.7, 0.5, fill=False, edgecolor="C1", lw=1.6))
+    left.text(1.25, 0.3, "m", ha="center", va="center")
+    left.plot(*_coil(np.array((1.6, 0.42)), np.array((2.7, 0.42))).T, "C0-", lw=1.4)
+    left.plot((1.6, 2.05), (0.16, 0.16), "C3-", lw=1.4)
+    left.plot((2.3, 2.05, 2.05, 2.3), (0.23, 0.23, 0.09, 0.09), "C3-", lw=1.4)
+    left.plot((2.18, 2.7), (0.16, 0.16), "C3-", lw=1.4)
+    left.plot((2.7, 2.7), (0.0, 0.6), color="#57606a", lw=1.4)
+    left.text(2.15, 0.62, "spring k, damper b:\nmade by the motor", ha="center", fontsize="small")
+    left.text(2.7, -0.18, "target", ha="center", fontsize="small")
+    _push(left, (0.88, 0.3), (0.3, 0.3), "push")
+    left.set(xlim=(-0.3, 3.2), ylim=(-0.4, 1.2), title="One mass on a rail")
+    points = np.array(((0.0, 0.0), (0.0, 0.45), (0.7, 1.0), (1.35, 0.55), (1.6, 0.55)))
+    right.plot(*points.T, color="C1", marker="o", lw=3.0, markersize=6)
+    right.plot(*_coil(points[-1], np.array((2.35, 0.75)), wide=0.05).T, "C0-", lw=1.4)
+    right.plot(2.35, 0.75, "C2x")
+    right.text(2.35, 0.88, "target", ha="center", fontsize="small")
+    right.text(1.05, 0.98, "joints make torques\nJᵀF + C q̇ + g", fontsize="small")
+    _push(right, (1.62, 0.5), (1.3, 0.05), "push")
+    right.set(xlim=(-0.3, 2.9), ylim=(-0.3, 1.5), title="The tip of an arm")
+    for ax in (left, right):
+        ax.set_aspect("equal")
+        ax.axis("off")
+    return figure(
+        "The spring and the damper are not there: the motors make them. The push is not measured.",
+        "Left: a block of mass m on a rail, tied to a target by a spring and a damper and pushed "
+        "from the left. Right: an arm in outline whose tip is tied to its target by a spring and "
+        "is pushed from below; its joints make the torques of the law.",
+    )
+
+
+def planar() -> None:
+    """The two-joint arm of the sums by hand."""
+    J, M = np.array(((-0.5, -0.5), (0.5, 0.0))), np.diag((1.0, 0.25))
+    mobility = J @ np.linalg.solve(M, J.T)
+    L = np.linalg.inv(mobility)
+    claim(
+        "1.25 and 0.25 on the diagonal and -0.25 beside it",
+        lambda x: np.allclose(x, (1.25, 0.25, -0.25)),
+        x=[mobility[0, 0], mobility[1, 1], mobility[0, 1]],
+    )
+    claim(
+        "1 kg along $x$, 5 kg along $y$ and 1 kg beside them",
+        lambda x: np.allclose(x, (1.0, 5.0, 1.0)),
+        x=[L[0, 0], L[1, 1], L[0, 1]],
+    )
+    claim(
+        "feels 4 kg along $y$ if it may slip sideways",
+        lambda free, guided: math.isclose(free, 4.0) and math.isclose(guided, 5.0),
+        free=1.0 / mobility[1, 1],
+        guided=L[1, 1],
+    )
+    values, axes = np.linalg.eigh(L)
+    D = 20.0 * (axes * np.sqrt(values)) @ axes.T
+    numbers({"planar_dx": D[0, 0], "planar_dy": D[1, 1], "planar_dxy": D[0, 1]}, ".3g")
+
+
+def one_mass_by_hand() -> None:
+    """The peak of the mass that swings, by the formula for the overshoot."""
+    z = 0.2
+    peak = 50.0 * (1.0 + math.exp(-math.pi * z / math.sqrt(1.0 - z**2)))
+    number("peak_02", peak, ".2g")
+    claim(
+        "overshoots by 53 %",
+        lambda share: math.isclose(share, 0.527, rel_tol=0.01),
+        share=peak / 50.0 - 1.0,
+    )
+
+
+def felt_inertia() -> HTML:
+    """The inertia at Baxter's tip, in the upright plane, for a free and for a guided hand."""
+    model = lk.Model("left", lk.IDEAL)
+    q = np.array(model.robot.ready)
+    L = np.array(model.operational_inertia(q))
+    mobility = np.linalg.inv(L)
+    angle = np.linspace(0.0, 2.0 * np.pi, 361)
+    u = np.stack([np.cos(angle), 0.0 * angle, np.sin(angle)], axis=1)
+    free = 1.0 / np.einsum("ki,ij,kj->k", u, mobility[:3, :3], u)
+    guided = np.einsum("ki,ij,kj->k", u, L[:3, :3], u)
+    _, ax = plt.subplots(figsize=(6.0, 3.6))
+    ax.plot(*(guided[:, None] * u)[:, [0, 2]].T, "C1--", label="all other directions held")
+    ax.plot(*(free[:, None] * u)[:, [0, 2]].T, "C0-", label="free to give way")
+    ax.set_aspect("equal")
+    ax.set(xlabel="inertia felt along x [kg]", ylabel="along z, upwards [kg]")
+    ax.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    numbers({"lambda_x": L[0, 0], "lambda_z": L[2, 2], "lambda_xz": L[0, 2]}, ".2g")
+    numbers({"felt_x": 1.0 / mobility[0, 0], "felt_z": 1.0 / mobility[2, 2]}, ".2g")
+    claim(
+        "one push meets less than a tenth of the inertia that another meets",
+        lambda x, z: 0.0 < x < 0.1 * z,
+        x=1.0 / mobility[0, 0],
+        z=1.0 / mobility[2, 2],
+    )
+    claim(
+        "twenty times as much",
+        lambda free, guided: 18.0 < guided / free < 22.0 and free > 0.0,
+        free=1.0 / mobility[0, 0],
+        guided=L[0, 0],
+    )
+    return figure(
+        "The inertia at the ready arm's tip by direction, in the upright plane of x and z: the "
+        "distance of the curve from the middle, in kg.",
+        f"Two closed curves. Free, the tip feels like {1 / mobility[0, 0]:.2g} kg "
+        f"along x and {1 / mobility[2, 2]:.2g} kg along z. With everything else held, "
+        f"{L[0, 0]:.2g} and {L[2, 2]:.2g} kg.",
+    )
+
+
+def wall_by_hand() -> None:
+    """What presses on the wall, from springs in series."""
+    model = lk.Model("left", lk.IDEAL)
+    mobility = np.linalg.inv(model.operational_inertia(model.robot.ready))
+    stiffness = 400.0 / float(mobility[0, 0])
+    contact = contact_stiffness(experiments.the_wall())
+    number("stiff_torque", stiffness, ".3g")
+    force = 0.03 / (1.0 / stiffness + 1.0 / contact)
+    number("hand_torque", force, ".2g")
+    found = experiments.wall(names=("joint torque",))[0]
+    claim(
+        "within a tenth of what the run shows",
+        lambda by_hand, run: 0.0 < abs(by_hand / run - 1.0) < 0.1 and run > 0.0,
+        by_hand=force,
+        run=float(-found.force_at_rest[0]),
+    )
+    hold = 0.03 / (1.0 / TIP_SPRING[0] + 1.0 / contact)
+    claim("8.26 N by the calculator", lambda f: math.isclose(f, 8.26, rel_tol=1e-3), f=hold)
+
+
+def joint_springs() -> HTML:
+    """Where the tip goes when joints with springs of their own are pushed at it."""
+    model = lk.Model("left", lk.IDEAL)
+    J = model.tip_jacobian(model.robot.ready)
+    moved = 1e4 * (J / JOINT_SPRINGS) @ J.T  # mm for 10 N
+    rows = [
+        (f"10 N along {axis}", *(f"{moved[i, k]:.0f}" for i in range(3)))
+        for k, axis in enumerate("xyz")
+    ]
+    q, start = np.array(model.robot.ready), np.array(model.robot.ready)
+    for force in np.linspace(1.0, 10.0, 10):
+        push = force * np.eye(6)[2]
+        q = fsolve(lambda q, f=push: JOINT_SPRINGS * (start - q) + model.tip_jacobian(q).T @ f, q)
+    rest = 1e3 * (model.pose(q) - model.pose(start))[:3, 3]
+    met = experiments.push((0.0, 0.0, 10.0), names=("joint impedance",))[0]
+    found = 1e3 * met.at_rest
+    numbers({"side_x": moved[0, 2], "side_z": moved[2, 2]}, ".2g")
+    numbers({"side_run_x": found[0], "side_run_z": found[2]}, ".2g")
+    claim(
+        "further to the side than up",
+        lambda side, up: side > up > 0.0,
+        side=float(found[0]),
+        up=float(found[2]),
+    )
+    claim(
+        "to a tenth of a millimetre",
+        lambda x: abs(x[0] - x[1]) < 0.1 and abs(x[2] - x[3]) < 0.1 and x[0] > x[2] > 0.0,
+        x=[rest[0], found[0], rest[2], found[2]],
+    )
+    return table(
+        ("Push", "along x [mm]", "along y [mm]", "along z [mm]"),
+        rows,
+        "Displacement of the tip under springs at the joints, by C = J K⁻¹ Jᵀ",
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Undamped:
+    """The impedance law without the damper of its posture."""
+
+    law: WorkspaceImpedance
+
+    def __call__(self, state: lk.State, target: lk.PoseSample) -> lk.JointTorque:
+        """The command, with the damper's torque taken out of it again."""
+        model = self.law.model
+        J, M = model.tip_jacobian(state.q), model.mass_matrix(state.q)
+        damper = -2.0 * np.sqrt(self.law.pull) * state.dq
+        L = np.linalg.inv(J @ np.linalg.solve(M, J.T))
+        out = M @ damper - J.T @ (L @ (J @ damper))
+        return lk.JointTorque(self.law(state, target).value - out)
+
+
+def elbow() -> HTML:
+    """The elbow begins beside its posture: with a damper it returns, without one it swings on."""
+    model = lk.Model("left", ROTORS)
+    ready = np.array(model.robot.ready)
+    start = np.array(ready)
+    for _ in range(40):  # turn the elbow, the hand held
+        J = model.tip_jacobian(start)
+        turn = np.eye(7)[2] - np.linalg.pinv(J) @ J[:, 2]
+        start += 0.005 * turn / turn[2] + np.linalg.pinv(J) @ model.pose_error(
+            model.pose(ready), start
+        )
+    law = WorkspaceImpedance(model, K=TIP_SPRING)
+    _, ax = plt.subplots(figsize=(6.0, 2.9))
+    late, moved = [], []
+    for k, (one, name) in enumerate(((law, "posture and damper"), (Undamped(law), "no damper"))):
+        with lk.Arm("left", ROTORS, q0=start) as arm:
+            log = lk.run(arm, lk.Hold(model.pose(ready), 6.0), one, rate=1000.0)
+        off = log.q[:, 2] - ready[2]
+        ax.plot(log.t, off, f"C{k}{STYLES[k]}", label=name)
+        late.append(float(np.abs(off[log.t > 4.0]).max()))
+        moved.append(1e3 * float(np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1).max()))
+    claim(
+        "Without the damper the elbow swings on",
+        lambda damped, free: free > 0.15 and 0.0 <= damped < 0.01 * free,
+        damped=late[0],
+        free=late[1],
+    )
+    claim(
+        "has $\\sqrt{20}$ = 4.5 rad/s",
+        lambda pull: math.isclose(pull, 4.5**2, rel_tol=0.02),
+        pull=law.pull,
+    )
+    numbers({"elbow_late": late[1]}, ".2g")
+    number("elbow_tip", moved[1], ".1g")
+    ax.set(xlabel="time [s]", ylabel="e0 from its posture [rad]", ylim=(-0.24, 0.32))
+    ax.legend(ncols=2, loc="upper right")
+    return figure(
+        "The elbow is let go 0.2 rad beside its posture; the hand is to stay where it is. No "
+        "friction.",
+        f"With a damper in the null space e0 returns within a second; without one it still swings "
+        f"by {late[1]:.2g} rad after four. The hand moves by {moved[1]:.1g} mm at most.",
+    )
+
+
+def margins() -> None:
+    """How much of the damper the changing inertia can eat on three paths, and what mu is."""
+    model = lk.Model("left", lk.BAXTER)
+    law = WorkspaceImpedance(model, K=TIP_SPRING)
+    share, least = {}, math.inf
+    for task in (tasks.line(), tasks.circle(), tasks.square()):
+        found = []
+        for t in np.linspace(0.01, task.joints.duration - 0.01, 60):
+            s = task.joints(float(t))
+            D = law._damper(np.array(model.operational_inertia(s.position)))
+            least = min(least, float(np.linalg.eigvalsh(D)[0]))
+            rate = _rate(model.operational_inertia, s.position, s.velocity)
+            found.append(float(eigh(0.5 * rate, D, eigvals_only=True)[-1]))
+        share[task.name] = max(found)
+    numbers({"eaten_circle": 100 * share["circle"], "eaten_square": 100 * share["square"]}, ".2g")
+    claim(
+        "outweighs it everywhere on the line, the circle and the square",
+        lambda most, least: 0.0 < max(most) < 0.5 and least > 0.3,
+        most=list(share.values()),
+        least=least,
+    )
+    claim(
+        "four times as fast has lost the guarantee",
+        lambda most: 1.0 < 4.0 * most < 4.0,
+        most=share["square"],
+    )
+    random, worst = np.random.default_rng(1), 0.0
+    for _ in range(10):
+        q = np.array(model.robot.ready) + random.uniform(-0.4, 0.4, 7)
+        dq = random.uniform(-1.0, 1.0, 7)
+        J, M = model.tip_jacobian(q), model.mass_matrix(q)
+        L = np.array(model.operational_inertia(q))
+        Jbar = np.linalg.solve(M, J.T) @ L
+        mu = Jbar.T @ model.coriolis(q, dq) @ Jbar - L @ _rate(model.tip_jacobian, q, dq) @ Jbar
+        S = _rate(model.operational_inertia, q, dq) - 2.0 * mu
+        worst = max(worst, float(np.abs(S + S.T).max()))
+    claim(
+        "is skew for this $\\mu$, as a check on ten random states confirms",
+        lambda worst: 0.0 <= worst < 1e-5,
+        worst=worst,
+    )
+
+
+def _rate(of: object, q: Array, dq: Array, h: float = 1e-6) -> Array:
+    """The time derivative of a matrix that depends on q, along dq."""
+    return (np.array(of(q + h * dq)) - np.array(of(q - h * dq))) / (2.0 * h)  # type: ignore[operator]
+
+
+def loops() -> None:
+    """Work round a closed loop of orientations, with unequal rotational stiffness."""
+    unequal, equal = np.diag((10.0, 20.0, 30.0)), 20.0 * np.eye(3)
+
+    def log_law(R: Array, K: Array) -> Array:
+        return np.asarray(K @ se3.rotation_log(R.T))
+
+    def vector_law(R: Array, K: Array) -> Array:
+        e = se3.rotation_log(R.T)
+        half = 0.5 * float(np.linalg.norm(e))
+        eps = e / (2.0 * half) * math.sin(half)
+        return np.asarray(2.0 * (math.cos(half) * np.eye(3) - se3.hat(eps)) @ K @ eps)
+
+    def work(law: object, K: Array, count: int = 1500) -> float:
+        s = 2.0 * np.pi * np.arange(2 * count + 1) / (2 * count)
+        R = [se3.rotation(np.array((0.5 * np.cos(x), 0.5 * np.sin(x), 0.6))) for x in s]
+        return -sum(
+            float(law(R[k + 1], K) @ se3.rotation_log(R[k + 2] @ R[k].T))  # type: ignore[operator]
+            for k in range(0, 2 * count, 2)
+        )
+
+    gained = work(log_law, unequal)
+    number("loop_work", gained, ".2g")
+    claim(
+        "and with the vector part of the quaternion it is zero",
+        lambda x: x[0] > 5.0 and max(abs(x[1]), abs(x[2])) < 1e-3 * x[0],
+        x=[gained, work(log_law, equal), work(vector_law, unequal)],
+    )

@@ -1,0 +1,224 @@
+"""Chapter "Torque control": its drawing, its sums by hand, and a weight that the law ignores."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+from matplotlib.axes import Axes
+from scipy.optimize import fsolve
+
+import labkit as lk
+from labkit import metrics
+from labkit.plotting import STYLES
+from solutions.study.joint_torque import ComputedTorque
+
+from .claims import claim
+from .page import figure, number, numbers
+from .torque import DAMPER, KP, REPORT_KD, REPORT_KP, SPRING, circle_run, radius
+
+WEIGHT = 0.5
+"""Of the thing in the hand, in [kg]."""
+
+
+def box(ax: Axes, x: float, y: float, words: str, width: float = 2.0, ink: str = "C1") -> None:
+    """A box of a diagram, with its middle at (x, y)."""
+    ax.add_patch(
+        plt.Rectangle((x - width / 2, y - 0.42), width, 0.84, fill=False, edgecolor=ink, lw=1.4)
+    )
+    ax.text(x, y, words, ha="center", va="center", fontsize="small")
+
+
+def arrow(ax: Axes, a: tuple[float, float], b: tuple[float, float], ink: str = "#57606a") -> None:
+    """An arrow of a diagram."""
+    ax.annotate("", b, a, arrowprops={"arrowstyle": "->", "color": ink, "lw": 1.2})
+
+
+def drawing() -> HTML:
+    """The two laws as diagrams: where the mass matrix is."""
+    _, axes = plt.subplots(2, 1, figsize=(6.4, 4.0))
+    rows = (
+        ("Computed torque: the gains are accelerations", "gains\nKp e + Kd ė", "× M(q)", True),
+        ("Augmented PD: the gains are springs and dampers", "q̈ of target\n× M(q)", "+", False),
+    )
+    for ax, (title, first, second, computed) in zip(axes, rows, strict=True):
+        ax.set(xlim=(0, 11.4), ylim=(-1.75, 1.0), title=title)
+        ax.axis("off")
+        box(ax, 1.1, 0.0, "target and\nits rates")
+        box(ax, 4.0, 0.0, first, 2.2, "C0" if computed else "C3")
+        box(ax, 6.5, 0.0, second, 1.2, "C3" if computed else "C0")
+        box(ax, 8.5, 0.0, "+ C q̇ + g" if computed else "+ C q̇ of\ntarget + g", 1.7)
+        box(ax, 10.5, 0.0, "arm", 1.2, "C5")
+        for a, b in ((2.1, 2.9), (5.1, 5.9), (7.1, 7.65), (9.35, 9.9)):
+            arrow(ax, (a, 0.0), (b, 0.0))
+        at = 4.0 if computed else 5.6
+        ax.plot((10.5, 10.5, at), (-0.42, -1.2, -1.2), color="#57606a", lw=1.2)
+        if computed:
+            ax.text(4.2, 0.62, "+ q̈ of target", fontsize="small")
+            arrow(ax, (4.0, -1.2), (4.0, -0.44))
+        else:
+            box(ax, 4.0, -1.2, "springs Kp e + Kd ė", 2.9, "C0")
+            arrow(ax, (5.45, -1.0), (6.4, -0.44))
+            arrow(ax, (5.8, -1.2), (5.47, -1.2))
+            ax.plot((1.1, 1.1), (-0.42, -1.2), color="#57606a", lw=1.2)
+            arrow(ax, (1.1, -1.2), (2.53, -1.2))
+        ax.text(7.4, -1.6, "measured q and q̇", fontsize="small")
+    return figure(
+        "The two laws: the mass matrix multiplies the gains in the first, not in the second.",
+        "Two block diagrams from left to right. Above: target, gains plus the target's "
+        "acceleration, mass matrix, Coriolis and gravity torques, arm. Below: the mass matrix "
+        "multiplies the target's acceleration alone, and springs and dampers are added after it. "
+        "In both, measured angles and speeds return to the gains.",
+    )
+
+
+def columns() -> None:
+    """One joint off its target: what computed torque asks of all the others."""
+    model = lk.Model("left", lk.IDEAL)
+    M = model.mass_matrix(model.robot.ready)
+    accelerate = KP * 0.1
+    numbers({"hand_m00": M[0, 0], "hand_m20": M[2, 0], "hand_m40": M[4, 0]}, ".3g")
+    tau = M[:, 0] * accelerate
+    numbers({"hand_t0": tau[0], "hand_t2": tau[2], "hand_t4": tau[4]}, ".3g")
+    claim(
+        "has 4 % of its error left after 0.5 s",
+        lambda left: 0.039 < left < 0.042,
+        left=(1.0 + math.sqrt(KP) * 0.5) * math.exp(-math.sqrt(KP) * 0.5),
+    )
+    claim(
+        "is the torque that keeps e0 still while s0 accelerates",
+        lambda t: t > 10.0,
+        t=float(tau[2]),
+    )
+
+
+def springs() -> None:
+    """The damping ratio and the frequency of one joint's spring under augmented PD."""
+    M = lk.Model("left", lk.BAXTER).mass_matrix(lk.robot("left").ready)
+    omega = [math.sqrt(SPRING[k] / M[k, k]) for k in (0, 5)]
+    zeta = [DAMPER[k] / (2.0 * math.sqrt(SPRING[k] * M[k, k])) for k in (0, 5)]
+    numbers({"omega_s0": omega[0], "omega_w1": omega[1]}, ".2g")
+    numbers({"zeta_s0": zeta[0], "zeta_w1": zeta[1]}, ".2g")
+    numbers({"inertia_s0": M[0, 0], "inertia_w1": M[5, 5]}, ".2g")
+
+
+def ticks() -> None:
+    """The bare wrist at 200 Hz by trace and determinant, and the conditions against eigenvalues."""
+    model = lk.Model("left", lk.IDEAL)
+    I = float(model.mass_matrix(lk.robot("left").neutral)[6, 6])
+    h = 1.0 / 200.0
+    a, c = REPORT_KP * h**2 / (2.0 * I), REPORT_KD * h / I
+    trace, det = 2.0 - a - c, 1.0 + a - c
+    numbers({"tick_a": a, "tick_c": c, "tick_trace": trace, "tick_det": det}, ".3g")
+    root = math.sqrt(trace**2 - 4.0 * det)
+    large = min(0.5 * (trace - root), 0.5 * (trace + root))
+    number("tick_root", large, ".3g")
+    claim(
+        "the same number as the largest eigenvalue in the figure",
+        lambda by_hand, drawn: math.isclose(-by_hand, drawn, rel_tol=1e-6),
+        by_hand=large,
+        drawn=radius(I, REPORT_KP, REPORT_KD, h),
+    )
+    random = np.random.default_rng(0)
+    tried = []
+    for _ in range(400):
+        kp, kd, inertia = random.uniform((1.0, 0.01, 0.001), (200.0, 5.0, 0.05))
+        said = kd * h / inertia < 2.0 and kp * h / 2.0 < kd
+        tried.append(said == (radius(inertia, kp, kd, h) < 1.0))
+    claim("together they are exact", lambda right: right == 400, right=float(sum(tried)))
+    step = np.array([[1.0, h], [0.0, 1.0]]) - np.outer((h * h / 2, h), (8.0, 1.5)) / 0.051
+    x = [np.array([0.0, 1.0])]
+    for _ in range(400):
+        x.append(step @ x[-1])
+    q = [float(one[0]) for one in x]
+    numbers({"bump_mrad": 1e3 * max(q), "bump_ticks": int(np.argmax(q))}, ".2g")
+    claim(
+        "is at its target at first and leaves it before it returns",
+        lambda first, most, last: first == 0.0 and most > 0.02 and 0.0 < last < 1e-3 * most,
+        first=q[0],
+        most=max(q),
+        last=q[-1],
+    )
+
+
+def lifted() -> None:
+    """Gravity added twice: the sum by hand, the balance solved, and the run."""
+    model = lk.Model("left", lk.BAXTER)
+    q0, K = np.array(model.robot.ready), np.array(SPRING)
+    g, J = model.gravity(q0), model.tip_jacobian(q0)
+    numbers({"lift_g1": -g[1], "lift_g3": -g[3], "lift_j1": -J[2, 1], "lift_j3": -J[2, 3]}, ".3g")
+    numbers({"lift_q1": -g[1] / K[1], "lift_q3": -g[3] / K[3]}, ".2g")
+    by_hand = 1e3 * float(J[2] @ (g / K))
+    number("lift_hand", by_hand, ".3g")
+    rest = fsolve(lambda q: K * (q0 - q) + model.gravity(q), q0)
+    number("lift_exact", 1e3 * float(model.pose(rest)[2, 3] - model.pose(q0)[2, 3]), ".3g")
+
+
+def wrists() -> None:
+    """Which joints friction holds beside their targets on the circle."""
+    off = 1e3 * np.sqrt((metrics.joint_error(circle_run()) ** 2).mean(axis=0))
+    numbers({"rms_s0": off[0], "rms_w1": off[5]}, ".2g")
+    model = lk.Model("left", lk.BAXTER)
+    M = model.mass_matrix(model.robot.ready)
+    alone, coupled = [], []
+    for q, dq in zip(circle_run().q[::7], circle_run().dq[::7], strict=True):
+        drag = np.array(lk.BAXTER.stiction) * np.sign(dq) + lk.BAXTER.viscous[0] * dq
+        inertia = model.mass_matrix(q)
+        alone.append(drag[5] / inertia[5, 5] / 225.0)
+        coupled.append(np.linalg.solve(inertia, drag)[5] / 225.0)
+    claim(
+        "because the other joints' friction reaches it through $M^{-1}$",
+        lambda x: 0.0 < abs(x[1] / x[2] - 1.0) < 0.2 and x[0] < 0.7 * x[2],
+        x=[*(1e3 * math.sqrt(np.square(one).mean()) for one in (alone, coupled)), float(off[5])],
+    )
+    numbers({"spring_s0": 225.0 * M[0, 0], "spring_w1": 225.0 * M[5, 5]}, ".2g")
+    number("held_w1", 1e3 * lk.BAXTER.stiction[5] / (225.0 * M[5, 5]), ".2g")
+    claim(
+        "the wrist errs by more than ten times as much as the shoulder",
+        lambda shoulder, wrist: wrist > 10.0 * shoulder > 0.0,
+        shoulder=float(off[0]),
+        wrist=float(off[5]),
+    )
+
+
+def payload() -> HTML:
+    """Half a kilogram in the hand that the law does not know of: where the hand comes to rest."""
+    model = lk.Model("left", lk.IDEAL)
+    q0 = model.robot.ready
+    J = model.tip_jacobian(q0)
+    mobility = J @ np.linalg.solve(model.mass_matrix(q0), J.T)
+    _, ax = plt.subplots(figsize=(6.0, 2.9))
+    force, ends, said = 9.81 * WEIGHT, [], []
+    for k, gain in enumerate((100.0, 400.0)):
+        law = ComputedTorque(model, gain, 2.0 * math.sqrt(gain))
+        with lk.Arm("left", replace(lk.IDEAL, name="with a weight", payload=WEIGHT), q0=q0) as arm:
+            log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)
+        sag = 1e3 * metrics.tip_error(log)[:, 2]
+        expected = 1e3 * force * mobility[2, 2] / gain
+        ax.plot(log.t, sag, f"C{k}{STYLES[k]}", label=f"Kp = {gain:g} 1/s²")
+        ax.axhline(expected, color="#999999", linestyle=":")
+        ends.append((float(sag[-1]), float(expected)))
+        said.append(f"{sag[-1]:.2g} mm for Kp = {gain:g}")
+    claim(
+        "the hand comes to rest where the sum says",
+        lambda found, expected: (
+            all(math.isclose(a, b, rel_tol=0.05) for a, b in zip(found, expected, strict=True))
+            and 1.0 < found[1] < 0.3 * found[0]
+        ),
+        found=[one[0] for one in ends],
+        expected=[one[1] for one in ends],
+    )
+    numbers({"sag_hand": ends[1][1], "sag_run": ends[1][0]}, ".3g")
+    numbers({"sag_soft": ends[0][0], "mobility_z": mobility[2, 2]}, ".3g")
+    number("sag_force", force, ".3g")
+    ax.set(xlabel="time [s]", ylabel="hand below its target [mm]", ylim=(0, None))
+    ax.legend()
+    return figure(
+        "Holding still under computed torque with 0.5 kg in the hand that the model does not have. "
+        "Dotted, the sum by hand.",
+        f"Two curves that rise and settle: {', '.join(said)}; the dotted lines of the sum by hand "
+        "are where they settle.",
+    )
