@@ -18,7 +18,7 @@ from solutions.study.grid import pick
 
 from .claims import claim
 from .comparison import found
-from .page import figure, number, numbers
+from .page import Question, figure, number, numbers, quiz
 from .tags_worked import by_hand
 
 PATHS = [task for task in campaign.TASKS if task != "tag"]
@@ -145,8 +145,8 @@ def two_units() -> HTML:
     pairs = [x for row in d.values() for x in row]
     kinds = (("the 15 pairs, pooled", interval("pairs", pairs, CLAIMS), "C5", -1.0),
              ("the 3 tasks", interval("tasks", means, CLAIMS), "C4", -2.0))  # fmt: skip
-    for _, x, ink, y in kinds:
-        ax.errorbar(x.mean, y, xerr=x.half_width, color=ink, capsize=6, fmt="s")
+    for _, mean, ink, height in kinds:
+        ax.errorbar(mean.mean, height, xerr=mean.half_width, color=ink, capsize=6, fmt="s")
     ax.axvline(0.0, color="#57606a", linewidth=0.9)
     ax.set_yticks([2.0, 1.0, 0.0, -1.0, -2.0], [*PATHS, *(name for name, *_ in kinds)])
     ax.set(xlabel="joint torque PD minus baseline [mm]", ylim=(-2.6, 2.6))
@@ -182,4 +182,38 @@ def pairing() -> HTML:
         f"On the left five falling lines between two clouds that overlap almost wholly, from "
         f"{min(SECOND)} to {max(FIRST)} mm. On the right five differences from 0.4 to 0.8 mm and "
         f"their mean {mean:.2g} ± {half:.2g} mm, well above zero.",
+    )
+
+
+def check_yourself() -> HTML:
+    """The quiz of the chapter."""
+    return quiz(
+        Question(
+            "Ten seeds on one circle give 0.8 ± 0.1 mm for the difference of two controllers. What "
+            "has been decided?",
+            [
+                ("The first tracks worse", "Perhaps only on circles; no other path was run."),
+                ("The first tracks worse on this circle", "Yes: seeds are looks at this circle."),
+                ("Nothing, ten are too few", "The interval knows that there were ten."),
+            ],
+            1,
+        ),
+        Question(
+            "The interval over the tasks is 1.1 ± 5 mm. What may you write?",
+            [
+                ("The controllers are equally good", "It could be 6 mm in favour of one of them."),
+                ("The first is worse by 1.1 mm", "That is the estimate without its uncertainty."),
+                ("Undecided; between −4 and 6 mm", "Yes: the interval is the result."),
+            ],
+            2,
+        ),
+        Question(
+            "You have time for 20 more runs. What narrows the interval over three tasks most?",
+            [
+                ("Twenty more seeds on the line", "They only sharpen the mean of one task."),
+                ("Four new paths with five seeds each", "Yes: seven units instead of three."),
+                ("Seven more seeds on each path", "The spread between the paths stays as it is."),
+            ],
+            1,
+        ),
     )

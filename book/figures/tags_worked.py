@@ -54,7 +54,7 @@ def frames() -> HTML:
         ax.annotate("", at[end], at[start], arrowprops=arrow)
         ax.text(*place, text, color=ink)
     ax.annotate("", at["t"], at["m"], arrowprops={"arrowstyle": "<->", "color": "C2", "lw": 1.5})
-    ax.text(3.35, 0.75, "20 cm, to be kept", color="C2", fontsize="small")
+    ax.text(3.05, 0.75, "20 cm, to be kept", color="C2", fontsize="small")
     names = {"w": (-0.35, -0.3, "w world"), "c": (6.65, 2.6, "c camera"), "m": (5.4, 0.15, "m tag"),
              "t": (4.05, 1.75, "t tip")}  # fmt: skip
     for x, y, text in names.values():
@@ -81,7 +81,7 @@ def timeline() -> HTML:
         )
         ax.plot([arrived, arrived + 100.0], [0.0, 0.0], color=f"C{k % 3}", linewidth=5,
                 solid_capstyle="butt")  # fmt: skip
-        ax.text(arrived + 50.0, -0.17, f"knows picture {k}", ha="center", va="top",
+        ax.text(arrived + 50.0, -0.17, f"picture {k}", ha="center", va="top",
                 fontsize="small")  # fmt: skip
     ax.annotate("", (360.0, 0.45), (200.0, 0.45), arrowprops={"arrowstyle": "|-|", "color": "C1"})
     ax.text(280.0, 0.53, "its age now: 160 ms", ha="center", color="C1", fontsize="small")
@@ -95,7 +95,7 @@ def timeline() -> HTML:
         "Ten pictures a second, each 100 ms under way. What is known grows older until the next "
         "picture arrives, from 100 to 200 ms.",
         "Four pictures are taken at 0, 100, 200 and 300 ms and arrive 100 ms later each. Between "
-        "two arrivals the newest picture ages from 100 to 200 ms; at 360 ms it is that of 200 ms, and "
+        "two arrivals the newest picture ages from 100 to 200 ms. At 360 ms it is that of 200 ms, "
         "160 ms old.",
     )
 
