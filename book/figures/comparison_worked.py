@@ -59,13 +59,13 @@ def five_pairs() -> None:
     by_hand("have a standard deviation of 0.158 mm", 0.158, d.std(ddof=1))
     by_hand("0.158/\\sqrt5$ = 0.0707 mm", 0.0707, d.std(ddof=1) / math.sqrt(5.0))
     by_hand("the half width is 0.20 mm", 0.20, half, 0.03)
-    spread = [np.std(x, ddof=1) for x in (FIRST, SECOND)]
+    spread = [float(np.std(x, ddof=1)) for x in (FIRST, SECOND)]
     claim(
         "scatter by 1.31 mm and 1.44 mm",
         lambda s: np.allclose(s, (1.31, 1.44), rtol=0.01),
-        s=list(map(float, spread)),
+        s=spread,
     )
-    apart = float(student.ppf(0.975, 8) * np.hypot(*spread) / math.sqrt(5.0))
+    apart = float(student.ppf(0.975, 8) * math.hypot(*spread) / math.sqrt(5.0))
     by_hand("an interval of ± 2.0 mm", 2.0, apart, 0.02)
     rho = float(np.corrcoef(FIRST, SECOND)[0, 1])
     by_hand("a correlation of 0.998", 0.998, rho, 0.002)
