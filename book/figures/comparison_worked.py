@@ -47,7 +47,7 @@ def one_number() -> None:
     """The error of a run, worked by hand."""
     e = np.array(((3.0, 4.0, 0.0), (0.0, 0.0, 1.0)))
     by_hand("the RMS error is 3.6 mm", 3.6, metrics.rms(e), 0.01)
-    by_hand("and 2.1 mm if", 2.1, float(np.sqrt(np.mean(e**2))), 0.02)
+    by_hand("the number would be 2.1 mm", 2.1, float(np.sqrt(np.mean(e**2))), 0.02)
     by_hand("the mean length is 3 mm", 3.0, float(np.mean(np.linalg.norm(e, axis=1))))
 
 

@@ -7,11 +7,12 @@ from pathlib import Path
 import nbformat
 from IPython.display import HTML
 
+from labkit.course.identification import Identification
 from labkit.course.layout import Course
 from labkit.course.outcomes import OUTCOMES
 
 from .front import NOTEBOOKS
-from .page import holds, table
+from .page import holds, number, table
 
 COURSE = Course(Path(__file__).parents[2])
 REPORT = "08_report"
@@ -46,10 +47,10 @@ TRACKS = {
 
 def planning() -> HTML:
     """Hours and points of each notebook, by whom they are marked, and what comes before."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     for name, hours in HOURS.items():
         machine, hand = _points(name)
-        rows.append((name, hours, f"{machine:g}", f"{hand:g}", NEEDS[name]))
+        rows.append((name, f"{hours}", f"{machine:g}", f"{hand:g}", NEEDS[name]))
     totals = [sum(float(row[k]) for row in rows) for k in (1, 2, 3)]
     rows.append(("together", *(f"{x:g}" for x in totals), ""))
     return table(
@@ -82,12 +83,25 @@ def syllabi() -> HTML:
     )  # fmt: skip
 
 
+def numbers_told() -> None:
+    """What marking costs, and which points are for what, for the prose."""
+    whole = sum(MINUTES.values())
+    number("marking_minutes", whole, ".0f")
+    number("marking_hours", whole * CLASS / 60.0, ".0f")
+    functions = sum(p.points for name in NOTEBOOKS for p in COURSE.problems(name))
+    asked = [one for name in NOTEBOOKS for one in COURSE.predictions(name)]
+    own_arm = sum(one.points for one in asked if isinstance(one, Identification))
+    everything = sum(sum(_points(name)) for name in NOTEBOOKS)
+    number("points_functions", functions, "g")
+    number("points_arm", own_arm, "g")
+    number("points_whys", everything - functions - own_arm, "g")
+
+
 def outcomes() -> HTML:
     """What a student can do afterwards, and where the evidence is."""
     evidence: dict[str, list[str]] = {name: [] for name in OUTCOMES}
     for notebook in NOTEBOOKS:
-        asked = (*COURSE.problems(notebook), *COURSE.predictions(notebook))
-        for outcome in {name for one in asked for name in one.outcomes}:
+        for outcome in {name for one in COURSE.problems(notebook) for name in one.outcomes}:
             evidence[outcome].append(notebook[:2])
     holds(all(evidence.values()), "every outcome has its evidence")
     rows = [(sentence, ", ".join(evidence[name])) for name, sentence in OUTCOMES.items()]

@@ -189,7 +189,7 @@ def steering() -> None:
     """How much gain an old picture allows, and how far behind a moving goal the hand stays."""
     delay = 0.1
     gain = 1.0 / (math.e * delay)
-    by_hand("which is 3.7 1/s here", 3.7, gain)
+    by_hand("with an age of 100 ms it is 3.7 1/s", 3.7, gain)
     by_hand("is unstable beyond 15.7 1/s", 15.7, math.pi / 2.0 / delay)
     by_hand("stays 27 mm behind", 27.0, 1e3 * (1.0 - _steered(gain, 0.1)[-1]), 0.02)
     claim(
