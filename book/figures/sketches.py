@@ -69,7 +69,7 @@ def _arc(s: np.ndarray, radius: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
 def two_links() -> HTML:
     """The arm of two rods at the pose that is worked by hand, and the columns of its Jacobian."""
     shoulder, elbow, hand = np.array(((0.0, 0.0), (ROD, 0.0), (ROD, ROD)))
-    _, axes = plt.subplots(1, 2, figsize=(6.4, 3.1))
+    _, axes = plt.subplots(1, 2, figsize=(6.4, 3.4))
     left, right = axes
     for ax in axes:
         ax.plot(*np.array((shoulder, elbow, hand)).T, color=FRAME, linewidth=4)
@@ -86,19 +86,19 @@ def two_links() -> HTML:
         left.text(*(hand + turned + shift), text, color=ink, fontsize="small")
     left.text(0.04, -0.09, "m₁ = 4 kg at the elbow", fontsize="small")
     left.text(0.44, 0.36, "m₂ = 2 kg", fontsize="small")
-    left.set(title="What each joint does to the hand")
+    left.text(-0.1, 0.86, "What each joint does to the hand")
     angle = np.linspace(0.0, 2.0 * np.pi, 121)
     J = np.array(((-ROD, -ROD), (ROD, 0.0)))
     ring = hand[:, None] + 0.45 * J @ np.array((np.cos(angle), np.sin(angle)))
-    right.plot(*ring, "C2-", label="speeds of the hand")
+    right.plot(*ring, "C2-")
     _arrow(right, hand, (0.18, 0.0), "C3")
     _arrow(right, hand, (0.0, 0.18), "C4")
     right.text(0.67, 0.385, "feels 2 kg", color="C3", fontsize="small")
     right.text(0.42, 0.6, "feels 6 kg", color="C4", fontsize="small")
-    right.legend(loc="lower left", bbox_to_anchor=(-0.05, -0.14), fontsize="small")
-    right.set(title="Directions are not alike")
+    right.text(0.03, 0.66, "speeds\nof the hand", color="C2", fontsize="small")
+    right.text(-0.1, 0.86, "Directions are not alike")
     for ax in axes:
-        ax.set(xlim=(-0.12, 0.92), ylim=(-0.16, 0.78), aspect="equal")
+        ax.set(xlim=(-0.12, 0.92), ylim=(-0.16, 0.94), aspect="equal")
         ax.axis("off")
     return figure(
         "The arm of two rods, level upper arm and upright forearm. Left: the two columns of its "
