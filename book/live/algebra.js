@@ -98,7 +98,8 @@ export function eigen(S) {
     let off = 0, on = 0;
     for (let i = 0; i < n; i++) for (let j = 0; j < n; j++) if (i === j) on += A[i][i] ** 2; else off += A[i][j] ** 2;
     if (off <= 1e-26 * on) break;
-    for (let p = 0; p < n; p++) for (let q = p + 1; q < n; q++) rotate(A, V, p, q);
+    const least = 1e-15 * Math.sqrt(on); // what is smaller does not count
+    for (let p = 0; p < n; p++) for (let q = p + 1; q < n; q++) if (Math.abs(A[p][q]) > least) rotate(A, V, p, q);
   }
   const order = made(n, (i) => i).sort((i, j) => A[i][i] - A[j][j]);
   return { values: order.map((i) => A[i][i]), axes: order.map((i) => V[i]) };
@@ -106,7 +107,6 @@ export function eigen(S) {
 
 /** Turn rows and columns p and q of A, and the rows of V, so that A[p][q] vanishes. */
 function rotate(A, V, p, q) {
-  if (A[p][q] === 0) return;
   const theta = (A[q][q] - A[p][p]) / (2 * A[p][q]);
   const t = (theta < 0 ? -1 : 1) / (Math.abs(theta) + Math.sqrt(theta * theta + 1));
   const c = 1 / Math.sqrt(t * t + 1), s = t * c;

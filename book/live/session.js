@@ -18,9 +18,9 @@ export class Session {
   change(settings) {
     const before = this.arm, time = this.loop?.t ?? 0;
     this.settings = settings;
-    const plant = plantOf(settings), { law, rate, joints } = lawOf(settings);
-    const chance = uniform(this.seed);
+    const plant = plantOf(settings), chance = uniform(this.seed);
     this.arm = new Arm(this.mujoco, ROBOT, plant, CONSTANTS, gaussian(this.seed + 1));
+    const { law, rate, joints } = lawOf(settings, this.arm.own);
     this.follow(settings, joints);
     this.loop = new Loop(this.arm, this.target, law, {
       rate, runaway: CONSTANTS.runaway, late: () => chance() < plant.lost_ticks });

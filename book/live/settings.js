@@ -44,9 +44,9 @@ export function gainsOf({ plant, controller, gains = {}, start }) {
   return made;
 }
 
-/** The controller, which does not know what the hand carries, and how often it is asked. */
-export function lawOf(settings) {
-  const { plant, controller } = settings, model = new Model(ROBOT, { ...plantOf(settings), payload: 0 });
+/** The controller with a model, which does not know what the hand carries, and how often it is asked. */
+export function lawOf(settings, model) {
+  const { plant, controller } = settings;
   return { law: laws[controller](model, gainsOf(settings)), ...CONTROLLERS[plant][controller] };
 }
 

@@ -23,7 +23,7 @@ PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
     *(attempts.FOLDER, roster.FILE, HANDLES, identity.FILE, pseudonyms.FILE),
 )
-"""What is one term's alone: where students' names stand, what leads to them, and hidden cases.
+"""The files of one term alone, with students' names, what leads to them, and hidden cases.
 
 All of it is ignored by git.
 """
