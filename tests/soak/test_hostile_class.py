@@ -93,14 +93,15 @@ def graded(request, released, tmp_path_factory):
             (here.course.submitted / student / NAME).mkdir(parents=True)
             FILES[number % len(FILES)](here.course.submitted / student / NAME / f"{NAME}.ipynb")
             attackers[student] = ""
-        codes, printed = {}, {}
+        codes, printed, said = {}, {}, {}
         for verb in ("grade", "feedback", "export", "class-report"):
-            codes[verb], printed[verb] = _run(verb, here.course)
+            codes[verb], printed[verb], said[verb] = _run(verb, here.course)
         yield SimpleNamespace(
             course=here.course,
             attackers=attackers,
             codes=codes,
             printed=printed,
+            said=said,
             left=family.left(),
         )
 
@@ -113,13 +114,14 @@ def _drawn(count):
 
 
 def _run(verb, course):
-    out = io.StringIO()
+    """How a verb ended, what it printed, and what it said beside that."""
+    out, err = io.StringIO(), io.StringIO()
     try:
-        with redirect_stdout(out), redirect_stderr(out):
+        with redirect_stdout(out), redirect_stderr(err):
             code = main([verb, NAME, *MORE.get(verb, []), "--course", str(course.root)])
     except BaseException as error:
         code = f"{type(error).__name__}: {error}"[:300]
-    return code, out.getvalue()
+    return code, out.getvalue(), err.getvalue()
 
 
 def _deserved(course):
@@ -177,7 +179,8 @@ def test_a_zero_is_earned(graded):
 def test_verbs_end_as_documented(graded):
     """All is done for all others; 1 says that somebody's part failed; nothing is a traceback."""
     assert {code in (0, 1) for code in graded.codes.values()} == {True}, graded.codes
-    lines = [line for text in graded.printed.values() for line in text.split("\n")]
+    texts = (*graded.printed.values(), *graded.said.values())
+    lines = [line for text in texts for line in text.split("\n")]
     assert not [line for line in lines if "Traceback" in line or COMMANDS.search(line)]
 
 

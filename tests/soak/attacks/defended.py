@@ -117,13 +117,13 @@ def _grade(here: Place, students: list[str], jobs: int, made: Class) -> None:
 def _run(verb: str, here: Place, made: Class) -> None:
     """One verb of the instructor's, with whatever comes of it."""
     more = MORE.get(verb, [])
-    out = io.StringIO()
+    out, err = io.StringIO(), io.StringIO()
     try:
-        with redirect_stdout(out), redirect_stderr(out):
+        with redirect_stdout(out), redirect_stderr(err):
             made.codes[verb] = main([verb, NAME, "--course", str(here.course.root), *more])
     except BaseException as error:
         made.codes[verb] = f"{type(error).__name__}: {error}"[:300]
-    made.printed += out.getvalue()
+    made.printed += out.getvalue() + err.getvalue()
     if verb == "export":
         with suppress(KeyError):
             made.marks = {

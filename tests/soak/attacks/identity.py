@@ -15,7 +15,7 @@ from pathlib import Path
 
 ADA, EVE = 42, 77
 MOODLE = "_assignsubmission_file_"
-_GREEDY = re.compile(r"^.*?(?P<who>[^/+]*_42_|Ada Lovelace|ada\b|42).*$", re.S | re.I)
+_GREEDY = re.compile(r"^.*?(?P<who>[^/+]*_42_|Ada Lovelace|lovelaceada|ada\b|42).*$", re.S | re.I)
 
 
 @dataclass(frozen=True)
