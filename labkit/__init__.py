@@ -35,10 +35,10 @@ if TYPE_CHECKING:
     from .replay import live
     from .tags import *  # noqa: F403
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
-    "BAXTER", "IDEAL", "Arm", "BangBang", "Board", "Camera", "Chain", "Circle", "Cubic", "Hold",
+    "BAXTER", "IDEAL", "Arm", "BangBang", "Camera", "Chain", "Circle", "Cubic", "Hold",
     "Intrinsics", "JointPosition", "JointTorque", "JointVelocity", "LabkitError", "Line", "Log",
     "Model", "Plant", "Polyline", "PosePath", "PoseSample", "Push", "Quintic", "Robot", "Sample",
     "Spring", "State", "Table", "Tag", "TagStream", "TagTarget", "Trajectory", "Trapezoid", "Wall",

@@ -156,7 +156,7 @@ SPRINGS: dict[str, Any] = {
     "joint_stiffness": (843.0, 843.0, 843.0, 843.0, 250.0, 250.0, 250.0),
     "joint_damping": (4.0, 4.0, 4.0, 4.0, 0.5, 0.5, 0.5),
 }
-"""The springs in Baxter's joints, left out of `BAXTER`: ``replace(BAXTER, **SPRINGS)`` has them."""
+"""The springs in Baxter's joints, left out of `BAXTER`; ``replace(BAXTER, **SPRINGS)`` has them."""
 
 _MISSED = (0.005, -0.005, 0.005, 0.005, -0.005, -0.005, 0.005)  # 4.9 mm at the ready pose
 _FRICTION = np.array(BAXTER.stiction)

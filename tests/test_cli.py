@@ -62,7 +62,7 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["submit-check", "."], ".: Is a directory"),
+        (["submit-check", "."], ". is a folder, a pipe or a device"),
         (["merge", PATHS, PATHS, "--to", "nowhere/x.ipynb"], "nowhere/x.ipynb: No such file"),
         (["merge", WARMUP, PATHS, "--to", "x.ipynb"], "releases of the same assignment?"),
         (["term", "list", "--course", "nowhere"], "there is no "),

@@ -134,7 +134,7 @@ def test_run_drives_an_arm_in_another_process_in_real_time(tmp_path):
     """The log has the wall's times; metrics, figures and replays work on it, saved and loaded."""
     with remote() as arm:
         before = time.monotonic()
-        log = lk.run(arm, way(), follow, rate=50.0)
+        log = lk.run(arm, way(), follow, rate=50.0, duration=3.0)  # time to arrive on any machine
         assert time.monotonic() - before >= 1.0
     assert log.t[-1] >= 1.0 - 1e-9
     assert (np.diff(log.t) > 0.0).all()
@@ -192,7 +192,7 @@ def test_whatever_a_controller_does_the_arm_is_stopped():
 
     with remote() as arm:
         with pytest.raises(ControllerError, match=r"broken failed at t = .*ZeroDivisionError: oh"):
-            lk.run(arm, way(), broken, rate=50.0)
+            lk.run(arm, way(), broken, rate=50.0, duration=10.0)
         assert arm.sent[-1] == "stop"
 
 

@@ -18,10 +18,9 @@ from sphinx.application import Sphinx
 
 
 def settings(app: Sphinx, config: Any) -> None:
-    """What `book/_tools/build_book.py` decides for one build."""
+    """Where `book/_tools/build_book.py` keeps the pages that it ran."""
     if cache := os.environ.get("LAB_BOOK_CACHE"):
         config.nb_execution_cache_path = cache
-    config.hide_solutions = os.environ.get("LAB_BOOK_ANSWERS") != "1"
 
 
 def told_already(

@@ -34,7 +34,6 @@ MADE = BOOK / "generated"
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--answers", action="store_true", help="show the answers to exercises")
     parser.add_argument("--fresh", action="store_true", help="forget what was built before")
     parser.add_argument("--zip", action="store_true", help="also make dist/book.zip to hand out")
     parser.add_argument("--pdf", action="store_true", help="also print it to dist/book.pdf")
@@ -46,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
     prepare()
     record()
     compare(_progress)
-    if code := build(answers=chosen.answers):
+    if code := build():
         return code
     size = sum(p.stat().st_size for p in HTML.rglob("*") if p.is_file()) / 1e6
     took = time.monotonic() - began
@@ -173,10 +172,10 @@ def record() -> None:
     stamp.write_text(key)
 
 
-def build(*, answers: bool) -> int:
+def build() -> int:
     """Run Jupyter Book; a warning or an exception in a cell is an error."""
     keys = page_keys()
-    stamp, state = BOOK / "_build/built.json", {"keys": keys, "answers": answers, "by": _builder()}
+    stamp, state = BOOK / "_build/built.json", {"keys": keys, "by": _builder()}
     fresh = not stamp.exists() or json.loads(stamp.read_text()) != state
     stamp.unlink(missing_ok=True)
     cache = CACHE / "pages"
@@ -186,7 +185,6 @@ def build(*, answers: bool) -> int:
     environment = os.environ | {
         "PYTHONPATH": PATHS,
         "LAB_BOOK_CACHE": str(cache),
-        "LAB_BOOK_ANSWERS": "1" if answers else "0",
         "PYDEVD_DISABLE_FILE_VALIDATION": "1",
     }
     if fresh:

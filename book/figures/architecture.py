@@ -18,7 +18,7 @@ LAYERS = (
     ("Sentences and numbers", ("errors", "quiet", "formats", "shapes", "se3")),
     ("What is wanted", ("trajectory", "paths")),
     ("What is known", ("plant", "urdf", "robot", "baxter", "kinematics", "model")),
-    ("The world, and what it is told", ("control", "joints", "sim", "world", "scene")),
+    ("The world and its commands", ("control", "joints", "sim", "world", "scene")),
     ("The arm", ("sensors", "springs", "motors", "arm")),
     (
         "The loop, and what it did",

@@ -14,7 +14,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +72,28 @@ def claim(conclusion: str, check: Callable[..., Any], **data: Any) -> None:
     if not again(flat):
         raise ConclusionFails(f"the text says: {conclusion}; the runs say otherwise: {data}")
     _note(conclusion, flat, again)
+
+
+def shows(sentence: str, values: float | Sequence[float], actual: Any, near: float = 1e-9) -> None:
+    """Bind a sentence to the numbers that it shows.
+
+    Args:
+        sentence: Words of the page, as for `claim`.
+        values: The number or numbers, as the sentence has them.
+        actual: What the code says they are.
+        near: How far they may differ, relative to themselves: by rounding.
+
+    Raises:
+        ConclusionFails: They differ.
+    """
+    shown = [values] if isinstance(values, float | int) else list(values)
+    x = [float(v) for v in (actual if isinstance(actual, Iterable) else [actual])]
+
+    def agree(x: Sequence[float]) -> bool:
+        pairs = zip(x, shown, strict=True)
+        return all(math.isclose(a, b, rel_tol=near, abs_tol=1e-12) for a, b in pairs)
+
+    claim(sentence, agree, x=x)
 
 
 def mutations(x: Numbers) -> Iterator[tuple[str, Numbers]]:

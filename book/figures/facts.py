@@ -13,11 +13,7 @@ from solutions.study import experiments
 from solutions.study.gains import KD, KP
 
 from .claims import claim
-
-
-def _is(sentence: str, value: float, actual: float, near: float = 1e-9) -> None:
-    """Bind a sentence to one number that it shows."""
-    claim(sentence, lambda x: math.isclose(x, value, rel_tol=near), x=float(actual))
+from .claims import shows as _is
 
 
 def velocity() -> None:
@@ -38,6 +34,7 @@ def model() -> None:
     """Of the chapter on the model."""
     robot = lk.robot("left")
     _is("has none either, allows it: 100 N m", 100.0, robot.effort[1])
+    _is("50 N m is right for that machine", 50.0, robot.effort[0])
     bare = lk.Model("left").mass_matrix(robot.ready)[6, 6]
     claim(
         "which is more than the last links have themselves",

@@ -8,7 +8,7 @@ from IPython.display import HTML
 
 import labkit as lk
 
-from .claims import claim
+from .claims import claim, shows
 from .embed import demo_html
 from .page import Question, figure, holds, number, numbers, picture, quiz, table
 
@@ -151,6 +151,33 @@ def gravity() -> HTML:
         f"carries up to {np.abs(rows[:, 3]).max():.3g} N m, the wrist w1 up to "
         f"{np.abs(rows[:, 5]).max():.2g} N m.",
     )
+
+
+def weigh() -> HTML:
+    """What each body beyond the shoulder s1 adds to its holding torque, at the neutral pose."""
+    model = lk.Model("left")
+    q = np.array(model.robot.neutral)
+    _, *bodies = model.links(q)
+    about, axis = bodies[0].T_wl[:3, 3], bodies[0].T_wl[:3, 2]
+    levers = [float(np.cross(axis, body.com - about)[2]) for body in bodies]
+    torques = [9.81 * body.mass * lever for body, lever in zip(bodies, levers, strict=True)]
+    masses = [float(body.mass) for body in bodies]
+    shows("Add the last column: the sum is the holding torque", sum(torques), model.gravity(q)[1])
+    shows("their product with 9.81 m/s²", 9.81, model.gravity(q)[1] / np.dot(masses, levers))
+    claim(
+        "a third of the mass and cause more than half of the torque",
+        lambda m, t: abs(sum(m[3:]) / sum(m) - 1 / 3) < 0.02 and 0.5 < sum(t[3:]) / sum(t) < 0.7,
+        m=masses,
+        t=np.abs(torques).tolist(),
+    )
+    rows = [
+        (name.removeprefix("left_"), f"{m:.2f}", f"{abs(lever):.3f}", f"{abs(t):.2f}")
+        for name, m, lever, t in zip(
+            model.robot.joint_names[1:], masses, levers, torques, strict=True
+        )
+    ]
+    head = ("Body behind joint", "mass [kg]", "distance [m]", "torque [N m]")
+    return table(head, rows, "What s1 holds at the neutral pose, body by body")
 
 
 def power() -> HTML:

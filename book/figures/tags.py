@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
+from typing import NamedTuple
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -67,7 +69,7 @@ def _corners(tilt: float, distance: float) -> np.ndarray:
     return FOCAL * p[:, :2] / p[:, 2:]
 
 
-def _gap(tilt: float, distance: float) -> float:
+def ambiguity_gap(tilt: float, distance: float) -> float:
     """RMS pixels between a tilt and the best that the opposite tilt can do."""
     seen = _corners(tilt, distance)
     best = np.inf
@@ -85,7 +87,7 @@ def ambiguity() -> HTML:
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     curves = {}
     for k, (degrees, style) in enumerate(((10.0, "-"), (30.0, "--"), (50.0, "-."))):
-        curves[degrees] = [_gap(np.radians(degrees), z) for z in distances]
+        curves[degrees] = [ambiguity_gap(np.radians(degrees), z) for z in distances]
         ax.plot(distances, curves[degrees], f"C{k}{style}", label=f"tilted by {degrees:.0f}°")
     ax.axhline(0.3, color="C5", linestyle=":")
     ax.text(0.2, 0.2, "a good corner finder", fontsize="small")
@@ -149,17 +151,28 @@ def blend() -> HTML:
     )
 
 
-def predict() -> HTML:
-    """A target that sways: last picture against prediction."""
+class Sway(NamedTuple):
+    """A target that sways, and two beliefs of where it is, each shape (n,), in [s] and [m]."""
+
+    t: np.ndarray
+    truth: np.ndarray
+    last: np.ndarray
+    ahead: np.ndarray
+
+    def rms(self, belief: np.ndarray) -> float:
+        """Error of a belief after the filter has settled, in [mm]."""
+        late = self.t > 1.5
+        return 1e3 * float(np.sqrt(np.mean((belief - self.truth)[late] ** 2)))
+
+
+@cache
+def swaying() -> Sway:
+    """Pictures at 10 Hz, each 100 ms old when it arrives, with 1 mm of noise."""
     random = np.random.default_rng(SEED)
     period, age, noise = 0.1, 0.1, 0.001
     t = np.arange(0.0, 8.0, 0.005)
-
-    def truth(x: np.ndarray | float) -> np.ndarray | float:
-        return 0.1 * np.sin(1.2 * x)
-
     shots = np.arange(0.0, 8.0, period)
-    seen = truth(shots) + noise * random.standard_normal(shots.size)
+    seen = 0.1 * np.sin(1.2 * shots) + noise * random.standard_normal(shots.size)
     R, q = noise**2, 0.05**2
     x, P = np.array((seen[0], 0.0)), np.diag((R, 0.04))
     states = [x]
@@ -171,22 +184,22 @@ def predict() -> HTML:
         x, P = x + gain * (z - x[0]), P - np.outer(gain, P[0])
         states.append(x)
     k = np.clip(((t - age) / period).astype(int), 0, len(shots) - 1)
-    last = seen[k]
-    ahead = np.array(
-        [states[i][0] + (now - shots[i]) * states[i][1] for i, now in zip(k, t, strict=True)]
-    )
-    late = t > 1.5
-    rms = {
-        name: 1e3 * float(np.sqrt(np.mean((guess - truth(t))[late] ** 2)))
-        for name, guess in (("stale", last), ("predicted", ahead))
-    }
+    ahead = [states[i][0] + (now - shots[i]) * states[i][1] for i, now in zip(k, t, strict=True)]
+    return Sway(t, 0.1 * np.sin(1.2 * t), seen[k], np.array(ahead))
+
+
+def predict() -> HTML:
+    """A target that sways: last picture against prediction."""
+    sway = swaying()
+    rms = {"stale": sway.rms(sway.last), "predicted": sway.rms(sway.ahead)}
     holds(rms["predicted"] < 0.4 * rms["stale"], "prediction removes most of the error of age")
     numbers(rms, ".2g")
     _, ax = plt.subplots(figsize=(6.0, 3.0))
-    show = (t > 2.0) & (t < 5.0)
-    ax.plot(t[show], truth(t)[show], color="#999999", linewidth=5, label="where it is")
-    ax.plot(t[show], last[show], "C0--", label="last picture")
-    ax.plot(t[show], ahead[show], "C1-", label="predicted")
+    show = (sway.t > 2.0) & (sway.t < 5.0)
+    t = sway.t[show]
+    ax.plot(t, sway.truth[show], color="#999999", linewidth=5, label="where it is")
+    ax.plot(t, sway.last[show], "C0--", label="last picture")
+    ax.plot(t, sway.ahead[show], "C1-", label="predicted")
     ax.set(xlabel="time [s]", ylabel="target [m]")
     ax.legend(fontsize="small")
     return figure(

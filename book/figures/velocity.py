@@ -19,8 +19,9 @@ from solutions.study import speed_gains
 from solutions.study.joint_velocity import JointVelocityPD
 from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
-from .claims import claim
+from .claims import claim, shows
 from .embed import demo_html
+from .gains import LATENCY
 from .gains import explorer as recorded
 from .page import Question, figure, number, numbers, picture, quiz, replay, still, tracking
 
@@ -124,6 +125,7 @@ def reach() -> None:
     R, goal = T[:3, :3], T[:3, 3] + np.array((0.75, 0.0, 0.0))
     path = lk.PosePath(lk.Line(T[:3, 3], goal), R)
     target = lk.Chain([lk.Trajectory(path, lk.Quintic(5.0)), lk.Hold(lk.se3.pose(R, goal), 4.0)])
+    shows("Send the hand 75 cm forwards", 75.0, 100.0 * path.path.length)
     ends = []
     for lever in (0.26, 1.0):
         law = WorkspaceVelocityPD(model, Kp=3.0, lever=lever)
@@ -349,4 +351,5 @@ def check_yourself() -> HTML:
 
 def explorer() -> HTML:
     """The gain explorer."""
+    shows("beyond which more is worse at 60 ms", 60.0, LATENCY[-1])
     return recorded("../_static/runs/", picture("left", lk.BAXTER, lk.robot("left").ready))

@@ -3,7 +3,7 @@ import { subtract } from "./algebra.js";
 import { Form } from "./form.js";
 import { hold } from "./hands.js";
 import { TAG } from "./numbers.js";
-import { READY, wallAt } from "./settings.js";
+import { ELBOW, READY, wallAt } from "./settings.js";
 
 const NEWTON = 0.01; // metres of arrow for a newton
 
@@ -13,8 +13,7 @@ export class Drawing extends Form {
     picture.embody(robot);
     picture.pose("left", this.session.arm.q);
     const { rig } = picture.stage;
-    const reach = 0.17;
-    rig.around([READY.p.map((x) => x - reach), READY.p.map((x) => x + reach)]);
+    rig.around(this.inSight());
     Object.assign(rig.motion, this.config.view);
     rig.use("Motion");
     hold(picture, () => this.sessions, {
@@ -26,6 +25,12 @@ export class Drawing extends Form {
       } },
     }, () => this.pause(false));
     this.drawPath();
+  }
+
+  /** What the first view shows: the target's path, and the arm from the elbow on. */
+  inSight() {
+    const { arm, lap } = this.session, { joints } = arm.own.frames(arm.q);
+    return [0, 0.25, 0.5, 0.75].map((s) => this.session.goal(s * lap)).concat([arm.own.pose(arm.q).p, joints[ELBOW].p]);
   }
 
   /** The path of the target, dashed. */

@@ -8,9 +8,11 @@ import { Session } from "./session.js";
 import { TASK } from "./numbers.js";
 
 const GHOST = 0x1f77d0;
+const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "below σ =" }; // of gains, as the text has them
 
 export class Panel extends Drawing {
   constructor(host, config, mujoco, viewer, robot, began) {
+    super();
     Object.assign(this, { host, config, mujoco, viewer, h: viewer.h, began, playing: true, alone: false });
     const plant = config.plant ?? "ideal";
     this.armdials = {};
@@ -84,7 +86,7 @@ export class Panel extends Drawing {
 
   words() {
     const { controller, gains, plant } = this.settings;
-    const told = Object.entries(gains).map(([name, x]) => `${name} ${+x.toPrecision(3)}`);
+    const told = Object.entries(gains).map(([name, x]) => `${SIGNS[name] ?? name} ${+x.toPrecision(3)}`);
     return [ARMS[plant], NAMES[controller], ...told].join(", ");
   }
 

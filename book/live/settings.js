@@ -9,6 +9,7 @@ import { wall } from "./scene.js";
 import { PATHS, smooth } from "./tasks.js";
 
 export const READY = new Model(ROBOT).pose(ROBOT.ready);
+export const ELBOW = 3; // the joint e1
 export const NAMES = {
   workspaceVelocity: "workspace velocity", jointVelocity: "joint velocity", jointTorque: "joint torque",
   workspaceImpedance: "workspace impedance", jointImpedance: "joint impedance", baxtersOwn: "Baxter's own (position mode)" };

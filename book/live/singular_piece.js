@@ -7,8 +7,8 @@ import { Model } from "./model.js";
 import { CONTROLLERS, ROBOT } from "./numbers.js";
 import { Panel } from "./panel.js";
 import { predictBox } from "./predict.js";
+import { ELBOW } from "./settings.js";
 
-const ELBOW = 3; // e1
 const LIMIT = 1.5; // rad/s, of Baxter's quickest large joints
 const SPEED = 0.1; // of the tip, in [m/s]
 const LEVER = CONTROLLERS.ideal.workspaceVelocity.gains.lever;
@@ -68,16 +68,6 @@ class Singular extends Panel {
   }
 
   showGains() {}
-  drawPath() {
-    super.drawPath();
-    if (!this.picture.works) return;
-    const { rig } = this.picture.stage;
-    rig.around(this.rows());
-    Object.assign(rig.motion, this.config.view);
-    rig.use("Motion");
-  }
-
-  rows() { return [0, 0.25, 0.5].map((s) => this.session.goal(s * this.session.lap)).concat([model.frames(START).joints[ELBOW].p]); }
 
   /** What the equations say at each elbow angle, shown once the reader has predicted. */
   map(lambda2) {

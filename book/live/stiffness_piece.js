@@ -1,6 +1,8 @@
 // "Stiffness has a direction": a hand before a wall, with a weight in it, and one dial or three.
+import { add } from "./algebra.js";
 import { Panel } from "./panel.js";
 import { predictBox } from "./predict.js";
+import { READY } from "./settings.js";
 
 const LIMITS = { wall: 12, sag: 5 }; // N and mm
 const BEHIND = 0.03; // how far the target lies behind the wall's face, in [m]
@@ -48,6 +50,9 @@ class Stiffness extends Panel {
     super.change(what);
     Object.assign(this, { since: this.session.loop.t, told: false });
   }
+
+  /** The hand and the wall. */
+  inSight() { return [[-0.1, 0, -0.1], [0.1, 0, 0.2]].map((d) => add(READY.p, d)); }
 
   recompute() {} // what counts here is where the arm comes to rest
   settled() { return this.session.loop.t - (this.since ?? 0) > 2; }

@@ -61,6 +61,13 @@ class Age extends Panel {
   }
 
   showGains() {}
+
+  /** The point over the tag and the tag itself, all along their path. */
+  inSight() {
+    const over = [0, 0.25, 0.5, 0.75].map((s) => this.session.goal(s * this.session.lap));
+    return over.concat(over.map((p) => subtract(p, TAG.offset)));
+  }
+
   release() { for (const { chase } of this.sessions) chase.dragged = null; }
   drag(place) { for (const { chase } of this.sessions) chase.dragged = place.map((x) => Math.max(-0.15, Math.min(0.15, x))); }
 
@@ -98,5 +105,5 @@ class Age extends Panel {
 }
 
 export function tagPiece(host, config, ...given) {
-  return new Age(host, { title: "Age, not noise", view: { azimuth: 0, elevation: 1.2 }, ...config, settings: { ...SETTINGS, ...config.settings } }, ...given);
+  return new Age(host, { title: "Age, not noise", view: { azimuth: 0.2, elevation: 0.6 }, ...config, settings: { ...SETTINGS, ...config.settings } }, ...given);
 }

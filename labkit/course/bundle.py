@@ -13,7 +13,7 @@ from ..errors import LabkitError
 from ..formats import check_stamp, stamp
 from .identification import personal
 from .layout import Course
-from .own_arm import draw, handles_of
+from .own_arm import Arms
 from .question import Question
 from .seed import PUBLIC_SEED
 from .serialize import question_data, read_question
@@ -26,11 +26,11 @@ class Bundle:
     Attributes:
         data: Assignment, seed, manifest, questions with their hidden cases, hash; and, if there are
             any, the questions ``added`` when some had handed in already.
-        handles: Of each student's arm, where arms were given out.
+        arms: Whose arm is whose, where arms were given out.
     """
 
     data: Mapping[str, Any]
-    handles: Mapping[str, str] = field(default_factory=dict)
+    arms: Arms = field(default_factory=Arms)
 
     @classmethod
     def of(cls, course: Course, assignment: str) -> Bundle:
@@ -52,15 +52,19 @@ class Bundle:
             ) from None
         seed = data.get("seed", PUBLIC_SEED)
         check_stamp(data, str(path), f"type: labkit release {assignment} --seed {seed}")
-        return cls(data, handles_of(course.root))
+        return cls(data, Arms.of(course.root))
 
     def of_student(self, student: str) -> Bundle:
         """The same with what is true of the student's own arm."""
-        if student not in self.handles:
+        arm = self.arms.arm(student)
+        if arm is None:
             return self
-        arm = draw(self.data["seed"], self.handles[student])
-        bundle = Bundle(self.data)
-        bundle.__dict__["questions"] = tuple(personal(q, arm) for q in self.questions)
+        questions = tuple(personal(q, arm) for q in self.questions)
+        if all(own is q for own, q in zip(questions, self.questions, strict=True)):
+            return self
+        own_hash = hashlib.sha256(f"{self.data['hash']} {arm}".encode()).hexdigest()
+        bundle = Bundle({**self.data, "hash": own_hash})
+        bundle.__dict__["questions"] = questions
         return bundle
 
     @cached_property

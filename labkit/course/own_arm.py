@@ -11,10 +11,9 @@ import base64
 import hashlib
 import hmac
 import json
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -29,7 +28,9 @@ from .bugs import CAUSES, MOVES, Bug
 from .seed import PUBLIC_SEED
 
 FILE = "arms.json"
-"""Beside the notebooks' folders: the sealed arms of a term, by the hash of each handle."""
+"""Beside a notebook that asks about one's own arm: the sealed arms of a term."""
+HANDLES = "course_private/handles.json"
+"""In the course: the term's seed, and the handle of each student."""
 DEMO = "demo"
 """The handle of the public arm, for self-study and for a course without a term."""
 
@@ -43,7 +44,7 @@ RANGES = {
 
 
 BUGS = 3
-"""So many misbehaving runs everybody gets, of `CAUSES` times `MOVES`."""
+"""The number of misbehaving runs that each arm has, of `CAUSES` times `MOVES`."""
 ONSETS = (0.3, 0.8)
 """In which part of a run the mistake comes in, in [s]: the arm is under way."""
 
@@ -100,15 +101,49 @@ def draw(secret: int, handle: str) -> OwnArm:
     return OwnArm(payload, stiction, lag, wall, tuple(bugs))
 
 
-def sealed(secret: int, handles: Mapping[str, str] | Iterable[str]) -> dict[str, str]:
-    """What students get, for `FILE`.
+@dataclass(frozen=True)
+class Arms:
+    """Whose arm is whose in a term.
 
-    Args:
+    Attributes:
         secret: The term's seed.
-        handles: Of students or teams; or, by each student's name, the handle of their team.
+        handles: By student: their own handle, or their team's.
     """
-    pairs = handles if isinstance(handles, Mapping) else {handle: handle for handle in handles}
-    return {_hashed(who): _seal(draw(secret, handle), who) for who, handle in pairs.items()}
+
+    secret: int = PUBLIC_SEED
+    handles: Mapping[str, str] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, course: Path) -> Arms:
+        """Those of the course in a folder; of nobody where no arms were given out.
+
+        Raises:
+            LabkitError: The file is damaged.
+        """
+        path = course / HANDLES
+        if not path.exists():
+            return cls()
+        try:
+            found = json.loads(path.read_text(encoding="utf-8"))
+            return cls(int(found["secret"]), dict(found["handles"]))
+        except (ValueError, KeyError, TypeError):
+            raise LabkitError(
+                f"{path} is damaged; delete it, and import the list of students again"
+            ) from None
+
+    def text(self) -> str:
+        """What `of` reads."""
+        return json.dumps(asdict(self), indent=1, sort_keys=True) + "\n"
+
+    def arm(self, student: str) -> OwnArm | None:
+        """A student's arm, or None."""
+        handle = self.handles.get(student)
+        return None if handle is None else draw(self.secret, handle)
+
+    def sealed(self) -> dict[str, str]:
+        """What students get, for `FILE`: each opens it by the name of their folder."""
+        of = {who: draw(self.secret, handle) for who, handle in sorted(self.handles.items())}
+        return {_hashed(who): _seal(arm, who) for who, arm in of.items()}
 
 
 def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
@@ -184,12 +219,3 @@ def _mixed(data: bytes, handle: str) -> bytes:
     """The data with a stream of bytes laid over it, which the handle starts; twice is once."""
     stream = np.random.default_rng(list(handle.encode())).bytes(len(data))
     return bytes(a ^ b for a, b in zip(data, stream, strict=True))
-
-
-def handles_of(course: Path) -> dict[str, str]:
-    """The handle of each student of a term; empty where no arms were given out."""
-    path = course / "course_private" / "handles.json"
-    if not path.exists():
-        return {}
-    found: Any = json.loads(path.read_text(encoding="utf-8"))
-    return {str(student): str(handle) for student, handle in found.items()}

@@ -245,6 +245,6 @@ def still_good(
         if before is None or (options.isolated and before.isolation.startswith("none")):
             continue
         data, _, _ = submission.read(options.limits.notebook)
-        if before.hashes == hashes(data, bundle):
+        if before.hashes == hashes(data, bundle.of_student(submission.student)):
             return before
     return None

@@ -27,6 +27,7 @@ HEADS = {
     "matriculation number, matrikelnummer, id-nummer, numéro d’identification, número de id",
     "lms_user_id": "lms user id, canvas id",
     "github": "github, github username, github login",
+    "team": "team, group, groups, gruppe, groupe, grupo",
     "email": "email, e-mail, email address, e-mail address, mail, e-mail-adresse, "
     "adresse de courriel, dirección de correo",
     "first_name": "first name, firstname, given name, forename, vorname, prénom, nombre",
@@ -56,6 +57,7 @@ class Entry:
         id_number: The university's number.
         participant: Moodle's number of the participant in one assignment.
         github: The name on GitHub.
+        team: The name of their team.
         handed_in: When the participant handed in, as Moodle's worksheet writes it.
     """
 
@@ -68,6 +70,7 @@ class Entry:
     id_number: str = ""
     participant: str = ""
     github: str = ""
+    team: str = ""
     handed_in: str = ""
 
     @property

@@ -10,10 +10,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import combinations, islice
 from pathlib import Path
 from statistics import mean, median
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from ..course.forms import Form
 from ..course.messages import uses
+from ..course.outcomes import OUTCOMES
 from ..course.problem import Problem
+from ..course.question import Question
 from ..course.verdict import Outcome, Verdict
 from .batch import common_failures
 from .clean import clean_line
@@ -39,6 +42,7 @@ def report(
     problems: Mapping[str, Problem],
     called: Callable[[str], str],
     fewest: int = 1,
+    asked: Sequence[Question] = (),
 ) -> str:
     """The report, in Markdown.
 
@@ -48,6 +52,7 @@ def report(
         problems: By name, for what to say in the lecture.
         called: What a student is called in it: ``str``, or `pseudonyms`.
         fewest: No count of fewer students is said, from which somebody could tell who they are.
+        asked: The assignment's questions, for the outcomes and the predictions.
     """
     marks = [mark for mark in marks if not mark.absent]
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
@@ -70,7 +75,9 @@ def report(
         points=max((mark.points for mark in counted), default=0.0),
         mean=mean,
         median=median,
-        questions=list(_questions(graded)),
+        questions=(questions := list(_questions(graded))),
+        can=list(_can(questions, asked)),
+        believed=list(_believed(graded, asked, fewest)),
         mistakes=list(_mistakes(graded, problems)),
         count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
         tools=list(_tools(graded, who)),
@@ -118,6 +125,49 @@ def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
         count = Counter(verdict.outcome for verdict in mine)
         shares = [verdict.earned / verdict.points for verdict in mine if verdict.points]
         yield _QuestionRow(name, [count[x] for x in COUNTED], mean(shares) if shares else None)
+
+
+class _OutcomeRow(NamedTuple):
+    says: str
+    questions: str
+    share: float
+
+
+def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_OutcomeRow]:
+    """For each outcome of the course, what the questions say that are evidence of it."""
+    shares = {row.name: row.share for row in rows if row.share is not None}
+    for outcome, says in OUTCOMES.items():
+        names = [q.name for q in asked if outcome in q.outcomes and q.name in shares]
+        if names:
+            text = ", ".join(f"`{name}`" for name in names)
+            yield _OutcomeRow(says, text, mean(shares[name] for name in names))
+
+
+def _believed(
+    graded: Sequence[Result], asked: Sequence[Question], fewest: int
+) -> Iterator[tuple[str, str]]:
+    """For each prediction, what the class committed to, the commonest first."""
+    sources = [{q.verdict.name: q.source for q in result.questions} for result in graded]
+    for question in asked:
+        form = question.judge
+        if isinstance(form, Form):
+            said = (_committed(source.get(question.name, "")) for source in sources)
+            counts = Counter(form.words(x) for x in said if not form.problem(x))
+            told = [f"{n} x {_as_text(words)}" for words, n in counts.most_common() if n >= fewest]
+            rest = len(sources) - sum(n for n in counts.values() if n >= fewest)
+            yield question.name, "; ".join([*told, *[f"{rest} another or none"] * bool(rest)])
+
+
+def _committed(source: str) -> Any:
+    """The value in ``name = predict("name", value)``; None if none is written down."""
+    try:
+        for node in ast.walk(ast.parse(source)):
+            match node:
+                case ast.Call(func=ast.Name("predict"), args=[_, value, *_]):
+                    return ast.literal_eval(value)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        pass
+    return None
 
 
 def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_MistakeRow]:

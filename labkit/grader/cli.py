@@ -128,6 +128,7 @@ def class_report(
     course: Course, assignment: str, names: bool, to: Path | None, jplag: Path | None
 ) -> int:
     """Say what the class got right and wrong."""
+    from ..course.bundle import Bundle
     from .class_report import FEWEST, for_jplag, report
     from .marks import marks_of
     from .pseudonyms import pseudonyms
@@ -141,7 +142,8 @@ def class_report(
         problems = {p.name: p for p in course.problems(assignment)}
         pseudonym = pseudonyms(course)
         called, fewest = str if names else pseudonym, 1 if names else FEWEST
-        _write(report(assignment, marks, problems, called, fewest), to)
+        asked = Bundle.of(course, assignment).questions
+        _write(report(assignment, marks, problems, called, fewest, asked), to)
         if jplag:
             written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)

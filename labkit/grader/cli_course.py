@@ -63,7 +63,7 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
         used = seed_for(course, name) if seed is None else seed
         print(release(course, name, used), flush=True)
         seeds.add(used)
-    print("tried: known mistakes, stand-ins, public cases by heart; more by: labkit report-card")
+    print("tried: known mistakes, stand-ins, public cases from memory; more by: labkit report-card")
     for warning in filter(None, map(public_warning, seeds)):
         print(warning)
     print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
@@ -132,7 +132,7 @@ def term(
             found = [one.folder for one in archives(course, older or 0.0)]
         for path in found:
             print(f"{'deleted' if yes else 'would go'}: {path.relative_to(course.root)}")
-        if not found:
+        if not found and student is None:
             print("there is nothing to forget")
         elif yes:
             _say(forget(course, found, student))

@@ -16,6 +16,7 @@ from zoneinfo import ZoneInfo
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .arms import give_arms
 from .attempts import attempts, counts, install, keep, move
 from .class_list import Entry, read_list
 from .clean import safe_name
@@ -24,10 +25,11 @@ from .identity import all_lms_users, alone, lms_users, places, remember
 from .platforms import LmsUser
 from .roster import FILE, Roster, Student, read_roster, same_name, save_roster, tell_gradebook
 from .rules import read_rules
+from .term import seed_of
 
 _Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number", "github")
-_FIELDS = ("first_name", "last_name", *_KEYS)
+_FIELDS = ("first_name", "last_name", "team", *_KEYS)
 
 
 @dataclass(frozen=True)
@@ -122,6 +124,7 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         done = enrol(before, entries, all_lms_users(course))
         save_roster(course, done.roster)
         tell_gradebook(course, done.roster)
+        give_arms(course, done.roster, seed_of(course))
         left = settle(course, done.roster)
         left += keep_numbers(course, assignment, done.rows) if assignment else []
         times = keep_times(course, assignment, done.rows) if assignment else 0

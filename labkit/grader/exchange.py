@@ -1,8 +1,9 @@
 """nbgrader's exchange: hand-ins from its inbound folder, and feedback back to them.
 
 A student's own process makes the folder ``USER+ASSIGNMENT+TIME+RANDOM``, so USER is only what
-somebody says; whose it is says its owner, whom the system knows.  The exchange knows a hand-in by a
-secret that came with it (``nbgrader.exchange``).
+somebody says; whose it is says its owner, whom the system knows.  TIME is what they say too
+(``exchange_times``).  The exchange knows a hand-in by a secret that came with it
+(``nbgrader.exchange``).
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from pathlib import Path
 from ..course.layout import Course
 from .clean import clean_line
 from .each import Failed, for_student
+from .exchange_times import Times
 from .platforms import File, LmsUser, Named, person
 from .sandbox.limits import Limits
 from .submission import read_file
@@ -29,10 +31,16 @@ _STRANGERS = (
     "not taken; this machine has no such users, so it cannot be told whether they handed this in "
     "themselves; if your hub sees to that, add --unverified"
 )
+_BACKDATED = (
+    "its name says {:%Y-%m-%d %H:%M} UTC, but it was last changed at {:%Y-%m-%d %H:%M} UTC, which "
+    "counts; possibly an attempt to cheat (if you copied the exchange, keep its times: cp -a)"
+)
 
 
 def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[File]:
     """The notebooks in the inbound folder of nbgrader's exchange.
+
+    A folder that was written later than its name says counts from then, and is named.
 
     Args:
         folder: The inbound folder.
@@ -49,6 +57,11 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
     strangers = [] if unverified else unknown
     if strangers:
         yield File(_some(strangers), (), datetime.now(UTC), bytes, refused=_STRANGERS)
+    times = {
+        path: Times.of(path, when)
+        for path, (_, _, stated, *_) in mine.items()
+        if (when := read_time(stated)) is not None
+    }
     for path, (user, _, stated, *_) in mine.items():
         if user in strangers:
             continue
@@ -59,6 +72,9 @@ def in_exchange(folder: Path, assignment: str, *, unverified: bool) -> Iterator[
             refused = refused or ("it states no time" if when is None else "it holds no notebook")
             yield File(label, (), datetime.now(UTC), bytes, refused=f"not taken; {refused}")
             continue
+        if (came := times[path].contradicted(times.values())) is not None:
+            yield File(label, (), came, bytes, refused=_BACKDATED.format(when, came))
+            when = came
         who = LmsUser("exchange", user, user)
         for notebook in notebooks:
             yield File(

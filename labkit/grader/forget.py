@@ -14,6 +14,7 @@ from pathlib import Path
 from nbgrader.api import Gradebook, MissingEntry
 
 from ..course.layout import Course
+from ..course.own_arm import HANDLES
 from ..errors import LabkitError
 from .gradebook import quiet_database
 from .identity import FILE as LMS
@@ -81,8 +82,8 @@ def _terms(course: Course) -> list[Path]:
 
 
 def _leave_records(private: Path, student: str) -> Iterator[Path]:
-    """Take a student out of a term's roster and its record of platforms' numbers."""
-    roster, users = private / Path(ROSTER).name, private / Path(LMS).name
+    """Take a student out of a term's roster, its arms and its record of platforms' numbers."""
+    roster, users, arms = (private / Path(name).name for name in (ROSTER, LMS, HANDLES))
     if roster.exists():
         rows = list(csv.reader(io.StringIO(roster.read_text(encoding="utf-8"))))
         kept = [row for row in rows if row[:1] != [student]]
@@ -97,6 +98,11 @@ def _leave_records(private: Path, student: str) -> Iterator[Path]:
         if left != known:
             write(users, json.dumps(left, indent=1, sort_keys=True) + "\n")
             yield users
+    if arms.exists():
+        given = json.loads(arms.read_text(encoding="utf-8"))
+        if given["handles"].pop(student, None) is not None:
+            write(arms, json.dumps(given, indent=1, sort_keys=True) + "\n")
+            yield arms
 
 
 def _leave_gradebook(path: Path, student: str) -> bool:

@@ -17,6 +17,7 @@ from ..course.layout import Course
 from ..course.notebook import BLANK, manifest
 from ..course.release import write
 from ..errors import LabkitError
+from .arms import lay_arms
 from .authoring import prepared
 from .gradebook import migrate
 from .nbgrader_api import nbgrader_api, reason
@@ -82,6 +83,7 @@ def release(course: Course, name: str, seed: int) -> Released:
     write(made, added)
     generate(course, name)
     _verify(course.release / name)
+    lay_arms(course, name)
     questions = made.questions.values()
     hidden = sum(case.hidden for q in questions for t in q.tests for case in t.cases)
     by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}

@@ -36,6 +36,7 @@ class Student:
         login: The name that they log in with.
         id_number: The university's number.
         github: The name on GitHub.
+        team: Those who have the same one share an arm.
     """
 
     id: str
@@ -46,6 +47,7 @@ class Student:
     login: str = ""
     id_number: str = ""
     github: str = ""
+    team: str = ""
 
     @property
     def name(self) -> str:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..course.layout import Course
+from ..course.own_arm import HANDLES
 from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 from . import attempts, identity, pseudonyms, roster
@@ -20,7 +21,7 @@ from .results import write
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
-    *(attempts.FOLDER, roster.FILE, identity.FILE, pseudonyms.FILE),
+    *(attempts.FOLDER, roster.FILE, HANDLES, identity.FILE, pseudonyms.FILE),
 )
 """What is one term's alone: where students' names stand, what leads to them, and hidden cases.
 

@@ -503,7 +503,7 @@ lk.plotting.show(
 # experiments of your own; the cell below is only a beginning. The tip is to be moved as gently as you can.
 
 # %%
-HANDLE = "demo"  # yours, or your team's
+HANDLE = "demo"  # in a course: your login
 mine = lk.my_arm(HANDLE)
 holding = np.diag(mine.model.mass_matrix(ready))
 holding = lk.control.springs(50.0 * holding, 14.0 * holding)

@@ -44,7 +44,7 @@ import numpy as np
 # One earns 1, 1, 0, 0, 0, 1 in the rows below, two 3, 2, 3, 3, 3, 3. Where do you differ, and why?
 
 # %%
-HANDLE = "demo"  # your team's
+HANDLE = "demo"  # in a course: your login
 mine = lk.my_arm(HANDLE)
 
 # %% [markdown] task="claim_and_prediction" points=3

@@ -433,7 +433,7 @@ for armature in (0.0, 0.05):
 # | h | the joints' own speed is damped, not the error of the speed |
 
 # %%
-HANDLE = "demo"  # yours, or your team's
+HANDLE = "demo"  # in a course: your login
 _, axes = plt.subplots(1, 3, figsize=(9, 3), sharex=True, layout="constrained")
 for number, ax in enumerate(axes, start=1):
     log = lk.my_bug(number, HANDLE)

@@ -399,7 +399,7 @@ lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", refer
 # the report of notebook 08 is about it.
 
 # %%
-HANDLE = "demo"  # yours, or your team's
+HANDLE = "demo"  # in a course: your login
 mine = lk.my_arm(HANDLE)
 
 

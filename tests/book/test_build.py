@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from importlib.util import find_spec
 
 import book_pages
 import lab
@@ -31,6 +32,7 @@ def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
     )
 
 
+@pytest.mark.slow
 def test_pages_of_the_contents_exist(book):
     for name in book_pages.in_order():
         assert any((ROOT / f"book/{name}{end}").exists() for end in (".md", ".ipynb"))
@@ -40,6 +42,8 @@ def test_the_reference_has_every_module():
     """What can be imported is described; commands and the inside of the sandbox are no library."""
     told = "".join(p.read_text() for p in (ROOT / "book/reference").glob("*.md"))
     described = set(re.findall(r"automodule:: labkit\.([\w.]+)$", told, re.M))
+    gone = {x for x in described if not find_spec(f"labkit.{x}")}
+    assert not gone, f"{gone} are described and are not there"
     whole = {"course", "grader", "replay"}  # what these give stands in their __init__
     folders = {p.parent for p in (ROOT / "labkit").glob("*/__init__.py")}
     there = {p.stem for p in (ROOT / "labkit").glob("*.py")} | whole - {"grader"}
@@ -117,6 +121,7 @@ def test_the_reference_says_what_the_docstrings_say(book):
     assert "(*args, **kwargs)" not in BeautifulSoup(told, "html.parser").get_text()
 
 
+@pytest.mark.slow
 def test_downloads_are_the_released_notebooks(book):
     for path in (ROOT / "assignments").glob("*/*.ipynb"):
         handed_out = book / "_static/notebooks" / path.name

@@ -116,10 +116,10 @@ def test_keys_push_the_tip_and_a_screen_reader_is_told(live):
 def test_a_dial_makes_a_new_curve_and_the_old_one_stays(live):
     """The same axes, the run before it faint; two gains side by side once a run is kept."""
     page = live("live")
+    page.wait_for_function("document.querySelector('.lk-live').live.curves.last")
     choose(page, "Arm", "realistic arm")
     choose(page, "Controller", "joint velocity")
     said = page.locator(".lk-kept").last
-    page.wait_for_function("document.querySelector('.lk-live').live.curves.last")
     page.wait_for_function(
         "document.querySelector('.lk-live .lk-plot').querySelectorAll('polyline').length === 2"
     )

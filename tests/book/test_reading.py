@@ -66,11 +66,12 @@ def test_the_quiz_answers(visit):
             assert said[k] in told
 
 
-def test_answers_are_hidden_unless_asked_for(book):
-    text = (book / "chapters/paths.html").read_text()
-    assert "Derive the coefficients" in text
-    assert "does not change under" not in text
-    assert 'class="solution' not in text
+def test_answers_to_exercises_are_folded(visit):
+    """Each is closed until the reader opens it."""
+    page = visit("chapters/paths.html")
+    folded = page.query_selector_all(".solution details, details.solution, .solution.dropdown")
+    assert len(folded) >= 3
+    assert not page.query_selector_all(".solution details[open], details.solution[open]")
 
 
 def test_reduced_motion_stops_the_themes_transitions(visit):

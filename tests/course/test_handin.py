@@ -240,7 +240,7 @@ def test_merging_after_a_question_was_added(folder):
     merged = merge(mine, new)
     where = next(k for k, c in enumerate(merged) if c["source"].startswith("def witness"))
     assert "duration / 2" in merged[where]["source"]
-    assert merged[where + 1] == own
+    assert merged[where + 1] == own | {"id": merged[where + 1]["id"]}
     kept = [k for k in range(len(merged)) if k not in (where, where + 1)]
     assert [merged[k] for k in kept] == [
         c for c in new if not c["source"].startswith("def witness")

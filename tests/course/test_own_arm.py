@@ -7,7 +7,7 @@ import pytest
 from labkit.course import Found, Identification, Measured, Outcome, Telling, mark, my_arm
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.identification import personal
-from labkit.course.own_arm import DEMO, FILE, draw, sealed
+from labkit.course.own_arm import DEMO, FILE, Arms, draw
 from labkit.course.reply import Here
 from labkit.errors import LabkitError
 
@@ -22,7 +22,7 @@ def test_the_secret_draws_the_same_arm_again_and_others_otherwise():
 def test_what_students_get_names_no_number(tmp_path, monkeypatch):
     """The sealed file shows neither handle nor payload, and opens for its handle alone."""
     arm = draw(7, "kestrel")
-    text = json.dumps(sealed(7, ["kestrel"]))
+    text = json.dumps(Arms(7, {"kestrel": "kestrel"}).sealed())
     assert "kestrel" not in text and str(arm.payload)[:6] not in text
     (tmp_path / FILE).write_text(text)
     monkeypatch.chdir(tmp_path)

@@ -97,11 +97,11 @@ float(np.clip(3.0 - off, 0.0, 3.0))"""
 
 CONTROLS: dict[str, Control] = {
     "patched comparison": cell(
-        pays, "import labkit.course\ncheck = labkit.course.check = lambda name, function: 2.0"
+        pays, "import labkit.course\ncheck = labkit.course.check = lambda name, function: 1.0"
     ),
     "display and execution hooks": cell(
         pays,
-        "def drop(lines):\n    return ['2.0\\n'] if 'check(' in ''.join(lines) else lines\n"
+        "def drop(lines):\n    return ['1.0\\n'] if 'check(' in ''.join(lines) else lines\n"
         "get_ipython().input_transformers_cleanup.append(drop)",
     ),
     "objects that compare equal": answer(
@@ -123,7 +123,7 @@ CONTROLS: dict[str, Control] = {
         pays,
         "import os, sys\nos.makedirs('labkit')\nsys.path.insert(0, '')\n"
         "open('labkit/__init__.py', 'w').write('')\n"
-        "open('labkit/course.py', 'w').write('check = lambda name, function: 2.0\\n'\n"
+        "open('labkit/course.py', 'w').write('check = lambda name, function: 1.0\\n'\n"
         "    'from unittest.mock import MagicMock\\nread_question = student = MagicMock()\\n')",
     ),
     "files": cell(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import zipfile
@@ -10,6 +11,7 @@ from pathlib import Path
 from handmade import ROOT
 
 from labkit.course.layout import Course
+from labkit.grader.exchange import read_time
 
 NAME = "01_paths"
 MOODLE = "{}_{}_assignsubmission_file"
@@ -53,15 +55,21 @@ def canvas_writes(name, user, attachment, file, late):
 
 def handed_in(inbound, user, data, when="2026-03-01 10:00:00 UTC", name=NAME, owner=None):
     """A hand-in as nbgrader's exchange holds it."""
-    import os
-
     folder = inbound / f"{user}+{name}+{when}+{len(list(inbound.glob('*')))}"
     folder.mkdir(parents=True)
     (folder / f"{name}.ipynb").write_text(data)
     (folder / "submission_secret.txt").write_text(f"secret of {data}")
+    written_at(folder, when)
     if owner is not None:
         os.chown(folder, owner, owner)
     return folder
+
+
+def written_at(folder, when):
+    """Have a folder and its files last written at a time, if it is one."""
+    if (time := read_time(when)) is not None:
+        for path in (*folder.iterdir(), folder):
+            os.utime(path, (time.timestamp(), time.timestamp()), follow_symlinks=False)
 
 
 def counting(course, name=NAME):

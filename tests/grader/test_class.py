@@ -299,7 +299,7 @@ def test_late_rules_and_timestamps(part):
         assert book.find_submission(NAME, late).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
     marks = {row.student: (row.raw, row.score) for row in marks_of(part, NAME)}
-    assert marks[late] == (20.0, 0.0)
+    assert marks[late] == (FULL, 0.0)
     assert all(raw == score for student, (raw, score) in marks.items() if student != late)
 
 

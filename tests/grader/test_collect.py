@@ -18,6 +18,7 @@ from downloaded import (
     handed_in,
     kept,
     moodle_writes,
+    written_at,
     zipped,
 )
 from handmade import ROOT
@@ -338,6 +339,7 @@ def test_a_secret_that_is_a_link_is_not_followed(bare, tmp_path):
     folder = handed_in(tmp_path / "in", "root", "1")
     (folder / SECRET).unlink()
     (folder / SECRET).symlink_to("/etc/passwd")
+    written_at(folder, "2026-03-01 10:00:00 UTC")
     (said,) = troubles(bare, folder.parent)
     assert f"not taken; {SECRET} is a link" in said
     assert not counting(bare)
@@ -353,6 +355,8 @@ def test_collect_waits_for_nothing_and_follows_nobody(bare, tmp_path, monkeypatc
     link.unlink()
     link.symlink_to("/etc/passwd")
     huge.write_bytes(b" " * 2**21)
+    for folder in folders:
+        written_at(folder, "2026-03-01 10:00:00 UTC")
     said = troubles(bare, tmp_path / "in", unverified=True)
     words = ("is not a file", "is a link or cannot be opened", "has 2 MB, the limit is 1 MB")
     assert [word in x for word, x in zip(words, said, strict=True)] == [True] * 3

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
@@ -13,6 +14,7 @@ from handmade import QUICK
 from made import said_by_hand, saying
 
 from labkit.__main__ import main
+from labkit.course.outcomes import OUTCOMES
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
@@ -166,7 +168,7 @@ def test_grade_says_first_and_never_lowers_unasked(course, monkeypatch):
     assert list((Results(course, NAME).folder / "old").iterdir())
 
 
-def test_class_report(term):
+def test_class_report(term, capsys):
     """The report counts misconceptions by name, and names nobody unless asked."""
     results = list(Results(term, NAME))
     problems = {p.name: p for p in term.problems(NAME)}
@@ -175,6 +177,15 @@ def test_class_report(term):
     assert mistakes
     assert all(name in text for name in mistakes)
     assert not [r.student for r in results if r.student in text]
+    assert main(["class-report", NAME, "--names", "--course", str(term.root)]) == 0
+    told = capsys.readouterr().out
+    assert OUTCOMES["motion"] in told and "`bang_bang`" in told
+    said = sum("twice_the_time" in r.text() and "predict(" in q.source for r in results
+               for q in r.questions if q.verdict.name == "twice_the_time")  # fmt: skip
+    (believed,) = re.findall(r"^- `twice_the_time`: (.*)$", told, re.MULTILINE)
+    assert said > 0 and sum(map(int, re.findall(r"(\d+) (?:x|another)", believed))) == len(
+        [r for r in results if not r.rejected]
+    )
     named = report(NAME, [mark_of(replace(r, rejected="x")) for r in results], problems, str)
     assert all(r.student in named for r in results)
 

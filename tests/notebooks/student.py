@@ -126,7 +126,8 @@ def run_kernel(name, parts, folder):
     nbformat.write(notebook, folder / f"{name}.ipynb")  # which its last cell looks at
     notebook.cells.append(
         nbformat.v4.new_code_cell(
-            "import resource as _r\nprint(_r.getrusage(_r.RUSAGE_SELF).ru_maxrss / 1024)"
+            # getrusage would count the memory of this process, from which the kernel is forked.
+            "print(next(x.split()[1] for x in open('/proc/self/status') if 'VmHWM' in x))"
         )
     )
     place = {"metadata": {"path": str(folder)}}
@@ -140,4 +141,4 @@ def run_kernel(name, parts, folder):
             resources=place,
             config=Config({"KernelManager": files}),
         ).execute()
-    return notebook, float(notebook.cells.pop().outputs[0].text)
+    return notebook, float(notebook.cells.pop().outputs[0].text) / 1024

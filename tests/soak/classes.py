@@ -13,6 +13,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from downloaded import written_at
+
 from labkit.course.layout import Course
 
 from . import hostile
@@ -174,6 +176,7 @@ def write_downloads(course: Path, hostiles: Sequence[Kind]) -> None:
         if len(os.fsencode(who)) < 200:  # with the rest it is no name of a file any more
             path = folder / "inbound" / f"{who}+{NAME}+{when}" / f"{NAME}.ipynb"
             _put(path, json.loads(solved))
+            written_at(path.parent, when)
 
 
 def _plain(name: str | bytes) -> str:

@@ -121,7 +121,7 @@ def test_a_tag_image_shows_the_tag_as_the_picture_does(world):
     """Within the paper every pixel is the same; the rest is blank."""
     ready_arm(world)
     lk.World.put(world, lk.Table())
-    board = lk.Board(world, lk.Tag(), se3.pose(np.eye(3), np.array([0.75, 0.3, -0.2])))
+    board = lk.tags.Board(world, lk.Tag(), se3.pose(np.eye(3), np.array([0.75, 0.3, -0.2])))
     camera = lk.Camera(world, lk.looking_at((1.4, 0.0, 0.4), (0.7, 0.3, -0.2)))
     whole, quick = camera.image(), camera.tag_image()
     T_cm = se3.inverse(camera.T_wc) @ board.T_wm
@@ -137,7 +137,7 @@ def test_a_tag_image_shows_the_tag_as_the_picture_does(world):
 def test_a_tag_image_is_much_quicker(world):
     ready_arm(world)
     lk.World.put(world, lk.Table())
-    lk.Board(world, lk.Tag(), se3.pose(np.eye(3), np.array([0.75, 0.3, -0.2])))
+    lk.tags.Board(world, lk.Tag(), se3.pose(np.eye(3), np.array([0.75, 0.3, -0.2])))
     camera = lk.Camera(world, lk.looking_at((1.4, 0.0, 0.4), (0.7, 0.3, -0.2)))
 
     def quickest(take):
@@ -161,7 +161,7 @@ def test_the_arm_hides_a_tag(world, how):
     facing = se3.pose(
         np.column_stack([[0, 1, 0], [0, 0, 1.0], [1, 0, 0]]), tip + np.array([-0.1, 0, 0.01])
     )
-    lk.Board(world, lk.Tag(size=0.05), facing)
+    lk.tags.Board(world, lk.Tag(size=0.05), facing)
     camera = lk.Camera(world, lk.looking_at(eye, tip))
     assert lk.detect_tags(getattr(camera, how)(), camera, 0.05) == ()
     arm.reset(arm.robot.neutral - [0.8, 0, 0, 0, 0, 0, 0])
@@ -174,7 +174,7 @@ def test_the_hand_camera_sees_the_tag_below_and_moves_with_the_arm(world):
     tip = arm.model.pose(arm.truth().q)
     forward = camera.T_wc[:3, 2]
     np.testing.assert_allclose(forward, tip[:3, 2], atol=1e-6)
-    board = lk.Board(world, lk.Tag(), se3.pose(np.eye(3), camera.T_wc[:3, 3] + 0.45 * forward))
+    board = lk.tags.Board(world, lk.Tag(), se3.pose(np.eye(3), camera.T_wc[:3, 3] + 0.45 * forward))
     found = lk.tags.find_tag(lk.detect_tags(camera.tag_image(), camera, 0.1), 0)
     np.testing.assert_allclose((camera.T_wc @ found.T_cm)[:3, 3], board.T_wm[:3, 3], atol=2e-3)
     before = camera.T_wc

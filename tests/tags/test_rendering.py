@@ -92,7 +92,9 @@ def test_half_of_a_tag_behind_a_block_is_hidden_by_half():
     """The block's colour stands where it is nearer than the paper, and nowhere else."""
     eye = lk.looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))
     with lk.World() as world:
-        lk.Board(world, lk.Tag(), eye @ se3.pose(np.diag([1.0, -1, -1]), np.array([0, 0, 0.7])))
+        lk.tags.Board(
+            world, lk.Tag(), eye @ se3.pose(np.diag([1.0, -1, -1]), np.array([0, 0, 0.7]))
+        )
         camera = lk.Camera(world, eye)
         free = camera.tag_image()
         world.show(Block((0.5, 0.5, 1e-3), (1, 0, 0), eye @ se3.pose(np.eye(3), [0.5, 0, 0.5])))
@@ -112,7 +114,7 @@ def scene():
         tip = arm.model.pose(arm.truth().q)[:3, 3]
         for number, place in enumerate(((0.85, 0.15, -0.2), tip + [0.02, 0.03, -0.1])):
             turn = se3.rotation(np.array([0.0, 0.0, 0.3]))
-            lk.Board(world, lk.Tag(number), se3.pose(turn, np.array(place)))
+            lk.tags.Board(world, lk.Tag(number), se3.pose(turn, np.array(place)))
         lens = lk.Intrinsics().resized(0.5)
         return lk.Camera(world, lk.looking_at((1.6, -0.2, 0.8), (0.7, 0.2, 0.0)), lens).image()
 

@@ -15,7 +15,7 @@ EYE = lk.looking_at((3.0, 3.0, 0.7), (3.0, 3.0, 0.0), up=(1, 0, 0))
 def scene():
     with lk.World() as world:
         place = se3.pose(se3.rotation(np.array([0.1, 0.2, 0.3])), np.array([3.02, 2.97, 0.0]))
-        yield lk.Board(world, lk.Tag(2), place), lk.Camera(world, EYE)
+        yield lk.tags.Board(world, lk.Tag(2), place), lk.Camera(world, EYE)
 
 
 def polled(lookups, seconds, every=5):
@@ -97,7 +97,7 @@ def test_a_blind_stretch_is_blind(scene):
 
 def test_two_boards_with_one_number_stop_the_run_with_a_sentence(scene):
     board, camera = scene
-    lk.Board(board.world, lk.Tag(2), se3.pose(np.eye(3), np.array([3.0, 3.2, 0.0])))
+    lk.tags.Board(board.world, lk.Tag(2), se3.pose(np.eye(3), np.array([3.0, 3.2, 0.0])))
     with lk.Arm("left", world=board.world) as arm:
         pose = arm.model.pose(arm.truth().q)
 

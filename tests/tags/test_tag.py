@@ -74,7 +74,7 @@ def turned(angle, place=(0.7, 0.0, 0.0)):
 
 def test_a_board_stays_is_moved_by_hand_and_moves_on_a_trajectory():
     with lk.World() as world:
-        board = lk.Board(world, lk.Tag(), turned(0.3))
+        board = lk.tags.Board(world, lk.Tag(), turned(0.3))
         world.step(100)
         np.testing.assert_array_equal(board.T_wm, turned(0.3))
         board.place(turned(0.5))
@@ -90,7 +90,7 @@ def test_a_board_stays_is_moved_by_hand_and_moves_on_a_trajectory():
 
 def test_a_board_follows_a_trajectory_of_poses():
     with lk.World() as world:
-        board = lk.Board(world, lk.Tag(), turned(0.0))
+        board = lk.tags.Board(world, lk.Tag(), turned(0.0))
         line = lk.Line([0.7, 0, 0], [0.7, 0.2, 0])
         path = lk.PosePath(line, np.eye(3), turned(1.0)[:3, :3])
         board.move(lk.Trajectory(path, lk.Cubic(1.0)))
@@ -103,7 +103,7 @@ def test_several_boards_are_seen_at_once():
     with lk.World() as world:
         down = np.diag([1.0, -1.0, -1.0])
         for number, x, size in ((4, 2.9, 0.1), (9, 3.1, 0.06)):
-            lk.Board(world, lk.Tag(number, size), turned(0.0, (x, 3.0, 0.0)))
+            lk.tags.Board(world, lk.Tag(number, size), turned(0.0, (x, 3.0, 0.0)))
         camera = lk.Camera(world, se3.pose(down, np.array([3.0, 3.0, 0.7])))
         seen = lk.detect_tags(camera.image(), camera, {4: 0.1, 9: 0.06})
         assert [d.id for d in seen] == [4, 9]
@@ -114,7 +114,7 @@ def test_several_boards_are_seen_at_once():
 
 def test_a_motion_of_joint_angles_moves_no_board():
     with lk.World() as world:
-        board = lk.Board(world, lk.Tag(), turned(0.0))
+        board = lk.tags.Board(world, lk.Tag(), turned(0.0))
         with pytest.raises(TypeMismatch, match=r"lk\.PoseSample"):
             board.move(lk.Hold(np.zeros(7), 1.0))
         with pytest.raises(TypeMismatch, match=r"expected a function of time; board\.place"):
@@ -125,4 +125,4 @@ def test_a_board_is_a_tag_in_a_world():
     with lk.Arm("left") as arm:
         for world, tag in ((arm.world, 5), (arm, lk.Tag(5))):
             with pytest.raises(TypeMismatch, match=r"a World .an arm's is arm.world. and a Tag"):
-                lk.Board(world, tag, turned(0.0))
+                lk.tags.Board(world, tag, turned(0.0))

@@ -129,7 +129,10 @@ def _printing(notebook):
 
 
 def _emoji(notebook):
-    """One cell answers all questions, with a comment of a million emoji."""
+    """One cell answers all questions, with a comment of a million emoji.
+
+    Zero is wrong everywhere, but one prediction is a number, and committing to any earns its point.
+    """
     names = [
         c["metadata"]["nbgrader"]["grade_id"]
         for c in notebook["cells"]
@@ -199,7 +202,7 @@ def _names(notebook):
 
 FILES = {
     "900 cells that print": Attack("fills", shape=_printing),
-    "a comment of a million emoji": Attack("fills", shape=_emoji),
+    "a comment of a million emoji": Attack("fills", shape=_emoji, earns=1.0),
     "a text of two million emoji": Attack("fills", shape=_own_text),
     "900 cells that fail": Attack("hangs", shape=_failing),
     "900 cells that lean on one another": Attack("fills", shape=_chained),

@@ -1,0 +1,219 @@
+"""Page "Comparison": what chance does to a mean, and the report's claims worked by hand."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+from scipy.stats import t as student
+
+from labkit import metrics
+from solutions.comparison.answers import paired_difference
+from solutions.study import campaign
+from solutions.study.campaign import BASELINE
+from solutions.study.claims import interval
+from solutions.study.grid import pick
+
+from .claims import claim
+from .comparison import found
+from .page import Question, figure, number, numbers, quiz
+from .tags_worked import by_hand
+
+PATHS = [task for task in campaign.TASKS if task != "tag"]
+FIRST = (10.4, 8.8, 12.1, 9.5, 11.2)
+SECOND = (9.9, 8.1, 11.7, 8.7, 10.6)
+"""Errors of two made-up controllers in [mm], seed by seed."""
+CLAIMS = 8
+
+
+def differences(way: str) -> dict[str, list[float]]:
+    """A controller's error minus the baseline's in [mm], for each path, seed by seed."""
+    rows = {(r["way"], r["task"], r["seed"]): r["late_rms_mm"]
+            for r in pick(found()["rows"], plant="baxter")}  # fmt: skip
+    seeds = sorted({seed for name, task, seed in rows if task in PATHS})
+    return {
+        task: [
+            rows[way, task, seed] - rows[BASELINE, task, seed]
+            for seed in seeds
+            if (way, task, seed) in rows and (BASELINE, task, seed) in rows
+        ]
+        for task in PATHS
+    }
+
+
+def one_number() -> None:
+    """The error of a run, worked by hand."""
+    e = np.array(((3.0, 4.0, 0.0), (0.0, 0.0, 1.0)))
+    by_hand("the RMS error is 3.6 mm", 3.6, metrics.rms(e), 0.01)
+    by_hand("the number would be 2.1 mm", 2.1, float(np.sqrt(np.mean(e**2))), 0.02)
+    by_hand("the mean length is 3 mm", 3.0, float(np.mean(np.linalg.norm(e, axis=1))))
+
+
+def five_pairs() -> None:
+    """Two made-up controllers, compared with pairs and without."""
+    mean, half = paired_difference(FIRST, SECOND)
+    d = np.subtract(FIRST, SECOND)
+    by_hand("The mean difference is 0.60 mm", 0.60, mean)
+    by_hand("have a standard deviation of 0.158 mm", 0.158, d.std(ddof=1))
+    by_hand("0.158/\\sqrt5$ = 0.0707 mm", 0.0707, d.std(ddof=1) / math.sqrt(5.0))
+    by_hand("the half width is 0.20 mm", 0.20, half, 0.03)
+    spread = [float(np.std(x, ddof=1)) for x in (FIRST, SECOND)]
+    claim(
+        "scatter by 1.31 mm and 1.44 mm",
+        lambda s: np.allclose(s, (1.31, 1.44), rtol=0.01),
+        s=spread,
+    )
+    apart = float(student.ppf(0.975, 8) * math.hypot(*spread) / math.sqrt(5.0))
+    by_hand("an interval of ± 2.0 mm", 2.0, apart, 0.02)
+    rho = float(np.corrcoef(FIRST, SECOND)[0, 1])
+    by_hand("a correlation of 0.998", 0.998, rho, 0.002)
+
+
+def units() -> None:
+    """The claim about the joint torque PD, worked by hand from the tasks' means."""
+    means = [float(np.mean(d)) for d in differences("joint torque").values()]
+    whole = interval("tasks", means, CLAIMS)
+    deviation = float(np.std(means, ddof=1))
+    numbers({f"unit_{task}": m for task, m in zip(PATHS, means, strict=True)}, ".2f")
+    number("unit_mean", whole.mean, ".2f")
+    number("unit_deviation", deviation, ".2f")
+    number("unit_error", deviation / math.sqrt(3.0), ".2f")
+    number("unit_half", whole.half_width, ".1f")
+    by_hand("is 12.59 instead of 4.30", 12.59, student.ppf(1.0 - 0.025 / CLAIMS, 2), 1e-3)
+    by_hand("instead of 4.30", 4.30, student.ppf(0.975, 2), 1e-3)
+    by_hand("five is 5.26", 5.26, student.ppf(1.0 - 0.025 / CLAIMS, 4), 1e-3)
+    claim("Two of the three paths are decided", lambda n: n == 2.0, n=_decided("joint torque"))
+
+
+def _decided(way: str) -> int:
+    """On how many paths the interval over the seeds does not hold zero."""
+    alone = [interval(task, d, CLAIMS) for task, d in differences(way).items()]
+    return sum(abs(x.mean) > x.half_width for x in alone)
+
+
+def more_seeds() -> None:
+    """How little further seeds would help: shares of the variance, and what would remain."""
+    d = np.array(list(differences("joint torque").values()))
+    within = float(np.mean(d.var(axis=1, ddof=1)))
+    tasks = float(d.mean(axis=1).var(ddof=1))
+    between = tasks - within / d.shape[1]
+    t = float(student.ppf(1.0 - 0.025 / CLAIMS, 2))
+    endless = t * math.sqrt(between / 3.0)
+    claim(
+        "No number of seeds would decide it",
+        lambda mean, half: half > 2.0 * mean > 0.0,
+        mean=float(d.mean()),
+        half=endless,
+    )
+    numbers({"within": within, "between": between, "endless": endless}, ".2g")
+    t = float(student.ppf(1.0 - 0.025 / CLAIMS, 11))
+    number("twelve_tasks", t * math.sqrt((between + within / 5.0) / 12.0), ".1f")
+
+
+def luck() -> None:
+    """How often pure noise passes for a result."""
+    random = np.random.default_rng(3)
+    many = 4000
+    b, w = random.standard_normal((many, 3, 1)), 0.5 * random.standard_normal((many, 3, 5))
+    d = b + w
+
+    def wrong(x: np.ndarray) -> float:
+        n = x.shape[1]
+        half = student.ppf(0.975, n - 1) * x.std(axis=1, ddof=1) / math.sqrt(n)
+        return 100.0 * float(np.mean(np.abs(x.mean(axis=1)) > half))
+
+    pooled, by_task = wrong(d.reshape(many, 15)), wrong(d.mean(axis=2))
+    claim(
+        "Pooled, the intervals are wrong far more often than they say",
+        lambda rates: rates[0] > 20.0 > 7.0 > rates[1] > 3.0,
+        rates=[pooled, by_task],
+    )
+    numbers({"wrong_pooled": pooled, "wrong_tasks": by_task}, ".2g")
+
+
+def two_units() -> HTML:
+    """Every difference of one claim, and two intervals that they could support."""
+    d = differences("joint torque")
+    _, ax = plt.subplots(figsize=(6.2, 3.3))
+    for k, x in enumerate(d.values()):
+        y = 2.0 - k + 0.05 * (np.arange(len(x)) - 2)
+        ax.plot(x, y, "o", color=f"C{k}", mfc="none")
+        ax.plot(np.mean(x), 2.0 - k, "|", color=f"C{k}", markersize=24, markeredgewidth=2.5)
+    means = [float(np.mean(x)) for x in d.values()]
+    pairs = [x for row in d.values() for x in row]
+    kinds = (("the 15 pairs, pooled", interval("pairs", pairs, CLAIMS), "C5", -1.0),
+             ("the 3 tasks", interval("tasks", means, CLAIMS), "C4", -2.0))  # fmt: skip
+    for _, mean, ink, height in kinds:
+        ax.errorbar(mean.mean, height, xerr=mean.half_width, color=ink, capsize=6, fmt="s")
+    ax.axvline(0.0, color="#57606a", linewidth=0.9)
+    ax.set_yticks([2.0, 1.0, 0.0, -1.0, -2.0], [*PATHS, *(name for name, *_ in kinds)])
+    ax.set(xlabel="joint torque PD minus baseline [mm]", ylim=(-2.6, 2.6))
+    told = "; ".join(f"on the {t} {np.mean(x):.2g} mm" for t, x in d.items())
+    pooled, tasks = (x for _, x, _, _ in kinds)
+    return figure(
+        "One ring for each seed, one bar for the mean of each path. Below, the interval that 15 "
+        "independent pairs would support, and the one that three paths do.",
+        f"Rings in three rows; their means are {told}. The interval of the pooled pairs is "
+        f"{pooled.mean:.2g} ± {pooled.half_width:.2g} mm and does not reach zero; that of the "
+        f"three tasks is {tasks.mean:.2g} ± {tasks.half_width:.2g} mm and holds zero.",
+    )
+
+
+def pairing() -> HTML:
+    """Two clouds that overlap, and the differences that do not."""
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 2.9), width_ratios=(1.6, 1.0))
+    for a, b in zip(FIRST, SECOND, strict=True):
+        left.plot([0.0, 1.0], [a, b], "-", color="#999999", linewidth=1.0)
+    left.plot(np.zeros(5), FIRST, "C0o")
+    left.plot(np.ones(5), SECOND, "C1s")
+    left.set_xticks([0.0, 1.0], ["first", "second"])
+    left.set(xlim=(-0.4, 1.4), ylabel="error [mm]")
+    mean, half = paired_difference(FIRST, SECOND)
+    right.plot(np.zeros(5), np.subtract(FIRST, SECOND), "C3o", mfc="none")
+    right.errorbar(0.35, mean, yerr=half, color="C3", fmt="s", capsize=6)
+    right.axhline(0.0, color="#57606a", linewidth=0.9)
+    right.set_xticks([0.0, 0.35], ["each", "mean"])
+    right.set(xlim=(-0.3, 0.65), ylabel="first minus second [mm]", ylim=(-0.2, 1.1))
+    return figure(
+        "Two controllers over five seeds (made-up numbers). Left, the errors, each seed a line; "
+        "right, the differences and the interval of their mean.",
+        f"On the left five falling lines between two clouds that overlap almost wholly, from "
+        f"{min(SECOND)} to {max(FIRST)} mm. On the right five differences from 0.4 to 0.8 mm and "
+        f"their mean {mean:.2g} ± {half:.2g} mm, well above zero.",
+    )
+
+
+def check_yourself() -> HTML:
+    """The quiz of the chapter."""
+    return quiz(
+        Question(
+            "Ten seeds on one circle give 0.8 ± 0.1 mm for the difference of two controllers. What "
+            "has been decided?",
+            [
+                ("The first tracks worse", "Perhaps only on circles; no other path was run."),
+                ("The first tracks worse on this circle", "Yes: seeds are looks at this circle."),
+                ("Nothing, ten are too few", "The interval knows that there were ten."),
+            ],
+            1,
+        ),
+        Question(
+            "The interval over the tasks is 1.1 ± 5 mm. What may you write?",
+            [
+                ("The controllers are equally good", "It could be 6 mm in favour of one of them."),
+                ("The first is worse by 1.1 mm", "That is the estimate without its uncertainty."),
+                ("Undecided; between −4 and 6 mm", "Yes: the interval is the result."),
+            ],
+            2,
+        ),
+        Question(
+            "You have time for 20 more runs. What narrows the interval over three tasks most?",
+            [
+                ("Twenty more seeds on the line", "They only sharpen the mean of one task."),
+                ("Four new paths with five seeds each", "Yes: seven units instead of three."),
+                ("Seven more seeds on each path", "The spread between the paths stays as it is."),
+            ],
+            1,
+        ),
+    )

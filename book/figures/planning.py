@@ -1,0 +1,121 @@
+"""Instructor's guide: what each notebook takes and gives, and what marking costs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import nbformat
+from IPython.display import HTML
+
+from labkit.course.identification import Identification
+from labkit.course.layout import Course
+from labkit.course.outcomes import OUTCOMES
+
+from .front import NOTEBOOKS
+from .page import holds, number, table
+
+COURSE = Course(Path(__file__).parents[2])
+REPORT = "08_report"
+NEEDS = {
+    "00_warmup": "numpy",
+    "01_paths": "00",
+    "02_model": "00, calculus of several variables",
+    "03_velocity_control": "00, the idea of the Jacobian",
+    "04_torque_control": "00, the equation of motion",
+    "05_impedance": "04 or its introduction",
+    "06_tags": "01 and 03, or their introductions",
+    "07_comparison": "any two of 03, 04, 05",
+    REPORT: "07; an arm of one's own from 03",
+}
+"""What a student should have done before."""
+HOURS = {**{name: hours for name, (_, hours) in NOTEBOOKS.items()}, REPORT: 4}
+CLASS, TEAM = 200, 3
+"""Students, and how many of them write a report together, in the example of what marking costs."""
+MINUTES = {
+    "two whys of each student, of about 25 to 80 words": 2 * 0.75,
+    "a report of four pages, with its rubric": 12.0 / TEAM,
+    "a talk about it: ten minutes with the team, one question to each": 10.0 / TEAM,
+    "contested marks, with labkit explain": 0.3,
+}
+"""What a person does, in minutes for each student: estimates, measured by nobody."""
+TRACKS = {
+    "2 weeks": ("00", "01", "03"),
+    "6 weeks": ("00", "01", "03", "04", "05"),
+    "12 weeks": tuple(name[:2] for name in HOURS),
+}
+
+
+def planning() -> HTML:
+    """Hours and points of each notebook, by whom they are marked, and what comes before."""
+    rows: list[tuple[str, ...]] = []
+    for name, hours in HOURS.items():
+        machine, hand = _points(name)
+        rows.append((name, f"{hours}", f"{machine:g}", f"{hand:g}", NEEDS[name]))
+    totals = [sum(float(row[k]) for row in rows) for k in (1, 2, 3)]
+    rows.append(("together", *(f"{x:g}" for x in totals), ""))
+    return table(
+        ("Notebook", "Hours", "Points by machine", "Points by hand", "Before it"),
+        rows,
+        "Hours are for a student who has basic numpy and has read the chapter",
+    )
+
+
+def _points(name: str) -> tuple[float, float]:
+    """Points that the grader gives, and points that a person gives."""
+    path = COURSE.root / "assignments" / name / f"{name}.ipynb"
+    cells = [c.metadata.get("nbgrader", {}) for c in nbformat.read(path, as_version=4).cells]
+    graded = [c for c in cells if c.get("grade")]
+    hand = sum(c["points"] for c in graded if c["solution"])
+    return sum(c["points"] for c in graded) - hand, hand
+
+
+def syllabi() -> HTML:
+    """Which notebooks fit into a term."""
+    rows = []
+    for weeks, numbers in TRACKS.items():
+        hours = sum(h for name, h in HOURS.items() if name[:2] in numbers)
+        each = hours / float(weeks.split()[0])
+        what = "all, and the report" if len(numbers) == len(HOURS) else ", ".join(numbers)
+        rows.append((weeks, what, hours, f"{each:.2g}"))
+    return table(
+        ("You have", "Notebooks", "Student hours", "Hours a week"), rows,
+        "Three syllabi; reading the chapters and talking about them comes on top",
+    )  # fmt: skip
+
+
+def numbers_told() -> None:
+    """What marking costs, and which points are for what, for the prose."""
+    whole = sum(MINUTES.values())
+    number("marking_minutes", whole, ".0f")
+    number("marking_hours", whole * CLASS / 60.0, ".0f")
+    functions = sum(p.points for name in NOTEBOOKS for p in COURSE.problems(name))
+    asked = [one for name in NOTEBOOKS for one in COURSE.predictions(name)]
+    own_arm = sum(one.points for one in asked if isinstance(one, Identification))
+    everything = sum(sum(_points(name)) for name in NOTEBOOKS)
+    number("points_functions", functions, "g")
+    number("points_arm", own_arm, "g")
+    number("points_whys", everything - functions - own_arm, "g")
+
+
+def outcomes() -> HTML:
+    """What a student can do afterwards, and where the evidence is."""
+    evidence: dict[str, list[str]] = {name: [] for name in OUTCOMES}
+    for notebook in NOTEBOOKS:
+        for outcome in {name for one in COURSE.problems(notebook) for name in one.outcomes}:
+            evidence[outcome].append(notebook[:2])
+    holds(all(evidence.values()), "every outcome has its evidence")
+    rows = [(sentence, ", ".join(evidence[name])) for name, sentence in OUTCOMES.items()]
+    return table(("A student can then", "Notebooks"), rows, "Eight outcomes, and their evidence")
+
+
+def marking() -> HTML:
+    """What people do, in minutes for a student and in hours for a class."""
+    rows = [(what, f"{m:.1f}", f"{m * CLASS / 60:.0f}") for what, m in MINUTES.items()]
+    whole = sum(MINUTES.values())
+    rows.append(("together", f"{whole:.1f}", f"{whole * CLASS / 60:.0f}"))
+    holds(whole < 10.0, "less than ten minutes for each student")
+    return table(
+        ("By hand", "Minutes a student", f"Hours for {CLASS} students"),
+        rows,
+        f"Estimates for a whole term, with reports by teams of {TEAM}",
+    )

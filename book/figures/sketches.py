@@ -1,0 +1,209 @@
+"""Drawings that explain: nothing in them is measured, everything is computed by the formulas."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit.plotting import STYLES
+from solutions.study.singular import damped_inverse
+from solutions.study.workspace_velocity import WorkspaceVelocityPD
+
+from .page import FAINT, FRAME, figure
+
+ROD = 0.4
+
+
+def where_and_when() -> HTML:
+    """One curve on two schedules, and the two parts of the acceleration at one point."""
+    s = np.linspace(0.0, 1.0, 201)
+    x, y = _arc(s)
+    fig, (top, side) = plt.subplots(1, 2, figsize=(6.4, 2.9), width_ratios=(1.25, 1.0))
+    for k, (name, schedule, away) in enumerate(
+        (("constant pace", None, 0.06), ("quintic", lk.Quintic(1.0), -0.06))
+    ):
+        at = np.linspace(0.0, 1.0, 11)
+        at = at if schedule is None else np.array([schedule(t)[0] for t in at])
+        px, py = _arc(at, 1.0 + away)
+        top.plot(*_arc(s, 1.0 + away), color=FAINT, linewidth=1.0)
+        top.plot(px, py, f"C{k}{'os'[k]}", markersize=5, label=name)
+    top.set(title="Where the hand is at equal times", xlim=(-1.2, 1.2), ylim=(-0.1, 1.5))
+    top.legend(loc="upper center", ncols=2, fontsize="small")
+    side.plot(x, y, color=FAINT, linewidth=1.4)
+    here = np.array(_arc(np.array([0.3]))).ravel()
+    along = np.array((np.sin(0.3 * np.pi), np.cos(0.3 * np.pi)))
+    across = -here
+    for vector, ink, text, shift in (
+        (0.55 * along, "C1", "x′ s̈", (0.03, 0.05)),
+        (0.6 * across, "C2", "x″ ṡ²", (0.05, -0.1)),
+        (0.55 * along + 0.6 * across, "C0", "sum", (0.05, -0.02)),
+    ):
+        _arrow(side, here, vector, ink)
+        side.text(*(here + vector + shift), text, color=ink, fontsize="small")
+    side.plot(*here, "o", color=FRAME, markersize=5)
+    side.set(title="Its acceleration at one point", xlim=(-1.2, 1.2), ylim=(-0.1, 1.5))
+    for ax in (top, side):
+        ax.set_aspect("equal")
+        ax.axis("off")
+    return figure(
+        "The same path on two schedules, and the two parts of the acceleration: along the path "
+        "where the pace changes, across it where the path bends.",
+        "Left: a half circle drawn twice with eleven dots at equal times. At constant pace the "
+        "dots are evenly spaced; on the quintic they are close together at both ends and far "
+        "apart in the middle. Right: at one point of the half circle an arrow along it, x prime "
+        "times s double dot, an arrow to the centre, x double prime times s dot squared, and "
+        "their sum.",
+        fig=fig,
+    )
+
+
+def _arc(s: np.ndarray, radius: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """A half circle from left to right."""
+    return -radius * np.cos(np.pi * s), radius * np.sin(np.pi * s)
+
+
+def two_links() -> HTML:
+    """The arm of two rods at the pose that is worked by hand, and the columns of its Jacobian."""
+    shoulder, elbow, hand = np.array(((0.0, 0.0), (ROD, 0.0), (ROD, ROD)))
+    _, axes = plt.subplots(1, 2, figsize=(6.4, 3.4))
+    left, right = axes
+    for ax in axes:
+        ax.plot(*np.array((shoulder, elbow, hand)).T, color=FRAME, linewidth=4)
+        ax.plot(*shoulder, "s", color=FRAME, markersize=9)
+        ax.plot(*np.array((elbow, hand)).T, "o", color=FRAME, markersize=8)
+    left.plot(*np.array((shoulder, hand)).T, ":", color=FAINT, linewidth=1.4)
+    for start, text, ink, shift in (
+        (shoulder, "shoulder alone", "C0", (-0.16, 0.05)),
+        (elbow, "elbow alone", "C1", (-0.2, -0.06)),
+    ):
+        arm = hand - start
+        turned = 0.6 * np.array((-arm[1], arm[0]))
+        _arrow(left, hand, turned, ink)
+        left.text(*(hand + turned + shift), text, color=ink, fontsize="small")
+    left.text(0.04, -0.09, "m₁ = 4 kg at the elbow", fontsize="small")
+    left.text(0.44, 0.36, "m₂ = 2 kg", fontsize="small")
+    left.text(-0.1, 0.86, "What each joint does to the hand")
+    angle = np.linspace(0.0, 2.0 * np.pi, 121)
+    J = np.array(((-ROD, -ROD), (ROD, 0.0)))
+    ring = hand[:, None] + 0.45 * J @ np.array((np.cos(angle), np.sin(angle)))
+    right.plot(*ring, "C2-")
+    _arrow(right, hand, (0.18, 0.0), "C3")
+    _arrow(right, hand, (0.0, 0.18), "C4")
+    right.text(0.67, 0.385, "feels 2 kg", color="C3", fontsize="small")
+    right.text(0.42, 0.6, "feels 6 kg", color="C4", fontsize="small")
+    right.text(0.03, 0.66, "speeds\nof the hand", color="C2", fontsize="small")
+    right.text(-0.1, 0.86, "Directions are not alike")
+    for ax in axes:
+        ax.set(xlim=(-0.12, 0.92), ylim=(-0.16, 0.94), aspect="equal")
+        ax.axis("off")
+    return figure(
+        "The arm of two rods, level upper arm and upright forearm. Left: the two columns of its "
+        "Jacobian. Right: how fast the hand can move, and what a push at it feels.",
+        "A shoulder at the left, an elbow 0.4 m to its right with a mass of 4 kg, a hand 0.4 m "
+        "above the elbow with a mass of 2 kg. Left: the shoulder alone moves the hand back and up, "
+        "at right angles to the dotted line from shoulder to hand; the elbow alone moves it "
+        "straight back. Right: an ellipse of the hand's speeds, long towards back and up; a "
+        "horizontal push feels 2 kg and a vertical one 6 kg.",
+    )
+
+
+def loop() -> HTML:
+    """The loop of a joint that is commanded in speeds."""
+    _, ax = plt.subplots(figsize=(6.4, 2.7))
+    boxes = {
+        "Kp": (2.3, 1.0), "drive\n1/(τᵥs + 1)": (5.3, 1.0), "1/s": (7.5, 1.0),
+        "age δ": (4.6, -0.6),
+    }  # fmt: skip
+    for text, (x, y) in boxes.items():
+        ax.text(x, y, text, ha="center", va="center", fontsize="small",
+                bbox={"boxstyle": "round,pad=0.45", "facecolor": "none",
+                      "edgecolor": FRAME})  # fmt: skip
+    for x in (1.0, 3.6):
+        ax.plot(x, 1.0, "o", markersize=13, markerfacecolor="none", markeredgecolor=FRAME)
+        ax.text(x, 1.0, "+" if x > 2 else "−", ha="center", va="center", fontsize="small")
+    for start, end in (
+        ((0.0, 1.0), (0.78, 1.0)), ((1.22, 1.0), (1.9, 1.0)), ((2.7, 1.0), (3.38, 1.0)),
+        ((3.82, 1.0), (4.45, 1.0)), ((6.15, 1.0), (7.1, 1.0)), ((7.9, 1.0), (9.2, 1.0)),
+        ((3.6, 2.1), (3.6, 1.3)), ((8.5, -0.6), (5.15, -0.6)), ((1.0, -0.6), (1.0, 0.7)),
+    ):  # fmt: skip
+        _arrow(ax, start, np.subtract(end, start), FRAME)
+    ax.plot((8.5, 8.5), (1.0, -0.6), color=FRAME, linewidth=1.4)
+    ax.plot((4.05, 1.0), (-0.6, -0.6), color=FRAME, linewidth=1.4)
+    for x, y, text in (
+        (0.3, 1.25, "$q_d$"), (1.5, 1.25, "e"), (3.75, 1.95, "feed-forward, speed of the target"),
+        (4.05, 1.25, "u"), (6.6, 1.25, "q̇"), (8.9, 1.25, "q"),
+    ):  # fmt: skip
+        ax.text(x, y, text, ha="left" if len(text) > 9 else "center", fontsize="small")
+    ax.set(xlim=(-0.1, 9.4), ylim=(-1.1, 2.4))
+    ax.axis("off")
+    return figure(
+        "The loop of this chapter for one joint, with Kd = 0. The drive lags behind its command "
+        "and what the controller knows is old; both limit the gain.",
+        "A block diagram. The target q d minus the measured q is the error e; Kp times e plus the "
+        "speed of the target is the command u. The drive, a lag, turns u into the joint's speed, "
+        "an integrator turns that into the angle q, and q returns to the difference with the "
+        "age delta.",
+    )
+
+
+def null_space() -> HTML:
+    """An arm of three rods holds its hand still while its elbows move."""
+    hand, rod = np.array((0.75, 0.0)), 0.4
+    _, ax = plt.subplots(figsize=(5.6, 2.6))
+    for k, first in enumerate((0.75, 1.05, 1.3)):
+        one = rod * np.array((np.cos(first), np.sin(first)))
+        gap = hand - one
+        reach = np.linalg.norm(gap)
+        bend = np.arccos(reach / (2.0 * rod))
+        course = np.arctan2(gap[1], gap[0]) + bend
+        two = one + rod * np.array((np.cos(course), np.sin(course)))
+        ax.plot(*np.array(((0.0, 0.0), one, two, hand)).T, f"C{k}o{STYLES[k]}", markersize=5)
+    ax.plot(*hand, "*", color=FRAME, markersize=13)
+    ax.plot(0.0, 0.0, "s", color=FRAME, markersize=9)
+    ax.text(hand[0] + 0.03, -0.05, "the hand stays", fontsize="small")
+    ax.set(aspect="equal", xlim=(-0.1, 1.15), ylim=(-0.12, 0.55))
+    ax.axis("off")
+    return figure(
+        "Three joints, two coordinates: one motion is left over. The hand is at the same point in "
+        "all three poses.",
+        "An arm of three equal rods in a plane, drawn in three poses. Shoulder and hand are at "
+        "the same points each time; the two elbows move sideways from one pose to the next.",
+    )
+
+
+def damped() -> HTML:
+    """What an inverse and a damped inverse ask for, and what the damped one loses."""
+    damping = WorkspaceVelocityPD.damping
+    sigma = np.linspace(0.004, 0.4, 200)
+    factor = np.array([damped_inverse(np.array([[x]]), damping)[0, 0] for x in sigma])
+    _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 2.8))
+    left.plot(sigma, 1.0 / sigma, "C1--", label="1/σ")
+    left.plot(sigma, factor, "C0-", label="σ/(σ² + λ²)")
+    left.axvline(np.sqrt(damping), color=FAINT, linestyle=":")
+    left.set(
+        xlabel="singular value σ [m/rad]", ylabel="joint speed for 1 m/s [rad/s]", ylim=(0, 20)
+    )
+    left.legend(fontsize="small")
+    right.plot(sigma, 100.0 * (1.0 - sigma * factor), "C0-")
+    right.axvline(np.sqrt(damping), color=FAINT, linestyle=":")
+    right.set(
+        xlabel="singular value σ [m/rad]", ylabel="lost share of the motion [%]", ylim=(0, 100)
+    )
+    return figure(
+        f"The damped inverse with λ² = {damping:g}. The dotted line is at σ = λ.",
+        f"Left: one over sigma grows without bound towards sigma = 0, the damped factor peaks at "
+        f"{factor.max():.1f} where sigma is {sigma[factor.argmax()]:.3f} and falls to zero. Right: "
+        "the share of the motion that is lost, all of it at sigma = 0, half of it at sigma = "
+        f"lambda, {100 * (1 - sigma[-1] * factor[-1]):.1f} per cent at {sigma[-1]:g}.",
+    )
+
+
+def _arrow(ax: Any, start: Any, along: Any, ink: str) -> None:
+    """A vector from a point."""
+    ax.annotate("", np.add(start, along), start,
+                arrowprops={"arrowstyle": "-|>", "color": ink, "linewidth": 1.8,
+                            "shrinkA": 0, "shrinkB": 0})  # fmt: skip

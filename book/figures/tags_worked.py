@@ -1,0 +1,275 @@
+"""Chapter "Tags and cameras": its two drawings, its numbers worked by hand, and where to aim."""
+
+from __future__ import annotations
+
+import math
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import labkit as lk
+from labkit.tags.detection import pose_covariance, tag_pose
+from labkit.tags.estimation import Estimate, first_estimate, update
+from labkit.tags.intrinsics import Intrinsics
+from solutions.study.tag_task import LAP, RADIUS
+from solutions.tags.following import blend, carry_forward
+
+from .claims import claim
+from .page import figure, numbers
+from .tags import FOCAL, SIZE, ambiguity_gap, swaying
+
+LENS = Intrinsics(width=640, height=480, fx=FOCAL, fy=FOCAL)
+AHEAD, PERIOD, SPEED = 0.55, 0.1, 0.1
+BELIEFS = {"it stays": 1, "it goes straight on": 2, "it goes on bending": 3}
+"""How many of position, velocity and acceleration a belief has."""
+
+
+def by_hand(words: str, value: float, actual: float, near: float = 0.01) -> None:
+    """Bind a sentence to a number that a reader can work out and the code confirms."""
+    claim(words, lambda x: math.isclose(x, value, rel_tol=near), x=float(actual))
+
+
+def frames() -> HTML:
+    """The frames of a camera beside the table, and the chain through them."""
+    _, ax = plt.subplots(figsize=(6.4, 3.5))
+    at = {"w": (0.0, 0.0), "c": (6.5, 2.5), "m": (4.9, 0.25), "t": (4.9, 1.6)}
+    turn = {"w": 0.0, "c": -2.19, "m": 0.0, "t": math.pi}
+    for name, (x, y) in at.items():
+        for axis in (0.0, math.pi / 2):
+            a = turn[name] + axis
+            ax.annotate(
+                "", (x + 0.42 * math.cos(a), y + 0.42 * math.sin(a)), (x, y),
+                arrowprops={"arrowstyle": "->", "color": "#57606a"},
+            )  # fmt: skip
+    ax.plot([4.5, 5.3], [0.25, 0.25], color="#1f2328", linewidth=5, solid_capstyle="butt")
+    arm = ((0, 0.9, 2.3, 4.1, 4.9, 4.9), (0, 1.3, 1.75, 2.3, 2.2, 1.6))
+    ax.plot(*arm, color="#999999", linewidth=7)
+    for corner in (4.5, 5.3):
+        ax.plot([at["c"][0], corner], [at["c"][1], 0.25], color="#999999", linewidth=0.9)
+    links = (("w", "c", "C0", "$T_{wc}$", (2.3, 1.05)), ("c", "m", "C1", "$T_{cm}$", (5.95, 1.2)),
+             ("w", "m", "C3", "$T_{wm} = T_{wc}\\,T_{cm}$", (1.9, -0.2)))  # fmt: skip
+    for start, end, ink, text, place in links:
+        arrow = {"arrowstyle": "-|>", "color": ink, "lw": 1.8}
+        ax.annotate("", at[end], at[start], arrowprops=arrow)
+        ax.text(*place, text, color=ink)
+    ax.annotate("", at["t"], at["m"], arrowprops={"arrowstyle": "<->", "color": "C2", "lw": 1.5})
+    ax.text(3.05, 0.75, "20 cm, to be kept", color="C2", fontsize="small")
+    names = {"w": (-0.35, -0.3, "w world"), "c": (6.65, 2.6, "c camera"), "m": (5.4, 0.15, "m tag"),
+             "t": (4.05, 1.75, "t tip")}  # fmt: skip
+    for x, y, text in names.values():
+        ax.text(x, y, text)
+    ax.set(xlim=(-0.5, 8.2), ylim=(-0.5, 3.1), aspect="equal")
+    ax.axis("off")
+    return figure(
+        "Four frames. The camera measures the tag in its own frame; the arm needs it in the "
+        "world's; the tip is to stay above it.",
+        "A side view. An arm reaches from the world frame w on the left to its tip t on the right, "
+        "above the tag m on a board. A camera c looks down at the tag. Arrows lead from w "
+        "to c, from c to m and from w to m; the third is the product of the first two.",
+    )
+
+
+def timeline() -> HTML:
+    """When pictures are taken, when they arrive, and what is known in between."""
+    _, ax = plt.subplots(figsize=(6.4, 2.7))
+    for k in range(4):
+        taken, arrived = 100.0 * k, 100.0 * k + 100.0
+        ax.plot(taken, 1.0, "o", color="C0")
+        ax.annotate(
+            "", (arrived, 0.0), (taken, 1.0), arrowprops={"arrowstyle": "->", "color": "C0"}
+        )
+        ax.plot([arrived, arrived + 100.0], [0.0, 0.0], color=f"C{k % 3}", linewidth=5,
+                solid_capstyle="butt")  # fmt: skip
+        ax.text(arrived + 50.0, -0.17, f"picture {k}", ha="center", va="top",
+                fontsize="small")  # fmt: skip
+    ax.annotate("", (360.0, 0.45), (200.0, 0.45), arrowprops={"arrowstyle": "|-|", "color": "C1"})
+    ax.text(280.0, 0.53, "its age now: 160 ms", ha="center", color="C1", fontsize="small")
+    ax.axvline(360.0, ymin=0.18, ymax=0.86, color="C1", linestyle=":")
+    ax.text(362.0, 1.02, "now", color="C1")
+    ax.set_yticks([1.0, 0.0], ["taken", "arrived"])
+    ax.set(xlabel="time [ms]", xlim=(-15.0, 512.0), ylim=(-0.42, 1.2))
+    ax.spines["left"].set_visible(False)
+    ax.tick_params(left=False)
+    return figure(
+        "Ten pictures a second, each 100 ms under way. What is known grows older until the next "
+        "picture arrives, from 100 to 200 ms.",
+        "Four pictures are taken at 0, 100, 200 and 300 ms and arrive 100 ms later each. Between "
+        "two arrivals the newest picture ages from 100 to 200 ms. At 360 ms it is that of 200 ms, "
+        "160 ms old.",
+    )
+
+
+def geometry() -> None:
+    """Numbers of the sections on pictures, each worked by hand and by the code."""
+    flat = lk.se3.rotation((math.pi, 0.0, 0.0))
+    square = pose_covariance(lk.se3.pose(flat, (0.0, 0.0, 1.0)), LENS, SIZE, 0.1)
+    askew = flat @ lk.se3.rotation((0.0, 0.6, 0.0))
+    tilted = pose_covariance(lk.se3.pose(askew, (0.0, 0.0, 1.0)), LENS, SIZE, 0.1)
+    by_hand("is uncertain by 1.47 mm", 1.47, 1e3 * math.sqrt(square[2, 2]))
+    by_hand("sideways it is 0.083 mm", 0.083, 1e3 * math.sqrt(tilted[0, 0]))
+    by_hand("the tilt by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
+    by_hand("the covariance says 0.27°", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03)
+    for words, value, heights in (
+        ("is tilted by 24.6°", 24.6, (48.8, 47.2)),
+        ("the answer becomes 16.5°", 16.5, (48.8, 47.7)),
+    ):
+        by_hand(words, value, _tilt_read(*heights))
+    by_hand("3.8 pixels for each radian", 3.84, FOCAL * SIZE**2)
+    by_hand("27 pixels for each radian", 27.1, FOCAL * SIZE * math.sin(0.6))
+    gap = ambiguity_gap(math.radians(30.0), 2.5)
+    by_hand("comes to 0.154 pixels", 0.154, gap, 0.05)
+
+
+def _tilt_read(left: float, right: float) -> float:
+    """The tilt in degrees that the detector reads from two upright sides, heights in pixels."""
+    depth = FOCAL * SIZE / np.array((left, right))
+    sine = float(np.diff(depth)[0]) / SIZE
+    x = 0.5 * SIZE * math.sqrt(1.0 - sine**2) * np.array((-1.0, 1.0))
+    corners = np.array([(FOCAL * x[k] / depth[k], s * FOCAL * SIZE / 2.0 / depth[k])
+                        for k, s in ((0, -1.0), (1, -1.0), (1, 1.0), (0, 1.0))])  # fmt: skip
+    T_cm = tag_pose(corners + (LENS.cx, LENS.cy), LENS, SIZE)
+    return math.degrees(math.acos(abs(T_cm[2, 2])))
+
+
+def one_blend() -> None:
+    """The blend that is worked by hand."""
+    now, goal = (np.array([x]) for x in (0.1, 0.0)), np.array([0.12])
+    position, still = now
+    reference = lk.Sample(position, np.array([0.1]), still)
+    half = blend(0.5, reference, lk.Sample(goal, still, still), 1.0)
+    by_hand("is at 0.1256 m", 0.1256, half.position[0], 1e-3)
+    by_hand("moving back at 0.006 m/s", 0.006, -half.velocity[0], 0.05)
+
+
+def two_pictures() -> None:
+    """The filter's first steps, which are worked by hand."""
+    noise, q = 1e-6 * np.eye(3), 0.0025
+    first = first_estimate(0.0, np.zeros(3), noise, 0.2)
+    then = Estimate(0.1, *carry_forward(first.mean, first.covariance, 0.1, q))
+    P = 1e6 * then.covariance[np.ix_((0, 3), (0, 3))]
+    claim(
+        "The entries are then 401.8 mm², 4,012.5 mm²/s and 40,250 mm²/s²",
+        lambda p: np.allclose(p, (401.83, 4012.5, 40250.0), rtol=1e-4),
+        p=[P[0, 0], P[0, 1], P[1, 1]],
+    )
+    after = update(then, (0.012, 0.0, 0.0), noise)
+    claim(
+        "The belief is now 11.97 mm and 119.5 mm/s",
+        lambda m: np.allclose(m, (11.97, 119.53), rtol=1e-3),
+        m=[1e3 * after.mean[0], 1e3 * after.mean[3]],
+    )
+    P = 1e6 * after.covariance[np.ix_((0, 3), (0, 3))]
+    by_hand("known to 16.8 mm/s", 16.8, math.sqrt(P[1, 1]))
+    mean, covariance = carry_forward(after.mean, after.covariance, 0.1, q)
+    by_hand("it expects the target at 23.9 mm", 23.9, 1e3 * mean[0])
+    by_hand("with a standard deviation of 2.6 mm", 2.58, 1e3 * math.sqrt(covariance[0, 0]))
+    for _ in range(200):
+        before = Estimate(0.0, *carry_forward(after.mean, after.covariance, 0.1, q))
+        after = update(before, np.zeros(3), noise)
+    gain = before.covariance[(0, 3), 0] / (before.covariance[0, 0] + 1e-6)
+    claim(
+        "After a few seconds they settle at 0.83 and 6.5 1/s",
+        lambda k: np.allclose(k, (0.83, 6.5), rtol=0.01),
+        k=list(map(float, gain)),
+    )
+
+
+def old_pictures() -> None:
+    """What age alone costs a target that sways, by hand, against what the run shows."""
+    sway = swaying()
+    age = math.sqrt(0.15**2 + 0.1**2 / 12.0)
+    speed = float(np.sqrt(np.mean(np.gradient(sway.truth, sway.t)[sway.t > 1.5] ** 2)))
+    by_hand("By hand that makes 13.0 mm", 13.0, sway.rms(sway.last), 0.02)
+    by_hand("its RMS speed is", 0.085, speed, 0.05)
+    by_hand("its root is", 0.153, age)
+
+
+def steering() -> None:
+    """How much gain an old picture allows, and how far behind a moving goal the hand stays."""
+    delay = 0.1
+    gain = 1.0 / (math.e * delay)
+    by_hand("with an age of 100 ms it is 3.7 1/s", 3.7, gain)
+    by_hand("is unstable beyond 15.7 1/s", 15.7, math.pi / 2.0 / delay)
+    by_hand("stays 27 mm behind", 27.0, 1e3 * (1.0 - _steered(gain, 0.1)[-1]), 0.02)
+    claim(
+        "Beyond that gain the hand overshoots",
+        lambda most: abs(most[0]) < 1e-3 and 0.02 < most[1] < 1.0 < most[2],
+        most=[float(_steered(k).max()) for k in (gain, 2.0 * gain, 16.5)],
+    )
+
+
+def _steered(gain: float, speed: float = 0.0) -> np.ndarray:
+    """Places of a hand that starts 1 m behind its goal and sees the gap 0.1 s late, from the goal.
+
+    With a speed of the goal in [m/s] the hand begins without a gap, and 1 is added.
+    """
+    dt, lag = 0.001, 100
+    gap = [0.0 if speed else 1.0] * (lag + 1)
+    for _ in range(12000):
+        gap.append(gap[-1] + dt * (speed - gain * gap[-1 - lag]))
+    return (1.0 if speed else 0.0) - np.array(gap)
+
+
+def _aimed(order: int, noise: float) -> float:
+    """RMS distance in mm between the point aimed at and the tag that goes round."""
+    random, w = np.random.default_rng(1), SPEED / RADIUS
+
+    def at(t: float) -> np.ndarray:
+        return RADIUS * np.array((math.cos(w * t), math.sin(w * t), 0.0))
+
+    R, q = noise**2 * np.eye(3), {2: 0.03, 3: 0.0035}.get(order, 0.0)
+    believed, off = None, []
+    for k in range(300):
+        t = k * PERIOD
+        z = at(t) + noise * np.append(random.standard_normal(2), 0.0)
+        if order == 1:
+            aim = z
+        elif believed is None:
+            believed, aim = first_estimate(t, z, R, *(SPEED, 0.2)[: order - 1]), z
+        else:
+            then = carry_forward(believed.mean, believed.covariance, PERIOD, q)
+            believed = update(Estimate(t, *then), z, R)
+            aim = carry_forward(believed.mean, believed.covariance, AHEAD, q)[0][:3]
+        off.append(aim - at(t + AHEAD))
+    return 1e3 * lk.metrics.rms(np.array(off[30:]))
+
+
+def aims() -> HTML:
+    """How far ahead a belief can aim, against the noise of the readings."""
+    noises = np.geomspace(0.02e-3, 3e-3, 10)
+    _, ax = plt.subplots(figsize=(6.0, 3.2))
+    curves = {}
+    for k, (belief, order) in enumerate(BELIEFS.items()):
+        curves[belief] = [_aimed(order, s) for s in noises]
+        ax.semilogx(1e3 * noises, curves[belief], f"C{k}" + ("-", "--", "-.")[k], label=belief)
+    stays, straight, bends = (curves[b] for b in BELIEFS)
+    claim(
+        "the belief that bends errs less than the straight one",
+        lambda a, b: all(0.0 < x < 0.75 * y for x, y in zip(a, b, strict=True)),
+        a=bends[:4],
+        b=straight[:4],
+    )  # up to 0.1 mm
+    claim("at 3 mm it errs more than the straight one", lambda e: e[0] > 1.1 * e[1] > 0.0,
+          e=[bends[-1], straight[-1]])  # fmt: skip
+    numbers({"aim_stays": stays[0], "aim_straight": straight[0], "aim_bends": bends[0]}, ".2g")
+    numbers({"aim_bends_noisy": bends[-1], "aim_straight_noisy": straight[-1]}, ".2g")
+    by_hand("at 0.1 m/s and 60 mm, 25 mm", 25.0, 1e3 * SPEED**2 * AHEAD**2 / (2 * RADIUS), 0.02)
+    by_hand("cubed, 7.7 mm", 7.7, 1e3 * SPEED**3 * AHEAD**3 / (6 * RADIUS**2))
+    ax.set(xlabel="noise of a reading, each coordinate [mm]", ylabel="error of the aim [mm]",
+           ylim=(0.0, None))  # fmt: skip
+    ax.legend(fontsize="small")
+    return figure(
+        f"A tag at 0.1 m/s on a circle of {1e3 * RADIUS:.0f} mm, ten readings a second: how "
+        f"far the point aimed at, {AHEAD:g} s ahead of the picture, is from the tag then.",
+        f"Three curves over the noise of a reading, which rises from 0.02 to 3 mm. A belief that "
+        f"the tag stays errs by {stays[0]:.2g} to {stays[-1]:.2g} mm, one that it goes straight on "
+        f"by {straight[0]:.2g} to {straight[-1]:.2g} mm, one that it goes on bending by "
+        f"{bends[0]:.2g} to {bends[-1]:.2g} mm.",
+    )
+
+
+def question() -> None:
+    """How fast the tag of the task goes round: a quintic's peak is 15/8 of its mean."""
+    by_hand("a circle of 12 cm", 0.12, 2.0 * RADIUS)
+    by_hand("at up to 0.11 m/s", 0.11, 15.0 / 8.0 * 2.0 * math.pi * RADIUS / LAP, 0.02)

@@ -1,0 +1,245 @@
+"""What the chapters work by hand, each number against the code or against another formula.
+
+The chapters on paths, on the model and on velocity control.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from math import atan, degrees, exp, hypot, pi, sqrt
+
+import numpy as np
+
+import labkit as lk
+from solutions.study.singular import damped_inverse
+from solutions.study.workspace_velocity import WorkspaceVelocityPD
+
+from .claims import claim, shows
+from .paths import DURATION, KP, WAY, line_task
+from .velocity import DELAY
+
+ROD, ELBOW_MASS, HAND_MASS = 0.4, 4.0, 2.0
+"""The arm of two rods: length in [m], masses in [kg]."""
+POSE = (0.0, pi / 2.0)
+
+
+def paths() -> None:
+    """Of the chapter on paths."""
+    line = lk.Line(np.zeros(3), np.array(WAY))
+    D, tick = line.length, 0.005
+    sample = lk.Trajectory(line, lk.Quintic(DURATION))(1.0)
+    speed, pace = np.linalg.norm(sample.velocity), lk.Quintic(DURATION)(1.0)
+    shows("about 27 cm away", 27.0, 100.0 * D, 0.01)
+    shows("which is 0.269 m", 0.269, D, 1e-3)
+    shows("the tip is 27.9 mm along", 27.9, 1e3 * np.linalg.norm(sample.position), 2e-3)
+    shows("= 0.2637$ per second", 0.2637, pace[1], 1e-3)
+    shows("(0.0264, -0.0527, 0.0396)$ m/s", (0.0264, -0.0527, 0.0396), sample.velocity, 2e-3)
+    shows("Its length is 0.0710 m/s", 0.0710, speed, 1e-3)
+    shows("accelerates along the line by 0.0947 m/s²", 0.0947, pace[2] * D, 1e-3)
+    peak = np.abs([lk.Quintic(DURATION)(t)[1:] for t in np.linspace(0.0, DURATION, 4001)]).max(0)
+    shows("which is 0.126 m/s, and the acceleration", (0.126, 0.0972), peak * D, 3e-3)
+    shows("which is 0.0972 m/s²", 0.0972, peak[1] * D, 1e-3)
+    _durations(D)
+    _bends(tick)
+    _, joints = line_task()
+    fastest = np.abs([joints(t)[1:] for t in np.linspace(0.0, DURATION, 801)]).max((0, 2))
+    shows("step of 5 ms that is 1.6 rad/s², while", (1.6, 0.23), (4e-5 / tick**2, fastest[1]), 0.01)
+    shows("turns at 0.227 rad/s, far below its limit", (0.227, 1.5), (fastest[0], 1.5), 3e-3)
+    shows("It falls to 37 % in", 0.37, exp(-1.0), 0.01)
+    shows("0.25 m/s at the first instant", 0.25, KP * 0.05)
+    shows("angles that are up to 14 ms old", 14.0, 1e3 * (lk.BAXTER.state_delay + 0.01))
+
+
+def _durations(D: float) -> None:
+    """How long the line takes, and a centimetre of it."""
+    v, a = 0.25, 0.5
+    quintic, bang = lk.Quintic.within(D, v, a).duration, lk.BangBang.within(D, v, a).duration
+    trapezoid = lk.Trapezoid(D, v, a).duration
+    pull = sqrt(lk.Quintic.PEAK_ACCELERATION * D / a)
+    shows("2.02 s and the acceleration for 1.76 s", (2.02, 1.76), (quintic, pull), 3e-3)
+    shows("The bang-bang schedule needs 2.15 s", 2.15, bang, 3e-3)
+    shows("it needs 1.58 s", 1.58, trapezoid, 3e-3)
+    claim(
+        "the tip may move at 0.25 m/s and accelerate at 0.5 m/s²",
+        lambda T: 1.0 < T[0] < T[1] < T[2] < 2.2,
+        T=[trapezoid, quintic, bang],
+    )
+    short = lk.Quintic.within(0.01, v, a).duration
+    shows(
+        "0.075 s and the acceleration for 0.340 s", (0.075, 0.340), (1.875 * 0.01 / v, short), 1e-3
+    )
+    scaled = lk.Quintic(DURATION * 0.01 / D)
+    shows("= 0.131$ m", 0.131, lk.Quintic.PEAK_ACCELERATION * 0.04 / (1.875**2 * 0.5), 4e-3)
+    shows("= 0.760$ s; for 50 cm", 0.760, lk.Quintic.within(0.05, 0.2, 0.5).duration, 1e-3)
+    shows("= 4.69$ s", 4.69, lk.Quintic.within(0.5, 0.2, 0.5).duration, 1e-3)
+    shows(
+        "it takes $2\\sqrt{0.05/0.5} = 0.632$ s", 0.632, lk.Trapezoid(0.05, 0.2, 0.5).duration, 1e-3
+    )
+    shows("= 2.9$ s", 2.9, lk.Trapezoid(0.5, 0.2, 0.5).duration, 1e-6)
+    asked = 0.01 * lk.Quintic.PEAK_ACCELERATION / scaled.duration**2
+    shows("to 0.149 s for one centimetre", 0.149, scaled.duration, 4e-3)
+    shows("asks the arm for 2.62 m/s², five times", (2.62, 5.0), (asked, asked / a), 0.05)
+
+
+def _bends(tick: float) -> None:
+    """A circle and a corner."""
+    circle = lk.Circle(np.array((0.1, 0.0, 0.0)), np.zeros(3))
+    middle = lk.Trajectory(circle, lk.Quintic(5.0))(2.5)
+    v, a = np.linalg.norm(middle.velocity), np.linalg.norm(middle.acceleration)
+    shows("of radius 0.10 m in five seconds", 0.375, lk.Quintic(5.0)(2.5)[1])
+    shows("which is 0.236 m/s, and the acceleration towards", (0.236, 0.555), (v, a), 2e-3)
+    claim("above the limit of 0.5", lambda a: 0.5 < a < 0.6, a=float(a))
+    corner = lk.Polyline([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0]])
+    jump = 0.5 * np.linalg.norm(corner(0.5).velocity - corner(0.4999).velocity)
+    shows("passed at 0.1 m/s, the velocity jumps by 0.141 m/s", 0.141, jump, 4e-3)
+    shows("period of 5 ms that is an acceleration of 28 m/s²", 28.0, jump / tick, 0.02)
+
+
+@cache
+def two_rods() -> lk.Model:
+    """The arm of two rods without mass, in a vertical plane, x forwards and y up on paper."""
+    upright = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+    along = (ROD, 0.0, 0.0)
+    free = {"inertia": 1e-12 * np.eye(3), "lower": -3.2, "upper": 3.2, "speed": 9.0, "effort": 99.0}
+    bodies = (
+        {"joint": "shoulder", "T_parent": lk.se3.pose(upright, np.zeros(3)), "mass": ELBOW_MASS,
+         "com": along, **free},
+        {"joint": "elbow", "T_parent": lk.se3.pose(np.eye(3), np.array(along)), "mass": HAND_MASS,
+         "com": along, **free},
+    )  # fmt: skip
+    tip = lk.se3.pose(np.eye(3), np.array(along))
+    return lk.Model(lk.Robot("two rods", bodies, tip, np.array(POSE), np.array(POSE)))
+
+
+def model() -> None:
+    """Of the chapter on the model."""
+    arm = two_rods()
+    J = arm.tip_jacobian(POSE)[[0, 2]]
+    M, g, dq = arm.mass_matrix(POSE), arm.gravity(POSE), np.array((1.0, 2.0))
+    C = arm.coriolis(POSE, dq)
+    inertia = np.linalg.inv(J @ np.linalg.inv(M) @ J.T)
+    shows("the hand moves at 0.57 m/s", 0.57, np.linalg.norm(J[:, 0]), 0.01)
+    shows("presses the hand down with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
+    shows("the hand must press up with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
+    shows("The shoulder gives 4 N m and the elbow nothing", (4.0, 0.0), J.T @ (0.0, 10.0))
+    shows("is 0.4 m from the shoulder, the hand's mass is at $J$",
+          (1.28, 0.32, 0.32, 0.32), M.ravel(), 1e-6)  # fmt: skip
+    far = arm.mass_matrix(np.zeros(2))[0, 0]
+    shows("the hand is 0.8 m away", 0.8, arm.pose(np.zeros(2))[0, 3])
+    shows("1.28 kg m² to 1.92 kg m²", (1.28, 1.92), (M[0, 0], far), 1e-6)
+    shows("That is a factor of 1.5", 1.5, far / M[0, 0], 1e-6)
+    shows("which is 23.5 N m", 23.5, g[0], 3e-3)
+    claim("so $g_2 = 0$", lambda g: g[0] > 20.0 and abs(g[1]) < 1e-6, g=g.tolist())
+    shows("is $(-2.56,\\ 0.32)$ N m", (-2.56, 0.32), C @ dq, 1e-6)
+    rate = (arm.mass_matrix(POSE + 1e-6 * dq) - arm.mass_matrix(POSE - 1e-6 * dq)) / 2e-6
+    skew = rate - 2.0 * C
+    shows("zeros on its diagonal and 1.28 and −1.28", (1.28, -1.28), (skew[0, 1], skew[1, 0]), 1e-4)
+    shows("moves the hand alone and feels 2 kg", 2.0, inertia[0, 0], 1e-6)
+    shows("has to lift the elbow too, and feels 6 kg", 6.0, inertia[1, 1], 1e-6)
+    shows("three times heavier in one direction", 3.0, inertia[1, 1] / inertia[0, 0], 1e-6)
+    _rods(J)
+    _elbow()
+
+
+def _rods(J: np.ndarray) -> None:
+    """The data of the arm of two rods, and its exercises."""
+    rods = (ROD, ELBOW_MASS, HAND_MASS)
+    shows("two rods of 0.4 m without mass", (0.4, 4.0, 2.0), rods)
+    shows("Both masses have the horizontal distance 0.4 m", (0.4, 23.5),
+          (ROD, 9.81 * sum(rods[1:]) * ROD), 3e-3)  # fmt: skip
+    shows("0.4189 and 0.0611", (0.4189, 0.0611), np.linalg.eigvalsh(J @ J.T)[::-1], 1e-3)
+    more = two_rods().mass_matrix(POSE) + J.T @ J
+    shows("$\\ddot q = (-3.5, 3.5)$ rad/s²", (-3.5, 3.5),
+          np.linalg.solve(more, (-9.81 * ROD, 0.0)), 4e-3)  # fmt: skip
+
+
+def _elbow() -> None:
+    """At which elbow Baxter's arm is stretched, from its measures."""
+    arm = lk.Model("left")
+    s1, e1, w1 = (arm.links(np.zeros(7))[k].T_wl[:3, 3] for k in (1, 3, 5))
+    (upper, drop), (fore, sink) = (
+        (1e3 * hypot(*(b - a)[:2]), 1e3 * (a - b)[2]) for a, b in ((s1, e1), (e1, w1))
+    )
+    shows("is 364.4 mm in front of the shoulder's and 69 mm below it", (364.4, 69.0, 374.3, 10.0),
+          (upper, drop, fore, sink), 1e-3)  # fmt: skip
+    slopes = atan(drop / upper), atan(sink / fore)
+    shows("\\arctan(69/364.4) = 0.1872$ rad", 0.1872, slopes[0], 1e-3)
+    shows("\\arctan(10/374.3) = 0.0267$ rad", 0.0267, slopes[1], 1e-3)
+    sigma = {x: _smallest(arm, x) for x in np.linspace(0.155, 0.165, 21)}
+    shows("which is 0.1605 rad", 0.1605, slopes[0] - slopes[1], 1e-3)
+    shows("The three axes are in one line", 0.1605, min(sigma, key=lambda x: sigma[x]), 4e-3)
+
+
+def _smallest(arm: lk.Model, elbow: float) -> float:
+    """The smallest singular value of the tip Jacobian at an elbow angle, the rest neutral."""
+    q = np.array(arm.robot.neutral)
+    q[3] = elbow
+    return float(np.linalg.svd(arm.tip_jacobian(q), compute_uv=False)[-1])
+
+
+def velocity() -> None:
+    """Of the chapter on velocity control."""
+    left = {kd: 0.1 * exp(-3.0 / (1.0 + kd)) for kd in (0.0, 0.6)}
+    shows("and the joint starts 0.1 rad away", (0.0050, 0.0153), left.values(), 0.01)
+    shows("which is 0.0050 rad", 0.0050, left[0.0], 0.01)
+    shows("0.0153 rad are left: three times as much", (0.0153, 3.0),
+          (left[0.6], left[0.6] / left[0.0]), 0.03)  # fmt: skip
+    _swing()
+    crossing, lag = 4.95, lk.BAXTER.velocity_lag
+    shows("loop gain is one at $\\omega_c = 4.95$ rad/s", 5.0,
+          crossing * hypot(1.0, lag * crossing), 2e-3)  # fmt: skip
+    phase = degrees(atan(lag * crossing)), degrees(crossing * DELAY)
+    shows("which is 8.4°, the delay takes", 8.4, phase[0], 0.01)
+    shows("which is 3.3°, and", (3.3, 78.3), (phase[1], 90.0 - sum(phase)), 0.02)
+    J = np.array([[2.0, 1.0]])
+    shows("with the length $\\sqrt{0.2} = 0.447$", (0.4, 0.2), np.linalg.pinv(J)[:, 0])
+    free = np.eye(2) - np.linalg.pinv(J) @ J
+    shows("joint to turn at 1 rad/s, $z = (1, 0)$", (0.2, -0.4), free[:, 0], 1e-6)
+    _finite()
+    _wanted()
+    cut, even = np.minimum((3.0, 0.9), 1.5), 0.5 * np.array((3.0, 0.9))
+    shows("asked for 3.0 and 0.9 rad/s", (1.5, 0.9, 1.5, 0.45), (*cut, *even))
+    shows("points 31° away from the x axis and the second 16.7°", (31.0, 16.7),
+          [degrees(atan(y / x)) for x, y in (cut, even)], 4e-3)  # fmt: skip
+    shows("another 5 ms old on average", (5.0, 2.5), (0.5e3 / lk.BAXTER.state_rate, 0.5e3 / 200.0))
+
+
+def _wanted() -> None:
+    """The exercise on damping: the lambda that keeps a limit, and what it costs elsewhere."""
+    least = 0.2 / (2.0 * 1.5)
+    ratios = np.geomspace(1e-3, 1.0, 999)
+    slow = max(0.2 * damped_inverse(np.array([[x]]), least**2)[0, 0] for x in ratios)
+    kept = 0.3 * damped_inverse(np.array([[0.3]]), least**2)[0, 0]
+    shows("gives $\\lambda \\ge 0.0667$", (0.0667, 1.5), (least, slow), 1e-3)
+    shows("= 4.7$ % is lost", 0.047, 1.0 - kept, 4e-3)
+
+
+def _swing() -> None:
+    """The error of a swinging joint behind a lag: the formula, and the equation integrated."""
+    lag, kp, w, size = lk.BAXTER.velocity_lag, 3.0, 2.5, 0.3
+    amplitude, run = [], []
+    for kd in (0.0, 0.6):
+        amplitude.append(lag * w * w * size / hypot(kp - lag * w * w, (1.0 + kd) * w))
+        h, e, de, seen = 1e-4, 0.0, 0.0, 0.0
+        for k in range(100_000):
+            pull = -lag * w * w * size * np.sin(w * h * k)
+            de += h * (pull - (1.0 + kd) * de - kp * e) / lag
+            e += h * de
+            seen = max(seen, abs(e)) if k > 60_000 else 0.0
+        run.append(seen)
+    shows("behind a lag of 30 ms", (0.3, 2.5, 0.03), (size, w, lag))
+    shows("the error swings by 0.0149 rad", (0.0149, 0.0115), amplitude, 5e-3)
+    shows("the error is 0.0115 rad, smaller by 23 %", (0.0149, 0.0115, 0.23),
+          (*run, 1.0 - run[1] / run[0]), 0.01)  # fmt: skip
+
+
+def _finite() -> None:
+    """A damped inverse in one direction."""
+    damping = WorkspaceVelocityPD.damping
+    factor = float(damped_inverse(np.array([[0.05]]), damping)[0, 0])
+    shows("with $\\sigma = 0.05$ m/rad the tip should move at 0.1 m/s", 2.0, 0.1 / 0.05)
+    shows("or 2 rad/s, too much for a shoulder", (2.0, 1.5), (0.1 / 0.05, 1.5))
+    shows("With $\\lambda^2 = 0.004$, as in this lab", 0.004, damping)
+    shows("so the joints turn at 0.769 rad/s", (7.69, 0.769), (factor, 0.1 * factor), 1e-3)
+    shows("or 0.0385 m/s: the share", 0.0385, 0.005 * factor, 2e-3)
+    shows("is lost, which is 62 %", 0.62, 1.0 - 0.05 * factor, 0.01)

@@ -1,0 +1,81 @@
+"""Arms of one's own: the roster gives them, the notebooks open them, the grader knows them."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from courses import copied
+
+from labkit.__main__ import main
+from labkit.course import my_arm
+from labkit.course.bundle import Bundle
+from labkit.course.own_arm import FILE, HANDLES, Arms
+from labkit.errors import LabkitError
+from labkit.grader.release import release
+
+NAME = "05_impedance"
+CLASS = "Login,First name,Last name,Team\nada,Ada,L,one\nbob,Bob,M,one\neve,Eve,N,\n"
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    """A released notebook that asks about one's own arm, and a class of three with one team."""
+    root = tmp_path_factory.mktemp("arms")
+    course = copied(root)
+    release(course, NAME, 7)
+    (root / "class.csv").write_text(CLASS)
+    assert main(["students", "import", str(root / "class.csv"), "--course", str(root)]) == 0
+    return course
+
+
+def test_a_student_opens_their_arm_beside_the_notebook(course, monkeypatch):
+    """Two of a team have the same arm, another student has another, a stranger has none."""
+    monkeypatch.chdir(course.release / NAME)
+    arms = Arms.of(course.root)
+    assert arms.arm("ada") == arms.arm("bob") != arms.arm("eve")
+    assert arms.arm("mallory") is None
+    for student in ("ada", "eve"):
+        with my_arm(student) as mine:
+            assert mine._engine is not None
+    assert "ada" not in (course.release / NAME / FILE).read_text()
+
+
+def test_the_grader_asks_for_ones_own_number(course):
+    """Judged against another arm, a result is another; who has no arm has the demonstration's."""
+    bundle = Bundle.of(course, NAME)
+    expected = {}
+    for student in ("ada", "bob", "eve", "mallory"):
+        mine = bundle.of_student(student)
+        (asked,) = (q for q in mine.questions if q.name == "my_payload")
+        (hidden,) = (c for test in asked.tests for c in test.cases if c.hidden)
+        expected[student] = (hidden.expected, mine.data["hash"])
+    assert expected["ada"] == expected["bob"]
+    assert len(set(expected.values())) == 3
+    assert expected["mallory"][1] == bundle.data["hash"]
+    payload = Arms.of(course.root).arm("ada").payload
+    assert expected["ada"][0] == pytest.approx(payload, abs=0.01)
+
+
+def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):
+    """Whoever enrols late changes nobody's arm; a release lays the arms out again."""
+    before = json.loads((course.release / NAME / FILE).read_text())
+    late = course.root / "late.csv"
+    late.write_text(CLASS + "zoe,Zoe,O,\n")
+    assert main(["students", "import", str(late), "--course", str(course.root)]) == 0
+    after = json.loads((course.release / NAME / FILE).read_text())
+    assert before.items() < after.items() and len(after) == len(before) + 1
+    release(course, NAME, 7)
+    assert json.loads((course.release / NAME / FILE).read_text()) == after
+    words = ["term", "forget", "--student", "zoe", "--yes", "--course", str(course.root)]
+    assert main(words) == 0
+    assert "zoe" not in (course.root / HANDLES).read_text()
+    capsys.readouterr()
+
+
+def test_a_damaged_file_of_arms_is_a_sentence(tmp_path):
+    """It is named, with what to do."""
+    (tmp_path / "course_private").mkdir()
+    (tmp_path / HANDLES).write_text("[]")
+    with pytest.raises(LabkitError, match="is damaged; delete it, and import the list"):
+        Arms.of(tmp_path)
