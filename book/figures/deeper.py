@@ -103,6 +103,12 @@ def passive() -> HTML:
     )
     holds(passivity.is_stable(passivity.loop(MASS, 5.0, 300.0, 60.0, SAMPLING, 5e5)),
           "the lab's spring is stable at a wall of 500 kN/m")  # fmt: skip
+    claim(
+        "The lab's own spring, 300 N/m, is far below both",
+        lambda own, limits: 0.0 < 10.0 * own < min(limits),
+        own=300.0,
+        limits=[float(np.interp(5.0, damping, x)) for x in (damped, wall)],
+    )
     numbers({"need_300": 300.0 * SAMPLING / 2}, ".2g")
     numbers({"stable_5": round(np.interp(5.0, damping, damped), -3),
              "stable_wall_5": round(np.interp(5.0, damping, wall), -2)}, ",.0f")  # fmt: skip

@@ -125,6 +125,11 @@ def freedom() -> None:
         row=[float(J[5, k]) for k in (0, 2, 4, 6)],
         speed=[float(n[k]) for k in (0, 2, 4, 6)],
     )
+    claim(
+        "no joint motion is more than 5 times as long as the twist",
+        lambda x: math.isclose(x[0], 5.0) and math.isclose(x[1], 0.5) and math.isclose(x[2], 0.1),
+        x=[1.0 / (2.0 * math.sqrt(0.01)), *(0.01 / (sigma**2 + 0.01) for sigma in (0.1, 0.3))],
+    )
     numbers({"sigma_least": sigma[-1], "sigma_most": sigma[0]}, ".2g")
     number("w_ready", float(np.prod(sigma)), ".2g")
 
@@ -151,6 +156,13 @@ def lens_by_hand() -> None:
     away = math.hypot(0.12, 0.22)
     number("lens_away", 1e3 * away, ".3g")
     number("lens_short", 1e3 * (away - away / 1.2), ".2g")
+    ends = 1e3 * image_servoing.approach("pose, goal measured", 0.2).distance[-1]
+    claim(
+        "ends a little further off than this sum says",
+        lambda run, by_hand: 0.0 < by_hand < run < 1.3 * by_hand,
+        run=float(ends),
+        by_hand=1e3 * (away - away / 1.2),
+    )
     rate = {}
     for share in (0.5, 1.0, 2.0):
         d = image_servoing.approach("image", depth=0.25 * share).distance

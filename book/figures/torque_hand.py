@@ -80,6 +80,12 @@ def columns() -> None:
     model = lk.Model("left", lk.IDEAL)
     M = model.mass_matrix(model.robot.ready)
     accelerate = KP * 0.1
+    claim(
+        "more inertia with the arm stretched out than with the arm folded",
+        lambda stretched, folded: stretched > 1.3 * folded > 0.0,
+        stretched=float(model.mass_matrix(np.zeros(7))[0, 0]),
+        folded=float(M[0, 0]),
+    )
     numbers({"hand_m00": M[0, 0], "hand_m20": M[2, 0], "hand_m40": M[4, 0]}, ".3g")
     tau = M[:, 0] * accelerate
     numbers({"hand_t0": tau[0], "hand_t2": tau[2], "hand_t4": tau[4]}, ".3g")
