@@ -108,6 +108,7 @@ def geometry() -> None:
     tilted = pose_covariance(lk.se3.pose(askew, (0.0, 0.0, 1.0)), LENS, SIZE, 0.1)
     by_hand("is uncertain by 1.47 mm", 1.47, 1e3 * math.sqrt(square[2, 2]))
     by_hand("sideways it is 0.083 mm", 0.083, 1e3 * math.sqrt(tilted[0, 0]))
+    by_hand("an unknown tilt makes it 0.118 mm", 0.118, 1e3 * math.sqrt(square[0, 0]))
     by_hand("the tilt by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
     by_hand("the covariance says 0.27°", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03)
     for words, value, heights in (
