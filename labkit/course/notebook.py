@@ -232,7 +232,7 @@ def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]
 
 
 BLANK = "blank"
-"""In a source cell's metadata: what students get in its place, where a stub would be too much."""
+"""Metadata of a source cell that names what students get where a stub would be too much."""
 
 
 def _check(name: str, points: float) -> dict[str, Any]:
@@ -258,7 +258,7 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
 
 
 WORDS = 25, 80
-"""Of a why: the least and the most."""
+"""The fewest and the most words of a why."""
 WHY_POINTS = 2.0
 
 

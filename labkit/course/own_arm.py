@@ -29,7 +29,7 @@ from .bugs import CAUSES, MOVES, Bug
 from .seed import PUBLIC_SEED
 
 FILE = "arms.json"
-"""Beside the notebooks' folders: the sealed arms of a term, by the hash of each handle."""
+"""The sealed arms of a term, by the hash of each handle, beside the notebooks' folders."""
 DEMO = "demo"
 """The handle of the public arm, for self-study and for a course without a term."""
 
@@ -45,7 +45,7 @@ RANGES = {
 BUGS = 3
 """So many misbehaving runs everybody gets, of `CAUSES` times `MOVES`."""
 ONSETS = (0.3, 0.8)
-"""In which part of a run the mistake comes in, in [s]: the arm is under way."""
+"""In which part of a run the mistake comes in, in [s], while the arm is under way."""
 
 
 @dataclass(frozen=True)
