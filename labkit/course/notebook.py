@@ -86,11 +86,6 @@ def question_of(grade_id: str) -> str:
     return grade_id.removesuffix(_CHECK)
 
 
-def is_check(grade_id: str) -> bool:
-    """Whether nbgrader calls a question's check so."""
-    return grade_id.endswith(_CHECK)
-
-
 def by_hand(cell: Cell) -> bool:
     """Whether a person marks a released cell: nbgrader's manual answer, or its manual task."""
     found = about(cell)
@@ -232,7 +227,7 @@ def _written_down(asked: Prediction | Identification) -> Iterator[dict[str, Any]
 
 
 BLANK = "blank"
-"""In a source cell's metadata: what students get in its place, where a stub would be too much."""
+"""Metadata of a source cell that names what students get where a stub would be too much."""
 
 
 def _check(name: str, points: float) -> dict[str, Any]:
@@ -258,7 +253,7 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
 
 
 WORDS = 25, 80
-"""Of a why: the least and the most."""
+"""The fewest and the most words of a why."""
 WHY_POINTS = 2.0
 
 

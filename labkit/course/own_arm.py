@@ -28,9 +28,9 @@ from .bugs import CAUSES, MOVES, Bug
 from .seed import PUBLIC_SEED
 
 FILE = "arms.json"
-"""Beside a notebook that asks about one's own arm: the sealed arms of a term."""
+"""The sealed arms of a term, beside each notebook that asks about one's own arm."""
 HANDLES = "course_private/handles.json"
-"""In the course: the term's seed, and the handle of each student."""
+"""The term's seed and the handle of each student, in the course's folder."""
 DEMO = "demo"
 """The handle of the public arm, for self-study and for a course without a term."""
 
@@ -46,7 +46,7 @@ RANGES = {
 BUGS = 3
 """The number of misbehaving runs that each arm has, of `CAUSES` times `MOVES`."""
 ONSETS = (0.3, 0.8)
-"""In which part of a run the mistake comes in, in [s]: the arm is under way."""
+"""In which part of a run the mistake comes in, in [s], while the arm is under way."""
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from ..trajectory import PoseSample, Sample
 
 TARGET = "target"
 FASTEST = 2.0
-"""Dragged walls and bands move at most this fast, in [m/s]: so no wall jumps over the tip."""
+"""Dragged walls and bands move at most this fast, in [m/s], so no wall jumps over the tip."""
 
 
 class Surroundings:
