@@ -1,28 +1,22 @@
-"""Chapter "Impedance": its drawings, its sums by hand, the elbow, and what passivity takes."""
+"""Chapter "Impedance": its drawings and its sums by hand."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
 from matplotlib.axes import Axes
-from scipy.linalg import eigh
 from scipy.optimize import fsolve
 
 import labkit as lk
-from labkit import metrics, se3
-from labkit.plotting import STYLES
 from labkit.scene import contact_stiffness
 from labkit.shapes import Array
-from solutions.study import experiments, tasks
+from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
-from solutions.study.workspace_impedance import WorkspaceImpedance
 
 from .claims import claim
-from .impedance import ROTORS
 from .page import figure, number, numbers, table
 
 JOINT_SPRINGS = np.array((200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0))
@@ -213,142 +207,4 @@ def joint_springs() -> HTML:
         ("Push", "along x [mm]", "along y [mm]", "along z [mm]"),
         rows,
         "Displacement of the tip under springs at the joints, by C = J K⁻¹ Jᵀ",
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class Undamped:
-    """The impedance law without the damper of its posture."""
-
-    law: WorkspaceImpedance
-
-    def __call__(self, state: lk.State, target: lk.PoseSample) -> lk.JointTorque:
-        """The command, with the damper's torque taken out of it again."""
-        model = self.law.model
-        J, M = model.tip_jacobian(state.q), model.mass_matrix(state.q)
-        damper = -2.0 * np.sqrt(self.law.pull) * state.dq
-        L = np.linalg.inv(J @ np.linalg.solve(M, J.T))
-        out = M @ damper - J.T @ (L @ (J @ damper))
-        return lk.JointTorque(self.law(state, target).value - out)
-
-
-def elbow() -> HTML:
-    """The elbow begins beside its posture: with a damper it returns, without one it swings on."""
-    model = lk.Model("left", ROTORS)
-    ready = np.array(model.robot.ready)
-    start = np.array(ready)
-    for _ in range(40):  # turn the elbow, the hand held
-        J = model.tip_jacobian(start)
-        turn = np.eye(7)[2] - np.linalg.pinv(J) @ J[:, 2]
-        start += 0.005 * turn / turn[2] + np.linalg.pinv(J) @ model.pose_error(
-            model.pose(ready), start
-        )
-    law = WorkspaceImpedance(model, K=TIP_SPRING)
-    _, ax = plt.subplots(figsize=(6.0, 2.9))
-    late, moved = [], []
-    for k, (one, name) in enumerate(((law, "posture and damper"), (Undamped(law), "no damper"))):
-        with lk.Arm("left", ROTORS, q0=start) as arm:
-            log = lk.run(arm, lk.Hold(model.pose(ready), 6.0), one, rate=1000.0)
-        off = log.q[:, 2] - ready[2]
-        ax.plot(log.t, off, f"C{k}{STYLES[k]}", label=name)
-        late.append(float(np.abs(off[log.t > 4.0]).max()))
-        moved.append(1e3 * float(np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1).max()))
-    claim(
-        "Without the damper the elbow swings on",
-        lambda damped, free: free > 0.15 and 0.0 <= damped < 0.01 * free,
-        damped=late[0],
-        free=late[1],
-    )
-    claim(
-        "has $\\sqrt{20}$ = 4.5 rad/s",
-        lambda pull: math.isclose(pull, 4.5**2, rel_tol=0.02),
-        pull=law.pull,
-    )
-    numbers({"elbow_late": late[1]}, ".2g")
-    number("elbow_tip", moved[1], ".1g")
-    ax.set(xlabel="time [s]", ylabel="e0 from its posture [rad]", ylim=(-0.24, 0.32))
-    ax.legend(ncols=2, loc="upper right")
-    return figure(
-        "The elbow is let go 0.2 rad beside its posture; the hand is to stay where it is. No "
-        "friction.",
-        f"With a damper in the null space e0 returns within a second; without one it still swings "
-        f"by {late[1]:.2g} rad after four. The hand moves by {moved[1]:.1g} mm at most.",
-    )
-
-
-def margins() -> None:
-    """How much of the damper the changing inertia can eat on three paths, and what mu is."""
-    model = lk.Model("left", lk.BAXTER)
-    law = WorkspaceImpedance(model, K=TIP_SPRING)
-    share, least = {}, math.inf
-    for task in (tasks.line(), tasks.circle(), tasks.square()):
-        found = []
-        for t in np.linspace(0.01, task.joints.duration - 0.01, 60):
-            s = task.joints(float(t))
-            D = law._damper(np.array(model.operational_inertia(s.position)))
-            least = min(least, float(np.linalg.eigvalsh(D)[0]))
-            rate = _rate(model.operational_inertia, s.position, s.velocity)
-            found.append(float(eigh(0.5 * rate, D, eigvals_only=True)[-1]))
-        share[task.name] = max(found)
-    numbers({"eaten_circle": 100 * share["circle"], "eaten_square": 100 * share["square"]}, ".2g")
-    claim(
-        "outweighs it everywhere on the line, the circle and the square",
-        lambda most, least: 0.0 < max(most) < 0.5 and least > 0.3,
-        most=list(share.values()),
-        least=least,
-    )
-    claim(
-        "four times as fast has lost the guarantee",
-        lambda most: 1.0 < 4.0 * most < 4.0,
-        most=share["square"],
-    )
-    random, worst = np.random.default_rng(1), 0.0
-    for _ in range(10):
-        q = np.array(model.robot.ready) + random.uniform(-0.4, 0.4, 7)
-        dq = random.uniform(-1.0, 1.0, 7)
-        J, M = model.tip_jacobian(q), model.mass_matrix(q)
-        L = np.array(model.operational_inertia(q))
-        Jbar = np.linalg.solve(M, J.T) @ L
-        mu = Jbar.T @ model.coriolis(q, dq) @ Jbar - L @ _rate(model.tip_jacobian, q, dq) @ Jbar
-        S = _rate(model.operational_inertia, q, dq) - 2.0 * mu
-        worst = max(worst, float(np.abs(S + S.T).max()))
-    claim(
-        "is skew for this $\\mu$, as a check on ten random states confirms",
-        lambda worst: 0.0 <= worst < 1e-5,
-        worst=worst,
-    )
-
-
-def _rate(of: object, q: Array, dq: Array, h: float = 1e-6) -> Array:
-    """The time derivative of a matrix that depends on q, along dq."""
-    return (np.array(of(q + h * dq)) - np.array(of(q - h * dq))) / (2.0 * h)  # type: ignore[operator]
-
-
-def loops() -> None:
-    """Work round a closed loop of orientations, with unequal rotational stiffness."""
-    unequal, equal = np.diag((10.0, 20.0, 30.0)), 20.0 * np.eye(3)
-
-    def log_law(R: Array, K: Array) -> Array:
-        return np.asarray(K @ se3.rotation_log(R.T))
-
-    def vector_law(R: Array, K: Array) -> Array:
-        e = se3.rotation_log(R.T)
-        half = 0.5 * float(np.linalg.norm(e))
-        eps = e / (2.0 * half) * math.sin(half)
-        return np.asarray(2.0 * (math.cos(half) * np.eye(3) - se3.hat(eps)) @ K @ eps)
-
-    def work(law: object, K: Array, count: int = 1500) -> float:
-        s = 2.0 * np.pi * np.arange(2 * count + 1) / (2 * count)
-        R = [se3.rotation(np.array((0.5 * np.cos(x), 0.5 * np.sin(x), 0.6))) for x in s]
-        return -sum(
-            float(law(R[k + 1], K) @ se3.rotation_log(R[k + 2] @ R[k].T))  # type: ignore[operator]
-            for k in range(0, 2 * count, 2)
-        )
-
-    gained = work(log_law, unequal)
-    number("loop_work", gained, ".2g")
-    claim(
-        "and with the vector part of the quaternion it is zero",
-        lambda x: x[0] > 5.0 and max(abs(x[1]), abs(x[2])) < 1e-3 * x[0],
-        x=[gained, work(log_law, equal), work(vector_law, unequal)],
     )
