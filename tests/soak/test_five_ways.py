@@ -133,7 +133,8 @@ def term(course, way, folder, everybody):
         about = json.loads(path.read_bytes())["metadata"]
         assert about["of"] == x.k, "work of somebody else"
         share = SHARES[(x.k + about["attempt"]) % 5]
-        result = result_of(course, x.login, share=share, data=path.read_bytes())
+        data = path.read_bytes()
+        result = result_of(course, x.login, share=share, data=data, written={})  # nor a why
         Results(course, NAME).keep(result)
         record(course, NAME, [result])
     with open_gradebook(course) as book:
