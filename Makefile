@@ -35,8 +35,8 @@ test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, 
 wheels: .venv/.dev ## on which systems pip can install what a student needs
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/wheels.py
 
-quick: for-tests .venv/.dev ## the quick tests, under two minutes
-	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
+quick: for-all .venv/.dev ## the quick tests, with Python alone
+	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --quick -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
 
 soak: for-tests .venv/.dev ## the long suites, whole: fuzz, attacks, kills, large classes
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup -m "soak or not soak" tests/soak

@@ -1,6 +1,8 @@
 """What the tests share: hypothesis that repeats itself, states drawn from a seed, a browser."""
 
+import shutil
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -22,6 +24,48 @@ ARGUMENTS = [
     "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync",
 ]  # fmt: skip
+
+
+GRADER = Path(__file__).parent / "grader"
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--quick", action="store_true", help="leave out what needs a program that is not there"
+    )
+
+
+def _missing():
+    """The programs that tests need and that are not there."""
+    if not shutil.which("bwrap"):
+        yield "bubblewrap"
+    try:
+        program()
+    except SystemExit:
+        yield "Chromium"
+
+
+def _needed(item):
+    """The programs that a test needs."""
+    if item.path.is_relative_to(GRADER):
+        yield "bubblewrap"
+    if "playwright" in item.fixturenames:
+        yield "Chromium"
+
+
+def pytest_report_header(config):
+    if config.getoption("quick"):
+        return [f"{name} is missing, so its tests are left out" for name in _missing()]
+    return []
+
+
+def pytest_collection_modifyitems(config, items):
+    """`make quick` runs with Python alone; everywhere else a missing program is a failure."""
+    if config.getoption("quick"):
+        missing = set(_missing())
+        left_out = [item for item in items if not missing.isdisjoint(_needed(item))]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in left_out]
 
 
 @pytest.fixture(params=["left", "right"])

@@ -1,7 +1,8 @@
 """What is pinned can be installed where the README says so."""
 
 import re
-from importlib.metadata import PackageNotFoundError, metadata
+import sysconfig
+from importlib.metadata import distributions
 from pathlib import Path
 
 from packaging.specifiers import SpecifierSet
@@ -13,11 +14,20 @@ WHERE = re.compile(r"^([\w.-]+)==(\S+)$", re.MULTILINE)
 
 def pinned():
     """Name, version and metadata of every pinned package that is installed here."""
+    here = {
+        sysconfig.get_path(name) for name in ("purelib", "platlib")
+    }  # not what setuptools hides
+    there = {
+        _plain(found.metadata["Name"]): found.metadata for found in distributions(path=[*here])
+    }
     for name, version in WHERE.findall(PINS.read_text()):
-        try:
-            yield name, version, metadata(name)
-        except PackageNotFoundError:
-            continue
+        if _plain(name) in there:
+            yield name, version, there[_plain(name)]
+
+
+def _plain(name):
+    """A package's name as indexes compare it."""
+    return re.sub(r"[-_.]+", "-", name).lower()
 
 
 def test_every_pinned_package_runs_on_the_oldest_python():
