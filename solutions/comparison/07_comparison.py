@@ -14,7 +14,7 @@
 # | **Time** | core about 3 hours, all about 4 · 24 points |
 #
 # Every cell below runs from the start, solved or not: where your part is missing, something given stands
-# in and says so. Only the functions are marked.
+# in and says so. Functions, predictions and texts are marked.
 
 # %% setup=true
 from dataclasses import replace

@@ -16,7 +16,7 @@
 # saw no use in them. They never pushed the arm. Here you will.
 #
 # Every cell below runs from the start, solved or not: where your part is missing, something given stands
-# in and says so. After each stub a check tells you in words what it found. Only the functions are marked,
+# in and says so. After each stub a check tells you in words what it found. Functions, predictions and texts are marked,
 # so play with everything else as you like.
 
 # %% setup=true

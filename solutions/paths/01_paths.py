@@ -16,7 +16,7 @@
 # is the schedule `s(t)`. Together they are a *trajectory*. Kept apart, any path goes with any schedule.
 #
 # Every cell below runs from the start, solved or not: where your part is missing, a stand-in takes its
-# place and says so. After each stub a check tells you in words what it found. Only the functions are
+# place and says so. After each stub a check tells you in words what it found. Functions, predictions and texts are
 # marked, so play with everything else as you like.
 
 # %% setup=true

@@ -20,7 +20,7 @@
 # > acceleration)`, three arrays.
 #
 # Every cell below runs from the start, solved or not: where your part is missing, something given takes its
-# place and says so. Only the functions are marked.
+# place and says so. Functions, predictions and texts are marked.
 
 # %% setup=true
 import labkit as lk

@@ -13,7 +13,7 @@
 # | **Time** | core about 4 hours, all about 5 · 29 points |
 #
 # Every cell below runs from the start, solved or not: where your part is missing, something given
-# takes its place and says so. After each stub a check tells you in words what it found. Only the functions
+# takes its place and says so. After each stub a check tells you in words what it found. Functions, predictions and texts
 # are marked, so play with everything else as you like.
 
 # %% setup=true

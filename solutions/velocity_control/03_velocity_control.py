@@ -14,7 +14,7 @@
 # | **Time** | core about 3 hours, all about 4 · 27 points |
 #
 # Every cell runs from the start, solved or not: where your part is missing, a stand-in takes its place
-# and says so. After each stub a check tells you in words what it found. Only the functions are marked, so
+# and says so. After each stub a check tells you in words what it found. Functions, predictions and texts are marked, so
 # play with everything else as you like.
 
 # %% setup=true

@@ -15,7 +15,7 @@
 #
 # How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not:
 # where your part is missing, a stand-in takes its place and says so. After each stub a check tells you in
-# words what it found. Only the functions are marked, so play with everything else as you like.
+# words what it found. Functions, predictions and texts are marked, so play with everything else as you like.
 
 # %% setup=true
 import labkit as lk
