@@ -1,6 +1,6 @@
 """The program ``labkit``, or ``python -m labkit``: what students and instructors type.
 
-A students' labkit comes without the folder ``grader`` and so without the instructor's commands.
+A student's labkit does not have the folder ``grader``, so it has no instructor's commands.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from .course.cli import merge, submit_check
 
 EXAMPLES = """\b
 examples:
-  labkit submit-check 01_paths.ipynb    before handing in: is the notebook whole?
+  labkit submit-check 01_paths.ipynb    before you hand in: is the notebook complete?
 """
 EXAMPLES_FOR_INSTRUCTORS = """\
-  labkit release                        make all assignments, for students and for graders
-  labkit release 01_paths --seed 7      one of them, with hidden cases of your own
+  labkit release                        make all assignments, for students and graders
+  labkit release 01_paths --seed 7      make one, with hidden cases from seed 7
   labkit student-bundle                 a zip for students, with a start page
   labkit grade 01_paths                 grade everything under submitted/
-  labkit report-card                    how well the checks tell right from wrong
+  labkit report-card                    measure how well checks tell right from wrong
 """
 
 

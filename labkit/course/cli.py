@@ -1,4 +1,4 @@
-"""The student's commands, ``labkit submit-check`` and ``labkit merge``, and how commands fail."""
+"""The student's commands, ``labkit submit-check`` and ``labkit merge``, and errors of commands."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from ..errors import LabkitError
 
 PATH = click.Path(path_type=Path)
 FOR_INSTRUCTORS = ("nbgrader", "jupytext", "sqlalchemy")
-"""Packages that a student's environment does without."""
+"""Packages that a student's environment does not have."""
 
 
 class Verb(click.Command):
-    """A command that returns its exit code: 0 if all was done, 1 if the output names failures.
+    """A command that returns its exit code: 0 if all succeeded, 1 if the output names failures.
 
-    A mistake of the caller ends in one sentence and exit code 2, Ctrl-C in exit code 130.
+    Wrong use ends with one sentence and exit code 2, Ctrl-C with exit code 130.
     """
 
     def invoke(self, ctx: click.Context) -> int:
@@ -45,17 +45,17 @@ class Verb(click.Command):
             return self._stop(f"{where}{error.strerror or error}")
 
     def _stop(self, sentence: str, code: int = 2) -> int:
-        """Say why, without what a terminal would obey: a file's name may hold anything."""
+        """Print the reason without control characters, which a file's name may hold."""
         text = "".join(x if x.isprintable() or x == "\n" else "\ufffd" for x in sentence)
         print(f"labkit {self.name}: {text}", file=sys.stderr)
         return code
 
 
 def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
-    """Make a command of a function: its name and its docstring are the command's.
+    """Make a function a command with the same name and docstring.
 
     Args:
-        example: What may follow the name; the help ends with it.
+        example: Arguments of an example, which the help ends with.
     """
 
     def make(function: Callable[..., int]) -> Verb:
@@ -68,9 +68,9 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
 
 @verb("01_paths.ipynb")
 @click.argument("notebook", type=PATH)
-@click.option("--forum", is_flag=True, help="Print a block to copy into a forum.")
+@click.option("--forum", is_flag=True, help="Print a summary to copy into a forum.")
 def submit_check(notebook: Path, forum: bool) -> int:
-    """Before handing in: is the notebook whole?"""
+    """Check before you hand in: is the notebook complete?"""
     from .handin import look
 
     found = look(notebook)
@@ -81,11 +81,17 @@ def submit_check(notebook: Path, forum: bool) -> int:
 @verb("01_paths.ipynb new/01_paths.ipynb --to merged.ipynb")
 @click.argument("mine", type=PATH)
 @click.argument("new", type=PATH)
-@click.option("--to", type=PATH, required=True, metavar="FILE", help="Where to write.")
+@click.option(
+    "--to",
+    type=PATH,
+    required=True,
+    metavar="FILE",
+    help="Notebook to write; it must not exist yet.",
+)
 def merge(mine: Path, new: Path, to: Path) -> int:
-    """Bring your work into a corrected release.
+    """Copy your work into a corrected notebook.
 
-    MINE is the notebook that you worked in, NEW is the corrected one.
+    MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
     """
     from .handin import merge
     from .notebook import read_cells
@@ -99,12 +105,12 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     notebook = release | {"cells": merge(cells, released)}
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
-    print(f"{to}: the new release with your work; look it through, then run it all")
+    print(f"{to}: the new release with your work; look through it, then run all its cells")
     return 0
 
 
 def _is_valid(notebook: dict[str, Any]) -> bool:
-    """Whether data is what Jupyter would write."""
+    """Whether the data are a notebook as Jupyter writes it."""
     from nbformat.validator import isvalid
 
     try:

@@ -1,4 +1,4 @@
-"""Commands on what was graded: hand back, report, export."""
+"""Commands for graded work: feedback pages, a report on the class, tables of marks."""
 
 from __future__ import annotations
 
@@ -19,25 +19,28 @@ from .each import Failed, Failures
 if TYPE_CHECKING:
     from .marks import Mark
 
-one_student = click.option("--student", metavar="S", help="Only this one.")
-to_file = click.option("--to", type=PATH, metavar="FILE", help="Instead of the screen.")
+one_student = click.option("--student", metavar="S", help="Only this student.")
+to_file = click.option(
+    "--to", type=PATH, metavar="FILE", help="Write to FILE instead of the screen."
+)
 
 
 @verb("01_paths --student ada")
 @of_assignment
 @one_student
 @click.option(
-    "--moodle", type=PATH, metavar="ZIP", help="Also write the feedback files that Moodle takes."
+    "--moodle", type=PATH, metavar="ZIP", help="Also write a zip of feedback files for Moodle."
 )
 @click.option(
-    "--unmarked", is_flag=True, help="Do not wait until all that is marked by hand is marked."
+    "--unmarked", is_flag=True, help="Write the pages before all answers are marked by hand."
 )
 def feedback(
     course: Course, assignment: str, student: str | None, moodle: Path | None, unmarked: bool
 ) -> int:
-    """Write a page for each student.
+    """Write a feedback page for each student.
 
-    Pages wait until everybody's answers that a person marks are marked, in formgrader.
+    Some answers are marked by hand, in formgrader. No page is written until they are all marked;
+    --unmarked writes the pages before.
     """
     from .exchange import for_exchange
     from .feedback import write_feedback
@@ -72,12 +75,16 @@ def feedback(
     "--layout",
     type=click.Choice(["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"]),
     default="questions",
-    help="moodle is for its gradebook, moodle-worksheet for the assignment's own page.",
+    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle.",
 )
 @click.option(
-    "--column", metavar="NAME", help="The assignment as the platform calls it: 'Paths (4711)'."
+    "--column", metavar="NAME", help="The platform's name of the assignment: 'Paths (4711)'."
 )
-@click.option("--absent-zero", is_flag=True, help="Who handed in nothing has 0, not nothing.")
+@click.option(
+    "--absent-zero",
+    is_flag=True,
+    help="Write 0, not an empty cell, for a student who handed in nothing.",
+)
 @to_file
 def export(
     course: Course,
@@ -87,9 +94,10 @@ def export(
     absent_zero: bool,
     to: Path | None,
 ) -> int:
-    """Write marks as a table, of one assignment or of the term.
+    """Write a table of marks, for an assignment or the term.
 
-    Without ASSIGNMENT it is a table of all that were graded, with the weights of course.toml.
+    Without ASSIGNMENT the table has every assignment that was graded, and the total with the
+    weights of course.toml.
     """
     from .export import LAYOUTS, as_csv, of_term, remarks
     from .marks import marks_of
@@ -121,13 +129,16 @@ def export(
 
 @verb("01_paths --names")
 @of_assignment
-@click.option("--names", is_flag=True, help="With names, for your eyes only.")
+@click.option("--names", is_flag=True, help="Show real names; for your eyes only.")
 @to_file
-@click.option("--jplag", type=PATH, metavar="DIR", help="Also write answers for JPlag there.")
+@click.option("--jplag", type=PATH, metavar="DIR", help="Also write the answers to DIR, for JPlag.")
 def class_report(
     course: Course, assignment: str, names: bool, to: Path | None, jplag: Path | None
 ) -> int:
-    """Say what the class got right and wrong."""
+    """Report what the class got right and wrong.
+
+    The report counts mistakes by their names. Students have pseudonyms unless you add --names.
+    """
     from ..course.bundle import Bundle
     from .class_report import FEWEST, for_jplag, report
     from .marks import marks_of
@@ -151,18 +162,18 @@ def class_report(
 
 
 def _wait_for_marks(marks: Iterable[Mark]) -> None:
-    """Raise a LabkitError if a person has still something to mark."""
+    """Raise a LabkitError if a person still has something to mark."""
     waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in marks if mark.open]
     if waiting:
         some = ", ".join(waiting[:5]) + (", ..." if len(waiting) > 5 else "")
         raise LabkitError(
             f"{len(waiting)} are not marked by hand in full: {some}; mark them in formgrader, or "
-            "add --unmarked to write the pages before"
+            "add --unmarked to write the pages without these marks"
         )
 
 
 def _nobody(assignment: str, student: str | None) -> LabkitError:
-    """What to say where nothing is graded yet."""
+    """The error for an assignment in which nothing is graded yet."""
     who = f"{student} is not" if student else "nobody is"
     return LabkitError(f"{who} graded in {assignment}; type: labkit grade {assignment}")
 

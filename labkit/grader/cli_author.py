@@ -16,18 +16,26 @@ Option = Callable[[Callable[..., int]], Callable[..., int]]
 
 
 def _functions(of: str) -> Option:
-    """An option that takes more known answers from a file."""
-    says = f"A Python file with a dict {of.upper()} = {{question: [functions]}}."
+    """An option that reads more known answers from a file."""
+    says = f"Try more {of}: a Python file with a dict {of.upper()} = {{question: [functions]}}."
     return click.option(f"--{of}", type=PATH, metavar="FILE", help=says)
 
 
 @verb("01_paths --mistakes seen_in_class.py")
 @names
 @click.option(
-    "--seed", type=SEED, default=PUBLIC_SEED, help=f"Of the first draw; {PUBLIC_SEED} by default."
+    "--seed",
+    type=SEED,
+    default=PUBLIC_SEED,
+    help=f"Seed of the first draw; {PUBLIC_SEED} by default.",
 )
-@click.option("--draws", type=click.IntRange(1), default=20, help="How many; 20 by default.")
-@click.option("--to", type=PATH, metavar="DIR", help="Where to write it; default: build.")
+@click.option(
+    "--draws",
+    type=click.IntRange(1),
+    default=20,
+    help="Number of draws of hidden cases; 20 by default.",
+)
+@click.option("--to", type=PATH, metavar="DIR", help="Folder for the report; build by default.")
 @_functions("mistakes")
 @_functions("variants")
 @of_course
@@ -40,9 +48,10 @@ def report_card(
     mistakes: Path | None,
     variants: Path | None,
 ) -> int:
-    """Say how well the checks tell right from wrong.
+    """Measure how well the checks tell right from wrong.
 
-    Without a NAME it looks at all assignments.
+    The checks are tried on every known mistake, and on right answers written in other forms, with
+    several draws of hidden cases. Without a NAME all assignments are tried.
     """
     from ..course.report_card import functions_from, make, write
 
@@ -66,10 +75,12 @@ def report_card(
 
 
 @verb("--to ../handout")
-@click.option("--to", type=PATH, required=True, metavar="DIR", help="A folder that is new.")
+@click.option(
+    "--to", type=PATH, required=True, metavar="DIR", help="A folder that does not exist yet."
+)
 @of_course
 def export_course(course: Course, to: Path) -> int:
-    """Write a repository for students, and a private one."""
+    """Write two repositories: one for students, one private."""
     from .student_bundle import export_course
 
     student, private = export_course(course, to)

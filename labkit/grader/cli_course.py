@@ -1,4 +1,4 @@
-"""Commands before grading: the machine, the term, what students get, who they are, what came in."""
+"""Commands before grading: the machine, the term, notebooks for students, roster, hand-ins."""
 
 from __future__ import annotations
 
@@ -21,7 +21,12 @@ SEED = click.IntRange(min=0)
 def of_course(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command the option ``--course`` and hand it the course."""
 
-    @click.option("--course", type=PATH, metavar="DIR", help="Default: the one around you.")
+    @click.option(
+        "--course",
+        type=PATH,
+        metavar="DIR",
+        help="Folder of the course; by default the one you are in.",
+    )
     @wraps(command)
     def on_course(course: Path | None, **given: Any) -> int:
         return command(course=Course.here(course), **given)
@@ -47,12 +52,16 @@ names = click.argument("names", nargs=-1, metavar="[NAME]...")
 
 @verb("01_paths --seed 7")
 @names
-@click.option("--seed", type=SEED, help="Of the hidden cases; the term's by default, or the last.")
+@click.option(
+    "--seed",
+    type=SEED,
+    help="Seed of the hidden cases; by default the term's, or the last one used.",
+)
 @of_course
 def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     """Make the students' notebooks.
 
-    Each NAME is an assignment such as 01_paths; without one, all are made.
+    Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made.
     """
     from .release import release
     from .term import public_warning, seed_for
@@ -72,15 +81,24 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
 
 @verb("00_warmup 01_paths --to week1.zip")
 @names
-@click.option("--to", type=PATH, metavar="FILE", help="Default: dist/baxter-lab.zip.")
-@click.option("--book", metavar="ADDRESS", help="Of the book; by default it is put in, if built.")
+@click.option(
+    "--to",
+    type=PATH,
+    metavar="FILE",
+    help="The zip to write; dist/baxter-lab.zip by default.",
+)
+@click.option(
+    "--book",
+    metavar="ADDRESS",
+    help="Link to the book at ADDRESS; by default the zip holds the book, if it was built.",
+)
 @of_course
 def student_bundle(
     course: Course, names: tuple[str, ...], to: Path | None, book: str | None
 ) -> int:
-    """Write a zip for students, ready to start.
+    """Write the zip that students unpack and start.
 
-    Without a NAME it takes all assignments that are released.
+    Without a NAME the zip holds every assignment that was released.
     """
     from .student_bundle import student_bundle
 
@@ -92,10 +110,27 @@ def student_bundle(
 @verb("new 01_paths")
 @click.argument("action", type=click.Choice(["new", "list", "forget"]), metavar="new|list|forget")
 @names
-@click.option("--seed", type=SEED, help="new: of the hidden cases; drawn by default.")
-@click.option("--student", metavar="S", help="forget: all that is there of one student.")
-@click.option("--older", type=click.FloatRange(0), metavar="YEARS", help="forget: earlier terms.")
-@click.option("--yes", is_flag=True, help="forget: do it, and not only list what would go.")
+@click.option(
+    "--seed",
+    type=SEED,
+    help="new: seed of the hidden cases; drawn at random by default.",
+)
+@click.option(
+    "--student",
+    metavar="S",
+    help="forget: everything of one student, in all terms.",
+)
+@click.option(
+    "--older",
+    type=click.FloatRange(0),
+    metavar="YEARS",
+    help="forget: terms that ended at least YEARS years ago.",
+)
+@click.option(
+    "--yes",
+    is_flag=True,
+    help="forget: delete, instead of only listing what would be deleted.",
+)
 @of_course
 def term(
     course: Course,
@@ -106,11 +141,16 @@ def term(
     older: float | None,
     yes: bool,
 ) -> int:
-    """Begin a term, list terms, delete what is over.
+    r"""Begin a term, list terms, delete old records.
 
-    new archives the last term and releases each NAME, or all assignments, with a new seed. list
-    says what there is. forget lists what would be deleted, terms that ended some YEARS ago or all
-    of one student; with --yes it deletes it. The law may say how long marks must be kept.
+    \b
+    new     archives the last term and releases each NAME, or all assignments,
+            with a new seed
+    list    lists the terms that are stored
+    forget  lists what it would delete: terms that ended some YEARS ago, or
+            everything of one student; with --yes it deletes them
+
+    The law may say how long marks must be kept.
     """
     from .forget import forget, places_of
     from .term import about, archives, new_term
@@ -152,16 +192,16 @@ def _say(sentences: Iterable[str]) -> None:
 @click.option(
     "--assignment",
     metavar="NAME",
-    help="The file is Moodle's grading worksheet of it, which says whose each number is.",
+    help="FILE is Moodle's grading worksheet of this assignment: it has the students' numbers.",
 )
 @of_course
 def students(course: Course, action: str, file: Path, assignment: str | None) -> int:
-    """Take a list of students into the roster.
+    """Import a list of students into the roster.
 
-    The list is Moodle's, Canvas's or any table with a line for each student.
+    The list comes from Moodle or Canvas, or is any table with a row for each student.
 
-    Exit code: 0 if the list was taken, 1 if work of somebody is in two folders (named at the end),
-    2 if the list was not taken.
+    Exit code: 0 if the list was imported, 1 if it was but a student's work is in two folders
+    (named at the end), 2 if the list was not imported.
     """
     from .enrol import import_list
 
@@ -178,17 +218,17 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
 @click.option(
     "--unverified",
     is_flag=True,
-    help="From the exchange, also take what users handed in whom this machine does not know.",
+    help="Exchange: also take hand-ins of users whom this machine does not know.",
 )
 @click.option(
     "--named",
     metavar="PATTERN",
-    help="How files are named that come from no platform: 'paths-{student}/*.ipynb'.",
+    help="How to find the student in a file's path: 'paths-{student}/*.ipynb'.",
 )
 @click.option(
     "--at",
     metavar="TIME",
-    help="When the download or clone was made; what has no time of its own was in by then.",
+    help="Time of the download or clone; counts as the hand-in time of files without their own.",
 )
 def collect(
     course: Course,
@@ -198,14 +238,14 @@ def collect(
     named: str | None,
     at: str | None,
 ) -> int:
-    """Take what students handed in, from anywhere.
+    """Collect what students handed in, from any platform.
 
-    Downloads are Moodle's, Canvas's or nbgrader's exchange; give its inbound folder. Clones of
-    GitHub Classroom, or any folder or zip of files, need --named. Nothing that was handed in is
-    lost: all of it is under attempts/.
+    A source is a zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange. Clones
+    of GitHub Classroom, and any other folder or zip of files, need --named. Every notebook that
+    was handed in is kept, in attempts/.
 
-    Exit code: 0 if all is well, 1 if something was not taken or it is not certain whose it is
-    (named at the end), 2 if nothing could be done.
+    Exit code: 0 if everything was collected, 1 if a file was not collected or its owner is not
+    certain (named at the end), 2 if nothing could be collected.
     """
     from .collect import collect
     from .exchange import read_time
@@ -232,7 +272,10 @@ def collect(
 
 @verb("")
 def doctor() -> int:
-    """Say what this machine lacks, and how to get it."""
+    """Check whether this machine can grade safely.
+
+    The sandbox is tried from inside. Each missing part is named with the command that installs it.
+    """
     from .doctor import examine
 
     bad = False

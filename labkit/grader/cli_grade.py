@@ -24,7 +24,7 @@ jobs = click.option(
     type=click.IntRange(min=1),
     metavar="N",
     default=lambda: len(os.sched_getaffinity(0)),
-    help="Workers; by default one per core.",
+    help="Number of workers; one for each core by default.",
 )
 
 
@@ -39,27 +39,39 @@ def _shard(text: str) -> tuple[int, int]:
 @of_assignment
 @one_student
 @jobs
-@click.option("--json", "as_json", is_flag=True, help="One JSON object per line, for programs.")
-@click.option("--again", is_flag=True, help="Grade anew what is graded already.")
-@click.option("--diff", is_flag=True, help="Only say whose mark would move.")
-@click.option("--watch", is_flag=True, help="Grade what comes in from now on, until Ctrl-C.")
-@click.option("--lower", is_flag=True, help="Let marks fall that would, after a test has changed.")
-@click.option("--dask", metavar="ADDRESS", help="Of a Dask scheduler that shares the folder.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line, for programs.")
+@click.option("--again", is_flag=True, help="Also grade what is already graded.")
+@click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
+@click.option("--watch", is_flag=True, help="Keep grading new hand-ins until you press Ctrl-C.")
 @click.option(
-    "--shard", type=_shard, default="1/1", metavar="i/n", help="Only the i-th of n parts."
+    "--lower",
+    is_flag=True,
+    help="After a test has changed, also record marks that become lower.",
+)
+@click.option(
+    "--dask",
+    metavar="ADDRESS",
+    help="Address of a Dask scheduler whose workers share this folder.",
+)
+@click.option(
+    "--shard",
+    type=_shard,
+    default="1/1",
+    metavar="i/n",
+    help="Grade only the i-th of n parts of the class.",
 )
 @click.option(
     "--unsafe-no-isolation",
     "isolated",
     flag_value=False,
     default=True,
-    help="Run students' code with your own rights, able to read and delete your files.",
+    help="Without a sandbox: students' code can then read and delete your files.",
 )
 def grade(course: Course, assignment: str, student: str | None, as_json: bool, **how: Any) -> int:
-    """Grade what was handed in and is not graded yet.
+    """Grade every submission that is not graded yet.
 
-    Each submission is graded in a sandbox of its own. After a test has changed and was released,
-    all are graded again; no mark falls unless you say --lower.
+    Each submission is graded in a sandbox of its own. After you have changed a test and released
+    the assignment, all submissions are graded again. No mark is lowered unless you add --lower.
     """
     from .batch import GradeOptions, common_failures, grade_class, watch
     from .changes import changes, summary
@@ -97,7 +109,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
 
 
 def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
-    """What is printed of a submission that was graded."""
+    """The line that is printed for a graded submission."""
     from ..course.serialize import record_data
 
     says = f" ({one.says})" if one.says else ""
@@ -107,13 +119,17 @@ def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
 @verb("ada bang_bang")
 @click.argument("student")
 @click.argument("question")
-@click.option("--assignment", metavar="NAME", help="If several have a question of that name.")
+@click.option(
+    "--assignment",
+    metavar="NAME",
+    help="Needed if several assignments have a QUESTION of that name.",
+)
 @of_course
 def explain(course: Course, student: str, question: str, assignment: str | None) -> int:
-    """Say why an answer has its mark, with its numbers.
+    """Explain the mark of an answer, with its numbers.
 
-    The answer runs once more in the sandbox, with the hidden case that decided laid open: that part
-    is for you, and what the student may be shown is marked.
+    The answer runs once more in the sandbox. You see what the student may be shown, and then,
+    for you alone, the hidden case that decided the mark. Numbers and runs are written to a page.
     """
     from .explain import explain
 
@@ -124,7 +140,7 @@ def explain(course: Course, student: str, question: str, assignment: str | None)
 def _handed_in(
     course: Course, assignment: str, student: str | None, failures: Failures
 ) -> list[str]:
-    """Who handed in, or the one asked for; folders with a name that is not fit are failures."""
+    """The students who handed in, or the one asked for; folders with unfit names are failures."""
     from .submission import misnamed, students
 
     found = students(course, assignment)
