@@ -1,4 +1,4 @@
-"""An exception out of a student's code, in words: which line it was, and what to do about it."""
+"""An exception from a student's code, in words: which line raised it, and what to do."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def in_library(file: str) -> bool:
 
 
 def line_of(error: BaseException) -> str:
-    """The last line outside labkit and all libraries that the exception came through, or ""."""
+    """The last line of the traceback outside labkit and all libraries, or ""."""
     found = ""
     step: TracebackType | None = error.__traceback__
     while step is not None:
@@ -39,14 +39,16 @@ def line_of(error: BaseException) -> str:
 
 
 def remedy(error: BaseException) -> str:
-    """What to do about it, where Python's and numpy's own words leave one alone, or ""."""
+    """What to do about an exception whose own message does not help a student, or ""."""
     text = str(error)
     if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
         return f"it has {', '.join(error.obj._fields)}"
     if isinstance(error, TypeError) and re.search("'(State|Sample|PoseSample)'", text):
         return "compute with the arrays in it, such as target.position or state.q"
     if "read-only" in text:
-        return "what you are given cannot be changed; make a new array, or write on x.copy()"
+        return (
+            "the arrays that you are given cannot be changed; make a new array, or change x.copy()"
+        )
     if "matmul" in text and (sizes := re.search(r"size (\d+) is different from (\d+)", text)):
         b, a = sizes.groups()
         return f"left of the @ are {a} columns, right of it {b} rows; these must be equal"
@@ -56,34 +58,34 @@ def remedy(error: BaseException) -> str:
 
 
 _WAYS_OUT = {
-    "does not have enough dimensions": "the @ wants arrays on both sides; for a number write *",
-    "operands could not be broadcast": "+, - and * go number by number, so sizes must be equal; "
+    "does not have enough dimensions": "@ needs arrays on both sides; for a number write *",
+    "operands could not be broadcast": "+, - and * go element by element, so sizes must be equal; "
     "the product of matrices is @",
-    "broadcast input array from shape (3,1)": "a column, (3, 1), goes where a vector belongs; "
-    "use .ravel()",
-    "Singular matrix": "a matrix has an inverse only if its rank is its size; J is (6, 7), so "
-    "J @ J.T has one and J.T @ J has none",
+    "broadcast input array from shape (3,1)": "a column, (3, 1), is used as a vector, (3,); "
+    "write .ravel()",
+    "Singular matrix": "a matrix has an inverse only if its rank equals its size; J is (6, 7), so "
+    "J @ J.T can have an inverse and J.T @ J cannot",
     "must be square": "only square matrices have an inverse",
-    "object is not callable": "brackets behind a name call it; is a * missing, or does the name "
-    "stand for something else by now?",
+    "object is not callable": "brackets after a name call it; is a * missing, or did you use "
+    "the name for something else?",
     "cannot unpack non-iterable NoneType": "is a return missing?",
     "unsupported operand type(s) for -: 'list' and 'list'": "turn lists into arrays first, with "
     "np.array or np.subtract",
-    "non-int of type 'TransferFunction'": "control.pade gives two lists, numerator and "
-    "denominator; control.tf makes a transfer function of them",
+    "non-int of type 'TransferFunction'": "control.pade returns two lists, numerator and "
+    "denominator; control.tf makes a transfer function from them",
     "argument 0 of type TransferFunction": "numpy cannot take the exponential of a transfer "
-    "function; control.pade comes close to a delay",
-    "missing required argument 'cameraMatrix'": "after the pixels it wants the camera's matrix and "
+    "function; control.pade approximates a delay",
+    "missing required argument 'cameraMatrix'": "after the pixels it needs the camera's matrix and "
     "None for the distortion",
 }
-"""What to do about it, by words of the message."""
+"""What to do about an exception, by words of its message."""
 
 
 def explained(error: BaseException) -> str:
     """What the exception says, the line that raised it, and the remedy."""
     text = str(error)
     if isinstance(error, ValueError) and "gufunc" in text:
-        text = "sizes that do not fit"
+        text = "sizes that do not match"
     line, way_out = line_of(error), remedy(error)
     where = f"in the line `{line}`" if line else ""
     sentence = ", ".join(part for part in (text, where) if part)
@@ -91,6 +93,6 @@ def explained(error: BaseException) -> str:
 
 
 def told(error: BaseException) -> str:
-    """The exception in one sentence: its type, and `explained`."""
+    """The exception in one sentence: its type, and what `explained` says."""
     sentence = explained(error)
     return f"{type(error).__name__}: {sentence}" if sentence else type(error).__name__

@@ -1,4 +1,4 @@
-"""A verdict in words: the only place where sentences are made of one."""
+"""Verdicts in words: all sentences about a verdict are written here."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .verdict import Difference, Kind, Outcome, TestResult, Value, Verdict
 from .withheld import spoken
 
 WIDTH = 79
-"""Of a line, in characters."""
+"""Longest line, in characters."""
 
 HEADS = {
     Outcome.NOT_ATTEMPTED: "not attempted yet",
@@ -24,16 +24,16 @@ HEADS = {
     Outcome.WRONG: "not yet right",
     Outcome.RIGHT: "right",
 }
-"""What each outcome is called."""
+"""The words for each outcome."""
 
 
 _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
-"""Of tests of which no more is to be said."""
+"""The words for tests that need no explanation."""
 _COMMANDS = [kind.__name__ for kind in COMMANDS]
 
 
 def head(verdict: Verdict) -> str:
-    """The verdict in a line."""
+    """The verdict in one line."""
     points = f"{verdict.points:g} point{'' if verdict.points == 1 else 's'}"
     committed = verdict.right and [test.name for test in verdict.tests] == [COMMITTED]
     says = "committed" if committed else HEADS[verdict.outcome]
@@ -47,7 +47,9 @@ def head(verdict: Verdict) -> str:
 def uses(withheld: Iterable[str]) -> str:
     """Why an answer that uses withheld tools is not counted."""
     names = [spoken(tool) for tool in withheld]
-    own = all("." in name for name in names)  # nobody is asked to write a whole package
+    own = all(
+        "." in name for name in names
+    )  # a whole package is never what the student should write
     why = "this question asks you to write" if own else "may not be used in this answer"
     return f"uses {' and '.join(names)}, which {why}"
 
@@ -58,10 +60,10 @@ def tell(
     """Everything that a student reads after a check.
 
     Args:
-        question: What was asked.
-        verdict: What came of it.
-        printed: What the student's code wrote while it was tried.
-        leans_on: Other answers that it uses, and that are not right.
+        question: The question.
+        verdict: The verdict on the answer.
+        printed: What the student's code printed while it was tried.
+        leans_on: Names of other answers that this one uses and that are not right.
 
     Returns:
         Lines of text, the verdict first.
@@ -72,21 +74,25 @@ def tell(
     elif verdict.outcome is Outcome.RIGHT:
         lines += [] if verdict.complete else _unseen(question)
     elif verdict.outcome is Outcome.NOT_COUNTED:
-        lines.append("  Elsewhere in the notebook you may use it; here write it yourself.")
+        lines.append("  You may use it elsewhere in the notebook; here, write it yourself.")
     else:
         lines += _results(question, verdict)
         lines += _mistake(verdict)
     if leans_on and verdict.outcome is not Outcome.RIGHT:
         names = ", ".join(leans_on)
-        lines.append(f"  Note: it uses your {names}, which is not right yet; correct that first.")
+        lines.append(
+            f"  Note: it uses your {names}, which is not right yet; correct {names} first."
+        )
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
-        lines.append(f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees it.')
+        lines.append(
+            f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees that you asked.'
+        )
     return "\n".join(wrapped(line) for line in lines)
 
 
 def summary(verdict: Verdict) -> list[str]:
-    """A verdict for a teacher's page: its head, each test where something went wrong, a mistake."""
+    """A verdict for a teacher's page: its head, and after a failure each test and the mistake."""
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
         lines += [f"  {line(test)}" for test in verdict.tests]
@@ -96,12 +102,12 @@ def summary(verdict: Verdict) -> list[str]:
 
 def _mistake(verdict: Verdict) -> Iterator[str]:
     if verdict.mistake is not None:
-        yield f"  This is a well-known one: {verdict.mistake.name}."
+        yield f"  This mistake is a well-known one: {verdict.mistake.name}."
         yield f"  {verdict.mistake.says}"
 
 
 def _unseen(question: Question) -> Iterator[str]:
-    """What a student's copy of a question leaves to the teacher's."""
+    """What only the teacher's copy of a question tests."""
     also = dict.fromkeys(test.also for test in question.tests if test.also)
     if also:
         yield f"  The teacher also tries: {'; '.join(also)}."
@@ -127,18 +133,18 @@ _MEASURES = {
 """Measures of a run in words, with their units."""
 _FACTORS = {
     -1.0: "the same with the other sign",
-    math.degrees(1.0): "these look like degrees, where radians belong",
+    math.degrees(1.0): "these look like degrees; use radians",
     math.radians(1.0): "these look like degrees taken for radians",
     1e3: "a thousand times too large: millimetres for metres?",
     1e-3: "a thousand times too small",
     2.0: "twice what is expected",
     0.5: "half of what is expected",
 }
-"""What it means that all numbers are off by one and the same factor."""
+"""The likely cause if all numbers are wrong by the same factor."""
 
 
 def line(test: TestResult) -> str:
-    """A test in a line: whether it passed, and if it did not, on which case and why."""
+    """A test in one line: whether it passed, and if it failed, on which case and why."""
     gate = "" if test.weight else GATE
     if test.outcome in _SHORT:
         return f"[{_SHORT[test.outcome]}] {test.name}{gate}"
@@ -147,7 +153,7 @@ def line(test: TestResult) -> str:
 
 
 def why(test: TestResult) -> str:
-    """On which case a test failed, and how; empty where there is nothing to say."""
+    """On which case a test failed, and how; empty if there is nothing to say."""
     hidden = f"a hidden case ({test.also})" if test.also else "a hidden case"
     where = hidden if test.hidden else test.call
     if test.difference is None:
@@ -158,7 +164,7 @@ def why(test: TestResult) -> str:
 
 
 def _words(d: Difference) -> tuple[str, str, str, str]:
-    """A difference in words: what comes first; what was expected and what came; a guess why."""
+    """A difference in words: where it is, what was expected, what was returned, a likely cause."""
     of = f"{d.part}: " if d.part else ""
     text = ""
     match d.kind:
@@ -186,28 +192,28 @@ def _words(d: Difference) -> tuple[str, str, str, str]:
             parts = f"{len(d.parts)} things ({', '.join(d.parts)})"
             text = f"{of}it should be {parts}, not {_brief(d.found)}"
         case Kind.NOTHING:
-            text = "it returned nothing (None); does every path through it end in a return?"
+            text = "it returned nothing (None); does every branch of it end in a return?"
         case Kind.RAISED:
             text = f" raised {d.found or d.error}"
         case Kind.REFUSED | Kind.CHANGED:
             text = str(d.found or d.error)
         case Kind.OTHER:
-            text = "the answer cannot be compared with what is expected"
+            text = "the answer cannot be compared with the expected one"
     return text, "", "", ""
 
 
 def _instead(d: Difference) -> str:
-    """What came instead of the type that was asked for, and how to make one of it."""
+    """What was returned instead of the type that was asked for, and how to make that type."""
     if d.found in _COMMANDS:
         return f"a {d.found}"
     what = _brief(d.found) or "plain numbers"
     if d.expected not in _COMMANDS:
         return what
-    return f"{what}; return lk.{d.expected}(...) with a number for each joint in it"
+    return f"{what}; return lk.{d.expected}(...) with one number for each joint"
 
 
 def _guess(d: Difference) -> str:
-    """What a telling factor means; a single number may be twice or half of another by chance."""
+    """The likely cause of a factor; a single number may be twice or half of another by chance."""
     if d.times is None:
         return ""
     single = isinstance(d.expected, float) and not d.at
@@ -232,7 +238,7 @@ def _much(x: Value) -> str:
 
 
 def _results(question: Question, verdict: Verdict) -> list[str]:
-    """Each test in a line; of one that failed also the call, and what came of it."""
+    """Each test in a line; for one that failed also the call and what it returned."""
     lines: list[str] = []
     before: list[Difference] = []
     for test, result in zip(question.tests, verdict.tests, strict=True):
@@ -251,7 +257,7 @@ def _results(question: Question, verdict: Verdict) -> list[str]:
 
 
 def _again(test: Test, difference: Difference, before: list[Difference]) -> bool:
-    """Whether the student has read that already: a run stops as the single calls did."""
+    """Whether the student has already read this: a run stops for the same reason as a call did."""
     if difference.kind is Kind.RAISED and any(isinstance(x, Loop | Tuned) for x in test.cases):
         if difference.error == ControllerError.__name__:
             return bool(before)
@@ -260,7 +266,7 @@ def _again(test: Test, difference: Difference, before: list[Difference]) -> bool
 
 
 def _parts(test: TestResult, guess: bool) -> list[str]:
-    """A call and two answers too long for a line: the answers below each other, and a guess why."""
+    """A call and two answers too long for a line: one below the other, and a likely cause."""
     start, expected, got, means = _words(test.difference) if test.difference else ("", "", "", "")
     if not got:
         return [why(test)]
