@@ -646,9 +646,9 @@ lk.live(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
-# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
-# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
+# run the last cell. It says what is missing and prints a receipt; keep it. Hand in the file without renaming
+# it. The teacher runs your functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("05_impedance")

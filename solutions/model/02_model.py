@@ -1,15 +1,15 @@
 # %% [markdown]
 # # 02 · The model
 #
-# A controller that knows the arm can do more than one that only sees an error. What there is to know is
+# A controller that knows the arm can do more than one that only sees an error. All that it needs to know is
 # one equation,
 #
 # $$ M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau , $$
 #
-# and one matrix, the Jacobian, which says how the tip moves when the joints do. In this notebook you
-# build all of them from the arm's seven bodies, and, which matters as much, you learn how to find out
-# whether they are right. The report that this lab grew out of had no such test; its gravity was off by
-# a factor of thirty, and nobody could tell.
+# and one matrix, the Jacobian, which says how the tip moves when the joints do. In this notebook you compute
+# all of them from the arm's seven bodies. Just as important, you learn how to find out whether they are
+# right. The report that this lab grew out of had no such test; its gravity was off by a factor of thirty, and
+# nobody could tell.
 #
 # | | |
 # |---|---|
@@ -18,9 +18,9 @@
 # | **You write** | the Jacobian, the mass matrix, gravity, the Coriolis matrix, the power balance |
 # | **Time** | core about 2.5 hours, all about 4 · 24 points |
 #
-# Every cell runs from the start, solved or not: where your part is missing, a stand-in takes its place
-# and says so. After each stub a check tells you in words what it found. Functions, predictions and texts are marked, so
-# play with everything else as you like.
+# Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
+# After each stub a check tells you in words what it found. Only the functions are marked, so play with
+# everything else as you like.
 
 # %% setup=true
 import labkit as lk
@@ -35,8 +35,8 @@ import numpy as np
 # %% [markdown]
 # ## Seven bodies
 #
-# The arm is seven bodies, each turning about the z axis of its own frame. `model.links(q)` lists
-# them in their places at the angles `q`: mass, inertia, pose, and how their centre of mass moves.
+# The arm is seven bodies, each turning about the z axis of its own frame. `model.links(q)` lists them at the
+# angles `q`: the mass, the inertia and the pose of each, and how its centre of mass moves.
 
 # %%
 arm = lk.Arm("left")
@@ -49,9 +49,9 @@ for name, link in zip(names, model.links(q0)):
 # %% [markdown]
 # ## The Jacobian: what one joint does to the tip
 #
-# Freeze all joints but one. Everything beyond it turns about its axis $z_k$ like a door on its hinge. A
-# point of the door at the arm $r$ from the hinge moves with $z_k \times r$, and the door itself turns
-# with $z_k$. All joints together simply add up,
+# Freeze all joints but one. Everything beyond it turns about its axis $z_k$ like a door on its hinge. A point
+# of the door at the vector $r$ from the hinge moves with $z_k \times r$, and the door itself turns with
+# $z_k$. The motions of all joints simply add up,
 #
 # $$ \begin{pmatrix} \dot p \\ \omega \end{pmatrix} = J(q)\,\dot q, $$
 #
@@ -80,9 +80,9 @@ def jacobian(axes, origins, tip):
 
 
 # %% [markdown]
-# A Jacobian is a derivative, so there is a test that needs no other Jacobian: move, and look. Here the
-# arm goes round a circle. The speed of the tip is taken once from the places it went through, and once
-# from your Jacobian and the joint speeds.
+# A Jacobian is a derivative, so you can test it without another Jacobian: move the arm, and look. Here the
+# arm goes round a circle. The velocity of the tip is computed once from its positions, and once from your
+# Jacobian and the joint speeds.
 
 # %%
 def jacobian_at(q):
@@ -131,17 +131,17 @@ lk.plotting.show(
 lk.replay.show(lk.replay.motion_of(log, "A circle, to try the Jacobian on"))
 
 # %% [markdown]
-# ## The mass matrix: how hard it is to get going
+# ## The mass matrix: how hard it is to start moving
 #
-# The energy of motion of one body is that of its centre and that of its turning,
+# The kinetic energy of a body is that of its centre of mass plus that of its rotation,
 # $\tfrac12 m |v|^2 + \tfrac12 \omega^T I \omega$. Both $v$ and $\omega$ are linear in the joint speeds,
 # through the Jacobian of that body's centre of mass. Summed over the bodies, the kinetic energy is a
 # quadratic form, and $M$ is its matrix (Murray, Li and Sastry, section 4.3):
 #
 # $$ T = \tfrac12\,\dot q^T M(q)\,\dot q . $$
 #
-# Mind the axes. The inertia of a body is tabulated in the body's own axes, where it never changes; the
-# angular velocity that the Jacobian gives is in world axes.
+# Be careful with the axes. The inertia of a body is tabulated in the body's own axes, where it never changes;
+# the angular velocity that the Jacobian gives is in world axes.
 
 # %% question="mass_matrix"
 def mass_matrix(masses, inertias, rotations, com_jacobians):
@@ -166,8 +166,8 @@ def mass_matrix(masses, inertias, rotations, com_jacobians):
 
 # %% [markdown]
 # Three things must hold for any mass matrix, whatever the arm: it is symmetric, no motion has negative
-# energy, and none has *no* energy, so its smallest eigenvalue is above zero. The picture shows that the
-# arm is not the same thing to push everywhere: stretch the elbow, and the shoulder has far more to do.
+# energy, and no motion has *zero* energy, so its smallest eigenvalue is above zero. The picture shows that
+# the inertia depends on the pose: if you stretch the elbow, the shoulder has far more to move.
 
 # %%
 def mass_matrix_at(q):
@@ -215,10 +215,10 @@ predict("heaviest_direction", truth="".join("xyz"[k] for k in np.argsort(-felt_a
 # %% [markdown]
 # ## Gravity: what it takes to stay
 #
-# Raise joint $k$ by a little: the potential energy grows by the torque that you have to hold there,
-# times the angle. So $g_k = \partial V / \partial q_k$, and $V$ is the sum of $m\,g_0\,z$ over the
-# bodies, with $g_0$ = 9.81 m/s² and $z$ the height of the centre of mass. How fast that height changes
-# along each joint you already have: it is a row of a Jacobian.
+# Raise joint $k$ by a little: the potential energy grows by the torque that you have to hold there, times the
+# angle. So $g_k = \partial V / \partial q_k$, and $V$ is the sum of $m\,g_0\,z$ over the bodies, with $g_0$ =
+# 9.81 m/s² and $z$ the height of the centre of mass. You already know how fast that height changes with each
+# joint: it is a row of a Jacobian.
 
 # %% question="gravity"
 def gravity(masses, com_jacobians):
@@ -242,9 +242,9 @@ def gravity(masses, com_jacobians):
 # %% predict="base_joint"
 
 # %% [markdown]
-# No better test than to try: command your torque and nothing else, and the arm should float where it
-# is. Beside it the report's formula, $M J^T (0, 0, 0.981, 0, 0, 0)^T$: it lets only the tip have weight,
-# and a tenth of it, and has the unit of no torque.
+# The best test is to try it: command your torque and nothing else, and the arm should float where it is. The
+# figure also shows the report's formula, $M J^T (0, 0, 0.981, 0, 0, 0)^T$. In this formula only the tip has
+# weight, and only a tenth of it, and the result does not have the unit of a torque.
 
 # %%
 def gravity_at(q):
@@ -313,16 +313,16 @@ lk.replay.show(
 # (The real Baxter adds its own gravity compensation to whatever torque it is sent, so there you
 # must add nothing. This simulated arm, `lk.IDEAL`, does not.)
 #
-# ## Coriolis: what turning does to turning
+# ## Coriolis: what the speed of one joint does to the others
 #
 # While the arm moves, $M$ changes under it, and the joints feel each other's speed. These torques are
-# quadratic in $\dot q$ and follow from the slopes of $M$ alone (Murray, Li and Sastry, eq. 4.23):
+# quadratic in $\dot q$ and follow from the derivatives of $M$ alone (Murray, Li and Sastry, eq. 4.23):
 #
 # $$ C_{ij} = \tfrac12 \sum_k \left( \frac{\partial M_{ij}}{\partial q_k}
 # + \frac{\partial M_{ik}}{\partial q_j} - \frac{\partial M_{jk}}{\partial q_i} \right) \dot q_k . $$
 #
-# You need no more than a function that gives $M$. Take its slopes by central differences: shift one
-# joint by $+h$ and by $-h$, and divide by $2h$.
+# All you need is a function that returns $M$. Compute its derivatives by central differences: shift one joint
+# by $+h$ and by $-h$, and divide by $2h$.
 
 # %% question="coriolis"
 def coriolis(mass_matrix, q, dq):
@@ -344,12 +344,12 @@ def coriolis(mass_matrix, q, dq):
 
 
 # %% [markdown]
-# How would you know that it is right? One famous test is that $\dot M - 2C$ must be skew: then what
-# $C\dot q$ takes is just what the changing $M$ stores, and no energy is made or lost. Try it on
-# $C = \dot M / 2$, a bold guess, and it passes, for $\dot M - 2C$ is then zero, and zero is skew. So a
-# second test is needed, of the torque itself: Lagrange's equation gives
-# $C\dot q = \dot M \dot q - \nabla T$. A matrix that fails the second is wrong. One
-# that fails only the first gives the right torque, and is of no use in the proofs, which need it skew.
+# How would you know that it is right? One famous test is that $\dot M - 2C$ must be skew: then $C\dot q$
+# takes exactly the energy that the changing $M$ stores, and no energy is made or lost. Now try the test on
+# $C = \dot M / 2$, a bold guess. It passes, because $\dot M - 2C$ is then zero, and zero is skew. So you need
+# a second test, of the torque itself: Lagrange's equation gives $C\dot q = \dot M \dot q - \nabla T$. A
+# matrix that fails the second test is wrong. A matrix that fails only the first gives the right torque, but
+# cannot be used in the proofs, which need $\dot M - 2C$ to be skew.
 
 # %%
 def coriolis_at(q, dq):
@@ -416,13 +416,14 @@ lk.plotting.show(
 # %% [markdown]
 # ## The power balance: a test for everything at once
 #
-# Energy does not come from nowhere. Per second, the arm's energy $T + V$ grows by what the motors put
-# in, $\tau \cdot \dot q$, and shrinks by what friction takes out. So
+# Energy does not come from nowhere. The arm's energy $T + V$ grows by the power of the motors,
+# $\tau \cdot \dot q$, and shrinks by the power of friction. So
 #
 # $$ \frac{d}{dt}(T + V) - \tau \cdot \dot q $$
 #
 # is zero for an arm without friction, if masses, inertias, gravity and the log are all right; and with
-# friction it *is* the friction's power. One number for each moment, and no controller can argue with it.
+# friction it *is* the power of friction. The test gives one number for each moment, and it holds under any
+# controller.
 
 # %% question="power_balance"
 def power_balance(log, model):
@@ -472,8 +473,8 @@ lk.plotting.show(
 )
 
 # %% [markdown] why="why_no_torque"
-# What torque did you see at s0, and why? Use what $g_k = \partial V / \partial q_k$ says about an axis, and
-# say how the answer would change if Baxter's torso leaned forwards by 30 degrees.
+# What torque did you see at s0, and why? Use what $g_k = \partial V / \partial q_k$ says about the axis of
+# s0, and say how the answer would change if Baxter's torso leaned forwards by 30 degrees.
 #
 # ### BEGIN SOLUTION
 # s0 needs no torque at all. Its axis is vertical, so turning it changes the height of no body: the
@@ -484,9 +485,9 @@ lk.plotting.show(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
-# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
-# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
+# run the last cell. It says what is missing and prints a receipt; keep it. Hand in the file without renaming
+# it. The teacher runs your functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("02_model")

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # 01 · Paths and time
 #
-# The arm is to draw a line, then a circle, then to go round several corners. Before any controller
-# can help it, somebody has to say *where the tip should be at every moment*, and how fast, and how
-# quickly that changes. That is this notebook.
+# The arm should draw a line, then a circle, and then go round several corners. Before any controller can
+# help, the arm needs a target: *where the tip should be at every moment*, at what velocity, and with what
+# acceleration. In this notebook you write that target.
 #
 # | | |
 # |---|---|
@@ -12,12 +12,13 @@
 # | **You write** | two time scalings, a circle, the composition of path and schedule, segments in a row |
 # | **Time** | core about 3 hours, all about 4 · 24 points |
 #
-# A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling*
-# is the schedule `s(t)`. Together they are a *trajectory*. Kept apart, any path goes with any schedule.
+# A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling* is the
+# schedule `s(t)`. Together they are a *trajectory*. Because the two are separate, any path can be used with
+# any schedule.
 #
-# Every cell below runs from the start, solved or not: where your part is missing, a stand-in takes its
-# place and says so. After each stub a check tells you in words what it found. Functions, predictions and texts are
-# marked, so play with everything else as you like.
+# Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
+# says so. After each stub a check tells you in words what it found. Only the functions are marked, so play
+# with everything else as you like.
 
 # %% setup=true
 import labkit as lk
@@ -32,17 +33,17 @@ import numpy as np
 # %% [markdown]
 # ## The schedule: when to be where
 #
-# Ask for too much at the start and the motors cannot follow; the arm lags and then overshoots. So a
-# schedule must start and end at rest and keep speed and acceleration within what the arm can do. The
-# simplest one that does is *bang-bang*: full acceleration for half of the time, full braking for the
-# other half. The report that this lab grew out of moved Baxter like this.
+# If you ask for too much at the start, the motors cannot follow: the arm lags and then overshoots. So a
+# schedule must start and end at rest and keep speed and acceleration within what the arm can do. The simplest
+# schedule that does so is *bang-bang*: full acceleration for half of the time, full braking for the other
+# half. The report that this lab grew out of moved Baxter like this.
 #
 # Call the duration $T$. With constant acceleration $a$ the first half is
 #
 # $$ \ddot s = a, \qquad \dot s = a\,t, \qquad s = \tfrac12 a t^2 . $$
 #
-# Half of the way must be done at $T/2$; that fixes $a$. The second half is the first, run backwards
-# from the end. The schedule may be asked at any time, also before the start and after the end.
+# At $T/2$ half of the distance must be covered; that determines $a$. The second half is the first half, run
+# backwards from the end. Your function may be called with any time, also before the start and after the end.
 
 # %% question="bang_bang"
 def bang_bang(t, duration):
@@ -66,7 +67,7 @@ def bang_bang(t, duration):
 # %% predict="peak_acceleration"
 
 # %% [markdown]
-# Here it is as a picture. Look at the lowest curve: where it jumps, the arm gets a jerk.
+# Here is your schedule as a picture. Look at the lowest curve: where it jumps, the arm jerks.
 
 # %%
 def given_bang_bang(t, duration):
@@ -103,14 +104,14 @@ predict("peak_acceleration", truth="b" if peaks[1] > 1.01 * peaks[0] else "a")
 # %% [markdown]
 # ## Limits are in metres
 #
-# A longer way at the same duration needs more speed. Usually it is the other way round: the arm has a
-# top speed $v_{max}$ and a top acceleration $a_{max}$, in m/s and m/s², and the duration follows from
-# the length of the way. Speed up at $a_{max}$, cruise at $v_{max}$, brake at $a_{max}$: the speed draws
-# a *trapezoid*.
+# A longer distance in the same time needs more speed. Usually the duration is not given: the arm has a top
+# speed $v_{max}$ and a top acceleration $a_{max}$, in m/s and m/s², and the duration follows from the
+# distance. Speed up at $a_{max}$, cruise at $v_{max}$, brake at $a_{max}$: the graph of the speed is a
+# *trapezoid*.
 #
-# Two traps lie here. On a short way the arm never reaches $v_{max}$, and the trapezoid is a triangle.
-# And $s$ has no unit: a limit in metres does not bound $\dot s$ but $d\,\dot s$, where $d$ is the
-# length of the way.
+# There are two traps. Over a short distance the arm never reaches $v_{max}$, and the trapezoid becomes a
+# triangle. And $s$ has no unit: a limit in metres does not bound $\dot s$ but $d\,\dot s$, where $d$ is the
+# distance.
 
 # %% question="trapezoid"
 def trapezoid(t, distance, v_max, a_max):
@@ -158,18 +159,18 @@ lk.plotting.show(
 # %% [markdown]
 # ## The path: where
 #
-# A straight line from $p_0$ to $p_1$ is $p(s) = p_0 + s\,(p_1 - p_0)$: its derivative with respect to
-# $s$ is $p_1 - p_0$ everywhere, and the second one is zero. `lk.Line` is just that. It answers with an
-# `lk.Sample`, three arrays with names:
+# A straight line from $p_0$ to $p_1$ is $p(s) = p_0 + s\,(p_1 - p_0)$: its derivative with respect to $s$ is
+# $p_1 - p_0$ everywhere, and the second one is zero. `lk.Line` is this path. It returns an `lk.Sample`, three
+# arrays with names:
 
 # %%
 lk.Line([0.6, 0.3, 0.1], [0.8, 0.1, 0.1])(0.5)
 
 # %% [markdown]
-# A circle takes a little more. It lies level, begins and ends at a start point and goes round the
-# vertical axis through a centre, which in the report was an AR tag on the table, below the gripper. Its
-# equations there measured the radius in space, from the gripper down to the tag, and forgot the angle
-# of the start in one place of two. Write it right.
+# A circle takes a little more. It is level, begins and ends at a start point and goes round the vertical axis
+# through a centre. In the report the centre was an AR tag on the table, below the gripper. The report's
+# equations measured the radius in space, from the gripper down to the tag, and forgot the angle of the start
+# in one of two places. Write the circle correctly.
 
 # %% question="circle"
 def circle(s, start, centre):
@@ -194,9 +195,9 @@ def circle(s, start, centre):
 # %% [markdown]
 # ## Path and schedule make a trajectory
 #
-# The tip is at $p(s(t))$. Differentiate with the chain rule once, and the result with the product rule
-# again. One of the two terms of the acceleration vanishes on a line, the other one at constant speed,
-# so neither a line nor a constant speed alone can tell whether you have both.
+# The tip is at $p(s(t))$. Differentiate once with the chain rule, and then differentiate the result with the
+# product rule. One of the two terms of the acceleration vanishes on a line, the other one at constant speed.
+# So a test on a line alone, or at constant speed alone, cannot tell whether you have both.
 
 # %% question="compose"
 def compose(path, scaling, t):
@@ -222,9 +223,9 @@ def compose(path, scaling, t):
 # %% [markdown]
 # ## Let the arm draw
 #
-# `lk.run` asks your trajectory two hundred times a second and lets the simulated arm follow. The model
-# turns points of the tip into joint angles once, beforehand; then a velocity controller that simply
-# passes on the wanted speeds does the rest (a better one is notebook 03).
+# `lk.run` evaluates your trajectory two hundred times a second and lets the simulated arm follow. The model
+# converts the positions of the tip to joint angles once, beforehand. Then a velocity controller simply passes
+# on the wanted speeds (you write a better one in notebook 03).
 
 # %%
 def given_circle(s, start, centre):
@@ -269,8 +270,8 @@ lk.plotting.show(lk.plotting.describe(log))
 # %% predict="twice_the_time"
 
 # %% [markdown]
-# And the circle, your own, about an axis 15 cm to the side. If your `compose` is right, the arm's speed
-# is the one that your trajectory promises.
+# Now your circle, about an axis 15 cm to the side. If your `compose` is right, the arm moves at the speed
+# that your trajectory promises.
 
 # %%
 centre = start + [0.0, -0.15, -0.2]
@@ -304,9 +305,9 @@ predict("twice_the_time", truth=largest_acceleration(12.0) / largest_acceleratio
 # %% [markdown]
 # ## Several segments
 #
-# A square is four lines in a row, each with its own schedule. Somebody must say which of them is on, and
-# for how long. It sounds too easy to go wrong; a program that takes index -1 for
-# an answer, as Python does, begins with the last line.
+# A square is four lines in a row, each with its own schedule. A function must say which line is active, and
+# since when. That sounds too easy to go wrong, but a program that accepts the index -1, as Python does,
+# begins with the last line.
 
 # %% question="segment_at"
 def segment_at(durations, t):
@@ -359,10 +360,10 @@ plt.legend(frameon=False)
 lk.plotting.show(f"The square from above: four sides of 12 cm, gone round in {t[-1]:.1f} s.")
 
 # %% [markdown]
-# Let the arm go round it, on your own parts: your trapezoid, your `compose`, your `segment_at`. Wrong
-# ones may drive, too: write `use("segment_at", segment_at, given_segment_at, anyway=True)` above and run
-# on. The see-through arm goes round the square as it should. Drag to look around, move the slider to go
-# back and forth in time.
+# Let the arm go round the square with your own functions: your trapezoid, your `compose`, your `segment_at`.
+# A wrong function may drive the arm too: write `use("segment_at", segment_at, given_segment_at, anyway=True)`
+# above and run the cells again. The see-through arm goes round the square correctly. Drag to look around,
+# move the slider to go back and forth in time.
 
 # %%
 arm.reset(q0)
@@ -392,8 +393,8 @@ lk.replay.show(
 # %% [markdown]
 # ## A witness
 #
-# For the angle on the circle, once round on a bang-bang schedule of duration $\tau$, the report's
-# equation 8 prints
+# The report's equation 8 gives the angle on the circle, for one turn on a bang-bang schedule of duration
+# $\tau$:
 #
 # $$ \theta(t) = \begin{cases} \tfrac12\,\alpha\,t^2 + \theta_0 & t \le \tfrac\tau2 \\
 # \theta(\tfrac\tau2) + \tfrac12\,\alpha\,(t - \tfrac\tau2)^2 + \omega(\tfrac\tau2)\,(t - \tfrac\tau2)
@@ -433,9 +434,9 @@ def witness(theta, duration):
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
-# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
-# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
+# run the last cell. It says what is missing and prints a receipt; keep it. Hand in the file without renaming
+# it. The teacher runs your functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("01_paths")

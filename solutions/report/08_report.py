@@ -2,7 +2,7 @@
 # # 08 · The report
 #
 # The lab that this one grew out of was a written report. Here it is again: a team, an arm that nobody else
-# has, four pages. What is marked is not whether the arm obeys, but whether a reader can believe you.
+# has, four pages. The mark does not depend on whether the arm obeys, but on whether a reader can believe you.
 #
 # | | |
 # |---|---|
@@ -11,8 +11,9 @@
 # | **You write** | a claim, a prediction, a figure, an interval, a failure, threats, who did what |
 # | **Time** | about 4 hours for each member of a team of three · 18 points |
 #
-# Before you begin, mark the two exemplars below with the rubric (ten minutes, each of you alone), and compare.
-# After the deadline each of you reads two other teams' reports, without names, and marks them by the same rows.
+# Before you begin, each of you marks the two exemplars below with the rubric, alone, in ten minutes. Then
+# compare. After the deadline each of you reads two other teams' reports, without names, and marks them with
+# the same rubric.
 
 # %% setup=true
 import labkit as lk
@@ -41,7 +42,8 @@ import numpy as np
 # from M and J); the armature is assumed, which moves the springs by 3 %. A. identified the load, B. ran the
 # circle, C. found the failure and wrote this.*
 #
-# One earns 1, 1, 0, 0, 0, 1 in the rows below, two 3, 2, 3, 3, 3, 3. Where do you differ, and why?
+# Exemplar one earns 1, 1, 0, 0, 0, 1 in the rows below, and exemplar two earns 3, 2, 3, 3, 3, 3. Where do you
+# differ, and why?
 
 # %%
 HANDLE = "demo"  # in a course: your login
@@ -76,7 +78,7 @@ mine = lk.my_arm(HANDLE)
 # %% [markdown] task="interval" points=3
 # ## 3. Result with an interval
 #
-# Up to 100 words. The number, its unit and an interval. Say what was repeated, and of what the interval speaks.
+# Up to 100 words. The number, its unit and an interval. Say what was repeated, and what the interval covers.
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
@@ -89,7 +91,8 @@ mine = lk.my_arm(HANDLE)
 # %% [markdown] task="failure" points=3
 # ## 4. A failure
 #
-# Up to 120 words. One thing that went wrong or came out otherwise than predicted, and what you did to find out why.
+# Up to 120 words. One thing that went wrong or differed from your prediction, and what you did to find out
+# why.
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
@@ -102,7 +105,8 @@ mine = lk.my_arm(HANDLE)
 # %% [markdown] task="threats" points=3
 # ## 5. Threats
 #
-# Up to 120 words. What could make the claim false although your runs agree with it? Rank by how much it would matter.
+# Up to 120 words. What could make the claim false although your runs agree with it? Rank the threats by how
+# much they would matter.
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
@@ -128,9 +132,9 @@ mine = lk.my_arm(HANDLE)
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
-# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
-# is. One member hands in for the team.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
+# run the last cell. It says what is missing and prints a receipt; keep it. Hand in the file without renaming
+# it. One member hands in for the team.
 
 # %% setup=true
 lk.hand_in("08_report")

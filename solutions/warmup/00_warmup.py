@@ -1,10 +1,10 @@
 # %% [markdown]
 # # 00 · Warm-up
 #
-# Three things go wrong in a first robot program, and none of them raises an error: an array has the
-# wrong shape and numpy stretches it, a vector is in the wrong axes, and the difference of two
-# orientations is taken as if they were numbers. Here you meet all three, on a simulated arm that
-# shows you at once. What you write is small, and every later notebook uses it.
+# Three things go wrong in a first robot program, and none of them raises an error: an array has the wrong
+# shape and numpy stretches it, a vector is in the wrong axes, or two orientations are subtracted as if they
+# were numbers. Here you meet all three, on a simulated arm that shows you at once. You write only a few short
+# functions, and every later notebook uses them.
 #
 # | | |
 # |---|---|
@@ -13,9 +13,9 @@
 # | **You write** | a joint error, a point from frame to frame, an inverse, an orientation error |
 # | **Time** | core about 1.5 hours, all about 2 · 14 points |
 #
-# How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not:
-# where your part is missing, a stand-in takes its place and says so. After each stub a check tells you in
-# words what it found. Functions, predictions and texts are marked, so play with everything else as you like.
+# How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not. If
+# your part is missing, a stand-in replaces it and says so. After each stub a check tells you in words what it
+# found. Only the functions are marked, so play with everything else as you like.
 
 # %% setup=true
 import labkit as lk
@@ -28,11 +28,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 # %% [markdown]
-# ## Arrays that lie
+# ## Arrays that mislead you
 #
-# Seven joints, seven numbers: in labkit a vector has the shape `(7,)`, with one index and no second
-# one. A column of shape `(7, 1)` looks the same when printed sideways, and numpy will happily combine
-# the two, not into seven numbers but into a table of all forty-nine combinations:
+# Seven joints, seven numbers: in labkit a vector has the shape `(7,)`, with one index only. A column of shape
+# `(7, 1)` holds the same numbers, and numpy will happily combine the two, not into seven numbers but into a
+# table of all forty-nine combinations. Here it does so with three:
 
 # %%
 wanted = np.array([[0.1], [0.2], [0.3]])  # a column, (3, 1)
@@ -40,9 +40,9 @@ actual = np.array([0.1, 0.2, 0.3])  # a vector, (3,)
 wanted - actual
 
 # %% [markdown]
-# The errors should have been three zeros. The sum of that table *is* zero, so a test that looks only
-# at the sum is content. The students who wrote the report that this lab grew out of lost days to such
-# shapes. So labkit never stretches or squeezes anything; it tells you:
+# The errors should have been three zeros. The sum of that table *is* zero, so a test that looks only at the
+# sum passes. The students who wrote the report that this lab grew out of lost days to such shapes. So labkit
+# never stretches or squeezes an array; it raises an error:
 
 # %%
 try:
@@ -51,10 +51,10 @@ except lk.LabkitError as error:
     print(error)
 
 # %% [markdown]
-# ## What the arm says, and what it should do
+# ## What the arm reports, and what it should do
 #
-# An arm reports an `lk.State`: the time, the joint angles `q` in rad and the joint speeds `dq` in rad/s.
-# What it should do comes as an `lk.Sample`: position, velocity and acceleration, here of the joints.
+# An arm reports an `lk.State`: the time, the joint angles `q` in rad and the joint speeds `dq` in rad/s. The
+# target, what the arm should do, is an `lk.Sample`: position, velocity and acceleration, here of the joints.
 
 # %%
 arm = lk.Arm("left")
@@ -66,8 +66,8 @@ print("q: ", state.q.round(3), "rad")
 print("dq:", state.dq, "rad/s")
 
 # %% [markdown]
-# A controller compares the two. In this course an *error* is always **target minus actual**, the same
-# way round everywhere: it points to where the arm should go, and a gain in front of it is positive.
+# A controller compares the two. In this course an *error* is always **target minus actual**. So the error
+# points to where the arm should go, and a gain in front of it is positive.
 
 # %% question="joint_error"
 def joint_error(target, state):
@@ -92,12 +92,12 @@ def joint_error(target, state):
 # %% [markdown]
 # ## The arm goes where the error points
 #
-# The simplest controller there is: turn each joint at a speed proportional to its error. It has one
-# number, the gain `k` in 1/s. The error then shrinks like $e^{-kt}$, for the speed of a joint *is* the
-# rate at which its error falls: $\dot e = -\dot q = -k\,e$.
+# The simplest controller turns each joint at a speed proportional to its error. It has one number, the gain
+# `k` in 1/s. The error then shrinks like $e^{-kt}$, because the speed of a joint *is* the rate at which its
+# error falls: $\dot e = -\dot q = -k\,e$.
 #
-# Let it go to other angles, half a radian away at the most. The dashed line is that prediction for the
-# first joint. (While your function is missing, a stand-in reports no error, and the arm stays.)
+# Send the arm to other angles, at most half a radian away. The dashed line is this prediction for the first
+# joint. (While your function is missing, a stand-in reports no error, and the arm does not move.)
 
 # %%
 def stays(target, state):
@@ -131,8 +131,8 @@ lk.plotting.show(
 
 # %% [markdown]
 # Here is the same run in three dimensions. Press *Play*, or move the slider to go back and forth in time;
-# drag to look around. The see-through arm is the target, which stands still. (A notebook that was saved
-# and opened again shows a picture in its place until you run it once more.)
+# drag to look around. The see-through arm is the target, which does not move. (If you save a notebook and
+# open it again, you see a picture instead of the replay until you run the cell once more.)
 
 # %%
 lk.replay.show(lk.replay.motion_of(log, "Towards a place in joint space"))
@@ -140,14 +140,14 @@ lk.replay.show(lk.replay.motion_of(log, "Towards a place in joint space"))
 # %% [markdown]
 # ## Frames that cancel
 #
-# A *frame* is an origin with three axes. The pose of frame b seen from frame a is written $T_{ab}$, a
-# 4 by 4 matrix with the rotation $R_{ab}$ in its upper left and the place of b's origin in its upper
-# right. It turns coordinates in b into coordinates in a,
+# A *frame* is an origin with three axes. The pose of frame b seen from frame a is written $T_{ab}$, a 4 by 4
+# matrix with the rotation $R_{ab}$ in its upper left and the position of b's origin in its upper right. It
+# converts coordinates in b to coordinates in a,
 #
 # $$ p_a = T_{ab}\,p_b, \qquad T_{ac} = T_{ab}\,T_{bc}, $$
 #
-# and the neighbouring letters must be equal. Read the subscripts, and most mistakes do not happen
-# (Murray, Li and Sastry, *A Mathematical Introduction to Robotic Manipulation*, section 2.3).
+# and the neighbouring letters must be equal. If you read the subscripts, you avoid most mistakes (Murray, Li
+# and Sastry, *A Mathematical Introduction to Robotic Manipulation*, section 2.3).
 #
 # The model gives the pose of the gripper's tip in the world, $T_{wt}$. With the gripper pointing down
 # the tip's z axis, the third column, points down too:
@@ -175,8 +175,8 @@ def transform_point(T_ab, p_b):
 
 
 # %% [markdown]
-# And back: what is seen from b's side. A general matrix is inverted with some labour and some rounding;
-# a pose needs neither, because its rotation is undone by transposing.
+# Now the other direction: the pose of a seen from b. To invert a general matrix takes some work and some
+# rounding. A pose needs neither, because the transpose of a rotation is its inverse.
 
 # %% question="inverse_transform"
 def inverse_transform(T_ab):
@@ -196,8 +196,8 @@ def inverse_transform(T_ab):
 
 
 # %% [markdown]
-# Both at work. A camera sits in the hand and sees a cup 30 cm ahead of it, a little to the side. Where
-# on the table is the cup, and where does the gripper's tip see it?
+# Now use both functions. A camera is mounted in the hand and sees a cup 30 cm ahead of it, a little to the
+# side. Where is the cup in the world, and where is it seen from the gripper's tip?
 
 # %%
 def nobody_knows(T_ab, p_b):
@@ -220,19 +220,19 @@ print("in the world:      ", cup_world.round(3))
 # %% [markdown]
 # ## How far is the hand turned?
 #
-# Now the one that fooled the report's authors, and other teams of their year. The hand should point
-# straight down and is tilted by a few degrees. What is the error?
+# Now comes the mistake that fooled the report's authors, and other teams of their year. The hand should point
+# straight down, but it is tilted by a few degrees. What is the error?
 #
-# It is tempting to write both orientations as roll, pitch and yaw and to subtract. But these three are
-# not the components of a vector: they are three turns one after the other, about axes that the earlier
-# turns have moved. The error that a controller can use is *one* turn, about one axis, that takes the
-# actual orientation to the desired one:
+# It is tempting to write both orientations as roll, pitch and yaw and to subtract. But these three angles are
+# not the components of a vector: they are three turns, one after the other, about axes that the earlier turns
+# have moved. The error that a controller can use is *one* turn, about one axis, that takes the actual
+# orientation to the desired one:
 #
 # $$ E\,R_{wt} = R_{wd} . $$
 #
-# Its axis times its angle is a vector $e_o$, in world axes, the *logarithm* of $E$. It points along the
-# axis about which the hand should turn, and is as long as the angle. `lk.se3.rotation_log` gives it for
-# any rotation (Lynch and Park, *Modern Robotics*, sections 3.2.3 and 11.3.3).
+# Its axis times its angle is a vector $e_o$, in world axes, the *logarithm* of $E$. It points along the axis
+# about which the hand should turn, and its length is the angle. `lk.se3.rotation_log` gives it for any
+# rotation (Lynch and Park, *Modern Robotics*, sections 3.2.3 and 11.3.3).
 
 # %% question="orientation_error"
 def orientation_error(R_wd, R_wt):
@@ -268,9 +268,10 @@ predict("same_components", truth={"xyz": "a", "x": "b", "z": "c"}.get(same, "d")
 # %% [markdown]
 # ## Let the arm decide
 #
-# The hand starts 12 degrees off and a controller turns it at a speed proportional to the error; the
-# Jacobian, which comes in notebook 02, turns that into joint speeds. Three runs that differ in the
-# error alone: yours, roll-pitch-yaw subtracted, and your turn by mistake in the tool's axes.
+# The hand starts 12 degrees off, and a controller turns it at a speed proportional to the error. The
+# Jacobian, which notebook 02 explains, converts this to joint speeds. There are three runs that differ only
+# in the error: yours, the difference of roll, pitch and yaw, and your turn given in the tool's axes by
+# mistake.
 
 # %% predict="farthest_off"
 
@@ -343,14 +344,14 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# (The plot under the arm shows how far the tip's *place* is off; the tilt is in the figure above.) For a
-# hand whose axes lie along the world's, turned about the vertical only, all three errors would have been
-# the same, which is why so many programs get away with it. When you test an orientation error, point the
-# hand down and tilt it.
+# (The plot under the arm shows the error of the tip's *position*; the tilt is in the figure above.) If the
+# hand's axes were those of the world, turned about the vertical only, all three errors would be the same.
+# That is why so many programs get away with it. When you test an orientation error, point the hand down and
+# tilt it.
 
 # %% [markdown] why="why_it_turns_away"
-# What did you see the hand do when its error was given in the tool's axes, and why? The gripper points
-# down: say which components of the error change their sign, and what the controller then does with them.
+# What did you see the hand do when its error was given in the tool's axes, and why? The gripper points down:
+# say which components of the error change their sign, and what the controller then does.
 #
 # ### BEGIN SOLUTION
 # The hand turned away from its target instead of towards it. With the gripper pointing down, the
@@ -361,9 +362,9 @@ lk.replay.show(
 # %% [markdown]
 # ## Hand in
 #
-# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then run
-# the last cell. It says what is missing, and gives you a receipt: keep it. Hand in the file with its name as it
-# is. The teacher runs your functions on further cases; of what kind they are is said above each stub.
+# Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
+# run the last cell. It says what is missing and prints a receipt; keep it. Hand in the file without renaming
+# it. The teacher runs your functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("00_warmup")
