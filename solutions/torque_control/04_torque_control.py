@@ -1,9 +1,9 @@
 # %% [markdown]
 # # 04 · Torque control
 #
-# Until now the motors were told how fast to turn, and they found the torque themselves. In torque
-# control you are the one who finds it. That is more work, and it buys something: you decide how the
-# arm answers, joint by joint, when it is off its target.
+# Until now you commanded how fast the motors turn, and they found the torque themselves. In torque control
+# you compute the torque. That is more work, but it gives you a choice: you decide how the arm reacts, joint
+# by joint, when it is off its target.
 #
 # | | |
 # |---|---|
@@ -12,9 +12,9 @@
 # | **You write** | two torque laws, gains from frequency and damping, a sampled joint, the factor of gravity, gains that serve |
 # | **Time** | core about 4 hours, all about 5 · 29 points |
 #
-# Every cell below runs from the start, solved or not: where your part is missing, something given
-# takes its place and says so. After each stub a check tells you in words what it found. Functions, predictions and texts
-# are marked, so play with everything else as you like.
+# Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
+# says so. After each stub a check tells you in words what it found. The functions, your predictions, the
+# numbers to find out and the text at the end are marked; play with everything else as you like.
 
 # %% setup=true
 from dataclasses import replace
@@ -35,10 +35,10 @@ import numpy as np
 #
 # $$ M(q)\,\ddot q + C(q, \dot q)\,\dot q + g(q) = \tau . $$
 #
-# $M$ is the inertia: a matrix, because turning one joint shakes the others, and a function of $q$,
-# because a stretched arm is harder to turn than a folded one. $C\,\dot q$ are the Coriolis and
-# centrifugal torques, and $g$ is what the motors must give to hold the arm still. `lk.Model` knows all
-# three. Here they are at the pose where the exercises start:
+# $M$ is the inertia: a matrix, because turning one joint shakes the others, and a function of $q$, because a
+# stretched arm is harder to turn than a folded one. $C\,\dot q$ are the Coriolis and centrifugal torques, and
+# $g$ is the torque that the motors need to hold the arm still. `lk.Model` computes all three. Here they are
+# at the pose where the exercises start:
 
 # %%
 model = lk.Model("left", lk.BAXTER)
@@ -51,14 +51,14 @@ print("weight, [N m]      ", "  ".join(f"{x:6.2f}" for x in model.gravity(ready)
 print("torque limit, [N m]", "  ".join(f"{x:6.0f}" for x in model.robot.effort))
 
 # %% [markdown]
-# Two things to keep in mind. The shoulder's `s1` needs 36 of its 100 N m only to hold the arm up. And a
-# wrist joint has a fortieth of the shoulder's inertia: the same torque is a nudge here and a kick there.
+# Keep two things in mind. The shoulder's `s1` needs 36 of its 100 N m only to hold the arm up. And a wrist
+# joint has a fortieth of the shoulder's inertia: the same torque is a nudge here and a kick there.
 #
 # ## Who carries the weight?
 #
-# On the textbook's arm you do. Baxter carries itself: a channel of its own adds $g(q)$ to whatever you
-# command, in every mode, all the time. The simulated arm has this as a switch of its *plant*. Let both
-# arms loose, with no torque at all, and see.
+# On the textbook's arm, your torques do. Baxter carries itself: a separate channel adds $g(q)$ to every
+# command, in every mode, all the time. The simulated arm has a switch for this in its *plant*. Release both
+# arms, with no torque at all, and see.
 
 # %%
 textbook = lk.Plant(name="textbook", armature=0.05)
@@ -81,22 +81,23 @@ for name, log in loose.items():
     print(f"{name}: the tip drops {z[0] - min(z):.0f} mm in {log.t[-1]:.1f} s")
 
 # %% [markdown]
-# So a torque law must know on which arm it runs. In your functions this is the argument
-# `arm_compensates`. If it is true, the arm carries its own weight, and the law adds none.
+# So a torque law must know which arm it runs on. Your functions have the argument `arm_compensates` for this.
+# If it is true, the arm carries its own weight, and the law must not add gravity.
 #
-# ## Springs and dampers, and what the motion takes
+# ## Springs, dampers, and the torque of the motion
 #
 # Throughout this course the error is *target minus actual*:
 #
 # $$ e = q_d - q, \qquad \dot e = \dot q_d - \dot q . $$
 #
-# Fasten a spring $K_p$ and a damper $K_d$ between each joint and its target, and add the torque which
-# the target's own motion takes: put the target's motion into the equation above, at the angles where the
-# arm is. This is the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign).
-# Note whose speed stands behind $C$: with the target's, the energy in springs and error never grows. That
-# alone does not prove that the arm arrives, for the energy also stays wherever the error stands still; Murray,
-# Li and Sastry close the gap (proposition 4.10). The report that this lab grew out of printed the arm's own
-# speed there: then their proof does not apply, and it takes enough damping, $K_d > \dot M / 2$.
+# Fasten a spring $K_p$ and a damper $K_d$ between each joint and its target, and add the torque that the
+# target's motion needs: put the target's motion into the equation above, at the angles of the arm. This is
+# the *augmented PD* law (Murray, Li and Sastry, equation 4.53; there $e$ has the other sign). Note which
+# speed multiplies $C$: with the target's speed, the energy of the springs and of the error's motion never
+# grows. That alone does not prove that the arm arrives, because this energy is also constant while the error
+# does not change; Murray, Li and Sastry close the gap (proposition 4.10). The report that this lab grew out
+# of printed the arm's own speed instead. Then their proof does not apply, and the arm needs enough damping,
+# $K_d > \dot M / 2$.
 
 # %% question="augmented_pd"
 def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
@@ -123,9 +124,9 @@ def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
 # %% predict="gravity_twice"
 
 # %% [markdown]
-# Let your law hold the arm, on both arms and with the switch both ways. Two of the four agree with the
-# arm they run on. What do the other two do? (If your law is not ready, Baxter's position mode stands in:
-# it holds the place whatever happens, so all four will look alike.)
+# Let your law hold both arms, with `arm_compensates` true and false. Two of these four runs agree with the
+# arm. What happens in the other two? (If your law is not ready, Baxter's position mode stands in: it holds
+# the place whatever happens, so all four will look alike.)
 
 # %%
 def position_mode(state, target, model, *, kp, kd, arm_compensates):
@@ -175,7 +176,7 @@ rise = heights["self-carrying, arm_compensates=False"]
 predict("gravity_twice", truth="a" if abs(rise) < 5.0 else "c" if rise > 0.0 else "b")
 
 # %% [markdown]
-# Here they are as arms. Drag the time, turn the view.
+# Here are the runs as arms. Move the slider, turn the view.
 
 # %%
 right, *others = logs.items()
@@ -192,14 +193,14 @@ lk.replay.show(
 # %% [markdown]
 # ## Every joint the same
 #
-# Springs at the joints leave each joint with its own frequency, and they shake each other through $M$.
-# *Computed torque* asks first which acceleration would be good. If the joints had
+# With springs at the joints, each joint swings at its own frequency, and the joints shake each other through
+# $M$. *Computed torque* first asks which acceleration would be good. If the joints had
 #
 # $$ \ddot q = \ddot q_d + K_d\,\dot e + K_p\,e , $$
 #
 # then the error would obey $\ddot e + K_d\,\dot e + K_p\,e = 0$: a damped spring in each joint, free of all
-# the others, whatever the pose. So that is the acceleration to ask for, and the equation of motion tells
-# the torque. The gains now stand inside $M$; their units are 1/s² and 1/s.
+# the others, whatever the pose. So this is the acceleration to ask for, and the equation of motion gives the
+# torque. The gains are now multiplied by $M$; their units are 1/s² and 1/s.
 
 # %% question="computed_torque"
 def computed_torque(state, target, model, *, kp, kd, arm_compensates):
@@ -225,7 +226,7 @@ def computed_torque(state, target, model, *, kp, kd, arm_compensates):
 
 
 # %% [markdown]
-# Start both laws 0.1 rad off in every joint and look at what is left of the error in each of them.
+# Start both laws 0.1 rad off in every joint, and look at the error that is left in each joint.
 
 # %%
 my_computed_torque = use("computed_torque", computed_torque, position_mode)
@@ -253,8 +254,8 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# Seven curves on top of one another: that is what the model buys. It is also a promise that hangs on the
-# model. On an arm with friction, or with something in its gripper, they come apart again.
+# All seven curves are the same: that is what the model gives you. But this result depends on the model. On an
+# arm with friction, or with something in its gripper, the curves come apart again.
 
 # %% predict="unknown_load"
 
@@ -267,9 +268,9 @@ predict("unknown_load", truth=round(float(z[0] - z[-1]), 1))
 # %% [markdown]
 # ## Gains with a meaning
 #
-# Nobody knows what "kp = 40" feels like. A frequency and a damping ratio do have a feel: how often the
-# error would swing in a second, and how much of the swing is damped away. 1 is *critical* damping, the
-# quickest way without overshoot. Compare with the standard form of a damped spring,
+# Nobody knows what "kp = 40" feels like. A frequency and a damping ratio are easier to imagine: how often the
+# error would swing in a second, and how much of the swing is damped. A ratio of 1 is *critical* damping, the
+# quickest response without overshoot. Compare with the standard form of a damped spring,
 #
 # $$ \ddot e + 2\,\zeta\,\omega\,\dot e + \omega^2\,e = 0 . $$
 
@@ -292,9 +293,9 @@ def gains_for(frequency, damping_ratio):
 
 
 # %% [markdown]
-# Turn the dials: this is the error of one joint, started at 1, with your gains. Where does it settle
-# soonest? (If your function is not ready, the gains of a 2 Hz critically damped joint stand in, whatever
-# the dials say.)
+# Turn the dials: this is the error of one joint, started at 1, with your gains. Which setting settles
+# soonest? (If your function is not ready, the gains of a 2 Hz critically damped joint stand in, whatever the
+# dials say.)
 
 # %%
 def two_hertz(frequency, damping_ratio):
@@ -324,16 +325,16 @@ def error_of_one_joint(frequency, damping):
 dials = lk.plotting.dials(error_of_one_joint, frequency=(0.5, 6.0, 2.0), damping=(0.1, 2.0, 0.7))
 
 # %% [markdown]
-# ## The torque stands still between two ticks
+# ## The torque is constant between two ticks
 #
-# A computer looks, computes a torque, and then the motor keeps that torque until the next look: 5 ms at
-# 200 Hz. For a heavy joint that is very short. For a light one it can be too long: the torque that
-# was to stop it drives it past and on. Whether it swings in or blows up, the *eigenvalues* of the step
-# from one sample to the next tell. If all lie inside the unit circle, the error dies out in the end, though
-# it may grow at first.
+# A computer reads the state and computes a torque, and the motor keeps that torque until the next reading: 5
+# ms at 200 Hz. For a heavy joint that is very short. For a light joint it can be too long: the torque that
+# should stop the joint drives it past the target and away. The *eigenvalues* of the step from one sample to
+# the next tell you whether the joint settles or runs away. If all of them are inside the unit circle, the
+# error decays in the end, although it may grow at first.
 #
-# During one step the torque is constant. So is, then, the acceleration of a joint on its own, and you
-# can say exactly where it will be. Take the target as zero:
+# During one step the torque is constant. So the acceleration of a single joint is constant too, and you can
+# compute exactly where the joint will be. Take the target as zero:
 #
 # $$ \begin{pmatrix} q \\ \dot q \end{pmatrix}_{k+1} = A \begin{pmatrix} q \\ \dot q \end{pmatrix}_{k},
 # \qquad \tau_k = -k_p\,q_k - k_d\,\dot q_k . $$
@@ -359,11 +360,11 @@ def sampled_joint(inertia, kp, kd, dt):
 
 
 # %% [markdown]
-# The report's team had 8 N m/rad and 1.5 N m s/rad at the last wrist joint `w2`. Baxter's published data
-# give this joint 0.001 kg m²: a little disc, because the motor's rotor is left out. Behind its gears the
-# rotor turns many times faster than the joint, so to the joint it feels far heavier than it is (people
-# call this the *armature*). Nobody has published it; here it counts 0.05 kg m². Which of the two could the
-# team have had in its hands?
+# The report's team had 8 N m/rad and 1.5 N m s/rad at the last wrist joint `w2`. In Baxter's published data
+# this joint has 0.001 kg m², the inertia of a little disc, because the motor's rotor is left out. Behind its
+# gears the rotor turns many times faster than the joint, so to the joint it feels far heavier than it is
+# (people call this the *armature*). Nobody has published its value; here we assume 0.05 kg m². Which of the
+# two joints can the team have used?
 
 # %%
 def never_sampled(inertia, kp, kd, dt):
@@ -411,15 +412,15 @@ for armature in (0.0, 0.05):
         print(f"{plant.name}: {error}".replace("; ", ";\n  "))
 
 # %% [markdown]
-# This is why every simulated Baxter that is driven by torques needs rotors in its data, though the data
+# This is why every simulated Baxter that is driven by torques needs rotors in its data, although the data
 # sheet has none.
 
 # %% [markdown]
 # ## Find the bug
 #
-# Three runs of computed torque, yours alone. Each law is right at first; while the arm is under way, a
-# version with one mistake takes over. You know how the right law behaves, for you have written it. The
-# suspects:
+# Here are three runs of computed torque, which only you have. In each run the law is right at first; then,
+# while the arm moves, a version with one mistake replaces it. You know how the right law behaves, because you
+# have written it. The suspects:
 #
 # | | |
 # |---|---|
@@ -457,13 +458,13 @@ lk.plotting.show(f"The errors of the seven joints in three misbehaving runs of t
 # %% [markdown]
 # ## Gravity on the real robot, and why nobody could tell
 #
-# For years teams of this lab fought with gravity. One wrote a formula that came to 3 % of the true
-# weight, one to minus 10 %, a third to minus 96 %. The staff scaled the model's by 0.075, another year by
-# 0.01, "because it seems quite wrong". How could so different answers pass?
+# For years teams of this lab fought with gravity. One wrote a formula that came to 3 % of the true weight,
+# one to minus 10 %, a third to minus 96 %. The staff multiplied the model's gravity by 0.075, in another year
+# by 0.01, "because it seems quite wrong". How could such different answers pass?
 #
-# Measure it. Hold the arm in rest poses with springs and dampers and write down the torques that *you*
-# command, once it rests. If you have to carry the weight, they are $g(q)$, and the factor between the two
-# is 1.
+# Measure gravity. Hold the arm at several poses with springs and dampers, and write down the torques that
+# *you* command once it rests. If you have to carry the weight, these torques are $g(q)$, and the factor
+# between the two is 1.
 
 # %% question="gravity_factor"
 def gravity_factor(tau_hold, gravity_model):
@@ -484,8 +485,8 @@ def gravity_factor(tau_hold, gravity_model):
 
 
 # %% [markdown]
-# Twice the same eight poses: once with the arm's own compensation suppressed, as Rethink's manual
-# explains, and once as Baxter comes out of the box. Both have its friction and its noise.
+# Here are the same eight poses twice: once with the arm's own compensation suppressed, as Rethink's manual
+# explains, and once as Baxter comes out of the box. Both arms have Baxter's friction and noise.
 
 # %%
 def look_at_one_joint(tau_hold, gravity_model):
@@ -533,8 +534,8 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# The right factor on Baxter is nought. Not 0.075, not 0.01, and not 1: the arm does it already. Now try
-# the factors that people used, on a circle, on an arm with Baxter's friction.
+# The right factor on Baxter is 0. It is not 0.075, not 0.01, and not 1, because the arm already carries its
+# own weight. Now try the factors that people used, on a circle, on an arm with Baxter's friction.
 
 # %%
 tip = model.pose(ready)[:3, 3]
@@ -560,18 +561,18 @@ for factor in (-0.03, 0.0, 0.01, 0.03, 0.075, 0.3, 1.0):
     print(f"{factor:6.3f}   {lk.metrics.summary(log).rms_mm:6.1f} mm")
 
 # %% [markdown]
-# From -0.03 to 0.03 little changes: a newton metre more or less at the shoulder drowns in a
-# newton metre of friction. Nobody plotted a torque against a model, so wrong and right looked alike, and
-# the one factor that could not be overlooked, the true one, looked worst of all.
+# From -0.03 to 0.03 little changes, because friction of a newton metre hides a newton metre more or less at
+# the shoulder. Nobody plotted a torque against a model, so wrong and right looked alike. The one factor whose
+# effect nobody could overlook, the model's own factor 1, looked worst of all.
 #
 # ## Gains that serve
 #
-# Time to choose gains for a real arm. This one publishes its state 100 times a second, up to 14 ms late,
-# with noise; it has friction; and somebody may have put something into its gripper. It carries its own
-# weight, but not that of the load.
+# Now choose gains for a real arm. This one publishes its state 100 times a second, up to 14 ms late, with
+# noise; it has friction; and there may be a load in its gripper. It carries its own weight, but not that of
+# the load.
 #
-# Play first. Here both gains are the same for all seven joints, on a slow line. Can you find any pair
-# that follows well and does not buzz? Watch the error of the *speed*, that is where buzzing shows.
+# Play first. Here both gains are the same for all seven joints, on a slow line. Can you find any pair that
+# follows well and does not buzz? Watch the error of the *speed*, because buzzing shows there first.
 
 # %%
 slow_line = model.joint_trajectory(
@@ -595,13 +596,13 @@ def same_gains_everywhere(kp, kd):
 dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0, 40.0, 8.0))
 
 # %% [markdown]
-# The shoulder wants more, the wrist cannot bear it. Your gains may differ from joint to joint, and the
-# model can tell you how. The rest is a frequency, and that is for you to find: too low, and friction and
-# load win; too high, and the arm acts on old news.
+# The shoulder needs higher gains, but the wrist cannot bear them. Your gains may differ from joint to joint,
+# and the model can tell you how. What remains is one frequency, and you have to find it. If the frequency is
+# too low, friction and load win; if it is too high, the arm reacts to an old state.
 #
-# The law is the simplest there is, `lk.control.springs(kp, kd)`: springs and dampers, no model. The
-# point is the gains. They are tried on the slow line, then on quicker tours, with a load, and on an arm
-# that is let go a tenth of a radian off in every joint: it must come to rest.
+# The law is the simplest there is, `lk.control.springs(kp, kd)`: springs and dampers, no model. Only the
+# gains matter here. They are tried on the slow line, then on quicker paths, with a load, and on an arm that
+# is released a tenth of a radian off in every joint: it must come to rest.
 
 # %% question="choose_gains"
 def choose_gains(model):
@@ -621,9 +622,9 @@ def choose_gains(model):
 
 
 # %% [markdown]
-# Where do you stand? Your gains, made softer and stiffer by a factor, on the three occasions. The factor
-# scales the frequency: springs go with its square, dampers with the factor itself. (If your gains are not
-# ready, those of Rethink's own example stand in; they were made to be soft.)
+# How good are your gains? The figure shows them, made softer and stiffer by a factor, in the three cases. The
+# factor multiplies the frequency: the springs change with its square, the dampers with the factor itself. (If
+# your gains are not ready, those of Rethink's own example stand in; they were made to be soft.)
 
 # %%
 def rethinks_example(model):
@@ -665,12 +666,13 @@ plt.legend(frameon=False)
 lk.plotting.show(f"The error over the stiffness of your gains. Yours, in the middle: {', '.join(yours)}.")
 
 # %% [markdown]
-# Left of the lowest point friction and load win, right of it the old state. The lowest point is not the
-# best place to be: it lies beside an edge, and on a quicker tour, or with more noise, the edge comes
-# sooner. The tours on which your gains are marked are such. Stay a good step to its left.
+# To the left of the lowest point friction and load cause the error; to its right, the old state does. The
+# lowest point is not the best choice, because it is close to an edge, and on a quicker path, or with more
+# noise, the edge comes sooner. Your gains are marked on such paths. Stay well to the left of the lowest
+# point.
 #
-# A last look at it moving: your springs with a kilogram in the gripper, and beside them computed torque,
-# which knows nothing of that kilogram either.
+# Finally, watch the arm move: your springs with a kilogram in the gripper, and beside them computed torque,
+# which does not know of that kilogram either.
 
 # %%
 sprung = drive(loaded, lk.control.springs(kp, kd))
@@ -685,8 +687,9 @@ lk.replay.show(
 )
 
 # %% [markdown] why="why_it_sags"
-# How far did you see computed torque sag under half a kilogram, and why? The load pulls with 5 N: say through
-# what it is turned into accelerations, and why "stiff" has another meaning for kp in 1/s² than in N m/rad.
+# How far did you see computed torque sag under half a kilogram, and why? The load pulls with 5 N: say which
+# matrix converts it to accelerations, and why "stiff" means something else for kp in 1/s² than for kp in N
+# m/rad.
 #
 # ### BEGIN SOLUTION
 # It sagged by a good deal, far more than springs of the same number would. The load gives the torques
@@ -695,9 +698,9 @@ lk.replay.show(
 # ### END SOLUTION
 
 # %% [markdown]
-# And with a hand in it. Press *Start*, and pull at the arm while it circles: springs give way. Make them
-# softer and stiffer with the dial, which is the factor on their frequency as above; hang the kilogram on;
-# take the friction away.
+# Now pull the arm yourself. Press *Start*, and pull at the arm while it circles: the springs give way. Make
+# them softer and stiffer with the dial, which is the factor on their frequency as above; hang the kilogram
+# on; take the friction away.
 
 # %%
 def pulled(state, target, factor):

@@ -1,10 +1,10 @@
 # %% [markdown]
 # # 03 · Velocity control
 #
-# The arm knows where it should be at every moment. Now it must get there, although it starts somewhere
-# else, answers late and measures with noise. The controllers of this notebook command *speeds* of the
-# joints, and the motors see to it that they are kept. That is the gentlest way to drive an arm, and for
-# most tasks good enough.
+# The arm knows where it should be at every moment. Now it must get there, although it starts somewhere else,
+# answers late and measures with noise. The controllers of this notebook command the *speeds* of the joints,
+# and the motors keep these speeds. That is the gentlest method to drive an arm, and it is good enough for
+# most tasks.
 #
 # | | |
 # |---|---|
@@ -13,9 +13,9 @@
 # | **You write** | two controllers, a damped inverse, motion that the tip does not feel |
 # | **Time** | core about 3 hours, all about 4 · 27 points |
 #
-# Every cell runs from the start, solved or not: where your part is missing, a stand-in takes its place
-# and says so. After each stub a check tells you in words what it found. Functions, predictions and texts are marked, so
-# play with everything else as you like.
+# Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
+# After each stub a check tells you in words what it found. The functions, your predictions, the numbers to
+# find out and the text at the end are marked; play with everything else as you like.
 
 # %% setup=true
 import labkit as lk
@@ -30,11 +30,11 @@ import numpy as np
 # %% [markdown]
 # ## Feed-forward and feedback
 #
-# A target that says how fast it moves makes half of the work easy: turn the joints at just that speed.
-# This is *feed-forward*. Were the arm perfect and its start exact, nothing else would be needed. As it
-# is not, every small error stays. So add something that pulls: *feedback*, in proportion to the error
-# (P) and to the rate of the error (D). Which error is that, which rate, and in which units are the two
-# gains? Write the law down on paper first.
+# A target that says how fast it moves makes half of the work easy: turn the joints at just that speed. This
+# is *feed-forward*. If the arm were perfect and its start exact, you would need nothing else. But no arm is
+# perfect, and feed-forward alone leaves every small error as it is. So add *feedback*, which pulls the arm
+# towards its target, in proportion to the error (P) and to the rate of the error (D). Which error is that,
+# which rate, and what are the units of the two gains? Write the law down on paper first.
 #
 # Because feed-forward does so well on its own, it hides feedback that is broken, even one with the
 # wrong sign. So the check starts off the path, and with a target that stands still (Lynch and Park,
@@ -61,9 +61,9 @@ def joint_velocity_pd(state, target, *, kp, kd):
 
 
 # %% [markdown]
-# Here is Baxter with your controller, started a tenth of a radian off. If yours is not ready, the arm
-# runs on feed-forward alone, so you see what it lacks. Turn the dials: when does it get restless? Does D
-# help? (Nobody turns them when the notebook is graded; it then shows what they start with.)
+# Here is Baxter with your controller, started a tenth of a radian off. If yours is not ready, the arm runs on
+# feed-forward alone, so you see what it lacks. Turn the dials: when does the arm become restless? Does D
+# help? (When the notebook is graded nobody turns the dials, and they keep their starting values.)
 
 # %%
 def feedforward(state, target, **gains):
@@ -118,9 +118,9 @@ dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0), kd=(0.0, 3.0, 0.0))
 # %% [markdown]
 # ## What D does here
 #
-# In most textbooks D damps and thereby lets you raise P. They have a mass in mind that is pushed by a
-# force. Here the speed itself is commanded. Suppose that a joint moves at exactly that speed, and that
-# its target stands still: write down the equation for its error, and see how quickly it dies away.
+# In most textbooks D adds damping and so lets you raise P. These books think of a mass that a force pushes.
+# Here you command the speed itself. Suppose that a joint moves at exactly the commanded speed, and that its
+# target does not move. Write down the equation for the error, and see how quickly the error decays.
 
 # %% question="decay_rate"
 def decay_rate(kp, kd):
@@ -143,10 +143,11 @@ def decay_rate(kp, kd):
 # %% predict="with_more_d"
 
 # %% [markdown]
-# Compare with an arm whose motors take 50 ms to follow a command. (Motors that obey at once would make
-# the loop bite its own tail: the speed measured now *is* the last command, so with kd above 1 the
-# commands would grow from tick to tick. The report's authors ended with a kd of 0.0001.) A kd has its use
-# on a moving target, where the motors' lag makes an error that kd divides; here the target rests. The thick lines are the arm, the thin dotted ones your rate.
+# Compare with an arm whose motors take 50 ms to follow a command. (With motors that obey at once, the loop
+# would feed on itself: the speed measured now *is* the last command, so with kd above 1 the commands would
+# grow from tick to tick. The report's authors ended with a kd of 0.0001.) kd is useful with a moving target,
+# because it makes the error smaller that the motors' lag causes; here the target rests. The thick lines are
+# the arm, the thin dotted ones your rate.
 
 # %%
 def nobody_knows(kp, kd):
@@ -183,16 +184,17 @@ lk.plotting.show(
 predict("with_more_d", truth=(log.t, e))
 
 # %% [markdown]
-# Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, for D
-# makes the loop less sensitive to their lag. And the arm arrives later. The second weighs more: from here
-# on kd is 0, and it is kp that is chosen.
+# Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, because D
+# makes the loop less sensitive to their lag. And the arm arrives later. The second effect matters more. So
+# from here on kd is 0, and you choose only kp.
 
 # %% [markdown]
 # ## From the tip to the joints
 #
-# Often it is the tip that matters, and the target is a pose. The Jacobian says how the tip moves when
-# the joints do, $V = J\,\dot q$: six numbers (velocity of the tip, then angular velocity, in world axes)
-# from seven. `model.tip_jacobian(q)` gives it. To command a motion of the tip you need the way back.
+# Often it is the tip that matters, and the target is a pose. The Jacobian says how the tip moves when the
+# joints do, $V = J\,\dot q$: six numbers (velocity of the tip, then angular velocity, in world axes) from
+# seven. `model.tip_jacobian(q)` gives it. To command a motion of the tip you need the inverse: joint speeds
+# from a motion of the tip.
 #
 # Seven unknowns for six equations: there are many answers, and the *pseudo-inverse* finds the one with
 # the smallest joint speeds. But some poses have a direction in which the tip cannot go, whatever the
@@ -201,9 +203,9 @@ predict("with_more_d", truth=(log.t, e))
 #
 # $$ |V - J\,\dot q|^2 + \lambda^2\,|\dot q|^2 $$
 #
-# over $\dot q$. Set the gradient to zero; what stands before $V$ is the matrix that you need
-# (Nakamura and Hanafusa 1986; Siciliano, *Robotics: Modelling, Planning and Control*, section 3.5.2).
-# In the stub, `damping` is the whole factor $\lambda^2$.
+# over $\dot q$. Set the gradient to zero; the matrix that multiplies $V$ is the one that you need (Nakamura
+# and Hanafusa 1986; Siciliano, *Robotics: Modelling, Planning and Control*, section 3.5.2). In the stub,
+# `damping` is the whole factor $\lambda^2$.
 
 # %% question="damped_inverse"
 def damped_inverse(J, damping):
@@ -226,10 +228,10 @@ def damped_inverse(J, damping):
 # %% predict="worst_elbow"
 
 # %% [markdown]
-# How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest,
-# while the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s. Without damping
-# the demand is absurd near the pose where the arm is straight; with it the joints give up there, which
-# is all they can do.
+# How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest, while
+# the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s. Without damping the joint
+# speeds become absurd near the pose where the arm is straight. With damping the joints give up there, because
+# they cannot do better.
 
 # %%
 def truncated_inverse(J, damping):
@@ -272,10 +274,10 @@ predict("worst_elbow", truth=round(float(angles[np.argmax(undamped)]), 2))
 # %% [markdown]
 # ## A controller for the tip
 #
-# Now put it together: how the tip should move, and the joint speeds that do it. The tip should move as
-# its target does, and besides towards it, in place and in orientation. The error of orientation is that of
-# notebook 00, a turn in world axes; `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong versions of this controller draw a fine
-# circle as long as the hand starts upright, so the check tilts it.
+# Now put it together: how the tip should move, and the joint speeds that do it. The tip should move as its
+# target does and, in addition, towards the target, in position and in orientation. The orientation error is
+# that of notebook 00, a turn in world axes; `lk.se3.orientation_error(R_wd, R_wt)` gives it. Most wrong
+# versions of this controller draw a fine circle as long as the hand starts upright, so the check tilts it.
 
 # %% question="workspace_velocity_pd"
 def workspace_velocity_pd(state, target, model, *, kp, damping):
@@ -324,8 +326,8 @@ lk.plotting.tracking(log)
 lk.plotting.show(lk.plotting.describe(log))
 
 # %% [markdown]
-# In three dimensions, beside an arm that starts where it should. If your controller is not ready, the
-# arm has feed-forward only, and carries its wrong start all the way round.
+# Here is the run in three dimensions, beside an arm that starts where it should. If your controller is not
+# ready, the arm has feed-forward only, and keeps the error of its start all round the circle.
 
 # %%
 ideal.reset(q0)
@@ -339,9 +341,9 @@ lk.replay.show(
 # %% [markdown]
 # ## What the tip does not feel
 #
-# Six numbers for the tip, seven joints: one freedom is left. Hold your hand on the table and swing your
-# elbow; that is it. It can be used to stay clear of things or of the joints' limits, if only you can
-# move the elbow *without* moving the tip. Suppose the joints would like to turn at some speeds
+# Six numbers for the tip, seven joints: one freedom is left. You can see this freedom on yourself: keep your
+# hand on the table and swing your elbow. An arm can use it to stay clear of things or of its joints' limits,
+# if you can move the elbow *without* moving the tip. Suppose the joints would like to turn at some speeds
 # $\dot q_w$. Which part of that wish does the tip not feel?
 #
 # The joint speeds with $J\,\dot q = 0$ are called the *null space* of $J$ (Siciliano, section 3.5.1).
@@ -393,10 +395,10 @@ lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", refer
 # %% [markdown]
 # ## An arm of your own
 #
-# From here on an arm belongs to you. It is a Baxter, but its motors, its joints' friction, what it carries
-# and what stands before it are its own: no two teams have the same one. Your course gives you a handle for
-# it; `"demo"` is a public arm to practise on. Numbers that you find out about it are judged against it, and
-# the report of notebook 08 is about it.
+# From here on you have your own arm. It is a Baxter, but its motors, the friction of its joints, its payload
+# and the wall before it are particular to this arm: no two teams have the same one. Your course gives you a
+# handle, a name that opens your arm; `"demo"` is a public arm to practise on. The check compares the numbers
+# that you find with the true numbers of your arm, and the report of notebook 08 is about this arm.
 
 # %%
 HANDLE = "demo"  # in a course: your login
@@ -424,9 +426,9 @@ lk.plotting.show(f"A step of the commanded speed, and how joint s0 of the arm {H
 # %% [markdown]
 # ## Baxter, at last
 #
-# Now the arm as its users found it: 100 states a second for 200 commands, noise on the speeds, motors
-# that lag, a late command now and then. Three ways to draw the same circle, from the same start a little
-# off the path.
+# Now the arm as its users found it: 100 states a second for 200 commands, noise on the speeds, motors that
+# lag, a late command now and then. Three controllers draw the same circle, from the same start a little off
+# the path.
 
 # %%
 joints = model.joint_trajectory(poses, q0)
@@ -466,9 +468,9 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# With your own controllers in place: feed-forward draws a fine circle beside the right one. Feedback takes
-# the wrong start away within a second, and with it nearly all of the error. What is left is a few
-# millimetres, largest where the circle is quickest: the motors lag, and the state is some milliseconds
+# If your own controllers are in place, you see this: feed-forward draws a fine circle beside the right one.
+# Feedback removes the error of the start within a second, and with it nearly all of the error. What is left
+# is a few millimetres, largest where the tip is fastest: the motors lag, and the state is some milliseconds
 # old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
 # them better.
 
@@ -483,10 +485,10 @@ lk.replay.show(
 # ### END SOLUTION
 
 # %% [markdown]
-# And once more in real time, with a hand in it. Press *Start*, drag the arm off its circle and let go: how
-# long does it take to come back, with which kp? Velocity mode is stiff. However hard you pull, the motors
-# give all they have to keep the speed. Now make the state older (*state_delay*) until the arm begins to
-# swing: at which kp?
+# Now the same in real time, and you can push. Press *Start*, drag the arm off its circle and let go: how long
+# does it take to come back, and with which kp? Velocity mode is stiff. However hard you pull, the motors give
+# all they have to keep the speed. Now make the state older (*state_delay*) until the arm begins to swing: at
+# which kp?
 
 # %%
 def circling(state, target, kp):

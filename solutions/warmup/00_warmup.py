@@ -15,7 +15,8 @@
 #
 # How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not. If
 # your part is missing, a stand-in replaces it and says so. After each stub a check tells you in words what it
-# found. Only the functions are marked, so play with everything else as you like.
+# found. The functions, your predictions and the text at the end are marked; play with everything else as you
+# like.
 
 # %% setup=true
 import labkit as lk
