@@ -1,10 +1,11 @@
 # %% [markdown]
 # # 07 · Which controller is better?
 #
-# The report of 2019 put seven methods of moving the arm side by side, looked at the plots and wrote that its
-# own controllers "obtained superior performance". On another page it wrote that the built-in method
-# "performs slightly better in most cases". Neither sentence comes with a number. This notebook
-# is about earning the right to write such a sentence, or the one that is more often true: *we cannot tell*.
+# The report of 2019 compared seven methods of moving the arm. Its authors looked at the plots and wrote that
+# their own controllers "obtained superior performance". On another page they wrote that the built-in method
+# "performs slightly better in most cases". Neither sentence comes with a number. In this notebook you learn
+# what you need before you can write such a sentence, or the sentence that is more often true: *we cannot
+# tell*.
 #
 # | | |
 # |---|---|
@@ -13,8 +14,9 @@
 # | **You write** | the error of a run, a loop on paper, gains with a margin, differences over seeds, verdicts |
 # | **Time** | core about 3 hours, all about 4 · 24 points |
 #
-# Every cell below runs from the start, solved or not: where your part is missing, something given stands
-# in and says so. Functions, predictions and texts are marked.
+# Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
+# says so. The functions, your predictions and the text at the end are marked; play with everything else as
+# you like.
 
 # %% setup=true
 from dataclasses import replace
@@ -35,8 +37,8 @@ from labkit import loop, recordings
 # %% [markdown]
 # ## One number for a run
 #
-# Here is Baxter's built-in method on the line, as it was recorded: a planner made a path, a time
-# parameterisation put it on a schedule, and the arm's own trajectory server followed.
+# Here is a recording of Baxter's built-in method on the line: a planner made a path, a time parameterisation
+# gave it a schedule, and the arm's own trajectory server followed it.
 
 # %%
 log = recordings.load("baseline_line")
@@ -45,8 +47,8 @@ lk.plotting.tracking(log, model)
 lk.plotting.show(lk.plotting.describe(log, model))
 
 # %% [markdown]
-# The same run as an arm, with the arm that follows perfectly as its ghost, and with the server's other
-# mode, which commands velocities:
+# Here is the same run as an arm. One ghost follows perfectly; the other is the server's second mode, which
+# commands velocities:
 
 # %%
 other_mode = {"velocity mode": recordings.load("baseline_line_velocity")}
@@ -55,10 +57,10 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# At each instant the error of the tip is a vector, target minus actual. The usual number for a whole run
-# is the root of the mean of its squared length. Two slips are common. A mean that runs over the three
-# components as well comes out too small by $\sqrt 3$, and nobody notices, because all controllers profit
-# alike. And a program that asks for *the* pose without saying of which instant compares every row with
+# At each instant the error of the tip is a vector, target minus actual. The usual number for a whole run is
+# the root of the mean of its squared length. Two mistakes are common. A mean that also runs over the three
+# components is too small by a factor of $\sqrt 3$, and nobody notices, because all controllers profit
+# equally. And a program that asks for *the* pose, without saying at which instant, compares every row with
 # the last one; that is what the plots of the report show.
 
 # %% question="rms_error"
@@ -80,9 +82,9 @@ def rms_error(log, model):
 
 
 # %% [markdown]
-# The built-in method was recorded on other paths too, and on the line in a second mode. Its targets are
-# joint angles; the tip's target poses follow from them. One number for each run, by your function. (If
-# it is not ready, the largest error stands in.)
+# The built-in method was recorded on other paths too, and on the line in a second mode. Its targets are joint
+# angles; the tip's target poses follow from them. Your function computes one number for each run. (If it is
+# not ready, the largest error stands in.)
 
 # %%
 def largest_error(log, model):
@@ -107,7 +109,7 @@ for name in recordings.names():
 #
 # Why is there a best gain at all? Take one joint in velocity mode. Its speed follows the command with a
 # first-order lag; the angle is the integral of the speed; the controller sees an angle that is some
-# milliseconds old. In a row:
+# milliseconds old. In series these give
 #
 # $$ L(s) = K_p \cdot \frac{1}{\tau s + 1} \cdot \frac1s \cdot e^{-s d} . $$
 #
@@ -163,10 +165,10 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# The gain moves the upper curve up and down and leaves the lower one alone. Where the gain is 1, what is
-# left of the phase above -180° is the *phase margin*: with none left the loop swings for ever, and with
-# less than none it runs away. So a margin fixes the gain: find the frequency at which the phase is right,
-# then make the gain 1 there.
+# The gain moves the upper curve up and down and leaves the lower one alone. At the frequency where the gain
+# is 1, the distance of the phase from -180° is the *phase margin*. With a margin of zero the loop swings for
+# ever, and with a negative margin it runs away. So a margin determines the gain: find the frequency at which
+# the phase is right, then make the gain 1 there.
 
 # %% question="kp_for_margin"
 def kp_for_margin(lag, delay, margin_deg):
@@ -203,9 +205,9 @@ for margin in (30, 45, 60, 75):
 # %% [markdown]
 # ## The whole map
 #
-# Paper is not the arm. This map was measured: the joint velocity PD along the line on the simulated
-# Baxter, one run for each pair of gains and seed. The error falls with the gain, slower and slower, and
-# then there is a cliff.
+# A calculation on paper is not the arm. This map was measured: the joint velocity PD along the line on the
+# simulated Baxter, one run for each pair of gains and seed. The error falls with the gain, slower and slower,
+# and then there is a cliff.
 
 # %%
 measured = recordings.error_map("joint_velocity_pd_baxter")
@@ -228,16 +230,16 @@ lk.plotting.show(measured.describe())
 # %% [markdown]
 # ## Gains that survive
 #
-# Choose gains yourself, with at most twenty runs along the line. Each call `runner(Kp, Kd, seed)` stands
-# for one run on the arm, with a start and a noise that the seed draws, and gives its RMS error in
-# millimetres. `Kp` may go from 2 to 100, `Kd` from 0 to 1, and there are the seeds 0 to 4. (The runs were
-# recorded; between the recorded gains the error is interpolated.)
+# Choose gains yourself, with at most twenty runs along the line. Each call `runner(Kp, Kd, seed)` is one run
+# on the arm, with a start and a noise drawn from the seed, and returns its RMS error in millimetres. `Kp` may
+# be from 2 to 100, `Kd` from 0 to 1, and the seeds are 0 to 4. (The runs were recorded; between the recorded
+# gains the error is interpolated.)
 #
-# Your gains are then used where you could not try them: on another path, at twice the speed, with a
-# kilogram in the hand, with a state that is a few milliseconds older. And not only they, but also 1.3 times
-# your `Kp`: so much margin you should leave at least. Your function is asked twice, with a runner for this
-# arm and with one for an arm that takes about three times as long for everything, its path included. No
-# pair of gains serves both, so let the function look for them.
+# Your gains are then used where you could not try them: on another path, at twice the speed, with a kilogram
+# in the hand, with a state that is a few milliseconds older. Then 1.3 times your `Kp` is tried as well: leave
+# at least this much margin. Your function is called twice, with a runner for this arm and with one for an arm
+# that takes about three times as long for everything, its path included. No pair of gains serves both, so let
+# the function look for them.
 
 # %% question="choose_gains"
 def choose_gains(runner):
@@ -257,7 +259,7 @@ def choose_gains(runner):
 
 
 # %% [markdown]
-# Try your own strategy here; the runner remembers what it was asked.
+# Try your own strategy here; the runner records your calls.
 
 # %%
 line_trials = recordings.read_trials(recordings.LINE)
@@ -275,8 +277,8 @@ predict("another_seed", truth=round(float(grown), 1))
 # %% [markdown]
 # Seed 1 alone would have told you that 90 is a fine gain.
 #
-# And here is yours: what it chooses, what that costs on the line, and what the loop on paper says of it.
-# (If it is not ready, a guess stands in.)
+# Here is your strategy: the gains that it chooses, their error on the line, and what the loop on paper says
+# about them. (If your function is not ready, a guess replaces it.)
 
 # %%
 def a_guess(runner):
@@ -294,10 +296,10 @@ print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")
 # %% [markdown]
 # ## Paired differences
 #
-# Two controllers, five seeds. A seed that draws a bad start is bad for both. If the rows are compared as
-# if they were strangers, that spread hides everything; subtract first, and it drops out. What is left has
-# a mean, and the mean of a few numbers is itself uncertain: by Student's $t$ it lies, with 95 %
-# confidence, within
+# Two controllers, five seeds. A seed that draws a bad start is bad for both. If you compare the rows as if
+# they were independent, the spread of the starts hides everything; if you subtract first, it drops out. The
+# differences have a mean, and the mean of a few numbers is itself uncertain: by Student's $t$, with 95 %
+# confidence, the true mean is within
 #
 # $$ \bar d \pm t_{0.975,\,n-1}\,\frac{\sigma_d}{\sqrt n}, \qquad
 #    \sigma_d^2 = \frac{1}{n-1}\sum_i (d_i - \bar d)^2 . $$
@@ -323,9 +325,9 @@ def paired_difference(errors_a, errors_b):
 # %% [markdown]
 # ## Verdicts
 #
-# The campaign of this course let every controller follow every task on the simulated Baxter, five seeds
-# each. Here are its rows; the errors count from the second half of the first second on, when the start's
-# offset should be gone.
+# The campaign of this course let every controller follow every task on the simulated Baxter, five seeds each.
+# Here are its rows. The errors are counted after the first half second, when the offset of the start should
+# be gone.
 
 # %%
 rows = [row for row in recordings.campaign() if row["plant"] == "baxter"]
@@ -343,8 +345,8 @@ means = ", ".join(f"{way} {np.mean(errors):.1f} mm" for way, errors in table.ite
 lk.plotting.show(f"The errors of each method on the circle; on average {means}.")
 
 # %% [markdown]
-# From rows like these write a verdict on each claim. The claim is always that the *first* error is the
-# larger one. "Undecided" is an answer, and where the interval holds 0 the only honest one.
+# From rows like these write a verdict on each claim. The claim is always that the *first* error is the larger
+# one. "Undecided" is an answer, and if the interval contains 0 it is the only honest one.
 
 # %% question="verdicts"
 def verdicts(table):
@@ -414,13 +416,14 @@ for claim, (a, b) in claims.items():
 
 # %% [markdown]
 # Two rows for each claim, because there are two questions. *On this line, is it worse?* Five seeds are five
-# looks at one line, and they can settle that. *Is it worse at tracking?* Then the tasks are the units, each by
-# its mean, and there are three or four of them, however many seeds each had. If you pool them to fifteen or
-# twenty pairs, you count several looks at one line as several lines, and the interval becomes several times too
-# narrow.
+# looks at one line, and they can settle that. *Is it worse at tracking?* Then the tasks are the units, each
+# represented by its mean, and there are three or four of them, no matter how many seeds each had. If you pool
+# them to fifteen or twenty pairs, you count several looks at one line as several lines, and the interval
+# becomes several times too narrow.
 #
-# And five claims are five chances to be wrong: at 95 % each, luck alone decides about one in four such lists.
-# Ask of each interval $1 - 0.05/5$ instead of 0.95, and 95 % holds for the five together:
+# And five claims are five chances to be wrong: at 95 % each, about one in four such lists holds a verdict
+# that is due to chance alone. Use $1 - 0.05/5$ instead of 0.95 for each interval, and 95 % holds for the five
+# together:
 
 # %%
 from scipy.stats import t as student
@@ -430,11 +433,11 @@ for n in (3, 4, 5):
     print(f"{n} units: an interval {wider:.2f} times as wide")
 
 # %% [markdown]
-# With your own verdicts in place: the report's two sentences are both in this list, for single tasks. Which of
-# its controllers is better than the built-in method depends on which one is meant, and on which path; over the
-# tasks some of it is undecided, and would be with five hundred seeds. A fourth and a fifth path would tell more
-# than any number of seeds. So name the two, the task and the number, say what your units are, and say
-# how sure you are.
+# If your own verdicts are in place, you see that each of the report's two sentences is true for some task.
+# Whether its controllers are better than the built-in method depends on the controller and on the path. Over
+# the tasks some claims are undecided, and they would be undecided with five hundred seeds. A fourth and a
+# fifth path would tell more than any number of seeds. So name the two controllers, the task and the number,
+# say what your units are, and say how sure you are.
 
 # %% predict="twenty_pairs"
 
@@ -451,8 +454,8 @@ print(f"± {pooled:.2f} mm from 20 differences, ± {by_task:.2f} mm from the mea
 predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled > 1.4 * by_task else "a")
 
 # %% [markdown] why="why_so_narrow"
-# Which interval did you see to be narrower, and why? Say what five seeds of one task have in common, what a
-# second task would tell that a sixth seed would not, and which interval belongs to "controllers in general".
+# Which interval was narrower, and why? Say what five seeds of one task have in common, what a second task
+# would tell you that a sixth seed would not, and which interval belongs to "controllers in general".
 #
 # ### BEGIN SOLUTION
 # The interval from 20 differences was much narrower. The five seeds of a task share path, speed and pose,

@@ -1,9 +1,9 @@
 # %% [markdown]
 # # 05 · Impedance
 #
-# Push a robot arm aside. A stiff one does not notice you, until it hurts. A limp one falls. What you
-# would like is an arm that gives way as a spring does: a little when you push a little, and back when you
-# let go. How it gives way is its *impedance*, and you are going to choose it.
+# Push a robot arm aside. A stiff arm does not give way, and it can hurt you. A limp arm falls. You would like
+# an arm that gives way as a spring does: it moves a little when you push a little, and comes back when you
+# let go. How an arm gives way is its *impedance*, and you are going to choose it.
 #
 # | | |
 # |---|---|
@@ -15,9 +15,9 @@
 # The team whose report this lab grew out of wrote two impedance controllers, found them "a bit off", and
 # saw no use in them. They never pushed the arm. Here you will.
 #
-# Every cell below runs from the start, solved or not: where your part is missing, something given stands
-# in and says so. After each stub a check tells you in words what it found. Functions, predictions and texts are marked,
-# so play with everything else as you like.
+# Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
+# says so. After each stub a check tells you in words what it found. The functions, your predictions, the
+# numbers to find out and the text at the end are marked; play with everything else as you like.
 
 # %% setup=true
 from dataclasses import replace
@@ -34,10 +34,10 @@ import numpy as np
 # %% [markdown]
 # ## One mass on a spring
 #
-# Everything in this notebook is this: a mass $m$, tied to its *target* $x_d$ by a spring $k$ and a damper
-# $b$, and a hand that pushes it with a force $F$. The target itself may move. As everywhere in this course
-# the error is target minus actual, $e = x_d - x$. If nobody pushes and there is no error, the mass moves
-# just as its target does.
+# Everything in this notebook comes from one picture: a mass $m$ is tied to its *target* $x_d$ by a spring $k$
+# and a damper $b$, and a hand pushes it with a force $F$. The target itself may move. As everywhere in this
+# course the error is target minus actual, $e = x_d - x$. If nobody pushes and there is no error, the mass
+# moves exactly as its target does.
 
 # %% question="msd"
 def msd(state, target, force, *, m, b, k):
@@ -62,8 +62,8 @@ def msd(state, target, force, *, m, b, k):
 
 
 # %% [markdown]
-# Push with 10 N for a second, then let go. What decides how far it goes? What decides how it starts, and
-# how it comes back? (Until your function is ready, the mass is nailed to the table.)
+# Push with 10 N for a second, then let go. What determines how far the mass goes? What determines how it
+# starts, and how it comes back? (Until your function is ready, the mass does not move at all.)
 
 # %%
 def nailed_to_the_table(state, target, force, *, m, b, k):
@@ -97,15 +97,15 @@ def push_and_release(m, b, k):
 dials = lk.plotting.dials(push_and_release, m=(0.5, 10.0, 1.0), b=(1.0, 80.0, 20.0), k=(50.0, 1000.0, 300.0))
 
 # %% [markdown]
-# Three numbers, three things to feel: the *stiffness* is what remains while you hold, the *inertia* is
-# what you meet at the very first moment, the *damping* is what stops the swinging.
+# You can feel each of the three numbers: the *stiffness* while you hold the mass away from its target, the
+# *inertia* at the very first moment, and the *damping* when the swinging stops.
 #
 # ## How heavy is the tip?
 #
-# The arm's tip has no mass written on it. Its seven joints move when you push it, each with its own
-# inertia and lever, so how heavy it feels depends on the pose and on the direction. Follow a push through
-# the arm: the wrench $F$ at the tip gives joint torques $J^T F$; with the motors off and the arm at rest
-# these give the joint accelerations; and those move the tip. What comes out is
+# No data sheet gives the mass of the arm's tip. Its seven joints move when you push it, each with its own
+# inertia and lever, so how heavy the tip feels depends on the pose and on the direction. Follow a push
+# through the arm: the wrench $F$ at the tip gives joint torques $J^T F$; with the motors off and the arm at
+# rest these give the joint accelerations; and those move the tip. The result is
 #
 # $$ F = \Lambda(q)\,\ddot x , $$
 #
@@ -131,8 +131,8 @@ def operational_inertia(M, J):
 
 
 # %% [markdown]
-# Ask the arm. It carries its own weight for the moment, its motors do nothing, and somebody taps its tip
-# with 5 N for a hundredth of a second.
+# Now measure it. The arm carries its own weight, its motors do nothing else, and a force of 5 N taps its tip
+# for a hundredth of a second.
 
 # %%
 plant = lk.Plant(name="textbook", armature=0.05, viscous=0.7)
@@ -166,30 +166,33 @@ for axis, name in enumerate("xyz"):
     print(f"      {name}        {felt[axis]:5.2f} kg   {5.0 * log.t[-1] / speed:5.2f} kg")
 
 # %% [markdown]
-# Sideways the tip is a bag of sugar, up and down six of them. And it has not even left its place.
+# Pushed sideways, the tip feels like one bag of sugar; pushed up or down, like six of them. And all this in
+# one pose.
 #
 # ## Springs at the tip
 #
-# Now give the tip the springs of your choice, and leave it the inertia $\Lambda$ that it has. The wanted
-# behaviour is that of the one mass, in six directions at once:
+# Now give the tip the springs of your choice, and let it keep its inertia $\Lambda$. The wanted behaviour is
+# that of the one mass, in six directions at once:
 #
 # $$ \Lambda\,\ddot e + D\,\dot e + K\,e = -F_{ext} . $$
 #
 # $e$ holds the position error and the rotation from the tip to the target, in world axes:
-# `lk.se3.pose_error(target.pose, model.pose(q))`. $F_{ext}$ is the wrench of the hand on the arm. The rate
-# of the error is $\dot e = V_d - J\dot q$: of its rotation only nearly, while the hand is turned little. Put the joints'
-# equation of motion and this one together, and see what the motors have to do. Two things to watch:
+# `lk.se3.pose_error(target.pose, model.pose(q))`. $F_{ext}$ is the wrench of the hand on the arm. The rate of
+# the error is $\dot e = V_d - J\dot q$; for the rotation this is an approximation, good while the hand is
+# turned only a little. Combine the joints' equation of motion with this one, and see what the motors have to
+# do. Keep two things in mind:
 #
 # - The tip's acceleration is $J\ddot q + \dot J\dot q$. The second part comes by itself when the joints
 #   turn evenly; the motors only have to bring up the rest.
 # - A force $F$ at the tip takes the joint torques $J^T F$. No inverse, no pseudo-inverse.
 #
-# There are seven joints and six springs, so nothing holds or damps the elbow. Here its friction brakes it; do not
-# count on that elsewhere, but add a damper that the tip does not feel, as all do who build such arms. You may, too:
-# many torques make the tip move alike, and yours is judged by that.
+# There are seven joints and six springs, so nothing holds or damps the elbow. Here friction brakes the elbow.
+# Do not rely on friction elsewhere: add a damper that the tip does not feel, as everybody does who builds
+# such arms. You may do so here too, because many torques move the tip in the same manner, and the check looks
+# only at the tip.
 #
-# No force is measured. This is often told the other way, in the report too ("impedance needs a force
-# sensor"): as long as the arm keeps its own inertia, it does not.
+# No force is measured. Many texts, the report among them, claim that "impedance needs a force sensor". It
+# does not, as long as the arm keeps its own inertia.
 
 # %% question="workspace_impedance"
 def workspace_impedance(state, target, model, *, stiffness, damping):
@@ -217,9 +220,9 @@ def workspace_impedance(state, target, model, *, stiffness, damping):
 # %% [markdown]
 # ## A push
 #
-# Hold the arm still, push its tip to the side with 10 N for two seconds, let go. Beside your law runs
-# Baxter's position mode, as stiff as its motors are strong. For the damping take critical damping of the
-# masses that you just felt, $d_i = 2\sqrt{k_i m_i}$. (If your law is not ready, springs in the *joints*
+# The arm holds still, a force of 10 N pushes its tip to the side for two seconds, and then lets go. Baxter's
+# position mode, as stiff as its motors are strong, runs beside your law. The damping is critical for the
+# masses that you just measured, $d_i = 2\sqrt{k_i m_i}$. (If your law is not ready, springs in the *joints*
 # stand in. They give way too, but not as you asked.)
 
 # %%
@@ -285,7 +288,7 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# The same as arms: yours gives way, the ghost stands like a rock.
+# Here are the same runs as arms: yours gives way, the ghost does not move.
 
 # %%
 lk.replay.show(
@@ -300,9 +303,9 @@ lk.replay.show(
 # %% [markdown]
 # ## A wall
 #
-# Nobody told the arm that there is a wall, and its target lies 3 cm behind it. The position mode pushes on
-# with all that its motors have. An impedance presses with a force that you can say beforehand: its spring,
-# the wall and the finger's rubber tip are springs in a row,
+# The arm does not know that there is a wall, and its target is 3 cm behind the wall. The position mode pushes
+# with all the force of its motors. An impedance presses with a force that you can predict: its own spring,
+# the wall and the finger's rubber tip are springs in series,
 #
 # $$ F = \frac{3\,\mathrm{cm}}{1/K + 1/k_{wall}} . $$
 
@@ -359,9 +362,9 @@ predict("wall_force", truth=round(float(pressed(met)[-20:].mean()), 1))
 # %% [markdown]
 # ## A spring
 #
-# Tie the tip to its starting place with a rubber band of 200 N/m and send it 10 cm away. Two springs pull
-# at it, and it ends where they agree. Who of the two controllers "tracks better"? Who would you rather
-# have in the gripper's reach?
+# Tie the tip to its starting place with a rubber band of 200 N/m and send it 10 cm away. Two springs pull at
+# it, and it ends where their forces balance. Which of the two controllers "tracks better"? Which one would
+# you rather be near?
 
 # %%
 band = lk.Spring(tip, 200.0)
@@ -377,10 +380,10 @@ print(f"K / (K + 200) of the way would be {1e2 * K[1] / (K[1] + 200.0):.1f} mm."
 # %% [markdown]
 # ## What is the stiffness really?
 #
-# You asked for 300 N/m. Do you get it? Never trust a label: measure. Push the resting tip in ten
-# directions, read each force off a spring balance (good to about 0.2 N), wait, and write down where the
-# tip went. A line through those numbers gives the *apparent* stiffness. It is a matrix: a push along x may
-# well move the tip along y.
+# You asked for 300 N/m. Do you get it? Never trust a label: measure. Push the resting tip in ten directions,
+# read each force from a spring balance (accurate to about 0.2 N), wait, and write down where the tip went. A
+# linear fit to those numbers gives the *apparent* stiffness. It is a matrix, because a push along x may also
+# move the tip along y.
 
 # %% question="apparent_stiffness"
 def apparent_stiffness(force, displacement):
@@ -401,8 +404,8 @@ def apparent_stiffness(force, displacement):
 
 
 # %% [markdown]
-# Somebody has left 300 g in the gripper, and the model does not know. So the tip hangs a little before
-# anyone pushes. Besides your law, springs in the *joints* are pushed as well.
+# There are 300 g in the gripper, and the model does not know of them. So the tip sags a little before anyone
+# pushes. The same pushes are made on springs in the *joints*, for comparison with your law.
 
 # %%
 def ten_pushes(controller, newtons=8.0, seed=5):
@@ -448,14 +451,14 @@ for name, matrix in measured.items():
 #
 # $$ \tau = M\,\ddot q_d + C\,\dot q_d + g + D\,\dot e + K\,e , \qquad e = q_d - q , $$
 #
-# and that is, letter by letter, the augmented PD law of torque control (notebook 04). The report counts
-# the two as different controllers and wonders why one is worse than the other. They are one law with two
-# sets of gains: stiff ones when you want to track, soft ones when you want to be pushed.
+# and that is, letter by letter, the augmented PD law of torque control (notebook 04). The report counts the
+# two as different controllers and wonders why one is worse than the other. They are one law with two sets of
+# gains: high gains for an arm that tracks well, low gains for an arm that gives way.
 #
-# What the tip feels of joint springs follows from the Jacobian: a force at the tip turns the joints by
-# $K_q^{-1}J^T F$, and that moves the tip by $J K_q^{-1} J^T F$. Let us see whether the measured matrix agrees, and
-# how the two kinds of springs differ: each curve below is where pushes of 10 N from all sides, in the
-# upright plane of x and z, would move the tip.
+# The Jacobian says how joint springs feel at the tip: a force at the tip turns the joints by $K_q^{-1}J^T F$,
+# and that moves the tip by $J K_q^{-1} J^T F$. Let us see whether the measured matrix agrees, and how the two
+# kinds of springs differ: each curve below shows where pushes of 10 N from all sides, in the vertical plane
+# of x and z, would move the tip.
 
 # %%
 J = model.tip_jacobian(ready)[:3]
@@ -493,14 +496,14 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# Where the arm is soft, and in which direction, is a matter of its pose if the springs sit in the joints.
-# At the tip it is yours to say. That is what workspace impedance is for.
+# If the springs are in the joints, the pose decides how soft the arm is, and in which direction. If the
+# springs are at the tip, you decide. That is the purpose of workspace impedance.
 
 # %% [markdown]
 # ## Your own arm: what does it carry, and what stands before it?
 #
-# Your arm (notebook 03) carries something, and there is a wall somewhere in front of it. Find both out with
-# experiments of your own; the cell below is only a beginning. The tip is to be moved as gently as you can.
+# Your arm (notebook 03) carries something, and there is a wall somewhere in front of it. Find out both with
+# experiments of your own; the cell below is only a beginning. Move the tip as gently as you can.
 
 # %%
 HANDLE = "demo"  # in a course: your login
@@ -523,14 +526,14 @@ print("one kilogram takes [N m]:", ", ".join(f"{name} {x:+.2f}" for name, x in z
 # %% [markdown]
 # ## Another inertia
 #
-# So far the tip kept its inertia $\Lambda$. It can pretend to have another one, $M_d$:
+# So far the tip has kept its inertia $\Lambda$. It can also behave as if it had another one, $M_d$:
 #
 # $$ M_d\,\ddot e + D\,\dot e + K\,e = -F_{ext} . $$
 #
-# For that the motors must know how hard the hand pushes, for they have to help it, or to resist. Now, and
-# only now, the wrench $F_{ext}$ must be measured. Baxter can: its joints feel their torque, `state.tau_ext`,
-# and `model.tip_wrench(q, tau_ext)` turns it into a wrench at the tip. Remember, when you put the equations
-# together, that the hand does its own share of the work.
+# For that the motors must help the hand, or resist it, so they must know how hard it pushes. Now, and only
+# now, the wrench $F_{ext}$ must be measured. Baxter can do this: its joints measure the external torque,
+# `state.tau_ext`, and `model.tip_wrench(q, tau_ext)` converts it to a wrench at the tip. When you combine the
+# equations, remember that the hand also accelerates the arm.
 
 # %% question="shaped_impedance"
 def shaped_impedance(state, target, wrench, model, *, inertia, stiffness, damping):
@@ -560,10 +563,10 @@ def shaped_impedance(state, target, wrench, model, *, inertia, stiffness, dampin
 # %% predict="four_times_the_mass"
 
 # %% [markdown]
-# A push of 10 N again, with the same springs, on a tip that is to feel like 1, 5 and 20 kg. Look at the
-# first tenths of a second. Where it ends is the spring's business. (In 0.1 s a push of 10 N moves 20 kg
-# by 2.5 mm. Yours goes farther: the law hears of the push a tick late, and for these 5 ms the tip has its
-# own kilogram. With `rate = 1000.0` it is 2.6 mm.)
+# Here is a push of 10 N again, with the same springs, on a tip that should feel like 1, 5 and 20 kg. Look at
+# the first tenths of a second; where the tip ends depends only on the spring. (In 0.1 s a push of 10 N moves
+# 20 kg by 2.5 mm. Your tip goes farther, because the law sees the push one tick late, and for these 5 ms the
+# tip has only its own kilogram. With `rate = 1000.0` it moves 2.6 mm.)
 
 # %%
 def ignores_the_wrench(state, target, wrench, model, *, inertia, stiffness, damping):
@@ -607,8 +610,9 @@ share = early[20.0][1] / max(early[5.0][1], 1e-9)
 predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.25], share))])
 
 # %% [markdown] why="why_as_far"
-# What did you see: how far away was the tip that pretends to 20 kg, after a tenth of a second and after two?
-# Say which of inertia, damping and stiffness decides at which moment, and why a wall meets only one of them.
+# What did you see: how far away was the tip that behaves like 20 kg, after a tenth of a second and after two
+# seconds? Say which of inertia, damping and stiffness decides at which moment, and why a wall meets only one
+# of them.
 #
 # ### BEGIN SOLUTION
 # After 0.1 s the heavy tip had hardly moved; after two seconds it was as far away as the light one. At
@@ -619,11 +623,11 @@ predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.2
 # %% [markdown]
 # ## Feel it
 #
-# The same arm, in real time, under your own law. Press *Start* and drag the tip with the mouse: the arrow
-# is your force. By how much must 10 N move it, with K = 300 N/m? Turn the stiffness and drag again. Then
-# drag the elbow: your law says nothing about it, so what holds it back? Push the tip against the wall and
-# move the wall. At last choose *position mode* and pull with all your might. All this goes without a
-# mouse too: choose where to push, how hard and along which axis, below the picture.
+# The same arm, in real time, under your own law. Press *Start* and drag the tip with the mouse: the arrow is
+# your force. By how much must 10 N move it, with K = 300 N/m? Change the stiffness and drag again. Then drag
+# the elbow: your law says nothing about it, so what holds it back? Push the tip against the wall and move the
+# wall. Finally choose *position mode* and pull as hard as you can. You can do all this without a mouse: below
+# the picture, choose where to push, how hard and along which axis.
 
 # %%
 def by_hand(state, target, stiffness):

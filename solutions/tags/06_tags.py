@@ -1,10 +1,10 @@
 # %% [markdown]
 # # 06 · From pixels to a moving hand
 #
-# The fourth trajectory of the report follows an AR tag on a board. Its look-up took more than a second,
-# and every five seconds the arm jerked towards the new place. Here the tag is real, printed on a board in
-# the simulated world; the picture is rendered, the detection is OpenCV's, and what you write decides
-# whether the arm jerks or glides.
+# The fourth trajectory of the report follows an AR tag on a board. Looking up the tag took more than a
+# second, and every five seconds the arm jerked towards the new position. Here the tag is on a board in the
+# simulated world. The picture is rendered, OpenCV detects the tag, and your functions decide whether the arm
+# jerks or glides.
 #
 # | | |
 # |---|---|
@@ -19,8 +19,9 @@
 # > **Box: samples.** A reference is a function of time that gives `lk.Sample(position, velocity,
 # > acceleration)`, three arrays.
 #
-# Every cell below runs from the start, solved or not: where your part is missing, something given takes its
-# place and says so. Functions, predictions and texts are marked.
+# Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
+# says so. The functions, your predictions and the text at the end are marked; play with everything else as
+# you like.
 
 # %% setup=true
 import labkit as lk
@@ -66,9 +67,9 @@ lk.plotting.show(
 print(f"corners in pixels:\n{seen[0].corners.round(2)}")
 
 # %% [markdown]
-# Those pixels are all that the detector knows. To make a pose of them it must know where the corners are
-# *on the tag*: in which frame, in which order, of which square. Two slips are common. Corners the other
-# way round show the tag from behind. And the size is that of the black square, not of the paper.
+# Those pixels are all that the detector knows. To compute a pose from them, it must know where the corners
+# are *on the tag*: in which frame, in which order, and of which square. Two mistakes are common. Corners in
+# the opposite order show the tag from behind. And the size is that of the black square, not of the paper.
 
 # %% question="tag_corners"
 def tag_corners(size):
@@ -90,10 +91,10 @@ def tag_corners(size):
 # %% [markdown]
 # ## A pose
 #
-# Four points of a plane and their four pixels determine the pose, nearly: a small square looks almost alike
-# tilted one way or the other, so the method for planes (IPPE) gives two candidates, and the error left in
-# the picture tells which is right. Nearly facing the camera, the two errors come close to each other, and no
-# program can tell.
+# Four points of a plane and their four pixels almost determine the pose. A small square looks nearly the same
+# when it is tilted in one direction or in the opposite one. So the method for planes (IPPE) gives two
+# candidates, and the error that is left in the picture says which is right. If the tag almost faces the
+# camera, the two errors are nearly equal, and no program can tell which candidate is right.
 
 # %% question="tag_pose"
 def tag_pose(pixels, K, size):
@@ -128,11 +129,11 @@ print(f"the other candidate fits {seen[0].ratio:.1f} times worse")
 # %% [markdown]
 # ## How good is it?
 #
-# A sensor has two kinds of error. A *bias* is the same each time; averaging does not help. A *spread*
-# changes from picture to picture; the mean of n pictures has it $\sqrt n$ times smaller. A simulation knows
-# the truth, so both can be measured. The error is truth minus estimate: three numbers for the position, and
-# for the orientation the rotation vector of $R_{truth} R_{estimate}^T$. A tag that faces the camera is turned
-# by half a turn, just where Euler angles jump.
+# A sensor has two kinds of error. A *bias* is the same each time, so averaging does not help. A *spread*
+# changes from picture to picture, and the mean of n pictures has a spread that is $\sqrt n$ times smaller. A
+# simulation knows the truth, so both can be measured. The error is truth minus estimate: three numbers for
+# the position, and for the orientation the rotation vector of $R_{truth} R_{estimate}^T$. A tag that faces
+# the camera is rotated by half a turn, which is exactly where Euler angles jump.
 
 # %% question="sensor_quality"
 def sensor_quality(estimates, truth):
@@ -195,15 +196,17 @@ print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f}
 predict("twice_as_far", truth=round(float(far / near), 1))
 
 # %% [markdown]
-# Along the view the place is measured worst, for a tag that comes nearer changes the picture least. A dot
-# that lies farther from zero than its bar is long is bias: more pictures make the bars shorter, and leave
-# the dots where they are. The book shows the same over distance, angle, resolution and noise.
+# The position along the line of sight is measured worst, because a tag that comes nearer changes the picture
+# least. A dot whose distance from zero is larger than the length of its bar shows a bias: more pictures make
+# the bars shorter, but do not move the dots. The book shows the same over distance, angle, resolution and
+# noise.
 #
 # ## Algorithm 1, and why it jerks
 #
-# The report looks, draws a line from where it is to where the tag was, follows it, and looks again five
-# seconds later. Each line begins at rest, while the arm may be moving. Here the tag goes along at 5 cm/s and
-# jumps aside once. Look at the speed of the *reference*: no controller can follow a step.
+# The report's algorithm looks at the tag, draws a line from where the tip is to where the tag was, follows
+# the line, and looks again five seconds later. Each line begins at rest, although the arm may be moving. Here
+# the tag moves at 5 cm/s and jumps aside once. Look at the speed of the *reference*: no controller can follow
+# a step.
 
 # %%
 def tag_place(t):
@@ -247,8 +250,9 @@ def show_reference(samples, title):
 show_reference(report, "Algorithm 1, lines of 6 s, a look every 5 s")
 
 # %% [markdown]
-# The cure is not a better controller but a better reference: one that takes over what it is doing. A
-# polynomial of fifth order has six coefficients, enough for position, velocity and acceleration at both ends.
+# The cure is not a better controller but a better reference: one that begins with the reference's present
+# motion. A polynomial of fifth order has six coefficients, enough for position, velocity and acceleration at
+# both ends.
 
 # %% question="blend"
 def blend(t, reference, goal, duration):
@@ -298,19 +302,19 @@ show_reference(blended(times), "Blends of 1 s, a look every 0.5 s")
 # %% [markdown]
 # ## The age of a picture
 #
-# The step is gone. Where the tag jumps the reference is quicker than before, for it makes up for 10 cm in
-# about a second; but it does so smoothly, and an arm can follow that.
+# The step is gone. Where the tag jumps, the reference is faster than before, because it covers 10 cm in about
+# a second. But it does so smoothly, and an arm can follow that.
 #
 # In that figure the reference knew the tag's speed and saw it without delay. A real reading is late: by the
-# time the picture is taken, sent and understood, it is 100 ms old, and at 0.1 m/s the tag is 10 mm further on.
-# So believe in a place *and a velocity*, and carry both forward to now. The belief has a mean $m$ (place,
-# velocity) and a covariance $P$. If unknown pushes act like white noise of power $q$, then $\tau$ seconds
-# later
+# time the picture is taken, sent and understood, it is 100 ms old, and at 0.1 m/s the tag is 10 mm further
+# on. So estimate a position *and a velocity*, and carry both forward to the present. The estimate has a mean
+# $m$ (position, velocity) and a covariance $P$. If unknown pushes act like white noise of power $q$, then
+# $\tau$ seconds later
 #
 # $$ m' = F m, \quad P' = F P F^T + Q, \quad F = \begin{bmatrix} I & \tau I \\ 0 & I \end{bmatrix}, $$
 #
-# and $Q$ is what the pushes add: $\int_0^\tau F(s)\,\mathrm{diag}(0, qI)\,F(s)^T ds$. Work it out; it must
-# vanish with $\tau$, and two half steps must make one whole.
+# and $Q$ is the uncertainty that the pushes add: $\int_0^\tau F(s)\,\mathrm{diag}(0, qI)\,F(s)^T ds$. Compute
+# this integral. It must vanish with $\tau$, and two half steps must give the same as one whole step.
 
 # %% question="carry_forward"
 def carry_forward(mean, covariance, age, accel_noise):
@@ -343,11 +347,12 @@ ratio = straight_on / old_place
 predict("round_and_round", truth="c" if ratio > 1.0 else "b" if ratio > 0.3 else "a")
 
 # %% [markdown]
-# ## All of it, on the arm
+# ## Everything together, on the arm
 #
-# The board goes round on a circle of 15 cm at 0.1 m/s. The camera takes ten pictures a second; each reading is
-# 100 ms old when it arrives. Between the readings your `carry_forward` says where the tag is, your `blend` bends the
-# reference, and the arm follows it in position mode. The update of the filter is given.
+# The board goes round on a circle of 15 cm at 0.1 m/s. The camera takes ten pictures a second; each reading
+# is 100 ms old when it arrives. Between the readings your `carry_forward` says where the tag is, your `blend`
+# bends the reference towards it, and the arm follows the reference in position mode. The filter's update is
+# given.
 
 # %%
 def given_carry_forward(mean, covariance, age, accel_noise):
@@ -437,20 +442,21 @@ lk.plotting.show(
 )
 
 # %% [markdown]
-# If all is yours, the tip stays some 6 mm outside the circle. That is not the arm, and not noise: each
-# reading lets the reference aim at where the tag will be in 0.45 s, if it goes straight on. A tag on a
-# circle does not: it leaves its tangent by $v^2 t^2 / 2 r$, which is 6.8 mm. What would help, besides
-# looking less far ahead?
+# If all functions are yours, the tip stays about 6 mm outside the circle. The cause is neither the arm nor
+# noise: after each reading the reference aims at where the tag will be in 0.45 s if it moves straight on. A
+# tag on a circle does not move straight on: it leaves its tangent by $v^2 t^2 / 2 r$, which is 6.8 mm. What
+# would help, besides looking less far ahead?
 #
-# And as an arm. Its error is the distance from the reference, not from the tag: what is left for the arm
-# to do once the reference is smooth.
+# Here is the same run as an arm. Its error is the distance from the reference, not from the tag: it shows how
+# well the arm follows once the reference is smooth.
 
 # %%
 lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="the hand"))
 
 # %% [markdown] why="why_it_harms"
 # When did you see the prediction make things worse, and why? Say what the predictor believes about the tag,
-# how its error grows with the age of the picture, and for which of a conveyor and a waving hand you would use it.
+# how its error grows with the age of the picture, and whether you would use it for a conveyor, for a waving
+# hand, or for both.
 #
 # ### BEGIN SOLUTION
 # On a circle that turns by two radians during the picture's age, the straight prediction was farther off
@@ -461,7 +467,7 @@ lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="the h
 # %% [markdown]
 # Now move the tag yourself. Press *Start* and drag it with the mouse: the hand follows, some tenths of a
 # second behind, and overshoots where you turn. Drag it out of the camera's sight: what does the prediction
-# make of that? (While this runs the arm belongs to this cell; *Stop* sets it free.)
+# do? (While this runs, only this cell can use the arm; *Stop* releases it.)
 
 # %%
 def by_camera(state, target):
