@@ -326,8 +326,8 @@ def paired_difference(errors_a, errors_b):
 # ## Verdicts
 #
 # The campaign of this course let every controller follow every task on the simulated Baxter, five seeds each.
-# Here are its rows. The errors are counted after the first half second, when the offset of the start should
-# be gone.
+# Here are its rows. The errors are counted after the first second, when the offset of the start should be
+# gone.
 
 # %%
 rows = [row for row in recordings.campaign() if row["plant"] == "baxter"]

@@ -220,10 +220,10 @@ def workspace_impedance(state, target, model, *, stiffness, damping):
 # %% [markdown]
 # ## A push
 #
-# The arm holds still, a force of 10 N pushes its tip to the side for two seconds, and then lets go. Baxter's
-# position mode, as stiff as its motors are strong, runs beside your law. The damping is critical for the
-# masses that you just measured, $d_i = 2\sqrt{k_i m_i}$. (If your law is not ready, springs in the *joints*
-# stand in. They give way too, but not as you asked.)
+# The arm holds still, and a force of 10 N pushes its tip to the side for two seconds. Baxter's position mode,
+# as stiff as its motors are strong, runs beside your law. The damping is critical for the masses that you
+# just measured, $d_i = 2\sqrt{k_i m_i}$. (If your law is not ready, springs in the *joints* stand in. They
+# give way too, but not as you asked.)
 
 # %%
 JOINT_K = np.array([400.0, 400.0, 200.0, 200.0, 40.0, 40.0, 20.0])
