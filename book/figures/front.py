@@ -106,15 +106,15 @@ def _typed(text: str, label: str) -> str:
 
 
 def notebooks() -> HTML:
-    """What each notebook is about, how long it takes and what it earns."""
+    """What each notebook is about, how long it takes and what its functions earn."""
     rows = []
     for name, (about, hours) in NOTEBOOKS.items():
         problems = COURSE.problems(name)
         points = sum(problem.points for problem in problems)
         rows.append((name, about, hours, len(problems), f"{points:g}"))
     return table(
-        ("Notebook", "Students write", "Hours", "Questions", "Points"),
+        ("Notebook", "Students write", "Hours", "Functions", "Points for functions"),
         rows,
         f"{len(rows)} notebooks, {sum(r[2] for r in rows)} hours, "
-        f"{sum(float(r[4]) for r in rows):g} points",
+        f"{sum(float(r[4]) for r in rows):g} points for functions",
     )
