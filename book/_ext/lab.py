@@ -13,7 +13,7 @@ from typing import Any
 
 import citations
 import excerpts
-from bs4 import BeautifulSoup
+from bs4 import BeautifulSoup, NavigableString
 from sphinx.application import Sphinx
 
 
@@ -101,6 +101,7 @@ def mend(page: BeautifulSoup, notebooks: Sequence[str] = ()) -> None:
     """Give one page the names, roles and landmarks that assistive technology needs."""
     _exercises(page, notebooks)
     for rule in (
+        _punctuation,
         _names,
         _citations,
         _landmarks,
@@ -121,6 +122,18 @@ def _exercises(page: BeautifulSoup, notebooks: Sequence[str]) -> None:
         for name in notebooks:
             if number.isdigit() and name.startswith(number):
                 link["href"] = link["href"].replace("notebooks.html", f"notebooks/{name}.html")
+
+
+CLOSING = re.compile(r"[.,;:!?)\]\N{RIGHT DOUBLE QUOTATION MARK}]+")
+
+
+def _punctuation(page: BeautifulSoup) -> None:
+    """A line never begins with the comma that follows a formula: the two stay together."""
+    for formula in page.select("span.math"):
+        after = formula.next_sibling
+        if type(after) is NavigableString and (found := CLOSING.match(after)):
+            formula.wrap(page.new_tag("span", attrs={"class": "lab-keep"})).append(found[0])
+            after.replace_with(after[found.end() :])
 
 
 def _names(page: BeautifulSoup) -> None:

@@ -11,7 +11,7 @@ from labkit.plotting import STYLES
 from solutions.study import identification, image_servoing, passivity, redundancy, tasks
 
 from .claims import claim
-from .page import figure, holds, numbers, table
+from .page import figure, holds, numbers, shown, table
 
 SEED = 4
 
@@ -125,9 +125,9 @@ def passive() -> HTML:
     return figure(
         "A mass of 8 kg on a spring that a computer makes from samples 5 ms apart.",
         f"Largest stable stiffness over physical damping. At 5 N s/m it is "
-        f"{np.interp(5.0, damping, alone):.2g} N/m without a damper, "
-        f"{np.interp(5.0, damping, damped):.2g} N/m with one of 60 N s/m and "
-        f"{np.interp(5.0, damping, wall):.2g} N/m with it against a wall.",
+        f"{shown(np.interp(5.0, damping, alone), '.2g')} N/m without a damper, "
+        f"{shown(np.interp(5.0, damping, damped), '.2g')} N/m with one of 60 N s/m and "
+        f"{shown(np.interp(5.0, damping, wall), '.2g')} N/m with it against a wall.",
     )
 
 
@@ -231,7 +231,7 @@ def robust() -> HTML:
     below.set(xlabel="elbow angle e1 [rad]", ylabel="tip misses [mm/s]")
     return figure(
         "The tip is pulled outwards at 100 mm/s while the elbow is nearly straight.",
-        f"Above, the fastest joint: {peak[0.0]:.2g} rad/s at most without damping, "
+        f"Above, the fastest joint: {shown(peak[0.0], '.2g')} rad/s at most without damping, "
         f"{peak[1e-2]:.2g} with the strongest. Below, what the tip misses: 0 and "
         f"{miss[1e-2]:.2g} mm/s at most.",
     )

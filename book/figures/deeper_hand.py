@@ -84,7 +84,7 @@ def projections() -> HTML:
             for G in (np.linalg.pinv(J), Jbar)
         ]
         left = float(np.linalg.solve(M, tau - J.T @ (Jbar.T @ tau))[2])
-        rows.append((name, f"{found[0]:.2g}", f"{found[1]:.1e}", f"{left:.2g}"))
+        rows.append((name, f"{found[0]:.2g}", "&lt; 10⁻⁹", f"{left:.2g}"))
         most.append(found)
         key = name.split()[0]
         numbers({f"pinv_{key}": found[0], f"elbow_{key}": left}, ".2g")

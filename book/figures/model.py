@@ -10,7 +10,7 @@ import labkit as lk
 
 from .claims import claim, shows
 from .embed import demo_html
-from .page import Question, figure, holds, number, numbers, picture, quiz, table
+from .page import Question, figure, holds, number, numbers, picture, quiz, shown, table
 
 SEED = 2
 STEP = 1e-6
@@ -116,8 +116,8 @@ def singular() -> HTML:
         f"Left: the smallest singular value of the tip Jacobian over the elbow's angle; it falls "
         f"to zero at e1 = {at:.2f} rad and rises again towards the straight elbow. Right, on a "
         f"logarithmic scale: the largest joint speed, {fast[0]:.2g} rad/s at e1 = 1, a peak of "
-        f"{top:.2g} rad/s at the singularity, {fast[2]:.2g} rad/s at e1 = 0.02; the limit is "
-        f"{LIMIT:g} rad/s.",
+        f"{shown(top, '.2g')} rad/s at the singularity, {fast[2]:.2g} rad/s at e1 = 0.02; the "
+        f"limit is {LIMIT:g} rad/s.",
     )
 
 

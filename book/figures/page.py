@@ -76,7 +76,15 @@ def holds(fact: Any, conclusion: str) -> None:
 def number(name: str, value: float, form: str = ".3g") -> None:
     """Give the prose a number: it writes {glue:text}`name`."""
     told(name, value)
-    glue(name, format(float(value), form), display=False)
+    glue(name, shown(value, form), display=False)
+
+
+def shown(value: float, form: str = ".3g") -> str:
+    """A number as prose writes it: 2,400 and not 2.4e+03, with a minus and not a hyphen."""
+    text = format(float(value), form)
+    if "e+" in text:
+        text = f"{float(text):,.0f}"
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
 def numbers(values: Mapping[str, float], form: str = ".3g") -> None:
@@ -231,7 +239,9 @@ def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> H
     """A small table whose first column names its rows."""
     top = "".join(f'<th scope="col">{h}</th>' for h in head)
     body = "".join(
-        f'<tr><th scope="row">{row[0]}</th>' + "".join(f"<td>{x}</td>" for x in row[1:]) + "</tr>"
+        f'<tr><th scope="row"{_wordy(row[0])}>{row[0]}</th>'
+        + "".join(f"<td{_wordy(x)}>{x}</td>" for x in row[1:])
+        + "</tr>"
         for row in rows
     )
     return HTML(
@@ -239,3 +249,9 @@ def table(head: Sequence[str], rows: Sequence[Sequence[Any]], caption: str) -> H
         f'aria-label="{escape(re.sub("<[^>]+>", "", caption))}"><table class="lab-table">'
         f"<caption>{caption}</caption><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>"
     )
+
+
+def _wordy(cell: Any) -> str:
+    """A cell that holds a sentence is wide enough to be read, where a phone shows the table."""
+    words = re.sub("<[^>]+>", "", str(cell))
+    return ' class="lab-words"' if len(words) > 24 else ""

@@ -105,12 +105,12 @@ def peak_table() -> HTML:
     ):
         _, v, a = np.abs([kind(1.0)(t) for t in np.linspace(0.0, 1.0, 100001)[:-1]]).max(0)
         holds(abs(v - speed) < 1e-6 and abs(a - acceleration) < 1e-4, f"peaks of {kind.__name__}")
-        jump = "none" if kind is lk.Quintic else f"{abs(kind(1.0)(0.0)[2]):.3g} D / T²"
-        rows.append((kind.__name__, f"{v:.4g} D / T", f"{a:.4g} D / T²", jump))
+        jump = "none" if kind is lk.Quintic else f"{abs(kind(1.0)(0.0)[2]):.3g}\u00a0D/T²"
+        rows.append((kind.__name__, f"{v:.4g}\u00a0D/T", f"{a:.4g}\u00a0D/T²", jump))
     return table(
         ("Time scaling", "largest speed", "largest acceleration", "jump of acceleration at start"),
         rows,
-        "Peaks on a way of length D in time T",
+        "Peaks on a path of length D, covered in time T",
     )
 
 

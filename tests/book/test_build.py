@@ -15,7 +15,7 @@ import yaml
 from book_pages import ROOT
 from bs4 import BeautifulSoup
 from figures import architecture
-from figures.page import ConclusionFails, Question, holds, quiz
+from figures.page import ConclusionFails, Question, holds, quiz, shown
 
 
 def test_a_conclusion_that_fails_stops_with_its_sentence():
@@ -110,6 +110,19 @@ def test_a_sentence_with_a_colon_stays_one():
     assert lines == whole
     lab.hide_colon(None, "class", "x", None, None, lines)
     assert lines == whole
+
+
+def test_a_line_never_begins_with_the_sign_after_a_formula():
+    """The page says the same as before; a formula without such a sign is left alone."""
+    text = '<p>At <span class="math">x</span>, and <span class="math">y</span> on.</p>'
+    page = BeautifulSoup(text, "html.parser")
+    lab.mend(page)
+    assert page.get_text() == "At x, and y on."
+    assert [kept.get_text() for kept in page.select(".lab-keep")] == ["x,"]
+
+
+def test_a_number_is_shown_as_prose_writes_it():
+    assert [shown(x, ".2g") for x in (2381.0, -0.644, 12.4)] == ["2,400", "\u22120.64", "12"]
 
 
 @pytest.mark.slow
