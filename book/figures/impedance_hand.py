@@ -76,12 +76,12 @@ def planar() -> None:
     mobility = J @ np.linalg.solve(M, J.T)
     L = np.linalg.inv(mobility)
     claim(
-        "1.25 and 0.25 on the diagonal and -0.25 beside it",
+        "1.25 and 0.25 on the diagonal and −0.25 off it",
         lambda x: np.allclose(x, (1.25, 0.25, -0.25)),
         x=[mobility[0, 0], mobility[1, 1], mobility[0, 1]],
     )
     claim(
-        "1 kg along $x$, 5 kg along $y$ and 1 kg beside them",
+        "1 kg along $x$, 5 kg along $y$ and 1 kg off the diagonal",
         lambda x: np.allclose(x, (1.0, 5.0, 1.0)),
         x=[L[0, 0], L[1, 1], L[0, 1]],
     )
