@@ -32,11 +32,13 @@ class Close:
         rtol: Relative tolerance.
         atol: Absolute tolerance, in the answer's unit.
         parts: What to call the parts of an answer that is a tuple.
+        only: The one part that counts; empty for all of them.
     """
 
     rtol: float = 1e-6
     atol: float = 1e-9
     parts: tuple[str, ...] = ()
+    only: str = ""
 
     def __call__(self, answer: Any, expected: Any) -> Difference | None:
         """None if they agree, else how they differ."""
@@ -112,7 +114,7 @@ class Close:
         if len(items) != len(expected):
             return Difference(Kind.PARTS, found=float(len(items)), parts=names)
         for name, a, b in zip(names, items, expected, strict=True):
-            if found := self._differ(a, b, name):
+            if self.only in ("", name) and (found := self._differ(a, b, name)):
                 return found
         return None
 

@@ -16,7 +16,7 @@ from ..log import Log
 from ..shapes import Array
 from .advice import told
 from .equivalence import Judge
-from .judges import AtMost, numbers
+from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .reply import Failed
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
@@ -234,7 +234,7 @@ def _try(
         answer = _answer(case, function)
         if not case.hidden:
             answers[case] = answer
-        found = _difference(question, case, answer)
+        found = _difference(question, test, case, answer)
         if found is not None:
             tool = answer.tool if isinstance(answer, _Failure) else ""
             if case.hidden:  # what it gave away stays with the teacher
@@ -259,7 +259,7 @@ def _outcome_of(answer: Any) -> Outcome:
     return Outcome.NOT_COUNTED if answer.tool else _OUTCOMES.get(answer.kind, Outcome.ERROR)
 
 
-def _difference(question: Question, case: Case, answer: Any) -> Difference | None:
+def _difference(question: Question, test: Test, case: Case, answer: Any) -> Difference | None:
     """How an answer differs from what is expected; None if it does not."""
     if isinstance(answer, _Failure):
         changed = answer.kind == "ArgumentChanged"
@@ -269,12 +269,18 @@ def _difference(question: Question, case: Case, answer: Any) -> Difference | Non
         return Difference(Kind.NOTHING)
     try:
         if isinstance(case, Call):
-            return question.judge(answer, case.expected)
+            return _judge(question, test)(answer, case.expected)
         return AtMost()(case.measured(answer), case.expected)
     except LabkitError as error:
         return Difference(Kind.REFUSED, found=str(error))
     except Exception:  # there is no end to what an answer can be
         return Difference(Kind.OTHER)
+
+
+def _judge(question: Question, test: Test) -> Judge:
+    """The question's judge, for the part of the answer that the test looks at."""
+    judge = question.judge
+    return replace(judge, only=test.part) if test.part and isinstance(judge, Close) else judge
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:

@@ -38,6 +38,7 @@ class Trial:
         hidden: Makes the cases that the student does not see, from a generator.
         also: The class of the hidden cases, in words.
         weight: Share of the points; 0 is a gate.
+        part: Of an answer of several parts, the one that it looks at; empty for all of them.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Trial:
     hidden: Callable[[np.random.Generator], Iterable[Case]] = _none
     also: str = ""
     weight: float = 1.0
+    part: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +126,7 @@ class Problem:
     def _test(self, trial: Trial, random: np.random.Generator) -> Test:
         public = (self._with_expected(case, hidden=False) for case in trial.public)
         hidden = (self._with_expected(case, hidden=True) for case in trial.hidden(random))
-        return Test(trial.name, (*public, *hidden), trial.weight, trial.also)
+        return Test(trial.name, (*public, *hidden), trial.weight, trial.also, trial.part)
 
     def _with_expected(self, case: Case, *, hidden: bool) -> Case:
         if isinstance(case, Call):

@@ -197,6 +197,7 @@ class Test:
         cases: Public ones first.
         weight: Share of the points; 0 is a gate, without which no other test counts.
         also: The classes of hidden case it will meet, in words; never the numbers.
+        part: Of an answer of several parts, the one that it looks at; empty for all of them.
     """
 
     __test__ = False  # pytest, this is not for you
@@ -205,6 +206,7 @@ class Test:
     cases: tuple[Case, ...]
     weight: float = 1.0
     also: str = ""
+    part: str = ""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from . import answers, hidden, mistakes, variants
 
 _RANDOM = np.random.default_rng(7)
 _SEEDS = [3.0, 1.1, 4.9, 2.05, 3.9]
+_PAIRS = (call([4.0, 2.0, 6.0, 3.0, 5.0], _SEEDS),)
 _TEN_PAIRS = [
     [4.0, 0.5, 6.0, 5.0, 5.5, 2.0, 7.5, 4.5, 4.0, 2.0],
     [3.0, 1.0, 4.0, 2.0, 5.0, 3.0, 6.0, 2.0, 4.0, 1.0],
@@ -425,10 +426,20 @@ PAIRED = Problem(
             weight=0.0,
         ),
         Trial(
-            "five seeds that differ much, a difference that does not",
-            (call([4.0, 2.0, 6.0, 3.0, 5.0], [3.0, 1.1, 4.9, 2.05, 3.9]),),
+            "the mean over five seeds that differ much, of a difference that does not",
+            _PAIRS,
             hidden.pairs,
             "other seeds, other numbers of them",
+            0.4,
+            "mean",
+        ),
+        Trial(
+            "half the width of its interval",
+            _PAIRS,
+            hidden.pairs,
+            "other seeds, other numbers of them",
+            0.6,
+            "half_width",
         ),
     ),
     hints=(

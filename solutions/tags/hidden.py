@@ -93,19 +93,29 @@ def blends_from_rest(random: Random) -> Iterator[Call]:
         yield call(float(t), a, b, 1.0)
 
 
-def blends_in_motion(random: Random) -> Iterator[Call]:
-    """Both in motion, other durations, and after the end."""
+def _both_in_motion(random: Random) -> Iterator[tuple[Sample, Sample, float]]:
+    """Start, goal and duration: the goal steady or turning, of a point, seven joints, a number."""
     for T in random.uniform(0.3, 3.0, 3):
         a, b = _sample(random, 0.3, 0.5), _sample(random, 0.3, 0.0)
-        for x in (0.0, *random.uniform(0.1, 0.9, 2), 1.0, 1.6):
-            yield call(float(x * T), a, b, T)
-        turning = b._replace(acceleration=random.uniform(-0.5, 0.5, 3))
-        for x in (random.uniform(0.2, 0.9), 1.5):  # not 1: at the end itself both are right
-            yield call(float(x * T), a, turning, T)
+        yield a, b, float(T)
+        yield a, b._replace(acceleration=random.uniform(-0.5, 0.5, 3)), float(T)
     for n in (7, 1):
-        a, b = _sample(random, 0.3, 0.5, n), _sample(random, 0.3, 0.5, n)
-        for x in (random.uniform(0.2, 0.9), 1.5):
-            yield call(float(x), a, b, 1.0)
+        yield _sample(random, 0.3, 0.5, n), _sample(random, 0.3, 0.5, n), 1.0
+
+
+def blends_in_motion(random: Random) -> Iterator[Call]:
+    """Both in motion, other durations."""
+    for a, b, T in _both_in_motion(random):
+        for x in random.uniform(0.1, 0.9, 2):  # not 1: at the end itself both are right
+            yield call(float(x * T), a, b, T)
+        if not b.acceleration.any():
+            yield from (call(x * T, a, b, T) for x in (0.0, 1.0))
+
+
+def blends_after_the_end(random: Random) -> Iterator[Call]:
+    """The same, after the end."""
+    for a, b, T in _both_in_motion(random):
+        yield call(1.5 * T, a, b, T)
 
 
 def believed(random: Random) -> tuple[Array, Array]:

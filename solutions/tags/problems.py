@@ -20,6 +20,8 @@ _TURNING = _GOING._replace(acceleration=np.array([0.1, 0.0, -0.3]))
 _SEVEN = np.random.default_rng(7).uniform(-0.4, 0.4, (2, 3, 7)).round(2)
 _JOINTS, _THEIR_GOAL = Sample(*_SEVEN[0]), Sample(*_SEVEN[1])
 _BELIEF = hidden.believed(_RANDOM)
+_AGES = call(*_BELIEF, 0.1, 0.01), call(*_BELIEF, 0.4, 0.05)
+_OTHER_AGES = "other ages and noises"
 
 TAG_CORNERS = Problem(
     name="tag_corners",
@@ -207,13 +209,16 @@ QUALITY = Problem(
             (call(*hidden.scattered(_RANDOM, 6, [0.002, 0, 0.004, 0, 0.01, 0], 1e-4)),),
             hidden.offsets,
             "other offsets",
-            weight=0.0,
+            0.4,
+            "bias",
         ),
         Trial(
             "noise",
             (call(*hidden.scattered(_RANDOM, 8, np.zeros(6), 0.003)),),
             hidden.noises,
             "noise and offset together",
+            0.6,
+            "covariance",
         ),
     ),
     hints=(
@@ -317,12 +322,23 @@ BLEND = Problem(
         Trial(
             "from motion to motion, of a point and of seven joints",
             (
-                *(call(t, _MOVING, _GOING, 1.6) for t in (0.0, 0.5, 1.1, 1.6, 2.2)),
-                *(call(t, _MOVING, _TURNING, 1.6) for t in (1.1, 2.2)),  # at 1.6 both are right
-                *(call(t, _JOINTS, _THEIR_GOAL, 1.6) for t in (0.5, 2.2)),
+                *(call(t, _MOVING, _GOING, 1.6) for t in (0.0, 0.5, 1.1, 1.6)),
+                call(1.1, _MOVING, _TURNING, 1.6),  # at 1.6 both are right
+                call(0.5, _JOINTS, _THEIR_GOAL, 1.6),
             ),
             hidden.blends_in_motion,
-            "other durations, after the end, seven joints and a single number",
+            "other durations, seven joints and a single number",
+            0.6,
+        ),
+        Trial(
+            "after the end it goes on with the goal's velocity",
+            (
+                *(call(2.2, _MOVING, goal, 1.6) for goal in (_GOING, _TURNING)),
+                call(2.2, _JOINTS, _THEIR_GOAL, 1.6),
+            ),
+            hidden.blends_after_the_end,
+            "other durations, seven joints and a single number",
+            0.4,
         ),
     ),
     hints=(
@@ -454,11 +470,9 @@ PREDICT = Problem(
             weight=0.0,
         ),
         Trial(
-            "a picture that is 100 ms old",
-            (call(*_BELIEF, 0.1, 0.01), call(*_BELIEF, 0.4, 0.05)),
-            hidden.ages,
-            "other ages and noises",
+            "the mean of a picture that is 100 ms old", _AGES, hidden.ages, _OTHER_AGES, 0.4, "mean"
         ),
+        Trial("how sure one is of it", _AGES, hidden.ages, _OTHER_AGES, 0.6, "covariance"),
     ),
     hints=(
         "Position grows by age times velocity, velocity stays: a matrix F. How does a covariance go "
