@@ -370,13 +370,12 @@ def given_verdicts(table):
     return {claim: "(your verdict)" for claim in table}
 
 
-def half_the_range(errors_a, errors_b):
-    d = np.subtract(errors_a, errors_b)
-    return d.mean(), np.ptp(d) / 2
+def medians_apart(errors_a, errors_b):
+    return np.median(errors_a) - np.median(errors_b), (np.ptp(errors_a) + np.ptp(errors_b)) / 2
 
 
 my_verdicts = use("verdicts", verdicts, given_verdicts)
-my_paired_difference = use("paired_difference", paired_difference, half_the_range)
+my_paired_difference = use("paired_difference", paired_difference, medians_apart)
 
 
 def late(way):
