@@ -47,9 +47,8 @@ def head(verdict: Verdict) -> str:
 def uses(withheld: Iterable[str]) -> str:
     """Why an answer that uses withheld tools is not counted."""
     names = [spoken(tool) for tool in withheld]
-    own = all(
-        "." in name for name in names
-    )  # a whole package is never what the student should write
+    # a whole package is never what the student should write
+    own = all("." in name for name in names)
     why = "this question asks you to write" if own else "may not be used in this answer"
     return f"uses {' and '.join(names)}, which {why}"
 
@@ -80,14 +79,11 @@ def tell(
         lines += _mistake(verdict)
     if leans_on and verdict.outcome is not Outcome.RIGHT:
         names = ", ".join(leans_on)
-        lines.append(
-            f"  Note: it uses your {names}, which is not right yet; correct {names} first."
-        )
+        lines.append(f"  Note: it uses your {names}, not right yet; correct {names} first.")
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
-        lines.append(
-            f'  Stuck? hint("{question.name}", 1) costs nothing, and nobody sees that you asked.'
-        )
+        call = f'hint("{question.name}", 1)'
+        lines.append(f"  Stuck? {call} costs nothing, and nobody sees that you asked.")
     return "\n".join(wrapped(line) for line in lines)
 
 

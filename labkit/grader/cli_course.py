@@ -1,9 +1,9 @@
-"""Commands before grading: the machine, the term, notebooks for students, roster, hand-ins."""
+"""Commands before grading: the machine, notebooks for students, roster, hand-ins."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -107,85 +107,6 @@ def student_bundle(
     return 0
 
 
-@verb("new 01_paths")
-@click.argument("action", type=click.Choice(["new", "list", "forget"]), metavar="new|list|forget")
-@names
-@click.option(
-    "--seed",
-    type=SEED,
-    help="new: seed of the hidden cases; drawn at random by default.",
-)
-@click.option(
-    "--student",
-    metavar="S",
-    help="forget: everything of one student, in all terms.",
-)
-@click.option(
-    "--older",
-    type=click.FloatRange(0),
-    metavar="YEARS",
-    help="forget: terms that ended at least YEARS years ago.",
-)
-@click.option(
-    "--yes",
-    is_flag=True,
-    help="forget: delete, instead of only listing what would be deleted.",
-)
-@of_course
-def term(
-    course: Course,
-    action: str,
-    names: tuple[str, ...],
-    seed: int | None,
-    student: str | None,
-    older: float | None,
-    yes: bool,
-) -> int:
-    r"""Begin a term, list terms, delete old records.
-
-    \b
-    new     archives the last term and releases each NAME, or all assignments,
-            with a new seed
-    list    lists the terms that are stored
-    forget  lists what it would delete: terms that ended some YEARS ago, or
-            everything of one student; with --yes it deletes them
-
-    The law may say how long marks must be kept.
-    """
-    from .forget import forget, places_of
-    from .term import about, archives, new_term
-
-    if action == "new":
-        record = new_term(course, seed, names)
-        for name, digest in record["bundles"].items():
-            print(f"{name}: bundle {digest[:16]}")
-        begun = f"a term with seed {record['seed']} begins"
-        print(f"{begun}; keep course_private/term.json, which holds it")
-    elif action == "list":
-        print("\n".join(about(course)))
-    else:
-        if (student is None) == (older is None):
-            raise LabkitError("say what to forget: --older YEARS, or --student NAME")
-        if student is not None:
-            found = places_of(course, student)
-        else:
-            found = [one.folder for one in archives(course, older or 0.0)]
-        for path in found:
-            print(f"{'deleted' if yes else 'would go'}: {path.relative_to(course.root)}")
-        if not found and student is None:
-            print("there is nothing to forget")
-        elif yes:
-            _say(forget(course, found, student))
-        else:
-            print("nothing is deleted yet; add --yes")
-    return 0
-
-
-def _say(sentences: Iterable[str]) -> None:
-    for sentence in sentences:
-        print(sentence)
-
-
 @verb("import participants.csv")
 @click.argument("action", type=click.Choice(["import"]), metavar="import")
 @click.argument("file", type=PATH, metavar="FILE.csv")
@@ -285,4 +206,4 @@ def doctor() -> int:
     return 1 if bad else 0
 
 
-COMMANDS = (doctor, term, release, student_bundle, students, collect)
+COMMANDS = (doctor, release, student_bundle, students, collect)
