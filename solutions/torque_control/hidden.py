@@ -174,7 +174,7 @@ def tuned(random: Random, side: Any, payload: float) -> Tuned:
     return Tuned((model,), loop, limits)
 
 
-AT_REST = {"max_mm": 60.0, "rms_velocity_mm_s": 10.0}
+AT_REST = {"max_mm": 60.0, "rms_velocity_mm_s": 6.0}
 """Of an arm that was let go 0.1 rad off in every joint, 0.8 s later and from then on.
 
 Dry friction leaves right answers up to 20 mm off; what tells a damper from none is the speed.
