@@ -147,7 +147,7 @@ def class_report(
     with Failures() as failures:
         marks = list(marks_of(course, assignment))
         if not any(mark.result for mark in marks):
-            raise _nobody(assignment, None)
+            raise _nobody(assignment, None, next((m.missing for m in marks if m.missing), ""))
         out = [mark for mark in marks if mark.missing and not mark.lines]
         failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
@@ -172,10 +172,11 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
         )
 
 
-def _nobody(assignment: str, student: str | None) -> LabkitError:
-    """The error for an assignment in which nothing is graded yet."""
+def _nobody(assignment: str, student: str | None, why: str = "") -> LabkitError:
+    """The error where nothing is graded yet, or ``why`` no result can be read."""
     who = f"{student} is not" if student else "nobody is"
-    return LabkitError(f"{who} graded in {assignment}; type: labkit grade {assignment}")
+    why = why or f"type: labkit grade {assignment}"
+    return LabkitError(f"{who} graded in {assignment}; {why}")
 
 
 def tell(sentences: Iterable[str], where: TextIO) -> None:
