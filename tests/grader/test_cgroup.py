@@ -14,9 +14,10 @@ def test_nothing_in_a_group_outlives_it():
     group = Group.make(f"{os.getpid()}-outlived", SANDBOX)
     folders = group.folders if group else ()
     with subprocess.Popen(["sleep", "600"], preexec_fn=group.enter if group else None) as left:
-        if group:
-            group.remove()
-        else:  # who may not make groups has nothing to remove
+        try:
+            if group:
+                group.remove()
+                assert left.wait(60.0) == -signal.SIGKILL
+        finally:
             left.kill()
-        assert left.wait(60.0) == -signal.SIGKILL
     assert not any(folder.exists() for folder in folders)
