@@ -22,6 +22,7 @@ HEAD = "// Made by book/_tools/make_live.py from labkit and solutions; never edi
 import labkit as lk  # noqa: E402
 from labkit import joints, motors, scene  # noqa: E402
 from labkit.run import RUNAWAY  # noqa: E402
+from labkit.tags.intrinsics import Intrinsics  # noqa: E402
 from labkit.tags.tag import Tag  # noqa: E402
 from solutions.study import gains, tag_task, tasks  # noqa: E402
 from solutions.study.baseline import server  # noqa: E402
@@ -112,7 +113,7 @@ def geometry(name: str) -> Any:
 
 
 def tag_data() -> dict[str, Any]:
-    """The circle of the tag and the place of the tip above it."""
+    """The circle of the tag, the place of the tip above it, and the camera's focal length in [px]."""
     return {
         "duration": tag_task.DURATION,
         "rate": tag_task.RATE,
@@ -120,6 +121,7 @@ def tag_data() -> dict[str, Any]:
         "radius": tag_task.RADIUS,
         "offset": tag_task.OFFSET.tolist(),
         "size": Tag().size,
+        "focal": Intrinsics().fx,
     }
 
 

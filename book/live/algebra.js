@@ -2,13 +2,6 @@
 
 export const zeros = (n) => new Array(n).fill(0);
 
-/** A vector made entry by entry; plain loops, for a physics step makes hundreds of vectors. */
-function made(n, entry) {
-  const out = new Array(n);
-  for (let i = 0; i < n; i++) out[i] = entry(i);
-  return out;
-}
-
 export function add(a, b) {
   const out = new Array(a.length);
   for (let i = 0; i < a.length; i++) out[i] = a[i] + b[i];
@@ -34,23 +27,66 @@ export function dot(a, b) {
 }
 
 /** Element by element; a gain may be one number for all. */
-export const times = (gain, a) => made(a.length, (i) => (Array.isArray(gain) ? gain[i] : gain) * a[i]);
-export const cut = (a, most) => made(a.length, (i) => Math.min(Math.max(a[i], -most[i]), most[i]));
+export function times(gain, a) {
+  if (!Array.isArray(gain)) return scale(gain, a);
+  const out = new Array(a.length);
+  for (let i = 0; i < a.length; i++) out[i] = gain[i] * a[i];
+  return out;
+}
+
+export function cut(a, most) {
+  const out = new Array(a.length);
+  for (let i = 0; i < a.length; i++) out[i] = Math.min(Math.max(a[i], -most[i]), most[i]);
+  return out;
+}
+
 export const length = (a) => Math.sqrt(dot(a, a));
-export const apply = (A, v) => made(A.length, (i) => dot(A[i], v));
-export const transpose = (A) => made(A[0].length, (j) => made(A.length, (i) => A[i][j]));
+
+export function apply(A, v) {
+  const out = new Array(A.length);
+  for (let i = 0; i < A.length; i++) out[i] = dot(A[i], v);
+  return out;
+}
 
 /** A^T v. */
 export function applyTransposed(A, v) {
-  const sum = zeros(A[0].length);
-  for (let i = 0; i < A.length; i++) for (let j = 0; j < sum.length; j++) sum[j] += A[i][j] * v[i];
-  return sum;
+  const out = new Array(A[0].length);
+  for (let j = 0; j < out.length; j++) {
+    let sum = 0;
+    for (let i = 0; i < A.length; i++) sum += A[i][j] * v[i];
+    out[j] = sum;
+  }
+  return out;
+}
+
+export function transpose(A) {
+  const rows = [];
+  for (let j = 0; j < A[0].length; j++) {
+    const row = new Array(A.length);
+    for (let i = 0; i < A.length; i++) row[i] = A[i][j];
+    rows.push(row);
+  }
+  return rows;
 }
 
 /** A B^T: each entry is a product of two rows. */
-export const timesTransposed = (A, B) => made(A.length, (i) => made(B.length, (j) => dot(A[i], B[j])));
+export function timesTransposed(A, B) {
+  const rows = [];
+  for (let i = 0; i < A.length; i++) rows.push(apply(B, A[i]));
+  return rows;
+}
+
 export const multiply = (A, B) => timesTransposed(A, transpose(B));
-export const identity = (n) => made(n, (i) => made(n, (j) => +(i === j)));
+
+export function identity(n) {
+  const rows = [];
+  for (let i = 0; i < n; i++) {
+    const row = zeros(n);
+    row[i] = 1;
+    rows.push(row);
+  }
+  return rows;
+}
 
 export function addDiagonal(A, d) {
   const out = A.map((row) => row.slice());
@@ -60,7 +96,7 @@ export function addDiagonal(A, d) {
 
 /** X of A X = B, B a matrix, by Gauss and Jordan with pivots. */
 export function solveMatrix(A, B) {
-  const n = A.length, rows = made(n, (i) => A[i].concat(B[i])), wide = rows[0].length;
+  const n = A.length, rows = A.map((row, i) => row.concat(B[i])), wide = rows[0].length;
   for (let k = 0; k < n; k++) {
     let best = k;
     for (let i = k + 1; i < n; i++) if (Math.abs(rows[i][k]) > Math.abs(rows[best][k])) best = i;
@@ -73,10 +109,10 @@ export function solveMatrix(A, B) {
       if (share !== 0) for (let j = k; j < wide; j++) row[j] -= share * pivot[j];
     }
   }
-  return made(n, (i) => scale(1 / rows[i][i], rows[i].slice(n)));
+  return rows.map((row, i) => scale(1 / row[i], row.slice(n)));
 }
 
-export const solve = (A, b) => solveMatrix(A, made(b.length, (i) => [b[i]])).map((row) => row[0]);
+export const solve = (A, b) => solveMatrix(A, b.map((x) => [x])).map((row) => row[0]);
 export const inverse = (A) => solveMatrix(A, identity(A.length));
 
 /** Whether a symmetric matrix is positive definite: Cholesky finds no root of a negative number. */
@@ -101,7 +137,7 @@ export function eigen(S) {
     const least = 1e-15 * Math.sqrt(on); // what is smaller does not count
     for (let p = 0; p < n; p++) for (let q = p + 1; q < n; q++) if (Math.abs(A[p][q]) > least) rotate(A, V, p, q);
   }
-  const order = made(n, (i) => i).sort((i, j) => A[i][i] - A[j][j]);
+  const order = A.map((_, i) => i).sort((i, j) => A[i][i] - A[j][j]);
   return { values: order.map((i) => A[i][i]), axes: order.map((i) => V[i]) };
 }
 

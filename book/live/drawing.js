@@ -16,13 +16,14 @@ export class Drawing extends Form {
     rig.around(this.inSight());
     Object.assign(rig.motion, this.config.view);
     rig.use("Motion");
+    const target = { move: (p) => {
+      if (this.settings.path !== "stay") return;
+      this.change({ place: p.map((x, k) => Math.max(-0.15, Math.min(0.15, x - READY.p[k]))) });
+    } };
     hold(picture, () => this.sessions, {
+      target, spring: target,
       wall: { move: (p) => { const at = p[0] - READY.p[0]; this.walldial.set(1000 * at); this.change({ wall: at }); } },
       tag: { move: (p) => { for (const { chase } of this.sessions) chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); } },
-      target: { move: (p) => {
-        if (this.settings.path !== "stay") return;
-        this.change({ place: p.map((x, k) => Math.max(-0.15, Math.min(0.15, x - READY.p[k]))) });
-      } },
     }, () => this.pause(false));
     this.drawPath();
   }
@@ -60,6 +61,7 @@ export class Drawing extends Form {
   furnish(now) {
     const things = { target: { kind: "target", position: now.goal } };
     if (this.session.chase) things.tag = { kind: "tag", position: subtract(now.goal, TAG.offset), size: TAG.size };
+    if (this.settings.controller === "workspaceImpedance") things.spring = { kind: "band", position: now.goal }; // what the law makes
     if (this.settings.wall !== undefined) {
       const { point, size } = wallAt(this.settings.wall);
       things.wall = { kind: "face", position: point, quaternion: [0, -Math.SQRT1_2, 0, Math.SQRT1_2], size };

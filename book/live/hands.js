@@ -13,8 +13,8 @@ export const AXES = { "+x": [1, 0, 0], "−x": [-1, 0, 0], "+y": [0, 1, 0], "−
 /** Let pointers take hold of the arm, or of `things` {name: {move(point), end()}}; calls `touched` as they do. */
 export function hold(picture, sessions, things, touched) {
   picture.grab((found) => {
-    // The target's frame begins at the tip: near it the hand is meant, its arrows move the target.
-    const near = found.thing === "target" && length(subtract(found.at, picture.tip.p)) < NEAR;
+    // Target and spring begin at the tip: near it the hand is meant, farther out they move the target.
+    const near = ["target", "spring"].includes(found.thing) && length(subtract(found.at, picture.tip.p)) < NEAR;
     const picked = near ? picture.atTip() : found;
     if (picked.thing) {
       const thing = things[picked.thing];

@@ -37,6 +37,7 @@ export class Panel extends Drawing {
     this.gainbox = h("div", { class: "lk-dials" });
     this.curves = new Curves(viewer, this.quantities(), (t) => this.say(`At ${t.toFixed(2)} s: ${this.curves.at(t)}`));
     this.element.append(stagebox, ...this.parts(), this.status);
+    if (this.predicted) this.element.prepend(this.predicted.element); // the question comes before the picture
     host.append(this.element);
     this.picture = new viewer.Picture(stagebox, "Baxter, live");
     if (this.picture.works) {

@@ -1,6 +1,7 @@
 // "Age, not noise": a tag that moves or is dragged, a camera that is slow, and a prediction that can harm.
 import { add, length, subtract } from "./algebra.js";
 import { CAMERA, Chase } from "./chase.js";
+import { corners } from "./corners.js";
 import { TAG } from "./numbers.js";
 import { Panel } from "./panel.js";
 import { predictBox } from "./predict.js";
@@ -43,7 +44,7 @@ class Age extends Panel {
     const { camera: now, tagSpeed } = this.settings;
     this.predicted = predictBox(h, {
       question: "The tag rides on a conveyor at 60 mm/s; what the camera says is 200 ms old. How far beside the tag does the hand aim? And if the noise is tripled?",
-      unit: "mm", commit: () => this.change({ ...this.settings, ...SETTINGS }), found: () => miss({ ...this.settings, ...SETTINGS }) });
+      unit: "mm", commit: () => this.answer(), found: () => miss({ ...this.settings, ...SETTINGS }) });
     const move = viewer.choice({ label: "The tag on", values: Object.values(MOVES), value: MOVES[this.settings.move],
       onchange: (label) => { this.release(); this.change({ move: Object.keys(MOVES).find((k) => MOVES[k] === label) }); } });
     const box = h("input", { type: "checkbox", onchange: () => camera({ predict: box.checked }) });
@@ -55,12 +56,21 @@ class Age extends Panel {
     const steps = Object.entries({ "left": [0, 0.02, 0], "right": [0, -0.02, 0], "away": [0.02, 0, 0], "near": [-0.02, 0, 0] });
     const keys = steps.map(([name, by]) => h("button", { type: "button", onclick: () => this.drag(add(this.session.chase.dragged ?? [0, 0, 0], by)) }, `${name} 2 cm`));
     this.table = h("table", { class: "lk-table" });
+    this.results = h("div", { hidden: true }, this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table));
+    this.veil = h("p", { class: "lk-kept" }, "How far the hand aims beside the tag is told, drawn and tabled here once you have said a number above.");
     return [this.predicted.element, this.buttons(), this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys)),
       this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)), h("label", { class: "lk-check" }, box, "predict: go on as in the last two pictures")),
-      this.numbers, this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table)];
+      this.numbers, this.veil, this.results, corners(viewer)];
   }
 
   showGains() {}
+
+  /** The reader has predicted: the question's own settings, and all that was held back. */
+  answer() {
+    this.veil.hidden = true;
+    this.results.hidden = false;
+    this.change({ ...this.settings, ...SETTINGS });
+  }
 
   /** The point over the tag and the tag itself, all along their path. */
   inSight() {
@@ -84,7 +94,9 @@ class Age extends Panel {
   shown(now) {
     if (!now.aimed) return;
     const off = 1000 * length(subtract(now.goal, add(READY.p, now.aimed.p)));
-    this.numbers.textContent = `t = ${now.t.toFixed(2)} s · aimed ${off.toFixed(1)} mm beside the tag · reading ${(1000 * now.aimed.old).toFixed(0)} ms old · hand ${(1000 * now.error).toFixed(1)} mm beside`;
+    const words = [`t = ${now.t.toFixed(2)} s`, `reading ${(1000 * now.aimed.old).toFixed(0)} ms old`];
+    if (this.predicted.said !== null) words.push(`aimed ${off.toFixed(1)} mm beside the tag`, `hand ${(1000 * now.error).toFixed(1)} mm beside`);
+    this.numbers.textContent = words.join(" · ");
   }
 
   /** The camera alone decides this curve, so it needs no arm and is there at once. */
@@ -99,7 +111,7 @@ class Age extends Panel {
     const rms = miss(settings), { age, rate, predict } = settings.camera;
     const turn = settings.move === "circle" ? ` The circle turns by ω T = ${((settings.tagSpeed / TAG.radius) * age).toFixed(2)} in the age of a picture.` : "";
     this.said.textContent = `Aims ${rms.toFixed(1)} mm beside the tag; speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
-    this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`);
+    if (this.predicted.said !== null) this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`);
     this.host.dataset.rerun = String(Math.round(performance.now() - began));
   }
 }

@@ -10,6 +10,7 @@ import * as numbers from "../../book/live/numbers.js";
 import { run } from "../../book/live/run.js";
 import { spring, wall } from "../../book/live/scene.js";
 import { taskTarget } from "../../book/live/tasks.js";
+import { twoPoses } from "../../book/live/two_poses.js";
 
 const { ROBOT, PLANTS, CONTROLLERS, CONSTANTS, TASK } = numbers;
 const bundle = new URL("../../book/live/bundle/", import.meta.url);
@@ -34,6 +35,7 @@ const ASK = {
     const law = laws[controller](new Model(ROBOT, PLANTS[plant]), CONTROLLERS[plant][controller].gains);
     return states.map(([state, target]) => law(state, target).value);
   },
+  poses: ({ size, image }) => twoPoses(size, image),
   run: (request) => {
     const { controller, task, duration, things = [], start } = request;
     const plant = quiet(request), model = new Model(ROBOT, plant), { gains, rate, joints } = CONTROLLERS[request.plant][controller];

@@ -5,6 +5,7 @@ import json
 import sys
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from live_reference import LAWS, PLANTS, apart, candidate, javascript
@@ -131,3 +132,24 @@ def test_contact_payload_and_stops_equal_pythons():
     ]  # fmt: skip
     worst = apart(requests)
     assert max(worst) < EQUAL, worst
+
+
+def test_the_two_poses_of_a_tag_are_opencvs():
+    """Of random tags, seen with a pixel of noise: both poses and their order as OpenCV's."""
+    rng, size = np.random.default_rng(5), 0.1
+    square = size / 2 * np.array([[-1, 1, 0], [1, 1, 0], [1, -1, 0], [-1, -1, 0.0]])
+    images = []
+    for _ in range(30):
+        R = se3.rotation(rng.uniform(-0.6, 0.6, 3)) @ np.diag([1.0, -1.0, -1.0])
+        points = square @ R.T + [*rng.uniform(-0.2, 0.2, 2), rng.uniform(0.4, 1.0)]
+        images.append(points[:, :2] / points[:, 2:] + rng.normal(0.0, 1 / 515, (4, 2)))
+    answers = javascript(*({"ask": "poses", "size": size, "image": u.tolist()} for u in images))
+    for image, found in zip(images, answers, strict=True):
+        _, turns, places, errors = cv2.solvePnPGeneric(
+            square, image, np.eye(3), None, flags=cv2.SOLVEPNP_IPPE_SQUARE
+        )
+        for pose, turn, place, error in zip(found, turns, places, errors.ravel(), strict=True):
+            R = np.reshape(pose["R"], (3, 3))
+            np.testing.assert_allclose(R, cv2.Rodrigues(turn)[0], atol=1e-6)
+            np.testing.assert_allclose(pose["p"], place.ravel(), atol=1e-6)
+            assert pose["miss"] == pytest.approx(np.sqrt(2.0) * error, rel=1e-4)
