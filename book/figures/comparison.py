@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,7 @@ from solutions.study.claims import IMPEDANCE, THREE, interval
 from solutions.study.grid import pick
 
 from .claims import claim, told
-from .page import figure, holds, number, numbers, replay, table
+from .page import figure, holds, number, numbers, replay, shown, table
 
 FOUND = Path(__file__).parents[2] / "build/book/campaign.json"
 ARMS = {"ideal": "ideal", "baxter": "realistic"}
@@ -94,7 +95,6 @@ def numbers_told() -> None:
     glue("first", first, display=False)
     glue("runs", f"{len(rows)}", display=False)
     glue("seeds", _seeds(), display=False)
-    glue("source", found().get("source", "what make campaign left"), display=False)
 
 
 def _seeds() -> str:
@@ -155,8 +155,9 @@ def claims() -> HTML:
     rows = []
     for v in found()["verdicts"]:
         x, unit = v["overall"], v["unit"]
-        alone = [f"{t['of']} {SIGNS[t['outcome']]} {t['mean']:+.2g}" for t in v["tasks"]]
-        said = f"{x['mean']:+.3g} ± {x['half_width']:.2g} {unit}, {x['units']} {x['of']}"
+        alone = [f"{t['of']} {SIGNS[t['outcome']]} {shown(t['mean'], '+.2g')}" for t in v["tasks"]]
+        mean = shown(x["mean"], "+.3g")
+        said = f"{mean} ± {x['half_width']:.2g} {unit}, {x['units']} {x['of']}"
         rows.append((v["claim"], x["outcome"], said, "<br>".join(alone) or "–"))
     return table(
         ("Claim", "Outcome", "Difference", "Task by task"), rows,
@@ -199,6 +200,13 @@ def verdicts_told() -> None:
         if way == BASELINE and task != "tag"
     ]
     pooled = interval("pairs", pairs, 8)
+    tracking = [v for v in judged.values() if v["unit"] == "mm" and v["overall"]["of"] == "tasks"]
+    claim(
+        "each at $1 - 0.05/8$",
+        lambda m, level: m == 8 and math.isclose(level, 0.99375),
+        m=len(tracking),
+        level=1.0 - 0.05 / len(tracking),
+    )
     claim(
         "Fifteen pooled pairs would have called it held",
         lambda mean, half, units: mean > half > 0.0 and units == 15,
