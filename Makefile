@@ -16,7 +16,7 @@ ASSIGNMENT ?= 01_paths
 SECOND := .venv-313/bin
 ON_SECOND := -m "not slow and not soak and not pybullet"
 
-.PHONY: help demo test test-313 wheels zip quick soak count record lab release grade book book-zip book-pdf vendor campaign bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test test-313 wheels zip quick soak count record lab release grade book book-zip book-pdf vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -68,6 +68,9 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 
 campaign: .venv/.course ## every controller on every task: build/campaign.json
 	@$(BIN)/python -m solutions.study.campaign
+
+campaign-engines: .venv/.course ## the campaign on both engines, and where they differ
+	@$(BIN)/python -m solutions.study.both_engines
 
 record: .venv/.course ## make all recorded data again, and say which verdicts changed
 	@$(BIN)/python -m solutions.study.record

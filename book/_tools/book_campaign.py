@@ -51,10 +51,7 @@ def _kept_or_made(progress: Callable[[str], None]) -> dict[str, Any]:
         progress(f"running two seeds of the campaign: {', '.join(sorted(changed))}")
         todo = [cell for cell in campaign.grid(2) if cell["task"] in changed]
         rows += work_through(campaign.numbers, todo, jobs=JOBS)
-    source = "the runs that come with labkit, after a sample of them had come out the same again"
-    if changed:
-        source += f"; those on {', '.join(sorted(changed))} did not, and were run anew"
-    return _judged(rows) | {"source": source}
+    return _judged(rows)
 
 
 def _sample(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:

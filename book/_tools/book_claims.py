@@ -30,7 +30,10 @@ PAGES = (
     ),
 )
 OUT = ROOT / "build/book_claims.json"
-_UNIT = r"mm|cm|m/s²?|m|N m|N/m|N|rad/s|rad|1/s|Hz|ms|s|kg|%|degrees|pixels|W|°|per second|per cent"
+_UNIT = (
+    r"mm²?(?:/s²?)?|cm|m²?(?:/s[²³⁵]?)?|N m|N/m|N|m?J|rad/s²?|rad|1/s²?|Hz|ms|s|kg|%|degrees|"
+    r"pixels|W|°|per second|per cent"
+)
 _NUMBER = re.compile(rf"(?<![\w.])\d[\d.,]*[\s\u00a0]?({_UNIT})(?![\w/])")
 _COMPARES = re.compile(
     r"\b(more|less|fewer|better|worse|larger|smaller|faster|slower|stiffer|softer|quicker|higher|"

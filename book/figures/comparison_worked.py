@@ -7,13 +7,14 @@ import math
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
+from scipy.stats import norm
 from scipy.stats import t as student
 
 from labkit import metrics
 from solutions.comparison.answers import paired_difference
 from solutions.study import campaign
 from solutions.study.campaign import BASELINE
-from solutions.study.claims import interval
+from solutions.study.claims import Interval, Outcome, interval
 from solutions.study.grid import pick
 
 from .claims import claim
@@ -51,6 +52,30 @@ def one_number() -> None:
     by_hand("the mean length is 3 mm", 3.0, float(np.mean(np.linalg.norm(e, axis=1))))
 
 
+def intervals() -> None:
+    """What the derivations say of levels, factors and outcomes."""
+    factors = [float(student.ppf(0.975, n - 1)) for n in (2, 3, 5, 10)] + [norm.ppf(0.975)]
+    claim(
+        "The step from two to five is worth far more than the one from ten to infinity",
+        lambda t: (
+            np.allclose(t, (12.7, 4.30, 2.78, 2.26, 1.96), rtol=4e-3)
+            and t[0] - t[2] > 20.0 * (t[3] - t[4]) > 0.0
+        ),
+        t=factors,
+    )
+    by_hand("intervals 30 % too short", 0.30, 1.0 - factors[4] / factors[2], 0.03)
+    by_hand("is wrong in one of twenty cases", 20.0, 1.0 / (1.0 - 0.95))
+    true, pooled = 1.0 / 3.0 + 0.25 / 15.0, 1.25 / 15.0
+    by_hand("its variance is too small by a factor of 4.2", 4.2, true / pooled)
+    kinds = (Outcome.HELD, Outcome.DID_NOT_HOLD, Outcome.UNDECIDED)
+    claim(
+        "held if the whole interval is above zero, it did not hold if the whole interval is below",
+        lambda mean, half: tuple(Interval("", m, half, 2).outcome for m in mean) == kinds,
+        mean=[1.0, -1.0, 0.2],
+        half=0.5,
+    )
+
+
 def five_pairs() -> None:
     """Two made-up controllers, compared with pairs and without."""
     mean, half = paired_difference(FIRST, SECOND)
@@ -83,7 +108,6 @@ def units() -> None:
     number("unit_half", whole.half_width, ".1f")
     by_hand("is 12.59 instead of 4.30", 12.59, student.ppf(1.0 - 0.025 / CLAIMS, 2), 1e-3)
     by_hand("instead of 4.30", 4.30, student.ppf(0.975, 2), 1e-3)
-    by_hand("five is 5.26", 5.26, student.ppf(1.0 - 0.025 / CLAIMS, 4), 1e-3)
     claim("Two of the three paths are decided", lambda n: n == 2.0, n=_decided("joint torque"))
 
 

@@ -10,7 +10,7 @@ import labkit as lk
 from labkit.plotting import STYLES
 from solutions.study import identification, image_servoing, passivity, redundancy, tasks
 
-from .claims import claim
+from .claims import claim, shows
 from .page import figure, holds, numbers, shown, table
 
 SEED = 4
@@ -28,6 +28,7 @@ def friction() -> HTML:
         found=list(found.viscous[:4]),
         true=float(lk.BAXTER.viscous[0]),
     )
+    shows("late and at 100 Hz", 100.0, lk.BAXTER.state_rate)
     holds(off[:4].max() < 0.25, "the dry friction of shoulder and elbow is found to a quarter")
     _, axes = plt.subplots(1, 2, figsize=(6.4, 3.0))
     for ax, joint in zip(axes, (1, 5), strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from html import escape
 from pathlib import Path
 
@@ -26,16 +27,17 @@ from .page import holds, numbers, replay, table
 SEED = 1
 COURSE = Course(Path(__file__).parents[2])
 NOTEBOOKS = {
-    "00_warmup": ("vectors, rotations and orientation errors in numpy", 2),
-    "01_paths": ("lines, circles and polylines; when to be where", 4),
-    "02_model": ("the Jacobian, inverse kinematics, inertia at the tip", 5),
-    "03_velocity_control": ("joint and workspace velocity control", 4),
-    "04_torque_control": ("torques from a model; gains; sampling", 4),
-    "05_impedance": ("an arm that behaves like a spring, and what it touches", 4),
-    "06_tags": ("from a picture to a pose; following a tag that moves", 5),
-    "07_comparison": ("margins, tuning, and a comparison that means something", 5),
+    "00_warmup": "vectors, rotations and orientation errors in numpy",
+    "01_paths": "lines, circles and polylines; when to be where",
+    "02_model": "the Jacobian, the mass matrix, gravity and Coriolis torques",
+    "03_velocity_control": "joint and workspace velocity control",
+    "04_torque_control": "torques from a model; gains; sampling",
+    "05_impedance": "an arm that behaves like a spring, and what it touches",
+    "06_tags": "from a picture to a pose; following a tag that moves",
+    "07_comparison": "margins, tuning, and a comparison that means something",
 }
-"""What a student writes in each notebook, and the hours that it takes."""
+"""What a student writes in each notebook."""
+_TIME = re.compile(r"\*\*Time\*\* \| (?:core )?about ([\d.]+)(?: hours, all about ([\d.]+))?")
 
 
 def welcome() -> HTML:
@@ -105,16 +107,26 @@ def _typed(text: str, label: str) -> str:
     )
 
 
+def hours(name: str) -> tuple[float, float]:
+    """Hours of a notebook's core and of all of it, as its first cell tells the students."""
+    (source,) = COURSE.root.glob(f"solutions/*/{name}.py")
+    core, whole = _TIME.search(source.read_text()).groups()
+    return float(core), float(whole or core)
+
+
 def notebooks() -> HTML:
     """What each notebook is about, how long it takes and what its functions earn."""
     rows = []
-    for name, (about, hours) in NOTEBOOKS.items():
+    for name, about in NOTEBOOKS.items():
         problems = COURSE.problems(name)
         points = sum(problem.points for problem in problems)
-        rows.append((name, about, hours, len(problems), f"{points:g}"))
+        core, whole = hours(name)
+        rows.append((name, about, f"{core:g}", f"{whole:g}", len(problems), f"{points:g}"))
+    core, whole, points = (sum(float(row[k]) for row in rows) for k in (2, 3, 5))
     return table(
-        ("Notebook", "Students write", "Hours", "Functions", "Points for functions"),
+        ("Notebook", "Students write", "Hours, core", "Hours, all", "Functions",
+         "Points for functions"),
         rows,
-        f"{len(rows)} notebooks, {sum(r[2] for r in rows)} hours, "
-        f"{sum(float(r[4]) for r in rows):g} points for functions",
-    )
+        f"{len(rows)} notebooks: {core:g} hours for the core and {whole:g} for everything; "
+        f"{points:g} points for functions",
+    )  # fmt: skip

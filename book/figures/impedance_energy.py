@@ -18,7 +18,7 @@ from solutions.study import tasks
 from solutions.study.gains import TIP_SPRING
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
-from .claims import claim
+from .claims import claim, shows
 from .impedance import ROTORS
 from .page import figure, number, numbers
 
@@ -134,6 +134,7 @@ def _rate(of: object, q: Array, dq: Array, h: float = 1e-6) -> Array:
 def loops() -> None:
     """Work round a closed loop of orientations, with unequal rotational stiffness."""
     unequal, equal = np.diag((10.0, 20.0, 30.0)), 20.0 * np.eye(3)
+    shows("say 10, 20 and 30 N m/rad", (10.0, 20.0, 30.0), np.diag(unequal))
 
     def log_law(R: Array, K: Array) -> Array:
         return np.asarray(K @ se3.rotation_log(R.T))

@@ -16,7 +16,7 @@ from labkit.shapes import Array
 from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
 
-from .claims import claim
+from .claims import claim, shows
 from .page import figure, number, numbers, table
 
 JOINT_SPRINGS = np.array((200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0))
@@ -72,8 +72,16 @@ def drawing() -> HTML:
 
 def planar() -> None:
     """The two-joint arm of the sums by hand."""
-    J, M = np.array(((-0.5, -0.5), (0.5, 0.0))), np.diag((1.0, 0.25))
+    link, bend, rotors = 0.5, math.radians(90.0), (1.0, 0.25)
+    shows("Two links of 0.5 m are in a plane, the first along $x$, the second bent upwards by 90°",
+          (0.5, 90.0), (link, math.degrees(bend)))  # fmt: skip
+    shows("the two motors have 1 and 0.25 kg m²", (1.0, 0.25), rotors)
+    x, y = link * math.cos(bend), link * math.sin(bend)
+    J, M = np.array(((-y, -y), (link + x, x))), np.diag(rotors)
     mobility = J @ np.linalg.solve(M, J.T)
+    push, spring = 1.0, 100.0
+    shows("Push this tip along $y$ with 1 N", (1.0, -0.25, 0.25), (push, *push * mobility[:, 1]))
+    shows("Give this tip a spring of 100 N/m in both directions", 100.0, spring)
     L = np.linalg.inv(mobility)
     claim(
         "1.25 and 0.25 on the diagonal and −0.25 off it",
@@ -92,7 +100,7 @@ def planar() -> None:
         guided=L[1, 1],
     )
     values, axes = np.linalg.eigh(L)
-    D = 20.0 * (axes * np.sqrt(values)) @ axes.T
+    D = 2.0 * math.sqrt(spring) * (axes * np.sqrt(values)) @ axes.T
     numbers({"planar_dx": D[0, 0], "planar_dy": D[1, 1], "planar_dxy": D[0, 1]}, ".3g")
 
 

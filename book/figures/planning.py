@@ -11,7 +11,7 @@ from labkit.course.identification import Identification
 from labkit.course.layout import Course
 from labkit.course.outcomes import OUTCOMES
 
-from .front import NOTEBOOKS
+from .front import NOTEBOOKS, hours
 from .page import holds, number, table
 
 COURSE = Course(Path(__file__).parents[2])
@@ -28,7 +28,8 @@ NEEDS = {
     REPORT: "07; an arm of one's own from 03",
 }
 """What a student should have done before."""
-HOURS = {**{name: hours for name, (_, hours) in NOTEBOOKS.items()}, REPORT: 4}
+HOURS = {name: hours(name) for name in (*NOTEBOOKS, REPORT)}
+"""Of the core, and of everything; for the report, of each member of its team."""
 CLASS, TEAM = 200, 3
 """Students, and how many of them write a report together, in the example of what marking costs."""
 MINUTES = {
@@ -48,16 +49,18 @@ TRACKS = {
 def planning() -> HTML:
     """Hours and points of each notebook, by whom they are marked, and what comes before."""
     rows: list[tuple[str, ...]] = []
-    for name, hours in HOURS.items():
+    for name, (core, whole) in HOURS.items():
         machine, hand = _points(name)
-        rows.append((name, f"{hours}", f"{machine:g}", f"{hand:g}", NEEDS[name]))
-    totals = [sum(float(row[k]) for row in rows) for k in (1, 2, 3)]
+        row = (f"{x:g}" for x in (core, whole, machine, hand))
+        rows.append((name, *row, NEEDS[name]))
+    totals = [sum(float(row[k]) for row in rows) for k in (1, 2, 3, 4)]
     rows.append(("together", *(f"{x:g}" for x in totals), ""))
     return table(
-        ("Notebook", "Hours", "Points by machine", "Points by hand", "Before it"),
+        ("Notebook", "Hours, core", "Hours, all", "Points by machine", "Points by hand",
+         "Before it"),
         rows,
         "Hours are for a student who has basic numpy and has read the chapter",
-    )
+    )  # fmt: skip
 
 
 def _points(name: str) -> tuple[float, float]:
@@ -73,12 +76,13 @@ def syllabi() -> HTML:
     """Which notebooks fit into a term."""
     rows = []
     for weeks, numbers in TRACKS.items():
-        hours = sum(h for name, h in HOURS.items() if name[:2] in numbers)
-        each = hours / float(weeks.split()[0])
+        taken = [both for name, both in HOURS.items() if name[:2] in numbers]
+        core, whole = (sum(x) for x in zip(*taken, strict=True))
+        each = whole / float(weeks.split()[0])
         what = "all, and the report" if len(numbers) == len(HOURS) else ", ".join(numbers)
-        rows.append((weeks, what, hours, f"{each:.2g}"))
+        rows.append((weeks, what, f"{core:g}", f"{whole:g}", f"{each:.2g}"))
     return table(
-        ("You have", "Notebooks", "Student hours", "Hours a week"), rows,
+        ("You have", "Notebooks", "Hours, core", "Hours, all", "All, a week"), rows,
         "Three syllabi; reading the chapters and talking about them comes on top",
     )  # fmt: skip
 

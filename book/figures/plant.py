@@ -11,10 +11,11 @@ from IPython.display import HTML
 import labkit as lk
 from labkit.plant import EVIDENCE
 from solutions.study import assumptions, report_gains
+from solutions.study.gains import KP
 from solutions.study.grid import pick
 
-from .claims import claim
-from .page import figure, number, numbers, table
+from .claims import claim, shows
+from .page import figure, number, numbers, shown, table
 
 
 def _shown(value: Any) -> str:
@@ -61,7 +62,7 @@ def hangs() -> HTML:
             if over:
                 turned[c].append(name)
                 ax.add_patch(plt.Rectangle((j - 0.5, i - 0.5), 1, 1, color="#b3001b", alpha=0.25))
-            text = "lost" if d is None else f"{d:+.1f}"
+            text = "lost" if d is None else shown(d, "+.1f")
             weight = "bold" if over else "normal"
             ax.text(j, i, text, ha="center", va="center", fontsize="x-small", weight=weight)
     ax.set(xlim=(-0.5, len(claims) - 0.5), ylim=(len(names) - 0.5, -0.5))
@@ -167,7 +168,8 @@ def tuning() -> HTML:
         stiff=stiff,
         soft=soft,
     )
-    numbers({"procedure": stiff, "procedure_springs": soft, "factor": stiff / 3.0}, ".2g")
+    shows("The report ended at $K_p$ = 3 1/s", 3.0, KP)
+    numbers({"procedure": stiff, "procedure_springs": soft, "factor": stiff / KP}, ".2g")
     return figure(
         "The report's procedure on the shoulder s0: the gain rises until the joint oscillates, and "
         "half of that is taken (dotted).",

@@ -8,6 +8,7 @@ import numpy as np
 
 import labkit as lk
 from labkit import metrics
+from solutions.study import report_gains
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
 from .claims import claim
@@ -160,4 +161,6 @@ def impedance() -> None:
     moved = -metrics.tip_error(log)[-1, :3]
     stiffness = float(force[1] / moved[1])
     holds(abs(stiffness / 300.0 - 1.0) < 0.02, "the arm is as stiff as commanded, sensor or not")
+    rigid, soft = (row["Kp"] for row in report_gains.kept()["procedure"])
+    numbers({"procedure_rigid": rigid, "procedure_soft": soft}, ".2g")
     numbers({"felt": stiffness, "moved_mm": 1e3 * moved[1]})

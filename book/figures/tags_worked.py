@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 
 import matplotlib.pyplot as plt
@@ -12,15 +13,19 @@ import labkit as lk
 from labkit.tags.detection import pose_covariance, tag_pose
 from labkit.tags.estimation import Estimate, first_estimate, update
 from labkit.tags.intrinsics import Intrinsics
-from solutions.study.tag_task import LAP, RADIUS
-from solutions.tags.following import blend, carry_forward
+from labkit.tags.stream import TagStream
+from solutions.study.tag_task import LAP, OFFSET, RADIUS
+from solutions.tags.following import TagFollower, blend, carry_forward
 
-from .claims import claim
+from .claims import claim, shows
 from .page import figure, numbers
-from .tags import FOCAL, SIZE, ambiguity_gap, swaying
+from .tags import FOCAL, NOISE, SIZE, ambiguity_gap, corners_seen, swaying
 
 LENS = Intrinsics(width=640, height=480, fx=FOCAL, fy=FOCAL)
-AHEAD, PERIOD, SPEED = 0.55, 0.1, 0.1
+PERIOD, AGE, SPEED = 0.1, 0.1, 0.1
+AHEAD = TagFollower.horizon + AGE
+PUSHES = {2: 0.03, 3: 0.0035}
+"""How unsteady the velocity [m²/s³], or the acceleration [m²/s⁵], of a tag is believed to be."""
 BELIEFS = {"it stays": 1, "it goes straight on": 2, "it goes on bending": 3}
 """How many of position, velocity and acceleration a belief has."""
 
@@ -102,12 +107,24 @@ def timeline() -> HTML:
 
 def geometry() -> None:
     """Numbers of the sections on pictures, each worked by hand and by the code."""
+    at = np.array((0.0, 0.0, 1.0))
+    shows("$f$ = 600 pixels and a tag of 80 mm at a distance of 1 m", (600.0, 80.0, 1.0),
+          (FOCAL, 1e3 * SIZE, at[2]))  # fmt: skip
     flat = lk.se3.rotation((math.pi, 0.0, 0.0))
-    square = pose_covariance(lk.se3.pose(flat, (0.0, 0.0, 1.0)), LENS, SIZE, 0.1)
+    square = pose_covariance(lk.se3.pose(flat, at), LENS, SIZE, 0.1)
     askew = flat @ lk.se3.rotation((0.0, 0.6, 0.0))
-    tilted = pose_covariance(lk.se3.pose(askew, (0.0, 0.0, 1.0)), LENS, SIZE, 0.1)
+    tilted = pose_covariance(lk.se3.pose(askew, at), LENS, SIZE, 0.1)
+    seen = corners_seen(0.5, at[2]) + (LENS.cx, LENS.cy)
+    believed = [tag_pose(seen, LENS, a)[2, 3] for a in (SIZE, 1.25 * SIZE)]
+    shows("a tag taken for 25 % larger appears 25 % farther away", (1.0, 1.25), believed, 0.001)
+    by_hand("= 0.00147 m", 0.00147, 0.1 / (math.sqrt(2.0) * FOCAL * SIZE))
+    away = at[2] + SIZE / 2.0 * math.sin(math.radians(24.6)) * np.array((-1.0, 1.0))
+    shows("48.8 pixels tall, the right side 47.2", (48.8, 47.2), FOCAL * SIZE / away, 0.002)
+    shows("0.984 m and 1.017 m", (0.984, 1.017), FOCAL * SIZE / np.array((48.8, 47.2)), 0.001)
+    by_hand("= 20 mm from where it is", 20.0, 1e3 * 0.5 * 0.1 * 0.4)
+    by_hand("errors are twice as large as they are claimed to be", 2.0, math.sqrt(12.0 / 3.0))
     by_hand("is uncertain by 1.47 mm", 1.47, 1e3 * math.sqrt(square[2, 2]))
-    by_hand("sideways it is 0.083 mm", 0.083, 1e3 * math.sqrt(tilted[0, 0]))
+    by_hand("Sideways it is 0.083 mm", 0.083, 1e3 * math.sqrt(tilted[0, 0]))
     by_hand("an unknown tilt makes it 0.118 mm", 0.118, 1e3 * math.sqrt(square[0, 0]))
     by_hand("the tilt by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
     by_hand("the covariance says 0.27°", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03)
@@ -138,23 +155,43 @@ def one_blend() -> None:
     now, goal = (np.array([x]) for x in (0.1, 0.0)), np.array([0.12])
     position, still = now
     reference = lk.Sample(position, np.array([0.1]), still)
-    half = blend(0.5, reference, lk.Sample(goal, still, still), 1.0)
+    lasts = 1.0
+    half = blend(0.5 * lasts, reference, lk.Sample(goal, still, still), lasts)
+    speed = reference.velocity[0]
+    shows("is at 0.1 m and moves at 0.1 m/s", (100.0, 0.1), (1e3 * position[0], speed))
+    shows("The goal is 0.12 m, at rest, in 1 s", (0.12, 1.0), (goal[0], lasts))
+    shows("by 80 mm and be 0.1 m/s too fast", (80.0, 0.1),
+          (1e3 * (position[0] + speed * lasts - goal[0]), speed))  # fmt: skip
     by_hand("is at 0.1256 m", 0.1256, half.position[0], 1e-3)
     by_hand("moving back at 0.006 m/s", 0.006, -half.velocity[0], 0.05)
 
 
 def two_pictures() -> None:
     """The filter's first steps, which are worked by hand."""
-    noise, q = 1e-6 * np.eye(3), 0.0025
-    first = first_estimate(0.0, np.zeros(3), noise, 0.2)
-    then = Estimate(0.1, *carry_forward(first.mean, first.covariance, 0.1, q))
+    noise, q, z = 1e-6 * np.eye(3), 0.0025, 0.012
+    by_hand("A first picture says 0 mm, with $R = 1$ mm²", 1.0, 1e6 * noise[0, 0])
+    shows("The second picture, 0.1 s later, says 12 mm", (0.1, 12.0), (PERIOD, 1e3 * z))
+    by_hand("$\\sqrt2/0.1 = 14$ mm/s", 14.0, 1e3 * math.sqrt(2.0 * noise[0, 0]) / PERIOD, 0.02)
+    fastest = 0.2
+    shows("anything up to some 200 mm/s, so $P = \\mathrm{diag}(1, 40\\,000)$", (200.0, 4e4),
+          (1e3 * fastest, 1e6 * fastest**2))  # fmt: skip
+    first = first_estimate(0.0, np.zeros(3), noise, fastest)
+    then = Estimate(PERIOD, *carry_forward(first.mean, first.covariance, PERIOD, q))
     P = 1e6 * then.covariance[np.ix_((0, 3), (0, 3))]
     claim(
         "The entries are then 401.8 mm², 4,012.5 mm²/s and 40,250 mm²/s²",
         lambda p: np.allclose(p, (401.83, 4012.5, 40250.0), rtol=1e-4),
         p=[P[0, 0], P[0, 1], P[1, 1]],
     )
-    after = update(then, (0.012, 0.0, 0.0), noise)
+    by_hand("changed the velocity by about 50 mm/s", 50.0, 1e3 * math.sqrt(q))
+    turn = RADIUS / SPEED
+    shows("of radius $r$ = 60 mm at $v$ = 0.1 m/s", (60.0, 0.1), (1e3 * RADIUS, SPEED))
+    shows("in $r/v$ = 0.6 s", 0.6, turn)
+    by_hand("$\\sigma_a^2 \\approx 0.1^2/0.6 = 0.017$ m²/s³", 0.017, SPEED**2 / turn, 0.03)
+    by_hand("the straight belief of the next figure takes 0.03 m²/s³", 0.03, PUSHES[2])
+    by_hand("the place is uncertain by 20 mm", 20.0, math.sqrt(P[0, 0]))
+    by_hand("4012.5/402.8 = 9.96$ 1/s", 9.96, P[0, 1] / (P[0, 0] + 1.0))
+    after = update(then, (z, 0.0, 0.0), noise)
     claim(
         "The belief is now 11.97 mm and 119.5 mm/s",
         lambda m: np.allclose(m, (11.97, 119.53), rtol=1e-3),
@@ -162,9 +199,20 @@ def two_pictures() -> None:
     )
     P = 1e6 * after.covariance[np.ix_((0, 3), (0, 3))]
     by_hand("known to 16.8 mm/s", 16.8, math.sqrt(P[1, 1]))
-    mean, covariance = carry_forward(after.mean, after.covariance, 0.1, q)
+    mean, covariance = carry_forward(after.mean, after.covariance, AGE, q)
+    by_hand("because this reading was 100 ms under way", 100.0, 1e3 * AGE)
     by_hand("it expects the target at 23.9 mm", 23.9, 1e3 * mean[0])
-    by_hand("with a standard deviation of 2.6 mm", 2.58, 1e3 * math.sqrt(covariance[0, 0]))
+    spread = 1e3 * math.sqrt(covariance[0, 0])
+    by_hand("with a standard deviation of 2.6 mm", 2.58, spread)
+    shows("said 12 mm, and would have been sure of it to 1 mm", (12.0, 1.0),
+          (1e3 * z, 1e3 * math.sqrt(noise[0, 0])))  # fmt: skip
+    shows("an error of 12 mm and pays with 2.6 mm of noise", (12.0, 2.6),
+          (1e3 * (mean[0] - z), spread), 0.02)  # fmt: skip
+    random, more = np.random.default_rng(0), []
+    for believed, read in random.uniform(0.1, 10.0, (50, 2)):
+        k = believed / (believed + read)
+        more.append(min(believed, read) - (1.0 - k) * believed)
+    claim("smaller than either of the two", lambda gap: min(gap) > 0.0, gap=more)
     for _ in range(200):
         before = Estimate(0.0, *carry_forward(after.mean, after.covariance, 0.1, q))
         after = update(before, np.zeros(3), noise)
@@ -182,6 +230,8 @@ def old_pictures() -> None:
     age = math.sqrt(0.15**2 + 0.1**2 / 12.0)
     speed = float(np.sqrt(np.mean(np.gradient(sway.truth, sway.t)[sway.t > 1.5] ** 2)))
     by_hand("By hand that makes 13.0 mm", 13.0, sway.rms(sway.last), 0.02)
+    by_hand("at 0.1 m/s and 100 ms, 10 mm", 10.0, 1e3 * SPEED * AGE)
+    by_hand("The readings had 1 mm of noise", 1.0, 1e3 * NOISE)
     by_hand("its RMS speed is", 0.085, speed, 0.05)
     by_hand("its root is", 0.153, age)
 
@@ -219,7 +269,7 @@ def _aimed(order: int, noise: float) -> float:
     def at(t: float) -> np.ndarray:
         return RADIUS * np.array((math.cos(w * t), math.sin(w * t), 0.0))
 
-    R, q = noise**2 * np.eye(3), {2: 0.03, 3: 0.0035}.get(order, 0.0)
+    R, q = noise**2 * np.eye(3), PUSHES.get(order, 0.0)
     believed, off = None, []
     for k in range(300):
         t = k * PERIOD
@@ -257,6 +307,8 @@ def aims() -> HTML:
     numbers({"aim_bends_noisy": bends[-1], "aim_straight_noisy": straight[-1]}, ".2g")
     by_hand("at 0.1 m/s and 60 mm, 25 mm", 25.0, 1e3 * SPEED**2 * AHEAD**2 / (2 * RADIUS), 0.02)
     by_hand("cubed, 7.7 mm", 7.7, 1e3 * SPEED**3 * AHEAD**3 / (6 * RADIUS**2))
+    shows("A blend of $T = 0.45$ s that starts when a picture is 0.1 s old", (0.45, 0.1),
+          (TagFollower.horizon, AGE))  # fmt: skip
     ax.set(xlabel="noise of a reading, each coordinate [mm]", ylabel="error of the aim [mm]",
            ylim=(0.0, None))  # fmt: skip
     ax.legend(fontsize="small")
@@ -273,4 +325,8 @@ def aims() -> HTML:
 def question() -> None:
     """How fast the tag of the task goes round: a quintic's peak is 15/8 of its mean."""
     by_hand("a circle of 12 cm", 0.12, 2.0 * RADIUS)
+    by_hand("The hand is to stay 20 cm above the tag", 0.2, OFFSET[2])
+    dials = inspect.signature(TagStream).parameters
+    pictures, late = dials["rate"].default, dials["delay"].default
+    shows("takes ten pictures a second, and it takes 100 ms", (10.0, 100.0), (pictures, 1e3 * late))
     by_hand("at up to 0.11 m/s", 0.11, 15.0 / 8.0 * 2.0 * math.pi * RADIUS / LAP, 0.02)

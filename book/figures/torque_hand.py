@@ -16,7 +16,7 @@ from labkit import metrics
 from labkit.plotting import STYLES
 from solutions.study.joint_torque import ComputedTorque
 
-from .claims import claim
+from .claims import claim, shows
 from .page import figure, number, numbers
 from .torque import DAMPER, KP, REPORT_KD, REPORT_KP, SPRING, circle_run, radius
 
@@ -79,7 +79,9 @@ def columns() -> None:
     """One joint off its target: what computed torque asks of all the others."""
     model = lk.Model("left", lk.IDEAL)
     M = model.mass_matrix(model.robot.ready)
-    accelerate = KP * 0.1
+    away = 0.1
+    shows("only s0 is 0.1 rad away from its target", 0.1, away)
+    accelerate = KP * away
     claim(
         "more inertia with the arm stretched out than with the arm folded",
         lambda stretched, folded: stretched > 1.3 * folded > 0.0,
@@ -197,6 +199,7 @@ def payload() -> HTML:
     J = model.tip_jacobian(q0)
     mobility = J @ np.linalg.solve(model.mass_matrix(q0), J.T)
     _, ax = plt.subplots(figsize=(6.0, 2.9))
+    shows("Put 0.5 kg into the hand", 0.5, WEIGHT)
     force, ends, said = 9.81 * WEIGHT, [], []
     for k, gain in enumerate((100.0, 400.0)):
         law = ComputedTorque(model, gain, 2.0 * math.sqrt(gain))

@@ -11,6 +11,7 @@ import control
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
+from scipy.optimize import brentq
 
 import labkit as lk
 from labkit import metrics
@@ -27,6 +28,8 @@ from .page import Question, figure, number, numbers, picture, quiz, replay, stil
 
 SEED = 3
 OFFSET = 0.1
+ENOUGH = 60.0
+"""A phase margin that leaves little overshoot, in [degrees]."""
 DELAY = 0.004 + 0.5 / 100.0 + 0.5 / 200.0
 """What the loop waits on average: the state's age, half its period, half a control period."""
 
@@ -154,7 +157,16 @@ def gains() -> HTML:
     left.plot(kps, 100.0 * over, "C0o-", markersize=4)
     left.set(xlabel="Kp [1/s]", ylabel="overshoot [%]")
     right.plot(kps, margin, "C1s--", markersize=4)
-    right.axhline(60.0, color="C5", linestyle=":")
+    right.axhline(ENOUGH, color="C5", linestyle=":")
+    right.text(30.0, ENOUGH + 2.0, f"design value, {ENOUGH:g}°", ha="right", fontsize="small")
+    allowed = brentq(lambda kp: phase_margin(kp) - ENOUGH, 1.0, 30.0)
+    shows("a phase margin of 60° as a design value", 60.0, ENOUGH)
+    number("kp_enough", allowed, ".2g")
+    claim(
+        "Up to this gain the measured overshoot stays below 10 %",
+        lambda over: 0.0 < over < 0.1,
+        over=float(over[kps <= allowed].max()),
+    )
     right.set(xlabel="Kp [1/s]", ylabel="phase margin [degrees]", ylim=(0, 95))
     first = float(kps[np.argmax(over > 0.05)])
     claim(
@@ -169,7 +181,7 @@ def gains() -> HTML:
         "computed from its lag and delay.",
         f"Left: overshoot stays near zero up to Kp = 8 and reaches {100 * over[-1]:.0f} % at "
         f"Kp = 30. Right: the phase margin falls from {margin[0]:.0f} to {margin[-1]:.0f} degrees; "
-        "the dotted line marks 60 degrees.",
+        f"the dotted line marks the design value of {ENOUGH:g} degrees.",
     )
 
 

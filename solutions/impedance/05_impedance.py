@@ -179,7 +179,8 @@ for axis, name in enumerate("xyz"):
 # $e$ holds the position error and the rotation from the tip to the target, in world axes:
 # `lk.se3.pose_error(target.pose, model.pose(q))`. $F_{ext}$ is the wrench of the hand on the arm. The rate of
 # the error is $\dot e = V_d - J\dot q$; for the rotation this is an approximation, good while the hand is
-# turned only a little. Combine the joints' equation of motion with this one, and see what the motors have to
+# turned only a little. Use one rotational stiffness for all three axes: with unequal ones $K\,e$ is not the
+# slope of an energy, and a hand that is led round can gain work. Combine the joints' equation of motion with this one, and see what the motors have to
 # do. Keep two things in mind:
 #
 # - The tip's acceleration is $J\ddot q + \dot J\dot q$. The second part comes by itself when the joints

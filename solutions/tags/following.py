@@ -7,7 +7,7 @@ the reference's own position, velocity and acceleration.  Between the two ends o
 
 .. math:: p(t) = \sum_{k=0}^{5} c_k x^k
 
-Lynch & Park, section 9.4 (splines through points with velocities); Bar-Shalom, Li & Kirubarajan,
+Lynch & Park, section 9.3 (polynomials through via points); Bar-Shalom, Li & Kirubarajan,
 section 6.2.2 (continuous white-noise acceleration).
 """
 

@@ -269,7 +269,7 @@ predict("unknown_load", truth=round(float(z[0] - z[-1]), 1))
 # ## Gains with a meaning
 #
 # Nobody knows what "kp = 40" feels like. A frequency and a damping ratio are easier to imagine: how often the
-# error would swing in a second, and how much of the swing is damped. A ratio of 1 is *critical* damping, the
+# error would swing in a second if nothing damped it, and how strongly it is damped. A ratio of 1 is *critical* damping, the
 # quickest response without overshoot. Compare with the standard form of a damped spring,
 #
 # $$ \ddot e + 2\,\zeta\,\omega\,\dot e + \omega^2\,e = 0 . $$
@@ -279,7 +279,8 @@ def gains_for(frequency, damping_ratio):
     """Gains of computed torque for a frequency and a damping ratio.
 
     Args:
-        frequency: Natural frequency of the error, in [Hz]; a number or an array.
+        frequency: Natural frequency of the error, omega / (2 pi) without damping, in [Hz]; a
+            number or an array.
         damping_ratio: 1 is critically damped; a number or an array.
 
     Returns:

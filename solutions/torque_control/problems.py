@@ -383,8 +383,9 @@ GAINS_FOR = Problem(
     points=2,
     core=False,
     outcomes=("control",),
-    asks="The error shall obey ë + kd ė + kp e = 0. Give `(kp, kd)` so that it swings with a natural "
-    "`frequency` in Hz and a `damping_ratio`. Both may be numbers or arrays.",
+    asks="The error shall obey ë + kd ė + kp e = 0. Give `(kp, kd)` for a "
+    "natural `frequency` in Hz, that of the swing without damping, and a `damping_ratio`. Both may be "
+    "numbers or arrays.",
     answer=answers.gains_for,
     judge=Close(parts=("kp", "kd")),
     trials=(

@@ -9,7 +9,7 @@
 # | | |
 # |---|---|
 # | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, orientations are compared by a product, twists are (v, w) |
-# | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and as Baxter's users found it (`lk.BAXTER`); trajectories; the model with its Jacobian |
+# | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and with friction, lag and noise like Baxter's (`lk.BAXTER`); trajectories; the model with its Jacobian |
 # | **You write** | two controllers, a damped inverse, motion that the tip does not feel |
 # | **Time** | core about 3 hours, all about 4 · 27 points |
 #
@@ -205,7 +205,8 @@ predict("with_more_d", truth=(log.t, e))
 #
 # over $\dot q$. Set the gradient to zero; the matrix that multiplies $V$ is the one that you need (Nakamura
 # and Hanafusa 1986; Siciliano, *Robotics: Modelling, Planning and Control*, section 3.5.2). In the stub,
-# `damping` is the whole factor $\lambda^2$.
+# `damping` is the whole factor $\lambda^2$. Note that $|V - J\,\dot q|^2$ adds squares of m/s and of rad/s, so
+# that one metre counts as much as one radian: a choice, which another unit of length would change.
 
 # %% question="damped_inverse"
 def damped_inverse(J, damping):
@@ -426,8 +427,9 @@ lk.plotting.show(f"A step of the commanded speed, and how joint s0 of the arm {H
 # %% [markdown]
 # ## Baxter, at last
 #
-# Now the arm as its users found it: 100 states a second for 200 commands, noise on the speeds, motors that
-# lag, a late command now and then. Three controllers draw the same circle, from the same start a little off
+# Now the arm with friction, lag and noise like Baxter's: 100 states a second for 200 commands, noise on the
+# speeds, motors that lag, a late command now and then. Some of its numbers are published and others assumed;
+# `labkit.plant.EVIDENCE` says which. Three controllers draw the same circle, from the same start a little off
 # the path.
 
 # %%

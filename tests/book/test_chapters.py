@@ -191,3 +191,21 @@ def test_a_role_may_cite_several_works():
     """Each key counts, and what is said of a place in a work does not."""
     text = "See {cite:p}`ott,khatib` and {cite:t}`mls{sections 2, 3}`."
     assert cited(text) == {"ott", "khatib", "mls"}
+
+
+def test_a_chapter_gives_its_notebook_as_much_time_as_the_notebook_itself():
+    """The first cells of the notebooks are the one place where their hours stand."""
+    from figures.front import hours
+
+    for name in CHAPTERS:
+        ((told, number),) = re.findall(r"about (\d+) hours for notebook (\d\d)", text_of(name))
+        (source,) = BOOK.parent.glob(f"solutions/*/{number}_*.py")
+        assert float(told) == hours(source.stem)[1], name
+
+
+def test_the_core_of_the_course_fits_into_28_hours():
+    """Each notebook's core takes at most 4; the core is never longer than the whole."""
+    from figures.planning import HOURS
+
+    assert all(core <= min(4.0, whole) for core, whole in HOURS.values())
+    assert sum(core for core, _ in HOURS.values()) <= 28.0

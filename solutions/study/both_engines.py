@@ -1,0 +1,85 @@
+"""The campaign on both engines: ``python -m solutions.study.both_engines [--seeds 5] [--compare]``.
+
+Each engine's campaign goes to ``build/ENGINE/campaign.json``.  The two agree if every claim has the
+same verdict, over the tasks and on each of them, and every number that the comparison shows is the
+same to 5 % or to 0.1 mm (for times, to a tick of the clock).  The exit status is 1 if they do not.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .claims import TICK
+
+ENGINES = ("pybullet", "mujoco")
+SHARE, LEAST = 0.05, {"s": TICK}
+"""How far a number may differ: relative to the larger, or in its unit (0.1 for all others)."""
+
+
+def differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[str]:
+    """In a sentence each, what two campaigns do not agree on.
+
+    Args:
+        a: Of one engine, as `campaign` writes it.
+        b: Of the other.
+    """
+    for one, other in zip(a["verdicts"], b["verdicts"], strict=True):
+        for x, y in zip((one["overall"], *one["tasks"]), (other["overall"], *other["tasks"]),
+                        strict=True):  # fmt: skip
+            what = f"{one['claim']}, {x['of']}"
+            if x["outcome"] != y["outcome"]:
+                yield f"{what}: {x['outcome']} and {y['outcome']}"
+            if _apart(x["mean"], y["mean"], LEAST.get(one["unit"], 0.1)):
+                yield f"{what}: {x['mean']:.4g} and {y['mean']:.4g} {one['unit']}"
+    means = [_means(found["rows"]) for found in (a, b)]
+    for cell in sorted(means[0].keys() | means[1].keys()):
+        x, y = (mean.get(cell, np.nan) for mean in means)
+        if _apart(x, y, 0.1):
+            yield f"{', '.join(cell)}: {x:.4g} and {y:.4g} mm"
+
+
+def _apart(x: float, y: float, least: float) -> bool:
+    return not abs(x - y) <= max(SHARE * max(abs(x), abs(y)), least)
+
+
+def _means(rows: list[dict[str, Any]]) -> dict[tuple[str, ...], float]:
+    """Each number of the comparison's tables: its mean over the seeds."""
+    cells: dict[tuple[str, ...], list[float]] = {}
+    for row in rows:
+        for name in ("late_rms_mm", "late_max_mm"):
+            cell = (row["plant"], row["task"], row["way"], name)
+            cells.setdefault(cell, []).append(np.nan if row["failed"] else row[name])
+    return {cell: float(np.mean(x)) for cell, x in cells.items()}
+
+
+def main() -> int:
+    """Run both, compare, say what differs."""
+    parser = argparse.ArgumentParser(
+        prog="python -m solutions.study.both_engines", description=__doc__
+    )
+    parser.add_argument("--seeds", type=int, default=5, help="how many seeds (5)")
+    parser.add_argument("--compare", action="store_true", help="run nothing, compare what is there")
+    options = parser.parse_args()
+    for engine in () if options.compare else ENGINES:
+        command = [sys.executable, "-m", "solutions.study.campaign", "--no-pictures"]
+        command += ["--seeds", str(options.seeds), "--out", f"build/{engine}"]
+        subprocess.run(command, env=os.environ | {"LABKIT_ENGINE": engine}, check=True)
+    found = [json.loads(Path(f"build/{name}/campaign.json").read_text()) for name in ENGINES]
+    apart = list(differences(*found))
+    print(*apart, sep="\n")
+    claims, runs = len(found[0]["verdicts"]), len(found[0]["rows"])
+    print(f"{claims} claims and {runs} runs on each engine: {len(apart)} differences")
+    return bool(apart)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

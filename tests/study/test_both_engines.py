@@ -1,0 +1,38 @@
+"""Two engines, one campaign: what counts as the same."""
+
+import copy
+
+import pytest
+
+from solutions.study.both_engines import differences
+
+
+def found():
+    """A campaign of one claim and one run."""
+    seeds = {"of": "line", "mean": 1.0, "half_width": 0.2, "units": 5, "outcome": "held"}
+    tasks = {"of": "tasks", "mean": 1.0, "half_width": 5.0, "units": 3, "outcome": "undecided"}
+    row = {"plant": "baxter", "task": "line", "way": "joint torque", "seed": 0, "failed": None}
+    return {
+        "verdicts": [{"claim": "a beats b", "unit": "mm", "overall": tasks, "tasks": [seeds]}],
+        "rows": [row | {"late_rms_mm": 4.0, "late_max_mm": 9.0}],
+    }
+
+
+@pytest.mark.parametrize(
+    ("change", "count"),
+    [
+        (lambda x: None, 0),
+        (lambda x: x["rows"][0].update(late_rms_mm=4.15), 0),  # within 5 %
+        (lambda x: x["rows"][0].update(late_rms_mm=4.3), 1),
+        (lambda x: x["rows"][0].update(failed="diverged"), 2),
+        (lambda x: x["verdicts"][0]["tasks"][0].update(outcome="undecided"), 1),
+        (lambda x: x["verdicts"][0]["overall"].update(mean=-1.0), 1),
+        (lambda x: x["verdicts"][0]["overall"].update(mean=1.09), 0),  # within 0.1 mm
+        (lambda x: x["rows"].clear(), 2),
+    ],
+)
+def test_engines_agree_to_five_per_cent_or_a_tenth_of_a_millimetre(change, count):
+    """And every verdict is the same word; a run that is missing or failed is a difference."""
+    other = copy.deepcopy(found())
+    change(other)
+    assert len(list(differences(found(), other))) == count
