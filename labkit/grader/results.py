@@ -115,6 +115,7 @@ class Result:
         isolation: What kept it apart while it ran.
         versions: Of what graded it.
         seconds: How long it took: in all, and in the student's own code.
+        receipt: What `lk.hand_in` printed for this file; empty where it was rejected.
     """
 
     assignment: str
@@ -133,6 +134,7 @@ class Result:
     isolation: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
+    receipt: str = ""
 
     def text(self) -> str:
         """As JSON."""
