@@ -31,16 +31,20 @@ _OUTPUT = "labkit"
 """Under this name the output of a check holds its verdict."""
 
 
-def read_cells(path: Path) -> list[dict[str, Any]]:
+def read_cells(path: Path, text: bytes | None = None) -> list[dict[str, Any]]:
     """The cells of a notebook file.
+
+    Args:
+        path: Where it is.
+        text: What is in it, if somebody has read it already.
 
     Raises:
         LabkitError: It is not there, or is not a notebook.
     """
-    if path.exists() and not path.is_file():  # who opens a pipe waits for ever
+    if text is None and path.exists() and not path.is_file():  # who opens a pipe waits for ever
         raise LabkitError(f"{path} is a folder, a pipe or a device; give a notebook's file")
     try:
-        data = json.loads(path.read_text(encoding="utf-8"))
+        data = json.loads(path.read_text(encoding="utf-8") if text is None else text)
         return [
             {
                 **cell,

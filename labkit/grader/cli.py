@@ -34,20 +34,35 @@ to_file = click.option(
 @click.option(
     "--unmarked", is_flag=True, help="Write the pages before all answers are marked by hand."
 )
+@click.option(
+    "--peer-review",
+    is_flag=True,
+    help="Instead of pages, write a sheet for each student with two reports of others to review.",
+)
 def feedback(
-    course: Course, assignment: str, student: str | None, moodle: Path | None, unmarked: bool
+    course: Course,
+    assignment: str,
+    student: str | None,
+    moodle: Path | None,
+    unmarked: bool,
+    peer_review: bool,
 ) -> int:
     """Write a feedback page for each student.
 
     Some answers are marked by hand, in formgrader. No page is written until they are all marked;
-    --unmarked writes the pages before.
+    --unmarked writes the pages before. What readers said of a report is on its authors' page.
     """
     from .exchange import for_exchange
     from .feedback import write_feedback
     from .marks import marks_of
+    from .peer_sheet import hand_out
+    from .peers import reviews
     from .return_feedback import moodle_zip
 
     with Failures() as failures:
+        if peer_review:
+            tell(failures.sift(hand_out(course, assignment), "no sheet"), sys.stdout)
+            return failures.code
         everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
         if not unmarked:
             _wait_for_marks(everybody)
@@ -65,6 +80,7 @@ def feedback(
             count = moodle_zip(course, assignment, made, moodle)
             size = moodle.stat().st_size / 1e6
             print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {moodle}")
+        tell((f"review missing: {says}" for says in reviews(course, assignment)[1]), sys.stdout)
     return failures.code
 
 

@@ -151,6 +151,11 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     metavar="TIME",
     help="Time of the download or clone; counts as the hand-in time of files without their own.",
 )
+@click.option(
+    "--peer-review",
+    is_flag=True,
+    help="Collect the sheets that students filled in, with their reviews of others' reports.",
+)
 def collect(
     course: Course,
     assignment: str,
@@ -158,6 +163,7 @@ def collect(
     unverified: bool,
     named: str | None,
     at: str | None,
+    peer_review: bool,
 ) -> int:
     """Collect what students handed in, from any platform.
 
@@ -170,8 +176,10 @@ def collect(
     """
     from .collect import collect
     from .exchange import read_time
+    from .peers import sheet_of
     from .rules import read_rules
 
+    assignment = sheet_of(assignment) if peer_review else assignment
     when = read_time(at, ZoneInfo(read_rules(course).zone)) if at else None
     if at and when is None:
         raise LabkitError(f"{at!r} is not a time; write 2026-11-02 23:59")

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 from base64 import b64encode
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from hashlib import sha256
 from pathlib import Path
@@ -28,6 +28,7 @@ from .drawing import curve, side_by_side
 from .each import Failed, for_student
 from .marks import Mark, mark_of
 from .pages import TEMPLATES, render
+from .peers import Review, reviews
 from .results import Result, write
 from .rules import read_rules
 
@@ -61,13 +62,16 @@ class Measure(NamedTuple):
     over: bool
 
 
-def page(result: Result, mark: Mark | None = None, course: str = "") -> str:
+def page(
+    result: Result, mark: Mark | None = None, course: str = "", reviews: Sequence[Review] = ()
+) -> str:
     """The page of one student.
 
     Args:
         result: What came of the submission.
         mark: What it is worth, as the gradebook has it; by default what the result says.
         course: What the course is called.
+        reviews: What readers said of a report.
 
     Returns:
         HTML in one piece, readable without its scripts.
@@ -81,6 +85,7 @@ def page(result: Result, mark: Mark | None = None, course: str = "") -> str:
         result=result,
         mark=mark,
         course=course,
+        reviews=reviews,
         lines=asked | {line.name: line for line in mark.lines},
         by_hand=[line for line in mark.lines if line.name not in asked],
         heads=HEADS,
@@ -108,13 +113,13 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
     Returns:
         The files; and for whom no page could be made.
     """
-    name = read_rules(course).name
+    name, said = read_rules(course).name, reviews(course, assignment)[0]
 
     def make(mark: Mark) -> Path:
         if mark.result is None or (mark.missing and not mark.lines):
             raise LabkitError(mark.missing or "there is no result of theirs; grade again")
         path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
-        write(path, page(mark.result, mark, name))
+        write(path, page(mark.result, mark, name, said.get(mark.student, ())))
         return path
 
     return [for_student(mark.student, partial(make, mark)) for mark in marks]

@@ -11,6 +11,7 @@ from ..course.layout import Course
 from ..errors import LabkitError
 from .feedback import page
 from .marks import marks_of
+from .peers import reviews
 from .rules import read_rules
 
 
@@ -30,6 +31,7 @@ class StudentPage(HTMLExporter):
         for mark in marks_of(course, known["assignment"], known["student"]):
             if mark.result is not None and (mark.lines or not mark.missing):
                 about |= {"output_extension": ".html", "outputs": {}}
-                return page(mark.result, mark, read_rules(course).name), about
+                said = reviews(course, known["assignment"])[0].get(mark.student, ())
+                return page(mark.result, mark, read_rules(course).name, said), about
             raise LabkitError(f"{mark.student}: {mark.missing}")
         raise LabkitError(f"there is no mark of {known['student']}")

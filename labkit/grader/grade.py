@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import Any, cast
 
 from ..course.bundle import Bundle
+from ..course.hand_in import receipt
 from ..course.marking import Tried, all_alike, mark, not_counted, try_public
 from ..course.messages import uses
 from ..course.question import Question
@@ -89,6 +90,7 @@ def grade(
         written=todo.written,
         tricks=todo.tricks,
         seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
+        receipt=receipt(cell["source"] for cell in cells),
     )
     return _shortened(result)
 

@@ -115,6 +115,7 @@ class Result:
         isolation: What kept it apart while it ran.
         versions: Of what graded it.
         seconds: How long it took: in all, and in the student's own code.
+        receipt: What `lk.hand_in` printed for this file; empty where it was rejected.
     """
 
     assignment: str
@@ -133,6 +134,7 @@ class Result:
     isolation: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
+    receipt: str = ""
 
     def text(self) -> str:
         """As JSON."""
@@ -173,7 +175,7 @@ class Result:
         earned = [v.earned for v in verdicts if v.earned <= v.points]
         names = {v.name for v in verdicts}
         whole = len(names) == len(verdicts) == len(earned)
-        if not whole or bool(self.rejected) == bool(names) or abs(sum(earned) - self.score) > 0.01:
+        if not whole or (self.rejected and names) or abs(sum(earned) - self.score) > 0.01:
             whole_sum = f"{len(verdicts)} questions earned {sum(earned):g}"
             raise _damaged(name, f"the score is {self.score:g}, and {whole_sum}")
 

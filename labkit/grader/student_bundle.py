@@ -98,7 +98,8 @@ def student_folder(
 def _start_here(folder: Path, names: Sequence[str], picture: Path, book: str | None) -> None:
     """The notebook that JupyterLab opens first."""
     notebooks = [(name, *_about(folder / name / f"{name}.ipynb")) for name in names]
-    text = render("start_here.py.j2", notebooks=notebooks, book=book)
+    practice = next(filter(None, (_first_prediction(folder, name) for name in names)), None)
+    text = render("start_here.py.j2", notebooks=notebooks, book=book, practice=practice)
     notebook = jupytext.reads(text, fmt="py:percent")
     image = base64.b64encode(picture.read_bytes()).decode()
     notebook.cells[0]["attachments"] = {picture.name: {"image/png": image}}
@@ -114,6 +115,13 @@ def _about(path: Path) -> tuple[str, str]:
     title = re.search(r"^# (?:\d+ · )?(.*)$", first, re.MULTILINE)
     time = re.search(r"\*\*Time\*\* \| (.*?) \|", first)
     return (title[1] if title else path.stem), (time[1] if time else "")
+
+
+def _first_prediction(folder: Path, name: str) -> tuple[str, str] | None:
+    """A notebook, and the first thing to predict in it, which is worth one point; or None."""
+    text = (folder / name / f"{name}.ipynb").read_text(encoding="utf-8")
+    found = re.search(r"\*\*Predict first: `(\w+)`\*\* · 1 point", text)
+    return (name, found[1]) if found else None
 
 
 def _wheel(root: Path, to: Path) -> None:

@@ -1,0 +1,134 @@
+"""Peer review: two reports each, never one's own, and nobody's name on either way."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from dataclasses import replace
+
+import pytest
+from courses import copied
+from downloaded import from_moodle
+from handmade import cell_of, hand_in, raw
+
+from labkit.__main__ import main
+from labkit.course.bundle import Bundle
+from labkit.errors import LabkitError
+from labkit.grader.grade import rejection
+from labkit.grader.gradebook import record
+from labkit.grader.peers import handed_out, readers, sheet_of, without_names
+from labkit.grader.release import release
+from labkit.grader.results import Results
+from labkit.grader.roster import Student
+
+NAME = "08_report"
+PNG = "iVBORw0KGgo="
+CLASS = "Login,First name,Last name,Email address,Team\n" + "".join(
+    f"{login},{login.title()},{login.title()}son,{login}@uni.org,{team}\n"
+    for login, team in (("ada", "kestrel"), ("bob", "kestrel"), ("eve", "merlin"), ("zoe", "hobby"))
+)
+
+
+@pytest.mark.parametrize("teams", [3, 4, 7, 60])
+def test_everybody_reads_two_reports_of_others_and_each_is_read_twice(teams):
+    """In teams of one to three, whoever of a class handed in nothing; the same seed, the same."""
+    people = {f"s{k}-{m}": f"t{k}" for k in range(teams) for m in range(1 + k % 3)}
+    people["late"] = "alone"
+    reports = {f"t{k}": f"s{k}-0" for k in range(teams)}
+    found = readers(7, reports, people)
+    assert found.keys() == people.keys()
+    for student, authors in found.items():
+        assert len(set(authors)) == 2
+        assert people[student] not in {people[author] for author in authors}
+    read = Counter(author for authors in found.values() for author in authors)
+    assert set(read) == set(reports.values()) and min(read.values()) >= 2
+    assert found == readers(7, reports, dict(reversed(people.items())))
+    assert teams < 5 or found != readers(8, reports, people)
+    single = readers(7, reports, {author: team for team, author in reports.items()})
+    assert set(Counter(a for two in single.values() for a in two).values()) == {2}
+
+
+def test_two_reports_are_too_few():
+    """It is said, with what it needs."""
+    with pytest.raises(LabkitError, match="2 teams handed in a report; peer review needs 3"):
+        readers(7, {"a": "x", "b": "y"}, {"x": "a", "y": "b"})
+
+
+def test_names_go_from_a_text():
+    """First, last and whole names, logins and addresses, in any case; words that hold one stay."""
+    team = [Student("ada", "Ada", "Lovelace", "ada@uni.org"), Student("Bob-Hope")]
+    text = 'ADA Lovelace and Bob (ada@uni.org): my_arm("ada") adapts, bobbing.'
+    said = without_names(text, team, "author")
+    assert said == 'author 1 and author 2 (author 1): my_arm("author 1") adapts, bobbing.'
+
+
+@pytest.fixture(scope="module")
+def course(tmp_path_factory):
+    """A class of four in three teams whose reports are handed in, graded and marked."""
+    course = copied(tmp_path_factory.mktemp("peers"))
+    release(course, NAME, 7)
+    (course.root / "class.csv").write_text(CLASS)
+    assert typed(course, "students", "import", str(course.root / "class.csv")) == 0
+    given = (course.release / NAME / f"{NAME}.ipynb").read_text()
+    bundle = Bundle.of(course, NAME)
+    for author in ("ada", "eve", "zoe"):
+        notebook = json.loads(given)
+        claim = (
+            f"We, {author.title()} and friends: **our** arm <b>sags</b> ![x](http://e.org/p.png)"
+        )
+        cell_of(notebook, "claim_and_prediction")["source"] = claim
+        code = {"cell_type": "code", "id": "own-1", "metadata": {}, "execution_count": 1,
+                "source": f'mine = lk.my_arm("{author}")',
+                "outputs": [{"output_type": "display_data", "metadata": {}, "data": {
+                    "image/png": PNG, "text/html": "<script>alert(1)</script>"}}]}  # fmt: skip
+        notebook["cells"].append(code)
+        hand_in(course, NAME, author, notebook)
+        result = rejection("", author, bundle, "made by hand", raw(notebook))
+        result = replace(result, written={"claim_and_prediction": claim})
+        Results(course, NAME).keep(result)
+        record(course, NAME, [result])
+    return course
+
+
+def typed(course, *words):
+    return main([*words, "--course", str(course.root)])
+
+
+def test_reports_go_out_and_reviews_come_back_without_names(course, tmp_path, capsys):
+    """From `feedback --peer-review` through `collect --peer-review` to the authors' pages."""
+    assert typed(course, "feedback", NAME, "--peer-review") == 0
+    assert "4 new, 4 in all" in capsys.readouterr().out
+    assert typed(course, "feedback", NAME, "--peer-review") == 0
+    assert "0 new, 4 in all" in capsys.readouterr().out
+    files, read_by = [], Counter()
+    for number, login in enumerate(("ada", "bob", "eve"), 100):
+        sheet = handed_out(course, NAME, login).read_text()
+        assert not re.findall(r"\b(?:ada|bob|eve|zoe)(?:son)?\b", sheet, re.IGNORECASE)
+        for hidden in ("<b>", "![x]", "script", "kestrel"):
+            assert hidden not in sheet
+        assert "&lt;b>sags" in sheet and sheet.count(PNG) == 2 and "0 | 1 | 2 | 3" in sheet
+        notebook = json.loads(sheet)
+        forms = [cell for cell in notebook["cells"] if cell["cell_type"] == "raw"]
+        assert len(forms) == 12
+        for k, cell in enumerate(forms):
+            cell["source"] = f"level: {k % 4}\ncomment: {login.title()} says <i>why</i>?"
+        if login == "eve":
+            forms[-1]["source"] = "level: \ncomment: "
+        files.append(((f"{login.title()} {login.title()}son", number), f"{sheet_of(NAME)}.ipynb",
+                      json.dumps(notebook).encode()))  # fmt: skip
+    zipped = from_moodle(tmp_path / "moodle.zip", files)
+    assert typed(course, "collect", NAME, str(zipped), "--peer-review") == 0
+    capsys.readouterr()
+    assert typed(course, "feedback", NAME, "--unmarked") == 0
+    said = capsys.readouterr().out
+    assert "review missing: eve: 1 of 2 reviews" in said
+    assert "review missing: zoe: handed in no review" in said
+    assert "ada:" not in said and "bob:" not in said
+    for author in ("ada", "eve", "zoe"):
+        html = (course.root / "feedback" / author / NAME / f"{NAME}.html").read_text()
+        heard = html.partition('id="readers"')[2].partition("</section>")[0]
+        read_by[author] = heard.count("<h3>Reader ")
+        assert "reader 1 says &lt;i&gt;why" in heard or not read_by[author]
+        assert not re.findall("Ada|Bob|Eve", heard)
+    assert read_by.total() == 5
