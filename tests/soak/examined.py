@@ -47,7 +47,7 @@ class Step:
 
 LAYOUTS = ("questions", "nbgrader", "canvas", "moodle", "moodle-worksheet")
 EXPORTS = tuple(Step(f"export --layout {layout}") for layout in LAYOUTS)
-GRADE, FEEDBACK = Step("grade", needed=True), Step("feedback --unmarked")
+GRADE, FEEDBACK = Step("grade", needed=True), Step("feedback --unmarked", needed=True)
 REPORT, REGRADE = Step("class-report --to aside/report.md"), Step("grade --diff")
 LABKIT = (
     Step("collect downloads/moodle.zip", needed=True),
@@ -55,7 +55,7 @@ LABKIT = (
     Step("collect downloads/inbound --unverified", needed=True),
     GRADE,
     Step("grade --json"),
-    Step("feedback --unmarked --moodle aside/back.zip"),
+    Step("feedback --unmarked --moodle aside/back.zip", needed=True),
     *EXPORTS,
     REPORT,
     Step("class-report --names --jplag aside/jplag"),
@@ -64,7 +64,11 @@ LABKIT = (
 )
 BRIEFLY = (*LABKIT[:4], LABKIT[5], EXPORTS[0], REPORT)
 """What the gate's sample goes through."""
-NBGRADER = (Step("autograde --create", needed=True), Step("generate_feedback"), EXPORTS[0])
+NBGRADER = (
+    Step("autograde --create", needed=True),
+    Step("generate_feedback", needed=True),
+    EXPORTS[0],
+)
 OTHERS = (GRADE, FEEDBACK, EXPORTS[0], REPORT)
 """For assignments other than the first."""
 

@@ -13,6 +13,8 @@ from typing import Any
 
 import nbformat
 
+from labkit.grader.export import IDENTITIES
+
 from .classes import HONEST, NAME
 from .commands import Ended
 
@@ -197,8 +199,11 @@ def table(ended: Ended) -> Iterator[str]:
     rows = list(csv.reader(io.StringIO(ended.out.decode("utf-8", "replace"), newline="")))
     if len({len(row) for row in rows}) > 1:
         yield "export: rows of different lengths"
-    for cell in (cell for row in rows for cell in row):
-        if cell[:1] in set("=+-@\t\r") and not re.fullmatch(r"-?[\d.]+(e[+-]\d+)?", cell):
+    cells = (pair for row in rows for pair in zip(rows[0], row, strict=False))
+    for head, cell in cells:
+        number = re.fullmatch(r"-?[\d.]+(e[+-]\d+)?", cell)
+        name = head in IDENTITIES and re.fullmatch(r"[\w.@+-]*", cell)  # the platform's, as it is
+        if cell[:1] in set("=+-@\t\r") and not number and not name:
             yield f"export: a formula: {cell[:60]!a}"
             break
 
