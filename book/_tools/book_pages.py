@@ -33,7 +33,7 @@ ENGINES = (
     *filter(find_spec, ("pybullet", "mujoco")),
     *("numpy", "scipy", "pin", "matplotlib", "opencv-python-headless"),
 )
-FIGURES = re.compile(r"^from (figures(?:\.\w+)?) import (\w+)", re.M)
+FIGURES = re.compile(r"^from (figures(?:\.\w+)?) import ([\w, ]+)", re.M)
 
 
 def in_order() -> list[str]:
@@ -60,9 +60,13 @@ def page_keys() -> dict[str, str]:
         used = FIGURES.findall(page.read_text()) if page.exists() else []
         if not used:
             continue
-        modules = [f"{a}.{b}" if a == "figures" else a for a, b in used]
+        modules = dict.fromkeys(
+            f"{package}.{name}" if package == "figures" else package
+            for package, names in used
+            for name in names.split(", ")
+        )
         parts = [key_of(module) for module in modules]
-        if {"figures.comparison", "figures.gallery"} & set(modules):
+        if {"figures.comparison", "figures.gallery"} & modules.keys():
             parts.append(hashlib.sha256(CAMPAIGN.read_bytes()).hexdigest()[:16])
             parts += sorted(p.name for p in (ROOT / "build/campaign").glob("*.mp4"))
         keys[name] = " ".join(parts)

@@ -12,7 +12,7 @@ import book_pages
 import lab
 import pytest
 import yaml
-from book_pages import ROOT
+from book_pages import BOOK, ROOT
 from bs4 import BeautifulSoup
 from figures import architecture
 from figures.page import ConclusionFails, Question, holds, quiz, shown
@@ -30,6 +30,17 @@ def test_a_page_depends_on_what_it_imports_and_on_nothing_else():
     assert not any(
         n.startswith(("labkit/grader", "labkit/course", "solutions/paths/01")) for n in names
     )
+
+
+def test_every_module_that_a_page_imports_counts(monkeypatch):
+    """A page is made again when any of the figures that it imports changes, not the first alone."""
+    monkeypatch.setattr(book_pages, "key_of", lambda module: module)
+    keys = book_pages.page_keys()
+    for name in ("chapters/velocity", "chapters/impedance", "index"):
+        lines = re.findall(r"^from figures import (.+)$", (BOOK / f"{name}.md").read_text(), re.M)
+        used = {f"figures.{module}" for line in lines for module in line.split(", ")}
+        assert len(used) > 1
+        assert set(keys[name].split()) == used
 
 
 @pytest.mark.slow
