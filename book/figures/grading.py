@@ -38,6 +38,33 @@ def table_of_effort() -> HTML:
     return table(head, rows, "Time to grade a class, where hardly anything is to be computed")
 
 
+COSTS = (
+    ("a solved 01, open questions", "open"),
+    ("a solved 05, closed loops", "loops"),
+    ("a 01 with one answer that never ends", "answer"),
+    ("a 01 in which no answer ends", "endless"),
+)
+"""Submissions, and what ``python -m tests.bench costs`` calls them."""
+
+
+def table_of_costs() -> HTML:
+    """What submissions of different kinds cost, and how much of it is the students' own code."""
+    rows = []
+    for words, key in COSTS:
+        seconds, origin = _measured(f"cost_{key}_s")
+        more = [""] * 3
+        if f"cost_{key}_own_share" in MEASURED:
+            own, here, dask = (
+                _measured(f"cost_{key}_{x}")[0]
+                for x in ("own_share", "per_minute", "dask_per_minute")
+            )
+            more = [f"{100 * own:.0f} %", f"{here:.0f}", f"{dask:.0f}"]
+        rows.append((words, f"{seconds:.2g} s", *more))
+    glue("costs_origin", f"These are seconds {origin}.", display=False)
+    head = ("Submission", "a worker's time", "of it the student's code", "a minute", "through Dask")
+    return table(head, rows, "What a submission costs, and how many two workers grade a minute")
+
+
 def kernel() -> None:
     """What the hungriest of the solved notebooks takes of its kernel."""
     megabytes, origin = _measured("notebook_mb")
