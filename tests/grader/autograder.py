@@ -47,11 +47,18 @@ def packed(course, assignment, to, monkeypatch):
     return to
 
 
+def installed(folder):
+    """A folder that every user may read, with labkit and nothing else of the checkout."""
+    folder.chmod(0o755)
+    (folder / "labkit").symlink_to(ROOT / "labkit")
+    return folder / "labkit"
+
+
 @contextmanager
 def unpacked(archive):
     """``/autograder``, made of a zip, where every user may look for it."""
     with tempfile.TemporaryDirectory(prefix="autograder-") as folder:
-        os.chmod(folder, 0o755)
+        installed(Path(folder))
         place = Path(folder, "autograder")
         for name in ("submission", "results"):
             (place / name).mkdir(parents=True)
@@ -71,7 +78,7 @@ def graded(place, name, notebook):
     run = subprocess.run(
         ["setpriv", f"--bounding-set=-all,{rights}", "./run_autograder"],
         cwd=place,
-        env={"LABKIT_PYTHON": sys.executable, PLACE: str(place), "PYTHONPATH": str(ROOT)}
+        env={"LABKIT_PYTHON": sys.executable, PLACE: str(place), "PYTHONPATH": str(place.parent)}
         | {"PATH": os.environ["PATH"], "XDG_CACHE_HOME": str(place.parent / "cache")},
         capture_output=True,
         text=True,

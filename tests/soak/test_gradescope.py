@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import copy
 import os
+import tempfile
+from contextlib import ExitStack
+from pathlib import Path
 
 import pytest
 from attacks import CLASSES
-from autograder import graded, packed, unpacked
+from autograder import graded, installed, packed, unpacked
 from handmade import ROOT, add, put, raw
 
 from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
 from labkit.grader.grade import grade
 from labkit.grader.release import release
+from labkit.grader.sandbox import mounts
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
@@ -27,7 +31,13 @@ NAMES = Course(ROOT).names()
 FAST = Limits(cell=0.5, call=0.3, question=5.0, wall=30.0)
 SHARED = ("/etc/passwd", "/proc/", "list_home", "hard_link", "many_files", "fill_disk", "abstract")
 """What a user id alone leaves to a student's code: what everybody may read, and the disk."""
-ENDLESS = "def {name}(*args):\n    while True:\n        try:\n            while True: pass\n        except BaseException: pass\n"
+ENDLESS = """
+def NAME(*args):
+    while True:
+        try:
+            while True: pass
+        except BaseException: pass
+"""
 HOG = """
 def NAME(*args):
     import os
@@ -72,7 +82,7 @@ def test_answers_that_never_end_leave_a_result(term, name, tmp_path, monkeypatch
     archive = packed(term, name, tmp_path / "a.zip", monkeypatch)
     work, questions = notebook(term.root, "solved", name), Bundle.of(term, name).questions
     for question in questions:
-        put(work, question.name, ENDLESS.format(name=question.name))
+        put(work, question.name, ENDLESS.replace("NAME", question.name))
     with unpacked(archive) as place:
         end = graded(place, f"{name}.ipynb", raw(work))
     assert end.results["score"] == 0 and "Grading stopped" not in end.results["output"]
@@ -97,12 +107,15 @@ def test_who_takes_everything_loses_that_question_alone(term, tmp_path, monkeypa
 
 
 @pytest.mark.parametrize("kind", CLASSES)
-def test_attacks_earn_nothing_by_user_id(term, kind):
+def test_attacks_earn_nothing_by_user_id(term, kind, monkeypatch):
     """What is tried on a sandbox, tried on a user id: no point, no secret, no process left."""
     if os.geteuid():  # only root can give a process another user
         return
     bundle, wrong = Bundle.of(term, "01_paths"), []
-    with Sandbox(isolation=Isolation.USER) as sandbox:
+    with ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        monkeypatch.setattr(mounts, "_PACKAGE", installed(Path(folder)))
+        sandbox = stack.enter_context(Sandbox(isolation=Isolation.USER))
         for name, attack in CLASSES[kind].items():
             work = attack.planted(copy.deepcopy(notebook(term.root, "blank")), root=term.root)
             result = grade(raw(work), "mallory", bundle, sandbox, FAST)
