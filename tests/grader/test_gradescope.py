@@ -7,8 +7,10 @@ import os
 import signal
 import stat
 import subprocess
+import sys
 import time
 import zipfile
+from types import SimpleNamespace
 
 import pytest
 from autograder import graded, packed, unpacked
@@ -16,9 +18,11 @@ from handmade import FULL, add, raw
 from made import NAME, WHY, result_of
 
 from labkit.course.bundle import Bundle
-from labkit.course.own_arm import Arms
-from labkit.grader import gradescope
+from labkit.course.cli import FOR_INSTRUCTORS
+from labkit.course.own_arm import HANDLES, Arms
+from labkit.grader import gradescope, gradescope_zip
 from labkit.grader.gradescope import report
+from labkit.grader.roster import Roster, Student
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
@@ -123,6 +127,33 @@ def test_an_arm_of_ones_own_is_known_by_the_address(tmp_path, bundle, mail, know
     bundle = Bundle(bundle.data, Arms(1, {"ada@example.org": "ada"}))
     student, says = gradescope._student(path, bundle)
     assert (student == "ada@example.org", not says) == (known, known)
+
+
+def test_the_zip_knows_whose_arm_it_is_by_the_address(course, tmp_path, monkeypatch):
+    """Where a question is about one's own arm; a student without an address is named."""
+    whole = Bundle.of(course, NAME)
+
+    class Own(SimpleNamespace):
+        def of_student(self, student):
+            return Own(**vars(self))
+
+    own = Own(data=whole.data, arms=Arms(7, {"ada": "red", "bob": "red"}))
+    people = Roster((Student("ada", email="Ada@example.org"), Student("bob"), Student("eve")))
+    monkeypatch.setattr(gradescope_zip.Bundle, "of", lambda *_: own)
+    monkeypatch.setattr(gradescope_zip, "read_roster", lambda _: people)
+    monkeypatch.setattr(gradescope_zip, "wheel", lambda root, to: None)
+    (course.root / "constraints.txt").touch()
+    unknown = gradescope_zip.autograder(course, NAME, tmp_path / "a.zip")
+    assert [student.id for student in unknown] == ["bob"]
+    found = json.loads(zipfile.ZipFile(tmp_path / "a.zip").read(HANDLES))
+    assert found == {"secret": 7, "handles": {"ada@example.org": "red"}}
+
+
+def test_the_container_needs_no_package_of_instructors():
+    """What runs there imports what a student's labkit brings, and nothing more."""
+    code = "import sys, labkit.grader.gradescope\nprint(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {*FOR_INSTRUCTORS, "jinja2"} & set(run.stdout.split())
 
 
 def endless():
