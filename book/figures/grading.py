@@ -38,6 +38,35 @@ def table_of_effort() -> HTML:
     return table(head, rows, "Time to grade a class, where hardly anything is to be computed")
 
 
+COSTS = (
+    ("a solved 01, open questions", "open"),
+    ("a solved 05, closed loops", "loops"),
+    ("a 01 with one answer that never ends", "answer"),
+    ("a 01 in which no answer ends", "endless"),
+)
+"""Submissions, and what ``python -m tests.bench costs`` calls them."""
+ENDLESS = ("answer", "endless")
+"""Of these only the time is measured, which limits decide."""
+
+
+def table_of_costs() -> HTML:
+    """What submissions of different kinds cost, and how much of it is the students' own code."""
+    parts = (("s", "{:.2g} s"), ("own_share", "{:.0%}"), ("per_minute", "{:.0f}"))
+    parts += (("dask_per_minute", "{:.0f}"),)
+    rows = [(words, *(_cost(key, *part) for part in parts)) for words, key in COSTS]
+    head = ("Submission", "a worker's time", "of it the student's code", "a minute", "through Dask")
+    return table(head, rows, "What a submission costs, and how many two workers grade in a minute")
+
+
+def _cost(key: str, part: str, form: str) -> str:
+    """A figure of ``python -m tests.bench costs``, or that there is none."""
+    name = f"cost_{key}_{part}"
+    if key in ENDLESS and part != "s":
+        return ""
+    known = MEASURED | (json.loads(BENCH.read_text()) if BENCH.exists() else {})
+    return form.format(known[name]) if known.get(name) is not None else "not measured"
+
+
 def kernel() -> None:
     """What the hungriest of the solved notebooks takes of its kernel."""
     megabytes, origin = _measured("notebook_mb")

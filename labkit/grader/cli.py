@@ -89,9 +89,12 @@ def feedback(
 @of_course
 @click.option(
     "--layout",
-    type=click.Choice(["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"]),
+    type=click.Choice(
+        ["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet", "gradescope"]
+    ),
     default="questions",
-    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle.",
+    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
+    "gradescope: not marks, but the zip with which Gradescope grades ASSIGNMENT itself.",
 )
 @click.option(
     "--column", metavar="NAME", help="The platform's name of the assignment: 'Paths (4711)'."
@@ -119,6 +122,9 @@ def export(
     from .marks import marks_of
     from .rules import read_rules
 
+    if layout == "gradescope":
+        return _autograder(course, assignment, to)
+
     def read(name: str) -> list[Mark]:
         course.notebook_source(name)
         found = list(marks_of(course, name))
@@ -141,6 +147,20 @@ def export(
     tell(remarks(layout, marks), sys.stderr)
     _write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
     return int(any(mark.missing for mark in marks))
+
+
+def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
+    """Write the zip for Gradescope; name those whose own arm it cannot tell."""
+    from .gradescope_zip import autograder
+
+    if assignment is None or to is None:
+        raise LabkitError("name ASSIGNMENT, and the zip to write: --to FILE")
+    with Failures() as failures:
+        unknown = autograder(course, assignment, to)
+        why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
+        failures.add("not known to Gradescope", [Failed(x.id, why) for x in unknown])
+        print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
+    return failures.code
 
 
 @verb("01_paths --names")

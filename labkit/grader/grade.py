@@ -7,7 +7,7 @@ plain data, read with limits.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
@@ -35,8 +35,18 @@ ADDED = (
 )
 
 
+def _nobody(verdict: Verdict) -> None:
+    """Who listens while a notebook is graded, if nobody does."""
+
+
 def grade(
-    data: bytes, student: str, bundle: Bundle, sandbox: Sandbox, limits: Limits, note: str = ""
+    data: bytes,
+    student: str,
+    bundle: Bundle,
+    sandbox: Sandbox,
+    limits: Limits,
+    note: str = "",
+    listener: Callable[[Verdict], None] = _nobody,
 ) -> Result:
     """Grade one notebook.
 
@@ -47,6 +57,7 @@ def grade(
         sandbox: Where its code runs.
         limits: What it may use.
         note: What was unusual about the file.
+        listener: Called with each verdict on a question that was asked, as soon as it is reached.
 
     Returns:
         The result, whatever the notebook does.
@@ -67,10 +78,10 @@ def grade(
         functions = [RemoteFunction(question, session) for question in questions]
         tried = {function.question.name: _public(function) for function in functions}
         failed = session.failed()  # nothing shown of cells is made after the first hidden case
-        verdicts = {
-            name: _guarded(function, before)
-            for function, (name, before) in zip(functions, tried.items(), strict=True)
-        }
+        verdicts = {}
+        for function, (name, before) in zip(functions, tried.items(), strict=True):
+            verdicts[name] = _guarded(function, before)
+            listener(verdicts[name])
         spent = session.spent
     result = replace(
         _ungraded(student, bundle, sandbox.level, data),

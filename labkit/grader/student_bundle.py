@@ -88,7 +88,7 @@ def student_folder(
     if book is None and (course.root / BOOK / "index.html").exists():
         shutil.copytree(course.root / BOOK, top / "book")
         book = "book/index.html"
-    _wheel(course.root, top)
+    wheel(course.root, top, without=GRADER)
     (top / "START.html").write_text(
         render("start.html.j2", names=names, book=book), encoding="utf-8"
     )
@@ -124,13 +124,23 @@ def _first_prediction(folder: Path, name: str) -> tuple[str, str] | None:
     return (name, found[1]) if found else None
 
 
-def _wheel(root: Path, to: Path) -> None:
-    """Build it from a copy: beside its sources lies what earlier builds left, gone modules too."""
+def wheel(root: Path, to: Path, without: str | None = None) -> None:
+    """Build labkit's wheel from a copy: beside its sources lies what earlier builds left.
+
+    Args:
+        root: The course's folder, a checkout.
+        to: The folder to write to.
+        without: A folder that is left out.
+
+    Raises:
+        LabkitError: It could not be built.
+    """
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder)
         unwanted = shutil.ignore_patterns("__pycache__")
         shutil.copytree(root / "labkit", copy / "labkit", ignore=unwanted)
-        shutil.rmtree(copy / GRADER)
+        if without:
+            shutil.rmtree(copy / without)
         for name in ("pyproject.toml", "README.md", "LICENSE"):
             shutil.copy(root / name, copy)
         words = ["wheel", "--quiet", "--no-deps", "-w", str(to), str(copy)]

@@ -18,7 +18,7 @@ from .results import Result
 from .sandbox.cgroup import MEMORY, limit_memory
 from .sandbox.launch import Sandbox, SandboxLost
 from .sandbox.limits import Limits, slowness
-from .sandbox.mounts import NoIsolation
+from .sandbox.mounts import Isolation, NoIsolation
 from .submission import Submission
 
 TRIES = 2
@@ -104,7 +104,8 @@ def _sandbox(task: Task, bundle: Bundle) -> Sandbox:
     if key not in _sandboxes:
         close_sandbox()
         loads = imports(bundle.data["cells"])
-        _sandboxes[key] = Sandbox(loads, [task.course.root], isolated=task.isolated)
+        how = Isolation.BUBBLEWRAP if task.isolated else Isolation.NONE
+        _sandboxes[key] = Sandbox(loads, [task.course.root], how)
     return _sandboxes[key]
 
 

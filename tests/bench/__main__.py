@@ -14,6 +14,7 @@ from . import (
     campaign,
     claims,
     closed_loop,
+    costs,
     drake,
     engines,
     grading,
@@ -39,6 +40,7 @@ MEASUREMENTS = (
     live,
     notebooks,
     grading,
+    costs,
     claims,
 )
 OUT = Path("build/bench.json")

@@ -22,7 +22,7 @@ from labkit.grader import worker
 from labkit.grader.executor import LocalExecutor, executor
 from labkit.grader.sandbox import cgroup
 from labkit.grader.sandbox.limits import Limits
-from labkit.grader.sandbox.mounts import NoIsolation
+from labkit.grader.sandbox.mounts import Isolation, NoIsolation
 from labkit.grader.submission import Submission
 from labkit.grader.worker import Task, close_sandbox, grade_submission
 
@@ -265,8 +265,8 @@ def test_a_submission_that_is_to_be_isolated_is(monkeypatch, task):
     made = []
 
     class Fake:
-        def __init__(self, loads, hidden, *, isolated):
-            made.append(isolated)
+        def __init__(self, loads, hidden, isolation):
+            made.append(isolation is Isolation.BUBBLEWRAP)
 
         def close(self):
             made.append("closed")

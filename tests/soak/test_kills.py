@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from io import StringIO
 
 import numpy as np
@@ -148,3 +148,35 @@ def test_all_parts_are_killed_by_both_signals():
     drawn = [moment.values for moment in MOMENTS]
     assert len(drawn) >= 20
     assert {values[:2] for values in drawn} == {(a, b) for a in WHOM for b in SIGNALS}
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("by", ["cores", "dask"])
+def test_a_watch_that_is_killed_loses_nothing(handed_in, tmp_path, by):
+    """What was handed in and has no result is the queue: each notebook is graded, and once."""
+    from distributed import LocalCluster
+
+    course = _copy(handed_in, tmp_path / "course")
+    with ExitStack() as stack:
+        words = ["--jobs", "2"]
+        if by == "dask":
+            cluster = LocalCluster(2, threads_per_worker=1, dashboard_address=None)
+            words = ["--dask", stack.enter_context(cluster).scheduler_address]
+        first = _watched(course, words, 2)
+        last = _watched(course, words, STUDENTS)
+    assert len(last) == STUDENTS
+    assert {name: last[name] for name in first} == first
+
+
+def _watched(course, words, enough):
+    """Watch until there are so many results, then kill; when each of them was written."""
+    run, until = _start(course, "grade", NAME, "--watch", *words), time.monotonic() + GUARD
+    folder = course.results / NAME
+    while len(list(folder.glob("*.json"))) < enough:
+        assert run.poll() is None and time.monotonic() < until, (
+            course.root / "said.txt"
+        ).read_text()
+        time.sleep(0.05)
+    run.kill()
+    run.wait()
+    return {path.name: path.stat().st_mtime_ns for path in folder.glob("*.json")}

@@ -66,8 +66,7 @@ def confine(limits: dict[str, Any], uid: int, shown: Sequence[str] = ()) -> None
         OSError: Something could not be taken away.
     """
     check(libc.unshare(_NEW_MOUNTS | _NEW_IPC), "unshare")
-    with suppress(OSError), open("/proc/self/oom_score_adj", "w") as file:
-        file.write("1000")  # if memory runs out, this one goes first
+    first_to_go()
     _mount(None, "/", None, _RECURSIVE | _PRIVATE)
     held = [(place, os.open(place, os.O_PATH)) for place in shown]
     size = f"size={limits['files'] * _MEGA},nr_inodes=4096,mode=1777"
@@ -76,13 +75,24 @@ def confine(limits: dict[str, Any], uid: int, shown: Sequence[str] = ()) -> None
     for place, end in held:
         _show_again(place, end)
     _mount("tmpfs", "/proc", "tmpfs", _READ_ONLY | _NO_SUID | _NO_DEV, "size=0")
+    renounce(limits, uid, "/tmp")
+
+
+def first_to_go() -> None:
+    """If memory runs out, the kernel ends this process and its children before any other."""
+    with suppress(OSError), open("/proc/self/oom_score_adj", "w") as file:
+        file.write("1000")
+
+
+def renounce(limits: dict[str, Any], uid: int, folder: str) -> None:
+    """Become a user without any rights, in a folder, within limits, behind the filter of calls."""
     if os.geteuid() == 0 and uid:
         with suppress(PermissionError):  # a user namespace has but one group
             os.setgroups([])
         os.setresgid(uid, uid, uid)
         os.setresuid(uid, uid, uid)
     drop_privileges()
-    os.chdir("/tmp")
+    os.chdir(folder)
     os.umask(0o077)
     set_limits(limits)
     seccomp.install(libc)

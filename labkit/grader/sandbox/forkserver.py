@@ -10,19 +10,17 @@ from __future__ import annotations
 import gc
 import json
 import os
-import platform
 import shutil
-import signal
 import socket
 import sys
-import tempfile
 import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib import import_module
-from typing import Any
+from typing import Any, Protocol
 
-from . import confine, parse, seccomp
+from . import confine, parse
+from .apart import Bare, ByUser, Namespaces
 from .protocol import Connection, Disconnected
 
 MAGIC = "IPython.core.inputtransformer2"
@@ -34,18 +32,42 @@ Serve = Callable[[Connection, dict[str, Any]], None]
 """What a child does, given the connection and the request that it was forked for."""
 
 
+class Confinement(Protocol):
+    """What keeps the children of a forkserver apart."""
+
+    def fork(self) -> int:
+        """Fork; as `os.fork`."""
+        ...
+
+    def enter(self, limits: dict[str, Any], uid: int) -> None:
+        """Confine this process, a child.
+
+        Args:
+            limits: See `labkit.grader.sandbox.limits.Limits`.
+            uid: Of a user that is this sandbox's alone; 0 if nobody can be given one.
+        """
+        ...
+
+    def kill(self, child: int, *, whole: bool) -> None:
+        """Kill what a child started and, if ``whole``, the child too."""
+        ...
+
+    def close(self) -> None:
+        """Clear away what is left, at the end."""
+        ...
+
+
 def main() -> None:
     """Serve the worker until it closes its end: stdin's is for students, stdout's for parsers.
 
-    Modules named on the command line are loaded too.  With ``--bare`` nothing is confined; see
-    `labkit grade --unsafe-no-isolation`.
+    Modules named on the command line are loaded too.  With ``--bare`` nothing is confined, see
+    `labkit grade --unsafe-no-isolation`; with ``--by-user`` by user id alone, see `by_user`.
     """
-    modules = [word for word in sys.argv[1:] if word != "--bare"]
-    bare = "--bare" in sys.argv
+    kinds: dict[str, Callable[[], Confinement]] = {"--bare": Bare, "--by-user": ByUser}
+    kind = next((kinds[word] for word in sys.argv if word in kinds), Namespaces)
+    modules = [word for word in sys.argv[1:] if word not in kinds]
     students, parsers = (socket.socket(fileno=os.dup(number)) for number in (0, 1))
-    if not bare:
-        confine.lock_devices()
-        seccomp.program(platform.machine())
+    confinement = kind()
     nowhere = os.open(os.devnull, os.O_RDWR)
     os.dup2(nowhere, 0)
     os.dup2(nowhere, 1)
@@ -60,20 +82,19 @@ def main() -> None:
     space = confine.address_space()
     gc.collect()
     gc.freeze()
-    home = None if bare else os.open("/proc/self/ns/pid", os.O_RDONLY)
-    shown = [] if bare else confine.shown_below()
     worker = Connection(control)
     worker.send({"ready": True})
     while True:
         try:
             request, ends = _read(control)
         except Disconnected:
+            confinement.close()
             return
         if "kill" in request:
-            _kill(request["kill"], whole=request["whole"])
+            confinement.kill(request["kill"], whole=request["whole"])
             worker.send({"killed": request["kill"]})
             continue
-        child = _fork(home)
+        child = confinement.fork()
         if child:
             os.close(ends[0])
             worker.send({"pid": child})
@@ -82,30 +103,13 @@ def main() -> None:
         control.close()
         connection = Connection(socket.socket(fileno=ends[0]))
         try:
-            limits = request["limits"] | {"address_space": space}
-            if home is None:
-                os.chdir(tempfile.mkdtemp(prefix="labkit-"))
-                confine.set_limits(limits | {"processes": 4096})
-            else:
-                os.close(home)
-                confine.confine(limits, request["uid"], shown)
+            confinement.enter(request["limits"] | {"address_space": space}, request["uid"])
             connection.send({"confined": True})
             serve(connection, request)
         except BaseException:
             with suppress(BaseException):
                 connection.send({"failed": traceback.format_exc(limit=3)[-2000:]})
         os._exit(0)
-
-
-def _fork(home: int | None) -> int:
-    """Fork; the child begins a process namespace, unless there is no ``home`` to return to."""
-    if home is None:
-        return os.fork()
-    confine.check(confine.libc.unshare(confine.NEW_PIDS), "unshare")
-    child = os.fork()
-    if child:
-        confine.check(confine.libc.setns(home, confine.NEW_PIDS), "setns")
-    return child
 
 
 def _load(modules: Sequence[str]) -> Serve:
@@ -144,29 +148,6 @@ def _read(control: socket.socket) -> tuple[dict[str, Any], list[int]]:
         raise Disconnected("the worker is gone")
     request: dict[str, Any] = json.loads(data)
     return request, ends
-
-
-def _kill(child: int, *, whole: bool) -> None:
-    """Kill a process and all that descends from it, or only what descends from it."""
-    for pid in _family(child) - (set() if whole else {child}):
-        with suppress(ProcessLookupError):
-            os.kill(pid, signal.SIGKILL)
-    if whole:
-        with suppress(ChildProcessError):
-            os.waitpid(child, 0)
-
-
-def _family(child: int) -> set[int]:
-    """A process and all that descends from it."""
-    parents = {}
-    for name in filter(str.isdigit, os.listdir("/proc")):
-        with suppress(OSError, ValueError), open(f"/proc/{name}/stat") as file:
-            parents[int(name)] = int(file.read().rpartition(")")[2].split()[1])
-    family, size = {child}, 0
-    while len(family) > size:
-        size = len(family)
-        family |= {pid for pid, parent in parents.items() if parent in family}
-    return family
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from typing import Any
 from . import mounts
 from .cgroup import SANDBOX, Group
 from .limits import Limits
-from .mounts import INSTALL, NoIsolation
+from .mounts import INSTALL, Isolation, NoIsolation
 from .protocol import Connection, Disconnected, ProtocolError
 
 FIRST_UID = 64000
@@ -71,7 +71,7 @@ class Sandbox:
     Args:
         loads: Modules that submissions will import, to be loaded once for all.
         hidden: Folders that must not be seen inside, wherever they lie.
-        isolated: False only if somebody typed ``--unsafe-no-isolation``.
+        isolation: What keeps submissions apart; nothing weaker than bubblewrap is taken unasked.
 
     Raises:
         NoIsolation: It cannot be made here.
@@ -79,12 +79,16 @@ class Sandbox:
     """
 
     def __init__(
-        self, loads: Sequence[str] = (), hidden: Iterable[Path] = (), *, isolated: bool = True
+        self,
+        loads: Sequence[str] = (),
+        hidden: Iterable[Path] = (),
+        isolation: Isolation = Isolation.BUBBLEWRAP,
     ) -> None:
-        command, variables = mounts.isolated(hidden) if isolated else mounts.bare()
-        self.isolated = isolated
+        command, variables = mounts.command(isolation, hidden)
+        self.isolation = isolation
         self.uid, self._claim = _user()
-        self.group = Group.make(f"{os.getpid()}-{next(_numbers)}", SANDBOX) if isolated else None
+        counted = isolation is Isolation.BUBBLEWRAP
+        self.group = Group.make(f"{os.getpid()}-{next(_numbers)}", SANDBOX) if counted else None
         self._log = os.memfd_create("labkit-sandbox-log")
         ours, theirs = zip(*(socket.socketpair() for _ in _ROLES), strict=True)
         self._forkservers = dict(zip(_ROLES, map(Connection, ours), strict=True))
@@ -128,11 +132,11 @@ class Sandbox:
     @property
     def level(self) -> str:
         """What keeps a submission apart here, in a line."""
-        if not self.isolated:
-            return "none (asked for by --unsafe-no-isolation)"
+        if self.isolation is Isolation.NONE:
+            return str(self.isolation.value)
         who = f"user {self.uid}" if self.uid else "an unprivileged user"
         group = self.group.says if self.group else "no cgroup"
-        return f"bubblewrap, {who}, no network, seccomp, limits, {group}"
+        return f"{self.isolation.value}, {who}, no network, seccomp, limits, {group}"
 
     def spawn(self, role: str, limits: Limits, **more: Any) -> SandboxProcess:
         """Fork a fresh process inside, to be closed after use; nothing of it stays.

@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Sequence
+from enum import Enum
 from pathlib import Path
 
 import labkit
@@ -50,6 +51,33 @@ class NoIsolation(LabkitError):
     """This machine cannot keep a student's code apart; the sentence says how it could."""
 
 
+class Isolation(Enum):
+    """What keeps a student's code apart, in words; chosen by whoever starts a sandbox."""
+
+    BUBBLEWRAP = "bubblewrap"
+    USER = "no bubblewrap but a user id"
+    NONE = "none (asked for by --unsafe-no-isolation)"
+
+
+def command(isolation: Isolation, hidden: Iterable[Path]) -> tuple[list[str], dict[str, str]]:
+    """The command that starts the forkserver, and its environment.
+
+    Args:
+        isolation: What keeps its children apart.
+        hidden: Folders of which nothing may be seen inside; bubblewrap alone can hide them.
+
+    Raises:
+        NoIsolation: It cannot be had here.
+    """
+    match isolation:
+        case Isolation.BUBBLEWRAP:
+            return isolated(hidden)
+        case Isolation.USER:
+            return by_user()
+        case Isolation.NONE:
+            return bare()
+
+
 def isolated(hidden: Iterable[Path] = ()) -> tuple[list[str], dict[str, str]]:
     """The command that makes a sandbox with the forkserver in it, and bubblewrap's environment.
 
@@ -81,6 +109,20 @@ def isolated(hidden: Iterable[Path] = ()) -> tuple[list[str], dict[str, str]]:
         words += ["--setenv", name, value]
     words += ["--remount-ro", "/dev", "--remount-ro", "/", "--chdir", "/", *_FORKSERVER]
     return words, {"PATH": os.environ.get("PATH", "/usr/bin:/bin")}
+
+
+def by_user() -> tuple[list[str], dict[str, str]]:
+    """The command that starts the forkserver for `by_user`, and its environment.
+
+    Raises:
+        NoIsolation: This is not root, or there is no filter for this processor.
+    """
+    if os.geteuid():
+        raise NoIsolation("only root can give a student's code another user id; run it as root")
+    if not seccomp.supported():
+        raise NoIsolation("no system call filter for this processor; grade on x86-64 or arm64")
+    more = {"PYTHONPATH": str(_PACKAGE.parent), "MPLCONFIGDIR": str(_font_list())}
+    return [*_FORKSERVER, "--by-user"], _INSIDE | more
 
 
 def bare() -> tuple[list[str], dict[str, str]]:

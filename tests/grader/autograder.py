@@ -1,0 +1,91 @@
+"""Gradescope's container as this machine can make it: its folders, its limits, Docker's rights."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from handmade import ROOT
+
+from labkit.grader import gradescope_zip
+from labkit.grader.gradescope import PLACE
+from labkit.grader.sandbox.cgroup import Group
+
+GIVEN = {"memory": 768 * 2**20, "processor": 50_000}
+"""What Gradescope gives by default: bytes, and microseconds of each 100 ms."""
+RIGHTS = (
+    "chown dac_override fowner fsetid kill setgid setuid setpcap net_bind_service net_raw "
+    "sys_chroot mknod audit_write setfcap"
+)
+"""Those of root in a container that was given no others; none makes a namespace."""
+
+
+class Ended(NamedTuple):
+    """How a run ended: what Gradescope reads, what the instructor may read, the folder's mode."""
+
+    results: dict
+    said: str
+    mode: int
+
+    def score(self, question):
+        return next(t["score"] for t in self.results["tests"] if t["name"] == question)
+
+
+def packed(course, assignment, to, monkeypatch):
+    """The zip of an assignment, without labkit in it."""
+    shutil.copy(ROOT / "constraints.txt", course.root)
+    monkeypatch.setattr(gradescope_zip, "wheel", lambda root, to: None)
+    gradescope_zip.autograder(course, assignment, to)
+    return to
+
+
+def installed(folder):
+    """A folder that every user may read, with labkit and nothing else of the checkout."""
+    folder.chmod(0o755)
+    (folder / "labkit").symlink_to(ROOT / "labkit")
+    return folder / "labkit"
+
+
+@contextmanager
+def unpacked(archive):
+    """``/autograder``, made of a zip, where every user may look for it."""
+    with tempfile.TemporaryDirectory(prefix="autograder-") as folder:
+        installed(Path(folder))
+        place = Path(folder, "autograder")
+        for name in ("submission", "results"):
+            (place / name).mkdir(parents=True)
+        zipfile.ZipFile(archive).extractall(place / "source")
+        shutil.copy(place / "source/run_autograder", place)
+        (place / "run_autograder").chmod(0o755)
+        yield place
+
+
+def graded(place, name, notebook):
+    """Hand in a notebook and start ``run_autograder`` as Gradescope does."""
+    (place / "submission" / name).write_bytes(notebook)
+    users = [{"email": "ada@example.org", "id": 1, "name": "Ada"}]
+    (place / "submission_metadata.json").write_text(json.dumps({"users": users}))
+    group = Group.make(f"{os.getpid()}-gradescope", GIVEN)
+    rights = ",".join(f"+{name}" for name in RIGHTS.split())
+    run = subprocess.run(
+        ["setpriv", f"--bounding-set=-all,{rights}", "./run_autograder"],
+        cwd=place,
+        env={"LABKIT_PYTHON": sys.executable, PLACE: str(place), "PYTHONPATH": str(place.parent)}
+        | {"PATH": os.environ["PATH"], "XDG_CACHE_HOME": str(place.parent / "cache")},
+        capture_output=True,
+        text=True,
+        check=True,
+        preexec_fn=group and group.enter,
+    )
+    if group:
+        group.remove()
+    results = json.loads((place / "results/results.json").read_text())
+    return Ended(results, run.stdout, place.stat().st_mode & 0o777)

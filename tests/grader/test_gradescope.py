@@ -1,0 +1,225 @@
+"""Gradescope: what its autograder is given, and what its container grades."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import stat
+import subprocess
+import sys
+import time
+import zipfile
+from types import SimpleNamespace
+
+import pytest
+from autograder import graded, packed, unpacked
+from handmade import FULL, add, raw
+from made import NAME, WHY, result_of
+
+from labkit.course.bundle import Bundle
+from labkit.course.cli import FOR_INSTRUCTORS
+from labkit.course.own_arm import HANDLES, Arms
+from labkit.grader import gradescope, gradescope_zip
+from labkit.grader.gradescope import report
+from labkit.grader.roster import Roster, Student
+from labkit.grader.sandbox.apart import alive
+from labkit.grader.sandbox.launch import Sandbox
+from labkit.grader.sandbox.limits import Limits
+from labkit.grader.sandbox.mounts import Isolation, NoIsolation
+
+DAEMON = """
+import os, signal
+if not os.fork():
+    os.setsid()
+    if not os.fork():
+        signal.pause()
+    os._exit(0)
+"""
+HOSTILE = """
+import ctypes, os, signal
+got, root = [] if os.getuid() else ["root"], "{place}"
+for folder in ("", "/source", "/source/build/course/bundle", "/results"):
+    try:
+        got.append(os.listdir(root + folder))
+    except OSError:
+        pass
+for write in ("results/results.json", "source/x", "submission/x"):
+    try:
+        got.append(open(f"{root}/{write}", "w"))
+    except OSError:
+        pass
+for pid in filter(str.isdigit, os.listdir("/proc")):
+    for part in ("environ", "mem", "maps"):
+        try:
+            mine = os.stat(f"/proc/{pid}").st_uid == os.getuid()
+            if not mine and open(f"/proc/{pid}/{part}", "rb").read(1):
+                got.append((pid, part))
+        except OSError:
+            pass
+    try:
+        if os.getuid() and int(pid) != os.getpid():
+            os.kill(int(pid), signal.SIGKILL)
+            got.append(f"killed {pid}")
+    except OSError:
+        pass
+libc = ctypes.CDLL(None)
+got += [name for name in ("unshare", "setuid", "setns") if getattr(libc, name)(0) == 0]
+try:
+    import socket
+    got.append(socket.socket())
+except OSError:
+    pass
+"""
+"""It reads, writes and kills."""
+
+
+@pytest.fixture
+def archive(course, tmp_path, monkeypatch):
+    return packed(course, NAME, tmp_path / "autograder.zip", monkeypatch)
+
+
+def test_the_zip_has_what_gradescope_asks_for(archive, course):
+    """Two scripts that can be executed at its top, the release's bundle, and nobody reads it."""
+    found = zipfile.ZipFile(archive)
+    for name in ("setup.sh", "run_autograder"):
+        assert found.getinfo(name).external_attr >> 16 == 0o755
+        assert found.read(name).startswith(b"#!/bin/sh\n")
+        subprocess.run(["sh", "-n"], input=found.read(name), check=True)
+    inside = json.loads(found.read(f"build/course/bundle/{NAME}.json"))
+    assert inside == Bundle.of(course, NAME).data
+    assert stat.S_IMODE(archive.stat().st_mode) == 0o600
+    assert not [name for name in found.namelist() if "handles" in name or "solutions" in name]
+
+
+def test_a_report_has_points_and_words_for_each_question(course):
+    """Before the end what is graded counts; what a person marks has a sentence and no points."""
+    bundle, result = Bundle.of(course, NAME), result_of(course, "ada")
+    verdicts = {answer.verdict.name: answer.verdict for answer in result.questions}
+    first = dict(list(verdicts.items())[:2])
+    early = report(bundle, first)
+    assert early["score"] == sum(v.earned for v in first.values())
+    assert [t["score"] > 0 for t in early["tests"][:4]] == [True, True, False, False]
+    assert "not graded yet" in early["tests"][2]["output"]
+    whole = report(bundle, verdicts, result)
+    assert whole["score"] == FULL == sum(t.get("max_score", 0) for t in whole["tests"])
+    (why,) = (t for t in whole["tests"] if t["name"] == WHY)
+    assert "score" not in why and "A person marks" in why["output"]
+    assert result.written[WHY] in why["output"]
+    assert [t["name"] for t in whole["tests"] if t["visibility"] == "hidden"] == [
+        "for the instructor"
+    ]
+
+
+def test_a_file_that_cannot_be_graded_says_why(course):
+    """It has 0 points, and the reason stands above the questions."""
+    refused = result_of(course, "ada", rejected="the file is empty")
+    found = report(Bundle.of(course, NAME), {}, refused)
+    assert found["score"] == 0 and "the file is empty" in found["output"]
+    assert "yet" not in found["tests"][0]["output"]
+
+
+@pytest.mark.parametrize("mail, known", [("ADA@example.org", True), ("eve@example.org", False)])
+def test_an_arm_of_ones_own_is_known_by_the_address(tmp_path, bundle, mail, known):
+    """Of a group the member counts whom the list knows; an address that it lacks is named."""
+    path = tmp_path / "metadata.json"
+    path.write_text(json.dumps({"users": [{"email": "bob@example.org"}, {"email": mail}]}))
+    bundle = Bundle(bundle.data, Arms(1, {"ada@example.org": "ada"}))
+    student, says = gradescope._student(path, bundle)
+    assert (student == "ada@example.org", not says) == (known, known)
+
+
+def test_the_zip_knows_whose_arm_it_is_by_the_address(course, tmp_path, monkeypatch):
+    """Where a question is about one's own arm; a student without an address is named."""
+    whole = Bundle.of(course, NAME)
+
+    class Own(SimpleNamespace):
+        def of_student(self, student):
+            return Own(**vars(self))
+
+    own = Own(data=whole.data, arms=Arms(7, {"ada": "red", "bob": "red"}))
+    people = Roster((Student("ada", email="Ada@example.org"), Student("bob"), Student("eve")))
+    monkeypatch.setattr(gradescope_zip.Bundle, "of", lambda *_: own)
+    monkeypatch.setattr(gradescope_zip, "read_roster", lambda _: people)
+    monkeypatch.setattr(gradescope_zip, "wheel", lambda root, to: None)
+    (course.root / "constraints.txt").touch()
+    unknown = gradescope_zip.autograder(course, NAME, tmp_path / "a.zip")
+    assert [student.id for student in unknown] == ["bob"]
+    found = json.loads(zipfile.ZipFile(tmp_path / "a.zip").read(HANDLES))
+    assert found == {"secret": 7, "handles": {"ada@example.org": "red"}}
+
+
+def test_the_container_needs_no_package_of_instructors():
+    """What runs there imports what a student's labkit brings, and nothing more."""
+    code = "import sys, labkit.grader.gradescope\nprint(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {*FOR_INSTRUCTORS, "jinja2"} & set(run.stdout.split())
+
+
+def endless():
+    time.sleep(60)
+
+
+def killed():
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+@pytest.mark.parametrize("end, why", [(endless, "took too long"), (killed, "its memory")])
+def test_what_was_graded_until_a_limit_counts(archive, course, monkeypatch, end, why):
+    """The watchdog outlives time and memory of the grader, and leaves the points that are there."""
+    (answer, *_) = result_of(course, "ada").questions
+
+    def grade(bundle, place, results):
+        found = report(bundle, {answer.verdict.name: answer.verdict})
+        results.write_text(json.dumps(found))
+        end()
+
+    with unpacked(archive) as place:
+        monkeypatch.setenv(gradescope.PLACE, str(place))
+        monkeypatch.setattr(gradescope, "_grade", grade)
+        monkeypatch.setattr(gradescope, "SECONDS", 2.0)
+        monkeypatch.setattr("sys.argv", ["gradescope"])
+        gradescope.main()
+        found = json.loads((place / "results/results.json").read_text())
+    assert found["score"] == answer.verdict.earned and why in found["output"]
+
+
+def test_only_root_can_keep_apart_by_user(monkeypatch):
+    """Without root there is no such sandbox; a weaker one is never made in its place."""
+    monkeypatch.setattr(os, "geteuid", lambda: 1000)
+    with pytest.raises(NoIsolation, match="only root"):
+        Sandbox(isolation=Isolation.USER)
+
+
+def test_without_bubblewrap_nothing_weaker_is_taken_unasked(monkeypatch):
+    """A sandbox that nobody chose the kind of is bubblewrap's, or there is none."""
+    monkeypatch.setenv("PATH", "/nowhere")
+    with pytest.raises(NoIsolation, match="bubblewrap is missing"):
+        Sandbox()
+
+
+def test_a_daemon_ends_with_its_submission():
+    """Whatever a submission started is gone once its process is closed, and its folder too."""
+    if os.geteuid():  # only root can give a process another user
+        return
+    source = f"{DAEMON}\nprint(os.getcwd())"
+    with Sandbox(isolation=Isolation.USER) as sandbox:
+        with sandbox.spawn("student", Limits()) as inside:
+            inside.connection.send({"cell": 0, "source": source, "answers": [], "seconds": 30.0})
+            folder = inside.connection.read(60.0)["output"].strip()
+            assert len(alive(sandbox.uid)) >= 2 and os.path.isdir(folder)
+        assert not alive(sandbox.uid) and not os.path.exists(folder)
+
+
+@pytest.mark.slow
+def test_a_hostile_notebook_gets_nothing_and_keeps_what_it_earned(archive, solved):
+    """Grade it with Gradescope's limits and rights: full marks, nothing read, written or killed."""
+    if os.geteuid():  # Gradescope starts it as root
+        return
+    with unpacked(archive) as place:
+        hostile = HOSTILE.replace("{place}", str(place)) + DAEMON
+        hostile += "\nif got:\n    raise Exception(f'GOT {got}')"
+        end = graded(place, f"{NAME}.ipynb", raw(add(solved, hostile)))
+        assert "GOT" not in end.results["output"] and "did not run" not in end.results["output"]
+        assert end.results["score"] == FULL and "a user id" in end.said
+        assert end.mode == 0o700
