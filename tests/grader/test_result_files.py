@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from handmade import QUICK, raw
@@ -78,6 +79,12 @@ def test_what_is_not_a_whole_result_is_none(marked, capsys, change):
         (line,) = [x for x in capsys.readouterr().err.splitlines() if ": ada: " in x]
         assert "ada.json is damaged; it is " in line
         assert line.endswith(f"type: labkit grade {NAME} --student ada")
+
+
+def test_a_notebook_that_only_people_mark_has_a_whole_result(course):
+    """Without a question and without points it is read as it was written."""
+    report = replace(result_of(course, "ada"), score=0.0, points=0.0, questions=())
+    assert Result.read(report.text()) == report
 
 
 @pytest.mark.parametrize("numbers", [{}, {"format": FORMAT + 1}, {"physics": 99}])
