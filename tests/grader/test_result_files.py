@@ -112,6 +112,16 @@ def test_a_bundle_of_another_version_is_refused(course):
         Bundle.of(course, NAME)
 
 
+@pytest.mark.parametrize("text", ["[1]", "{", "questions"])
+def test_a_bundle_that_is_not_whole_is_refused(course, text):
+    """Nobody is graded by one that has lost its questions."""
+    path = course.bundle / f"{NAME}.json"
+    lost = json.loads(path.read_text()) | {"questions": []}
+    path.write_text(json.dumps(lost) if text == "questions" else text)
+    with pytest.raises(LabkitError, match=r"json is damaged: .*; restore it, or type: labkit rel"):
+        Bundle.of(course, NAME)
+
+
 @pytest.mark.parametrize("text", [*TEXTS, b"\xff\xfe"])
 def test_what_is_no_json_of_a_result_is_none(marked, text):
     """Half a file, an empty one, a list, other encodings, nesting without end."""
