@@ -44,14 +44,16 @@ class Bundle:
             raise LabkitError(
                 f"{assignment} was not released here; type: labkit release {assignment}"
             )
+        remedy = f"restore it, or type: labkit release {assignment}"
         try:
-            data = json.loads(path.read_text(encoding="utf-8"))
-        except ValueError as error:
-            raise LabkitError(
-                f"{path} is damaged: {error}; restore it, or type: labkit release {assignment}"
-            ) from None
+            data = dict(json.loads(path.read_text(encoding="utf-8")))
+        except (TypeError, ValueError) as error:
+            raise LabkitError(f"{path} is damaged: {error}; {remedy}") from None
         seed = data.get("seed", PUBLIC_SEED)
         check_stamp(data, str(path), f"type: labkit release {assignment} --seed {seed}")
+        checks, asked = sum(c["kind"] == "check" for c in data["cells"]), len(data["questions"])
+        if checks != asked:
+            raise LabkitError(f"{path} is damaged: {asked} questions, {checks} checks; {remedy}")
         return cls(data, Arms.of(course.root))
 
     def of_student(self, student: str) -> Bundle:

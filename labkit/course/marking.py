@@ -237,14 +237,13 @@ def _try(
         found = _difference(question, test, case, answer)
         if found is not None:
             tool = answer.tool if isinstance(answer, _Failure) else ""
-            if case.hidden:  # what it gave away stays with the teacher
-                found = Difference(found.kind, error=found.error) if found.error else None
-            call = "" if case.hidden else case.shown(question.name)
+            if case.hidden:  # how it failed would tell an attacker what was asked
+                outcome = Outcome.NOT_COUNTED if tool else Outcome.WRONG
+                return replace(result, outcome=outcome, hidden=True, tool=tool)
             return replace(
                 result,
                 outcome=_outcome_of(answer),
-                hidden=case.hidden,
-                call=call,
+                call=case.shown(question.name),
                 difference=found,
                 tool=tool,
             )

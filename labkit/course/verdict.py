@@ -81,7 +81,8 @@ class TestResult:
         name: What it looked at.
         weight: Its share of the points; 0 is a gate.
         outcome: Never partly right.
-        hidden: Whether a hidden case decided; then there is no ``call`` and no number.
+        hidden: Whether a hidden case decided; then it is wrong or not counted, and there is no
+            ``call`` and no ``difference``.
         call: The case that decided, as the student would type it.
         also: The classes of hidden case that the test has, in words.
         difference: Why it is not right.

@@ -63,7 +63,7 @@ class Explanation:
             yield "\nThe hidden case that decided; do not show it before the term ends:"
             tests = tuple(test for test in self.found.tests if test.name in hidden)
             yield from map(wrapped, summary(replace(self.found, tests=tests))[1:])
-        if (self.told.outcome, self.told.earned) != (self.found.outcome, self.found.earned):
+        if (self.told.right, self.told.earned) != (self.found.right, self.found.earned):
             yield "\nATTENTION: this time it came out otherwise:"
             yield from map(wrapped, summary(self.found))
         if self.line.comment:

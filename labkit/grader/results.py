@@ -170,13 +170,17 @@ class Result:
         return result
 
     def _check_sums(self, name: str) -> None:
-        """Raise a LabkitError unless the score is what the questions earned."""
+        """Raise a LabkitError unless the score is what the questions earned, and none is missing.
+
+        A report has no question at all: people mark it.
+        """
         verdicts = [question.verdict for question in self.questions]
         earned = [v.earned for v in verdicts if v.earned <= v.points]
-        names = {v.name for v in verdicts}
-        whole = len(names) == len(verdicts) == len(earned)
-        if not whole or (self.rejected and names) or abs(sum(earned) - self.score) > 0.01:
-            whole_sum = f"{len(verdicts)} questions earned {sum(earned):g}"
+        whole = len({v.name for v in verdicts}) == len(verdicts) == len(earned)
+        points = 0.0 if self.rejected else self.points
+        apart = (sum(earned) - self.score, sum(v.points for v in verdicts) - points)
+        if not whole or (self.rejected and verdicts) or max(map(abs, apart)) > 0.01:
+            whole_sum = f"{len(verdicts)} questions earned {sum(earned):g} of {self.points:g}"
             raise _damaged(name, f"the score is {self.score:g}, and {whole_sum}")
 
     def __str__(self) -> str:

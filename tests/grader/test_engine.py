@@ -159,7 +159,7 @@ def test_withheld_names_stop_working_for_one_question_only(marks, solved):
 
 
 def test_hidden_cases_stay_hidden(marks, blank, bundle):
-    """What a result says of a hidden case is its class and a known kind of error, nothing more."""
+    """What a result says of a hidden case is its class, nothing more."""
     put(blank, "bang_bang", "from labkit import errors\nasked = []\ndef bang_bang(t, duration):\n"
         "    asked.append(t)\n    if len(asked) > 23: raise type('T' + str(t), (Exception,), {})\n"
         "    x = min(max(t / duration, 0), 1)\n    ins = 0 <= t < duration\n"
@@ -169,7 +169,7 @@ def test_hidden_cases_stay_hidden(marks, blank, bundle):
     asked = next(q.verdict for q in marks(blank).questions if q.verdict.name == "bang_bang")
     hidden = [why(t) for t in asked.tests if t.hidden]
     assert hidden
-    assert all(says.endswith("raised Exception") for says in hidden)
+    assert all(says.endswith((")", "a hidden case")) for says in hidden)
 
 
 def test_big_pictures_are_welcome(bundle, sandbox, solved):

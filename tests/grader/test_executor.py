@@ -188,23 +188,28 @@ def here(monkeypatch):
 
 @pytest.fixture
 def dying_bwrap(monkeypatch, tmp_path):
-    """A bubblewrap that is killed as soon as it starts, so many times; returns how to set that."""
+    """A bubblewrap that is killed as soon as it starts, so many times; returns how to set that.
+
+    As the real one does then, it leaves a half behind that waits for it, with all its lines.
+    """
     real = shutil.which("bwrap")
-    program, left = tmp_path / "bin" / "bwrap", tmp_path / "left"
+    program, left, half = tmp_path / "bin" / "bwrap", tmp_path / "left", tmp_path / "half"
     program.parent.mkdir()
     program.write_text(
         f'#!/bin/sh\nleft=$(cat {left})\nif [ "$left" -gt 0 ]; then\n'
-        f'  echo $((left - 1)) > {left}\n  kill -9 $$\nfi\nexec {real} "$@"\n'
+        f"  echo $((left - 1)) > {left}\n  exec 3<&0\n  sleep 600 <&3 &\n  echo $! > {half}\n"
+        f'  kill -9 $$\nfi\nexec {real} "$@"\n'
     )
     program.chmod(0o755)
     monkeypatch.setenv("PATH", f"{program.parent}:{os.environ['PATH']}")
     return lambda times: left.write_text(f"{times}\n")
 
 
-def test_a_sandbox_killed_while_it_starts_is_made_again(dying_bwrap, here, task):
-    """What the kernel ends at its start, for want of memory, costs a retry and no mark."""
+def test_a_sandbox_killed_while_it_starts_is_made_again(dying_bwrap, here, task, tmp_path):
+    """What the kernel ends at its start costs a retry and no mark, and leaves nothing running."""
     dying_bwrap(1)
     assert here(task).score == FULL
+    assert int((tmp_path / "half").read_text()) not in running()
 
 
 def test_a_forkserver_killed_while_it_loads_is_made_again(here, task):

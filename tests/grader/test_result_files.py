@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from handmade import QUICK, raw
@@ -80,6 +81,12 @@ def test_what_is_not_a_whole_result_is_none(marked, capsys, change):
         assert line.endswith(f"type: labkit grade {NAME} --student ada")
 
 
+def test_a_notebook_that_only_people_mark_has_a_whole_result(course):
+    """Without a question and without points it is read as it was written."""
+    report = replace(result_of(course, "ada"), score=0.0, points=0.0, questions=())
+    assert Result.read(report.text()) == report
+
+
 @pytest.mark.parametrize("numbers", [{}, {"format": FORMAT + 1}, {"physics": 99}])
 def test_results_of_another_version_are_refused(marked, numbers):
     """One of version 0.1, or of a newer labkit, is not read as a result; grading makes it anew."""
@@ -102,6 +109,16 @@ def test_a_bundle_of_another_version_is_refused(course):
     data = json.loads(path.read_text())
     path.write_text(json.dumps({key: x for key, x in data.items() if key not in stamp()}))
     with pytest.raises(LabkitError, match=f"labkit release {NAME} --seed {data['seed']}$"):
+        Bundle.of(course, NAME)
+
+
+@pytest.mark.parametrize("text", ["[1]", "{", "questions"])
+def test_a_bundle_that_is_not_whole_is_refused(course, text):
+    """Nobody is graded by one that has lost its questions."""
+    path = course.bundle / f"{NAME}.json"
+    lost = json.loads(path.read_text()) | {"questions": []}
+    path.write_text(json.dumps(lost) if text == "questions" else text)
+    with pytest.raises(LabkitError, match=r"json is damaged: .*; restore it, or type: labkit rel"):
         Bundle.of(course, NAME)
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 import pytest
-from bs4 import BeautifulSoup
+from bleach._vendor import html5lib
 from soak.attacks.attack import CANARY, markdown_cell
 from soak.attacks.place import NAME, ROOT, place
 from soak.attacks.shown import MARKUP
@@ -41,19 +41,20 @@ def formgrader(course, path, **settings):
 
 
 def live(page):
-    """What of a page is more than text, and was written by a student."""
+    """What of a page is more than text to a browser, and was written by a student."""
     found = []
-    for tag in BeautifulSoup(page, "html.parser").find_all(True):
-        if tag.name in ("script", "style") and ("GOT" in tag.text or "http://x" in tag.text):
-            found.append(tag.name)
-        for name, value in tag.attrs.items():
-            text = "".join(value) if isinstance(value, list) else str(value)
-            seen = "GOT" in text or "http://x" in text
-            if seen and (
+    for element in html5lib.parse(page, namespaceHTMLElements=False).iter():
+        if not isinstance(element.tag, str):  # a comment
+            continue
+        tag, text = element.tag.rpartition("}")[2], "".join(element.itertext())
+        if tag in ("script", "style") and ("GOT" in text or "http://x" in text):
+            found.append(tag)
+        for name, value in element.attrib.items():
+            if ("GOT" in value or "http://x" in value) and (
                 name.startswith("on")
                 or name in ("href", "src", "srcdoc", "data", "action", "formaction", "content")
             ):
-                found.append(f"{tag.name} {name}")
+                found.append(f"{tag} {name}")
     return found
 
 

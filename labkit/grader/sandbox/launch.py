@@ -10,9 +10,12 @@ import itertools
 import json
 import os
 import resource
+import signal
 import socket
 import subprocess
+import time
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -21,7 +24,7 @@ from . import mounts
 from .cgroup import SANDBOX, Group
 from .limits import Limits
 from .mounts import INSTALL, Isolation, NoIsolation
-from .protocol import Connection, Disconnected, ProtocolError
+from .protocol import Connection, Disconnected, ProtocolError, Timeout
 
 FIRST_UID = 64000
 MAX_USERS = 1000
@@ -99,6 +102,7 @@ class Sandbox:
                 stdout=theirs[1].fileno(),
                 stderr=self._log,
                 env=variables,
+                process_group=0,
                 preexec_fn=self._count_apart,
             )
         except OSError as error:
@@ -119,7 +123,7 @@ class Sandbox:
         """Wait until both forkservers say so; close the sandbox where one does not."""
         try:
             for forkserver in self._forkservers.values():
-                forkserver.read(START)
+                self._wait_for(forkserver)
         except ProtocolError as error:
             why = self._last_words() or str(error)
             self.close()
@@ -128,6 +132,19 @@ class Sandbox:
             raise NoIsolation(
                 f"the sandbox did not start: {why}; `labkit doctor` says what is missing"
             ) from None
+
+    def _wait_for(self, forkserver: Connection) -> None:
+        """Wait for its first word, as long as bubblewrap runs."""
+        until = time.monotonic() + START
+        while True:
+            try:
+                forkserver.read(1.0)
+                return
+            except Timeout:
+                if self.process.poll() is not None:
+                    raise Disconnected("bubblewrap has ended") from None
+                if time.monotonic() > until:
+                    raise
 
     @property
     def level(self) -> str:
@@ -174,11 +191,11 @@ class Sandbox:
         """End everything inside."""
         for forkserver in self._forkservers.values():
             forkserver.close()  # which sees it, and ends
-        try:
+        with suppress(subprocess.TimeoutExpired):
             self.process.wait(2.0)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
+        with suppress(ProcessLookupError):  # killed early, bubblewrap leaves a half behind
+            os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
         os.close(self._log)
         if self.group is not None:
             self.group.remove()

@@ -85,7 +85,8 @@ def mark(function):
         try:
             answer = function(case[0], case[1])
             size = max(size, len(json.dumps(answer, default=as_data)))
-            print(f"expected {expected}, got", *(str(x)[:99] for x in islice(answer, 3)))
+            parts = [answer] if isinstance(answer, str) else islice(answer, 3)
+            print(f"expected {expected}, got", *(str(x)[:99] for x in parts))
             points += max(abs(a - b) for a, b in zip(answer, expected, strict=True)) < 1e-9
         except Exception as error:
             say(error)

@@ -17,15 +17,10 @@ MEMORY = cells(
     a_program_with_rights="import os\nopen('s', 'w')\nos.chown('s', 1, 1)\nos.chmod('s', 0o4777)\nraise Exception('GOT')",
     two_hundred_processes="import os, time\nfor _ in range(200):\n    if not os.fork():\n        time.sleep(20)\n        os._exit(0)\n"
     "raise Exception('GOT 200')",
-    writes_below_etc="open('/etc/labkit-test', 'w').write('x')\nraise Exception('GOT write')",
-    writes_beside_python="import numpy\nopen(numpy.__file__ + '.x', 'w').write('x')\nraise Exception('GOT write')",
+    a_file_outside="open('{loot}/x', 'w').write('x')\nraise Exception('GOT write')",
+    a_folder_outside="import os\nos.makedirs('{loot}/y')\n"  # one of its own /tmp is not outside
+    "if os.path.exists('{loot}/socket'): raise Exception('GOT write')",
 )  # fmt: skip
-MEMORY["writes below etc"] = Attack(
-    "reads", ("open('{loot}/x', 'w').write('x')\nraise Exception('GOT write')",)
-)
-MEMORY["writes beside python"] = Attack(
-    "reads", ("import os\nos.makedirs('{loot}/y')\nraise Exception('GOT write')",)
-)
 
 PROCESSES = cells(
     "leaves",

@@ -133,7 +133,7 @@ def _plant(course: Course) -> None:
     target = solutions.resolve()
     solutions.unlink()
     shutil.copytree(target, solutions, ignore=shutil.ignore_patterns("__pycache__"))
-    with (solutions / "paths.py").open("a") as file:
+    with (solutions / "paths" / "answers.py").open("a") as file:
         file.write(f"\n# {CANARY}\n")
     for folder in (course.source, course.solution):
         path = folder / NAME / f"{NAME}.ipynb"

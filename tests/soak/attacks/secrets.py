@@ -180,6 +180,10 @@ FEEDBACK = {
     ),
     "in labkit's own exception": leaks("import labkit.errors\nraise labkit.errors.OutOfRange(f'GOT {x}')"),
     "in the kind of exception": leaks("raise KINDS[digits[1]](f'GOT {x}')", _KINDS),
+    "in how it fails": leaks(
+        "if digits[1] % 3 == 0: return f'GOT {x}'\n"
+        "raise (NotImplementedError, ValueError)[digits[1] % 3 - 1](f'GOT {x}')"
+    ),
     "in what it prints": leaks("print(f'GOT {x}', flush=True)"),
     "on the stream of errors": leaks("import os\nos.write(2, f'GOT {x}'.encode())\nos.write(1, f'GOT {x}'.encode())"),
     "in a warning": leaks("import warnings\nwarnings.warn(f'GOT {x}')"),
@@ -216,13 +220,14 @@ def restarts(tell: str, hear: str = "") -> Attack:
         "import os, threading, time\nstarted = time.time()\nends = os.pipe()\n"
         "def wait():\n    x = os.read(ends[0], 40).decode()\n"
         "    digits = [int(c) for c in x if c.isdigit()]\n"
-        + "\n".join(f"    {line}" for line in tell.strip().splitlines())
-        + "\n    os._exit(1)\nthreading.Thread(target=wait, daemon=True).start()\n"
+        "    try:\n"
+        + "\n".join(f"        {line}" for line in tell.strip().splitlines())
+        + "\n    finally: os._exit(1)\nthreading.Thread(target=wait, daemon=True).start()\n"
         "def trapezoid(*args):\n    raise ValueError(f'started {started}')\n"
         + hear.strip()
         + "\nraise Exception(f'started {started}')"
     )
-    attack = leaks("import os, time\nos.write(ends[1], format(x, '.6f').encode())\ntime.sleep(2)")
+    attack = leaks("import os, time\nos.write(ends[1], format(x, '.6f').encode())\ntime.sleep(600)")
     return Attack("tells", (cell,), attack.answer, attack.earns)
 
 

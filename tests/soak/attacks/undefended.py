@@ -211,7 +211,8 @@ def _alone(here: Place, attack: Attack, won: Won) -> None:
     )
     planted = here.filled(attack).planted(json.loads(json.dumps(blank)))
     if name == NAME:
-        planted["cells"].insert(0, code_cell("from labkit.course import check", "first"))
+        setup = code_cell("from labkit.course import check", "setup")
+        planted["cells"].insert(len(attack.cells), setup)  # where the notebook has it too
     here.hand_in("eve", planted, name)
     here.hand_in(VICTIM, json.loads(json.dumps(blank)), name)
     nbgrader(here, "autograde", name, "--create")
