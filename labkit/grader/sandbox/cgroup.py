@@ -7,8 +7,6 @@ from __future__ import annotations
 
 import os
 import resource
-import signal
-import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -72,27 +70,10 @@ class Group:
             (folder / "cgroup.procs").write_text(str(os.getpid()))
 
     def remove(self) -> None:
-        """Kill what is left in the group, and remove it.
-
-        Bubblewrap leaves a child that waits for ever if it is killed between starting the child
-        and letting it go on.
-        """
-        until = time.monotonic() + 5.0
+        """Remove the empty group."""
         for folder in self.folders:
-            while (left := _members(folder)) and time.monotonic() < until:
-                for pid in left:
-                    with suppress(ProcessLookupError):
-                        os.kill(pid, signal.SIGKILL)
-                time.sleep(0.01)
             with suppress(OSError):
                 folder.rmdir()
-
-
-def _members(folder: Path) -> list[int]:
-    """The processes in a folder that this process can see."""
-    with suppress(OSError):
-        return [pid for pid in map(int, (folder / "cgroup.procs").read_text().split()) if pid]
-    return []
 
 
 def limit_memory() -> None:
