@@ -5,6 +5,7 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 
 from __future__ import annotations
 
+from .baxter_cup import cup
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
 from .forms import Choose, Curve, Measured, Number, Rank
@@ -51,6 +52,7 @@ __all__ = [
     "Verdict",
     "Within",
     "check",
+    "cup",
     "fingerprint",
     "hand_in",
     "hint",

@@ -36,7 +36,7 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
         return None
     first = place.committed.get(name)
     if name in place.revealed and first is not None and said != first:
-        print(wrapped(f"The arm has answered, so your first prediction stays: {first!r}."))
+        print(wrapped(f"The answer was shown, so your first prediction stays: {first!r}."))
         return first
     if said is None:
         _controls(name, form)
@@ -76,8 +76,8 @@ def _overlay(form: Curve, said: Any, truth: Any) -> None:
 
     places, heights = (np.asarray(x, dtype=float) for x in truth)
     plt.figure(figsize=(7, 2.8), layout="constrained")
-    plt.plot(places, heights, label="the arm")
-    plt.plot(form.at, said, "o--", mfc="none", label="your prediction")
+    plt.plot(places, heights, label="it was")
+    plt.plot(form.at, said, "o--", mfc="none", label="you said")
     plt.xlabel(form.along)
     plt.ylabel(form.height)
     plt.legend(frameon=False)

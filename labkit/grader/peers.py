@@ -112,8 +112,8 @@ def without_names(text: str, people: Sequence[Student], who: str) -> str:
     Names, logins, addresses and numbers go, whatever their letters' case.
     """
     for number, one in enumerate(people, 1):
-        names = (one.id, one.login, one.email, one.id_number, one.github, one.name, one.team)
-        names = (*names, one.first_name, one.last_name, *re.split(r"[\W_]+", one.id))
+        names = [one.id, one.login, one.email, one.id_number, one.github, one.name, one.team]
+        names += [one.first_name, one.last_name, *re.split(r"[\W_]+", one.id)]
         known = sorted({x for x in names if len(x) >= LEAST_NAME}, key=len, reverse=True)
         if known:
             any_of = "|".join(map(re.escape, known))

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
+import shlex
 from collections import Counter
 from dataclasses import replace
 
 import pytest
 from courses import copied
 from downloaded import from_moodle
-from handmade import cell_of, hand_in, raw
+from handmade import ROOT, cell_of, hand_in, raw
 
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
@@ -95,11 +96,15 @@ def typed(course, *words):
     return main([*words, "--course", str(course.root)])
 
 
-def test_reports_go_out_and_reviews_come_back_without_names(course, tmp_path, capsys):
-    """From `feedback --peer-review` through `collect --peer-review` to the authors' pages."""
-    assert typed(course, "feedback", NAME, "--peer-review") == 0
+def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch, capsys):
+    """By the commands that the guide shows: out, back, and onto the authors' pages."""
+    monkeypatch.chdir(course.root)
+    guide = (ROOT / "book/instructor_guide.md").read_text()
+    shown = [x for x in guide.splitlines() if x.startswith("labkit ") and "--peer-review" in x]
+    out, back = (shlex.split(line)[1:] for line in shown)
+    assert main(out) == 0
     assert "4 new, 4 in all" in capsys.readouterr().out
-    assert typed(course, "feedback", NAME, "--peer-review") == 0
+    assert main(out) == 0
     assert "0 new, 4 in all" in capsys.readouterr().out
     files, read_by = [], Counter()
     for number, login in enumerate(("ada", "bob", "eve"), 100):
@@ -117,8 +122,9 @@ def test_reports_go_out_and_reviews_come_back_without_names(course, tmp_path, ca
             forms[-1]["source"] = "level: \ncomment: "
         files.append(((f"{login.title()} {login.title()}son", number), f"{sheet_of(NAME)}.ipynb",
                       json.dumps(notebook).encode()))  # fmt: skip
-    zipped = from_moodle(tmp_path / "moodle.zip", files)
-    assert typed(course, "collect", NAME, str(zipped), "--peer-review") == 0
+    (course.root / "downloads").mkdir()
+    from_moodle(course.root / "downloads/reviews.zip", files)
+    assert main(back) == 0
     capsys.readouterr()
     assert typed(course, "feedback", NAME, "--unmarked") == 0
     said = capsys.readouterr().out

@@ -1,0 +1,154 @@
+"""The Baxter Cup: a tour and a moving tag, for any controller, with a load, noise and one push.
+
+A seed draws the corners of the tour, the path of the tag, the load and the push.  While the arm
+follows the tag, the controller knows only where the tag was in the last picture.  The seeds here
+are public and for practice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import cast
+
+import numpy as np
+
+from ..arm import Arm
+from ..errors import Diverged
+from ..log import Log
+from ..model import Model
+from ..paths import Circle, Line, Quintic
+from ..plant import BAXTER
+from ..run import Controller, run
+from ..scene import Push
+from ..shapes import Array
+from ..trajectory import AnySample, Chain, PosePath, Target, Trajectory
+from ..world import World
+
+PUBLIC_SEEDS = (1, 2, 3)
+MARKS = {
+    "feed-forward only": (56.27, 61.89, 58.7),
+    "joint impedance": (72.36, 56.67, 70.24),
+    "joint torque": (25.19, 20.17, 25.62),
+    "joint velocity": (31.77, 34.97, 32.91),
+}
+"""What the course's own laws score on each public seed, in [mm], by `solutions.study.cup`."""
+
+CORNERS = 3
+BOX = ((-0.02, 0.12), (-0.15, 0.05), (-0.05, 0.10))
+"""Where corners of the tour are drawn, along x, y and z from the ready tip, in [m]."""
+SPEED, ACCELERATION = 0.3, 1.0
+"""Of the tip on the tour, at most, in [m/s] and [m/s^2]."""
+LAP = 6.0
+"""The time in which the tag goes round once, in [s]."""
+PICTURES, AGE = 15.0, 0.08
+"""Pictures of the tag, in [Hz], and the age of a picture when its tag is known, in [s]."""
+LOAD, FORCE, PUSHED = (0.2, 0.8), 25.0, 0.3
+"""The load's range in [kg]; the push in [N], and how long it lasts, in [s]."""
+
+
+@dataclass(frozen=True)
+class CupRun:
+    """One run.
+
+    Attributes:
+        seed: Of what was drawn.
+        score: RMS distance of the tip from where it should have been, in [mm]; infinite if the
+            arm ran away.
+        log: The run; its target is what the controller was told.
+    """
+
+    seed: int
+    score: float
+    log: Log
+
+
+def cup(make: Callable[[Model], Controller], workspace: bool = False) -> tuple[CupRun, ...]:
+    """Run a controller on the public seeds and print its scores beside the published marks.
+
+    Args:
+        make: A function of the model that returns a fresh controller, a function of state and
+            target; the model does not know the load.
+        workspace: Whether the controller follows poses of the tip, not joint angles.
+
+    Returns:
+        A run for each public seed.
+    """
+    runs = tuple(cup_run(make, seed, workspace) for seed in PUBLIC_SEEDS)
+    mine = float(np.mean([one.score for one in runs]))
+    marks = {name: float(np.mean(scores)) for name, scores in MARKS.items()}
+    for name, mark in sorted((marks | {"yours": mine}).items(), key=lambda pair: pair[1]):
+        print(f"{mark:8.1f} mm  {name}")
+    print(f"{sum(mine < mark for mark in marks.values())} of {len(marks)} marks beaten")
+    return runs
+
+
+def cup_run(
+    make: Callable[[Model], Controller], seed: int, workspace: bool = False, rate: float = 200.0
+) -> CupRun:
+    """Run a controller on one seed, as `cup` does.
+
+    Args:
+        make: As for `cup`.
+        seed: Of what is drawn.
+        workspace: As for `cup`.
+        rate: How often the controller is asked, in [Hz].
+    """
+    random = np.random.default_rng([seed, 2007])
+    known = replace(BAXTER, name="cup")
+    model = Model("left", known)
+    ready = model.robot.ready
+    tour, lap = _tour(model.pose(ready), random)
+    wanted = Chain([*tour.parts, lap]) if workspace else model.joint_trajectory(
+        Chain([*tour.parts, lap]), ready
+    )  # fmt: skip
+    plant = replace(known, payload=float(random.uniform(*LOAD)))
+    way = random.standard_normal(3)
+    begins = float(random.uniform(0.1, 0.9)) * tour.duration
+    push = Push(FORCE * way / np.linalg.norm(way), start=begins, duration=PUSHED)
+    told = _as_seen(wanted, tour.duration)
+    with Arm("left", plant, seed, q0=ready, world=World(things=[push])) as arm:
+        try:
+            log = run(arm, told, make(model), rate, wanted.duration)
+        except Diverged as error:
+            return CupRun(seed, np.inf, cast(Log, error.log))
+    tips = np.array([model.pose(q)[:3, 3] for q in log.q])
+    apart = tips - np.array([_place(model, wanted(t)) for t in log.t])
+    return CupRun(seed, 1e3 * float(np.sqrt((apart**2).sum(axis=1).mean())), log)
+
+
+def _tour(T_wt: Array, random: np.random.Generator) -> tuple[Chain, Trajectory]:
+    """From corner to corner and back, then the tag's circle, all from the pose where it begins."""
+    p, R = T_wt[:3, 3], T_wt[:3, :3]
+    low, high = np.transpose(BOX)
+    corners = [p, *(p + random.uniform(low, high, (CORNERS, 3))), p]
+    lines = [Line(a, b) for a, b in pairwise(corners)]
+    legs = [
+        Trajectory(PosePath(line, R), Quintic.within(line.length, SPEED, ACCELERATION))
+        for line in lines
+    ]
+    turn, radius = random.uniform(-np.pi, 0.0), random.uniform(0.05, 0.08)
+    centre = p + radius * np.array([np.cos(turn), np.sin(turn), 0.0])
+    return Chain(legs), Trajectory(PosePath(Circle(p, centre), R), Quintic(LAP))
+
+
+def _as_seen(wanted: Target, since: float) -> Target:
+    """A target that is known in full at first, and from then on by pictures, which have an age."""
+
+    def told(t: float) -> AnySample:
+        if t < since:
+            return wanted(t)
+        shown = max(since, np.floor((t - AGE) * PICTURES) / PICTURES)
+        place, first, second = wanted(shown)
+        return type(wanted(t))(place, 0.0 * first, 0.0 * second)
+
+    return told
+
+
+def _place(model: Model, sample: AnySample) -> Array:
+    """Where a sample wants the tip, shape (3,) in [m]."""
+    where = sample[0]
+    T_wt = where if where.ndim == 2 else model.pose(where)
+    place: Array = T_wt[:3, 3]
+    return place

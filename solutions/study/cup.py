@@ -1,0 +1,25 @@
+"""The published marks of the Baxter Cup: ``python -m solutions.study.cup`` prints them."""
+
+from __future__ import annotations
+
+from labkit import BAXTER, Model
+from labkit.course.baxter_cup import MARKS, PUBLIC_SEEDS, cup_run
+from labkit.run import Controller
+
+from .campaign import FEED_FORWARD, feed_forward
+from .gains import known
+
+
+def law(name: str, model: Model) -> Controller:
+    """One of the laws that set a mark."""
+    return feed_forward if name == FEED_FORWARD else known(model, BAXTER)[name].controller
+
+
+def score(name: str, seed: int) -> float:
+    """What a law scores, in [mm]."""
+    return round(cup_run(lambda model: law(name, model), seed).score, 2)
+
+
+if __name__ == "__main__":
+    for name in MARKS:
+        print(f'    "{name}": {tuple(score(name, seed) for seed in PUBLIC_SEEDS)},', flush=True)
