@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, TextIO
 import click
 
 from ..course.cli import PATH, verb
-from ..course.layout import Course
+from ..course.layout import DEFENCE, Course
 from ..errors import LabkitError
 from .cli_course import of_assignment, of_course
 from .each import Failed, Failures
@@ -104,7 +104,8 @@ def export(
     from .rules import read_rules
 
     def read(name: str) -> list[Mark]:
-        course.notebook_source(name)
+        if name != DEFENCE:
+            course.notebook_source(name)
         found = list(marks_of(course, name))
         if all(mark.absent for mark in found):
             return []
@@ -112,6 +113,7 @@ def export(
 
     if assignment is None:
         rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
+        names.append(DEFENCE)
         term = {name: marks for name in names if (marks := read(name))}
         if not term:
             raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
