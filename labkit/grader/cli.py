@@ -1,4 +1,4 @@
-"""Commands for graded work: feedback pages, a report on the class, tables of marks."""
+"""Commands for graded work: feedback pages, a report on the class, tables, the concept test."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Literal, TextIO
 
 import click
 
@@ -19,6 +19,8 @@ from .each import Failed, Failures
 if TYPE_CHECKING:
     from .marks import Mark
 
+QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
+"""Layouts of the concept test."""
 one_student = click.option("--student", metavar="S", help="Only this student.")
 to_file = click.option(
     "--to", type=PATH, metavar="FILE", help="Write to FILE instead of the screen."
@@ -73,10 +75,12 @@ def feedback(
 @of_course
 @click.option(
     "--layout",
-    type=click.Choice(["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet"]),
+    type=click.Choice(["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet", *QUIZZES]),
     default="questions",
-    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle.",
+    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
+    "paper, moodle-quiz, canvas-quiz: not marks, but the concept test.",
 )
+@click.option("--form", type=click.Choice(["a", "b"]), help="Which form of the concept test.")
 @click.option(
     "--column", metavar="NAME", help="The platform's name of the assignment: 'Paths (4711)'."
 )
@@ -90,15 +94,17 @@ def export(
     course: Course,
     assignment: str | None,
     layout: str,
+    form: Literal["a", "b"] | None,
     column: str | None,
     absent_zero: bool,
     to: Path | None,
 ) -> int:
-    """Write a table of marks, for an assignment or the term.
+    """Write a table of marks, or the concept test.
 
-    Without ASSIGNMENT the table has every assignment that was graded, and the total with the
-    weights of course.toml.
+    The table is of an assignment or, without ASSIGNMENT, of the term: every assignment that was
+    graded, and the total with the weights of course.toml.
     """
+    from . import concepts
     from .export import LAYOUTS, as_csv, of_term, remarks
     from .marks import marks_of
     from .rules import read_rules
@@ -111,6 +117,14 @@ def export(
             return []
         return [replace(m, raw=0.0) if absent_zero and m.absent else m for m in found]
 
+    if layout in QUIZZES:
+        if to is None or form is None or assignment:
+            raise LabkitError(f"type: labkit export --layout {layout} --form a --to FILE")
+        to.write_bytes(concepts.LAYOUTS[layout](course, form))
+        print(f"written: {to}")
+        return 0
+    if form:
+        raise LabkitError(f"--form is of the concept test: --layout {', '.join(QUIZZES)}")
     if assignment is None:
         rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
         names.append(DEFENCE)

@@ -7,12 +7,10 @@ function with it; where the question lets an arm run, the arm must run worse tha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
-from pathlib import Path
 
 from ..course.bundle import Bundle
 from ..course.layout import Course

@@ -8,6 +8,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 from ..course.source import plain
@@ -69,12 +70,11 @@ def edits(source: str) -> list[Edit]:
     lines = plain(source).split("\n")
     found: dict[tuple[int, str], Edit] = {}
     for function in _functions(source):
-        for statement in function.body:
-            for node in ast.walk(statement):
-                for piece, now, says in _mistakes(node, lines):
-                    edit = _edit(piece, now, says, lines)
-                    if edit and edit.now != edit.was and _is_python(edit.put_into(source)):
-                        found.setdefault((edit.line, edit.now), edit)
+        for node in chain.from_iterable(map(ast.walk, function.body)):
+            for piece, now, says in _mistakes(node, lines):
+                edit = _edit(piece, now, says, lines)
+                if edit and edit.now != edit.was and _is_python(edit.put_into(source)):
+                    found.setdefault((edit.line, edit.now), edit)
     return sorted(found.values(), key=lambda edit: (edit.line, edit.now))
 
 
@@ -82,7 +82,7 @@ def shown(source: str) -> list[int]:
     """The lines of a cell's functions without their docstrings, numbers from 1."""
     numbers: list[int] = []
     for function in _functions(source):
-        first = min(x.lineno for x in (function, *function.decorator_list))
+        first = min([function.lineno, *(x.lineno for x in function.decorator_list)])
         left_out: range = range(0)
         if ast.get_docstring(function, clean=False) is not None:
             text = function.body[0]
@@ -122,8 +122,8 @@ def _mistakes(node: Any, lines: list[str]) -> Iterator[_Piece]:
     """The mistakes that fit into one place, each as what is written there instead."""
 
     def text(node: Any) -> str:
-        line = lines[node.lineno - 1].encode()[node.col_offset : node.end_col_offset]
-        return line.decode()
+        line = lines[node.lineno - 1].encode()
+        return bytes(line[node.col_offset : node.end_col_offset]).decode()
 
     if getattr(node, "lineno", None) is None or node.lineno != node.end_lineno:
         return
@@ -165,12 +165,12 @@ def _sides(node: ast.BinOp, whole: str) -> tuple[str, str]:
 
 def _of_two(node: ast.BinOp, sign: str, left: str, right: str) -> Iterator[_Piece]:
     """The mistakes with an operator: a sign, an order, a side that is left out."""
-    chain = isinstance(node.left, ast.BinOp) and isinstance(node.left.op, ast.Add | ast.Sub)
+    of_terms = isinstance(node.left, ast.BinOp) and isinstance(node.left.op, ast.Add | ast.Sub)
     match sign:
-        case "+" | "-" if chain or sign == "+":
+        case "+" | "-" if of_terms or sign == "+":
             yield node, f"{left} {_TURNED[sign]} {right}", "the sign of a term is turned round"
             yield node, left, "a term is left out"
-            if not chain:
+            if not of_terms:
                 yield node, right, "a term is left out"
         case "-":
             yield node, f"{right} - {left}", "a difference is turned round"

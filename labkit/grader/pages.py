@@ -1,4 +1,4 @@
-"""The templates of what the grader writes; in ``.html.j2`` every value is escaped by Jinja."""
+"""The templates of what the grader writes; Jinja escapes every value in HTML and XML."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TEMPLATES = Path(__file__).parent / "templates"
 def _environment() -> Environment:
     return Environment(
         loader=FileSystemLoader(TEMPLATES),
-        autoescape=select_autoescape(["html.j2"]),
+        autoescape=select_autoescape(["html.j2", "xml.j2"]),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
