@@ -125,6 +125,8 @@ def _mistakes(node: Any, lines: list[str]) -> Iterator[_Piece]:
         line = lines[node.lineno - 1].encode()
         return bytes(line[node.col_offset : node.end_col_offset]).decode()
 
+    if isinstance(node, ast.If | ast.IfExp) and isinstance(node.test, ast.Name):
+        yield node.test, f"not {node.test.id}", "a condition is turned round"
     if getattr(node, "lineno", None) is None or node.lineno != node.end_lineno:
         return
     match node:
@@ -136,8 +138,6 @@ def _mistakes(node: Any, lines: list[str]) -> Iterator[_Piece]:
             yield node, now, "the sign of a term is turned round"
         case ast.UnaryOp(op=ast.Not()):
             yield node, text(node.operand), "a condition is turned round"
-        case ast.If(test=ast.Name()) | ast.IfExp(test=ast.Name()):
-            yield node.test, f"not {text(node.test)}", "a condition is turned round"
         case ast.UnaryOp(op=ast.USub()):
             yield node, text(node)[1:].lstrip(), "a sign is left out"
         case ast.Attribute(attr="T"):
