@@ -33,9 +33,9 @@ def program() -> click.Group:
     commands: list[click.Command] = [submit_check, merge]
     examples = EXAMPLES
     if find_spec("labkit.grader"):
-        from .grader import cli, cli_author, cli_course, cli_grade, cli_term
+        from .grader import cli, cli_author, cli_course, cli_export, cli_grade, cli_term
 
-        grading = (cli_course, cli_term, cli_author, cli_grade, cli)
+        grading = (cli_course, cli_term, cli_author, cli_grade, cli, cli_export)
         commands += [one for module in grading for one in module.COMMANDS]
         examples += EXAMPLES_FOR_INSTRUCTORS
     group = click.Group(

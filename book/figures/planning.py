@@ -32,10 +32,13 @@ HOURS = {name: hours(name) for name in (*NOTEBOOKS, REPORT)}
 """Of the core, and of everything; for the report, of each member of its team."""
 CLASS, TEAM = 200, 3
 """Students, and how many of them write a report together, in the example of what marking costs."""
+TALK = "a talk about it: ten minutes with the team, one question to each"
+DEFENCE = 5.0
+"""Minutes of a defence, in the place of the talk."""
 MINUTES = {
     "two whys of each student, of about 25 to 80 words": 2 * 0.75,
     "a report of four pages, with its rubric": 12.0 / TEAM,
-    "a talk about it: ten minutes with the team, one question to each": 10.0 / TEAM,
+    TALK: 10.0 / TEAM,
     "contested marks, with labkit explain": 0.3,
 }
 """What a person does, in minutes for each student: estimates, measured by nobody."""
@@ -92,6 +95,7 @@ def numbers_told() -> None:
     whole = sum(MINUTES.values())
     number("marking_minutes", whole, ".0f")
     number("marking_hours", whole * CLASS / 60.0, ".0f")
+    number("defence_minutes", DEFENCE - MINUTES[TALK], ".1f")
     functions = sum(p.points for name in NOTEBOOKS for p in COURSE.problems(name))
     asked = [one for name in NOTEBOOKS for one in COURSE.predictions(name)]
     own_arm = sum(one.points for one in asked if isinstance(one, Identification))

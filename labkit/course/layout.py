@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from .problem import Problem
 
 
+DEFENCE = "09_defence"
+"""The oral examination: an assignment of the gradebook that nobody hands in."""
+
+
 @dataclass(frozen=True)
 class Course:
     """A course directory, laid out as `nbgrader_config.py` says.

@@ -30,7 +30,7 @@ def in_release_form(source: Notebook, result: Result) -> Notebook:
     for number, own in enumerate(result.own):
         code = own["type"] == "code"
         make: Any = nbformat.v4.new_code_cell if code else nbformat.v4.new_markdown_cell
-        text = own["source"] if code else _as_typed(own["source"])
+        text = own["source"] if code else as_typed(own["source"])
         extra.setdefault(own["after"], []).append(make(text, id=f"own-{number:04d}"))
     for cell in notebook.cells:
         name = grade_id(cell)
@@ -67,10 +67,10 @@ def with_verdicts(notebook: Notebook, result: Result) -> Notebook:
     return notebook
 
 
-def _as_typed(source: str) -> str:
-    """A student's Markdown as a block of text, in which no page finds markup to obey."""
+def as_typed(source: str, language: str = "markdown") -> str:
+    """What a student typed as a block of text, in which no page finds markup to obey."""
     fence = "`" * (max(map(len, re.findall("`+", source)), default=0) + 3)
-    return f"{fence}markdown\n{source}\n{fence}"
+    return f"{fence}{language}\n{source}\n{fence}"
 
 
 def _told(answer: Answer) -> list[str]:

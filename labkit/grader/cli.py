@@ -1,10 +1,9 @@
-"""Commands for graded work: feedback pages, a report on the class, tables of marks."""
+"""Commands for graded work: feedback pages and a report on the class."""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Iterable
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
@@ -68,7 +67,7 @@ def feedback(
             _wait_for_marks(everybody)
         marks = [mark for mark in everybody if student in {None, mark.student}]
         if not marks:
-            raise _nobody(assignment, student)
+            raise nobody(assignment, student)
         pages = write_feedback(course, assignment, marks)
         made = list(failures.sift(pages, "no page"))
         size = sum(path.stat().st_size for path in made) / 1e6
@@ -81,85 +80,6 @@ def feedback(
             size = moodle.stat().st_size / 1e6
             print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {moodle}")
         tell((f"review missing: {says}" for says in reviews(course, assignment)[1]), sys.stdout)
-    return failures.code
-
-
-@verb("01_paths --to marks.csv")
-@click.argument("assignment", required=False)
-@of_course
-@click.option(
-    "--layout",
-    type=click.Choice(
-        ["nbgrader", "questions", "canvas", "moodle", "moodle-worksheet", "gradescope"]
-    ),
-    default="questions",
-    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
-    "gradescope: not marks, but the zip with which Gradescope grades ASSIGNMENT itself.",
-)
-@click.option(
-    "--column", metavar="NAME", help="The platform's name of the assignment: 'Paths (4711)'."
-)
-@click.option(
-    "--absent-zero",
-    is_flag=True,
-    help="Write 0, not an empty cell, for a student who handed in nothing.",
-)
-@to_file
-def export(
-    course: Course,
-    assignment: str | None,
-    layout: str,
-    column: str | None,
-    absent_zero: bool,
-    to: Path | None,
-) -> int:
-    """Write a table of marks, for an assignment or the term.
-
-    Without ASSIGNMENT the table has every assignment that was graded, and the total with the
-    weights of course.toml.
-    """
-    from .export import LAYOUTS, as_csv, of_term, remarks
-    from .marks import marks_of
-    from .rules import read_rules
-
-    if layout == "gradescope":
-        return _autograder(course, assignment, to)
-
-    def read(name: str) -> list[Mark]:
-        course.notebook_source(name)
-        found = list(marks_of(course, name))
-        if all(mark.absent for mark in found):
-            return []
-        return [replace(m, raw=0.0) if absent_zero and m.absent else m for m in found]
-
-    if assignment is None:
-        rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
-        term = {name: marks for name in names if (marks := read(name))}
-        if not term:
-            raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
-        for name, marks in term.items():
-            tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
-        _write(as_csv(of_term(term, {name: rules.weight(name) for name in term})), to)
-        return int(any(mark.missing for marks in term.values() for mark in marks))
-    marks = read(assignment)
-    if not marks:
-        raise _nobody(assignment, None)
-    tell(remarks(layout, marks), sys.stderr)
-    _write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
-    return int(any(mark.missing for mark in marks))
-
-
-def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
-    """Write the zip for Gradescope; name those whose own arm it cannot tell."""
-    from .gradescope_zip import autograder
-
-    if assignment is None or to is None:
-        raise LabkitError("name ASSIGNMENT, and the zip to write: --to FILE")
-    with Failures() as failures:
-        unknown = autograder(course, assignment, to)
-        why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
-        failures.add("not known to Gradescope", [Failed(x.id, why) for x in unknown])
-        print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
     return failures.code
 
 
@@ -183,14 +103,14 @@ def class_report(
     with Failures() as failures:
         marks = list(marks_of(course, assignment))
         if not any(mark.result for mark in marks):
-            raise _nobody(assignment, None, next((m.missing for m in marks if m.missing), ""))
+            raise nobody(assignment, None, next((m.missing for m in marks if m.missing), ""))
         out = [mark for mark in marks if mark.missing and not mark.lines]
         failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
         pseudonym = pseudonyms(course)
         called, fewest = str if names else pseudonym, 1 if names else FEWEST
         asked = Bundle.of(course, assignment).questions
-        _write(report(assignment, marks, problems, called, fewest, asked), to)
+        write(report(assignment, marks, problems, called, fewest, asked), to)
         if jplag:
             written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)
@@ -208,7 +128,7 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
         )
 
 
-def _nobody(assignment: str, student: str | None, why: str = "") -> LabkitError:
+def nobody(assignment: str, student: str | None, why: str = "") -> LabkitError:
     """The error where nothing is graded yet, or ``why`` no result can be read."""
     who = f"{student} is not" if student else "nobody is"
     why = why or f"type: labkit grade {assignment}"
@@ -221,7 +141,8 @@ def tell(sentences: Iterable[str], where: TextIO) -> None:
         print(sentence, file=where, flush=True)
 
 
-def _write(text: str, where: Path | None) -> None:
+def write(text: str, where: Path | None) -> None:
+    """Write a text to a file or, without one, to the screen."""
     if where is None:
         sys.stdout.write(text)
     else:
@@ -229,4 +150,4 @@ def _write(text: str, where: Path | None) -> None:
         print(f"written: {where}")
 
 
-COMMANDS = (feedback, export, class_report)
+COMMANDS = (feedback, class_report)

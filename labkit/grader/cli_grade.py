@@ -137,6 +137,48 @@ def explain(course: Course, student: str, question: str, assignment: str | None)
     return 0
 
 
+def _points(ctx: click.Context, option: click.Parameter, text: str | None) -> list[int] | None:
+    if text is None:
+        return None
+    words = text.split(",")
+    if not all(word.strip().isdecimal() for word in words):
+        raise click.BadParameter(f"{text} is not a mark; write whole numbers, such as 2,3,1")
+    return [int(word) for word in words]
+
+
+@verb("ada --mark 2,3,1")
+@click.argument("student")
+@click.option(
+    "--mark",
+    metavar="A,B,C",
+    callback=_points,
+    help="After the defence: the points of each question, from 0 to 3.",
+)
+@of_course
+def defence(course: Course, student: str, mark: list[int] | None) -> int:
+    """Print the page of a student's oral examination.
+
+    It asks about three functions of theirs that were accepted, each with a mistake put into it.
+    The second side has the answers. Which functions and mistakes follows from the term's seed.
+    """
+    from .defence import draw
+    from .defence_mark import await_mark, give_mark
+    from .defence_page import write_page
+    from .term import public_warning, seed_of
+
+    if mark is not None:
+        give_mark(course, student, mark)
+        print(f"{student}: {sum(mark)} points for the defence")
+        return 0
+    asked = draw(course, student)
+    path = write_page(course, student, asked)
+    await_mark(course, student, asked)
+    print(f"{', '.join(one.of.question.name for one in asked)}: {path}")
+    if public_warning(seed_of(course)):
+        print("drawn with the public seed, so anyone can know it; begin a term: labkit term new")
+    return 0
+
+
 def _handed_in(
     course: Course, assignment: str, student: str | None, failures: Failures
 ) -> list[str]:
@@ -155,4 +197,4 @@ def _handed_in(
     return who
 
 
-COMMANDS = (grade, explain)
+COMMANDS = (grade, explain, defence)

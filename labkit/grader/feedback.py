@@ -8,10 +8,8 @@ robot along, 1.7 MB; its policy names each script by its hash, and nothing is lo
 from __future__ import annotations
 
 import json
-from base64 import b64encode
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import cache, partial
-from hashlib import sha256
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,12 +20,12 @@ from ..course.layout import Course
 from ..course.messages import GATE, HEADS, why
 from ..errors import LabkitError
 from ..metrics import SETTLED
-from ..replay import recorded_html, viewer_scripts
+from ..replay import recorded_html
 from ..replay.motion import unpack
 from .drawing import curve, side_by_side
 from .each import Failed, for_student
 from .marks import Mark, mark_of
-from .pages import TEMPLATES, render
+from .pages import file, policy, render, scripts
 from .peers import Review, reviews
 from .results import Result, write
 from .rules import read_rules
@@ -79,7 +77,7 @@ def page(
     mark = mark or mark_of(result)
     asked = {line.name: line for line in mark_of(result).lines}
     replays = any(run["motion"] for q in result.questions for run in q.runs)
-    style, scripts = _file("feedback.css"), _scripts() if replays else ()
+    style, code = file("feedback.css"), scripts() if replays else ()
     return render(
         "feedback.html.j2",
         result=result,
@@ -92,8 +90,8 @@ def page(
         gate=GATE,
         why=why,
         style=style,
-        scripts=scripts,
-        policy=_policy(style, scripts),
+        scripts=code,
+        policy=policy(style, code),
         motion_of=lambda run: json.loads(run["motion"] or "null"),
         error_over_time=error_over_time,
         measures=measures,
@@ -167,25 +165,3 @@ def measures(run: Mapping[str, Any]) -> Iterator[Measure]:
 def _plain(x: float) -> str:
     """Three digits or more, without an exponent up to a billion."""
     return f"{x:.0f}" if 1e3 <= abs(x) < 1e9 else f"{x:.3g}"
-
-
-@cache
-def _file(name: str) -> str:
-    return (TEMPLATES / name).read_text(encoding="utf-8")
-
-
-@cache
-def _scripts() -> tuple[str, ...]:
-    return (*viewer_scripts(), _file("feedback.js"))
-
-
-@cache
-def _policy(style: str, scripts: tuple[str, ...]) -> str:
-    """The content security policy: this style, these scripts, nothing else."""
-    rules = ["default-src 'none'", f"style-src {_hash(style)}"]
-    rules += [f"script-src {' '.join(map(_hash, scripts))}"] if scripts else []
-    return "; ".join([*rules, "base-uri 'none'", "form-action 'none'"])
-
-
-def _hash(text: str) -> str:
-    return f"'sha256-{b64encode(sha256(text.encode()).digest()).decode()}'"

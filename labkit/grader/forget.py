@@ -42,6 +42,7 @@ def places_of(course: Course, student: str) -> list[Path]:
     found = [root / name / student for root in _terms(course) for name in _FOLDERS]
     for root in _terms(course):
         found += sorted(root.glob(f"results/*/{plain}.json"))
+        found += [x / f"{student}.html" for x in (root / "build/course/defence", root / "defence")]
         found += sorted(root.glob(f"results/*/aside/{plain}.json"))
         old = re.compile(re.escape(student) + _OLD)
         found += [x for x in sorted(root.glob("results/*/old/*.json")) if old.fullmatch(x.name)]

@@ -186,7 +186,7 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterat
                 row = _marked(replace(row, remark=""), submission, one, assignment)
             if isinstance(one, Result) and one.rejected and not row.missing:
                 row = replace(row, remark=f"rejected: {one.rejected}")
-            elif row.raw is not None and student not in handed_in:
+            elif row.raw is not None and one is not None and student not in handed_in:
                 gone = "nothing of theirs is in submitted/; the mark stays as it was"
                 row = replace(row, remark=gone)
             yield _named(row)

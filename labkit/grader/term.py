@@ -21,6 +21,7 @@ from .results import write
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
+    "build/course/defence",
     *(attempts.FOLDER, roster.FILE, HANDLES, identity.FILE, pseudonyms.FILE),
 )
 """The files of one term alone, with students' names, what leads to them, and hidden cases.

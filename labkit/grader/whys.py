@@ -8,6 +8,7 @@ from __future__ import annotations
 import hmac
 import re
 from collections.abc import Iterable
+from functools import partial
 from typing import Any
 
 from ..course.bundle import Bundle
@@ -19,12 +20,13 @@ _WHY = re.compile(r'^# %% \[markdown\].*\bwhy="(\w+)"', re.MULTILINE)
 
 
 def drawn(seed: int, student: str, whys: Iterable[str]) -> frozenset[str]:
-    """Which of the course's whys a person marks, by HMAC-SHA256 under the term's seed."""
+    """Which of the course's whys a person marks."""
+    return frozenset(sorted(whys, key=partial(rank, seed, student))[:DRAWN])
 
-    def rank(name: str) -> bytes:
-        return hmac.digest(str(seed).encode(), f"{student}/{name}".encode(), "sha256")
 
-    return frozenset(sorted(whys, key=rank)[:DRAWN])
+def rank(seed: int, student: str, what: str) -> bytes:
+    """Where a thing stands when things are drawn for a student: HMAC-SHA256 under the seed."""
+    return hmac.digest(str(seed).encode(), f"{student}/{what}".encode(), "sha256")
 
 
 def settle_whys(course: Course, book: Any, assignment: str) -> None:
@@ -46,8 +48,11 @@ def settle_whys(course: Course, book: Any, assignment: str) -> None:
         return
     texts = [course.notebook_source(name).read_text(encoding="utf-8") for name in course.names()]
     whys = {name for text in texts for name in _WHY.findall(text)}
+    waiting = [(student, grade) for student, grade in waiting if grade.name in whys]
+    if not waiting:
+        return
     seed = int(Bundle.of(course, assignment).data["seed"])
     for student, grade in waiting:
-        if grade.name in whys - drawn(seed, student, whys):
+        if grade.name not in drawn(seed, student, whys):
             grade.auto_score, grade.needs_manual_grade = grade.max_score, False
     book.db.commit()

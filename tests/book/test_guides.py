@@ -11,10 +11,13 @@ import zipfile
 
 import pytest
 from book_pages import ROOT
+from handmade import put
 
 from labkit.course.layout import Course
 from labkit.grader.rules import FILE, read_rules
 from labkit.grader.term import PERSONAL_FILES
+from solutions.paths import answers
+from tests.synthetic.inline import inline
 
 SHELL = re.compile(r"```shell\n(.*?)```", re.DOTALL)
 
@@ -43,16 +46,19 @@ def test_every_command_of_the_instructors_guide_works(tmp_path):
     course = tmp_path / "course"
     subprocess.run(["git", "clone", "--quiet", ROOT, course], check=True, capture_output=True)
     (course / "downloads").mkdir()
-    notebook = ROOT / "assignments/01_paths/01_paths.ipynb"
+    notebook = json.loads((ROOT / "assignments/01_paths/01_paths.ipynb").read_text())
+    for function in (answers.bang_bang, answers.trapezoid, answers.compose):
+        put(notebook, function.__name__, inline(function, function.__name__))
     with zipfile.ZipFile(course / "downloads/moodle.zip", "w") as archive:
-        archive.write(notebook, "Ada Lovelace_101_assignsubmission_file/01_paths.ipynb")
+        name = "Ada Lovelace_101_assignsubmission_file/01_paths.ipynb"
+        archive.writestr(name, json.dumps(notebook))
     people = "First name,Last name,Email address\nAda,Lovelace,ada@uni.org\nBob,Hope,bob@uni.org\n"
     (course / "downloads/participants.csv").write_text(people)
     commands = shown("instructor_guide")
     assert {words[0] for words in commands} == {"labkit", "python"}
     verbs = {words[1] for words in commands}
     assert verbs >= {"doctor", "term", "release", "student-bundle", "-m", "students", "collect",
-                     "grade", "explain", "feedback", "export", "class-report",
+                     "grade", "explain", "defence", "feedback", "export", "class-report",
                      "export-course"}  # fmt: skip
     for words in commands:
         works(words, course)
@@ -60,6 +66,8 @@ def test_every_command_of_the_instructors_guide_works(tmp_path):
     assert len(list((course / "feedback").glob("*/01_paths/01_paths.html"))) == 1
     assert len(list((tmp_path / "rehearsal/results/01_paths").glob("*.json"))) == 8
     assert len((course / "marks.csv").read_text().splitlines()) == 3
+    assert "09_defence" in (course / "term.csv").read_text().splitlines()[0]
+    assert (course / "build/course/defence/Ada-Lovelace.html").exists()
     assert "Bob-Hope,Bob,Hope" in (course / "term.csv").read_text()
     assert "Ada,Lovelace,,,ada@uni.org," in (course / "marks.csv").read_text()
     assert (course / "report.md").read_text().strip()

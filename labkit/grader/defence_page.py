@@ -1,0 +1,59 @@
+"""The page of a defence: a side for the student, and one with the answers for the examiner."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from ..course.layout import Course
+from ..replay import recorded_html
+from .defence import ASKED, FULL, Asked
+from .feedback import error_over_time, measures, number_by_number
+from .pages import file, policy, render, scripts
+from .results import write
+from .rules import read_rules
+
+RUBRIC = (
+    "says which line was changed, and what stood there",
+    "says what the arm will do, or what is returned, before the answer is shown",
+    "explains the picture by the line: which term, which sign, which frame",
+)
+"""A point for each."""
+
+
+def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
+    """Write the page of a student, and return its file."""
+    style = file("feedback.css") + file("defence.css")
+    replays = any(one.run and one.run["motion"] for one in asked)
+    code = scripts() if replays else ()
+    page = render(
+        "defence.html.j2",
+        student=student,
+        course=read_rules(course).name,
+        asked=asked,
+        rubric=RUBRIC,
+        full=FULL,
+        command=f"labkit defence {shlex.quote(student)} --mark {','.join(['?'] * ASKED)}",
+        style=style,
+        scripts=code,
+        policy=policy(style, code),
+        motion_of=lambda run: json.loads(run["motion"] or "null"),
+        error_over_time=error_over_time,
+        rows=rows,
+        number_by_number=number_by_number,
+        recorded_html=recorded_html,
+    )
+    path = course.build / "defence" / f"{student}.html"
+    write(path, page)
+    return path
+
+
+def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
+    """Each measure that has a limit: its words, now, as handed in, at most."""
+    now = {} if one.run is None else {row.words: row.value for row in measures(one.run)}
+    own = () if one.own is None else measures(one.own)
+    for row in own:
+        if row.limit:
+            yield row.words, now.get(row.words, "none"), row.value, row.limit

@@ -1,0 +1,191 @@
+"""The concept test: each key is computed, each distractor is a known mistake or says why."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+from handmade import ROOT
+
+import labkit as lk
+from labkit.__main__ import main
+from labkit.course.bugs import CLEAR, tells_apart
+from labkit.course.layout import Course
+from labkit.course.outcomes import OUTCOMES
+from labkit.grader.concepts import LAYOUTS, asked, items
+
+COURSE = Course(ROOT)
+ITEMS = items(COURSE)
+FORMS = ("a", "b")
+NUMBER = re.compile(r"[-−]?\d+(?:\.(\d+))?")
+
+
+def turn(angle):
+    """The orientation error in world axes of a tool whose x axis is the world's ±y axis."""
+    actual = lk.se3.rotation([0, 0, np.sign(angle) * np.pi / 2])
+    return lk.se3.orientation_error(actual @ lk.se3.rotation([abs(angle), 0, 0]), actual)
+
+
+def in_a(origin, degrees):
+    """The point (1, 0, 0) of a frame at ``origin`` that is turned about z."""
+    return origin + lk.se3.rotation([0, 0, np.radians(degrees)]) @ [1.0, 0.0, 0.0]
+
+
+def peak(scaling, distance=1.0):
+    """The largest acceleration of a motion along a line of that length."""
+    t = np.linspace(0.0, scaling.duration, 2001)
+    return distance * max(abs(scaling(x)[2]) for x in t)
+
+
+def same_peak(duration, known, other):
+    """The peak of a motion that has a known one, over another duration."""
+    return [known * peak(lk.Quintic(other)) / peak(lk.Quintic(duration))]
+
+
+def torques(factor):
+    """How many times the Coriolis torques are as large at another speed, and gravity's."""
+    model = lk.Model("left")
+    q, dq = model.robot.ready, 0.1 * np.arange(1, 8)
+    slow, fast = (model.coriolis(q, k * dq) @ (k * dq) for k in (1, factor))
+    return [float(fast @ slow / (slow @ slow)), 1.0]
+
+
+def velocity_loop(kp, kd, speed=0.0, start=0.0, duration=6.0):
+    """The error of a joint that moves at exactly kp e + kd de/dt, by Euler's steps of a ms."""
+    e, dt, errors = start, 1e-4, []
+    for _ in range(int(duration / dt)):
+        e += dt * (speed - kp * e) / (1.0 + kd)
+        errors.append(e)
+    return np.array(errors)
+
+
+def rate(kp, kd):
+    errors = velocity_loop(kp, kd, start=1.0, duration=1.0)
+    return [-np.log(errors[-1])]
+
+
+def on_wall(depth, tip, wall):
+    """The force where the spring of the tip and that of the wall balance."""
+    x = np.linspace(0.0, depth, 100_001)
+    rest = x[np.argmin(abs(tip * (depth - x) - wall * x))]
+    return [wall * rest]
+
+
+def interval(mean, deviation, n, t):
+    half = t * deviation / np.sqrt(n)
+    return [mean - half, mean + half]
+
+
+COMPUTED = {
+    "turn in world axes": lambda: (turn(0.1), turn(-0.2)),
+    "a point in another frame": lambda: (in_a([1, 0, 0], 90), in_a([0, 2, 0], -90)),
+    "the price of smoothness": lambda: (
+        [peak(lk.Quintic(1.0), 0.5)],
+        [peak(lk.Cubic(2.0), 0.8)],
+    ),
+    "another duration": lambda: (same_peak(2.0, 1.2, 4.0), same_peak(3.0, 0.4, 1.5)),
+    "force and torque": lambda: ([0.5 * 10], [0.4 * 20]),  # the power is the same on both sides
+    "torques at another speed": lambda: (torques(2.0), torques(3.0)),
+    "what D does to a velocity loop": lambda: (rate(3.0, 2.0), rate(8.0, 3.0)),
+    "without feed-forward": lambda: (
+        [velocity_loop(4.0, 0.0, 0.2)[-1]],
+        [velocity_loop(5.0, 0.0, 0.5)[-1]],
+    ),
+    "a spring and a wall": lambda: (on_wall(0.04, 1000, 3000), on_wall(0.05, 1000, 4000)),
+    "age, not noise": lambda: ([100 * 0.08], [250 * 0.04]),
+    "decided or not": lambda: (interval(2, 2, 5, 2.776), interval(3, 3, 4, 3.182)),
+}
+
+
+@pytest.mark.parametrize("name", COMPUTED)
+def test_the_right_answer_is_what_comes_out(name):
+    """To the last digit that is printed, in both forms; no wrong answer says the same."""
+    (item,) = [x for x in ITEMS if x.name == name]
+    for wording, computed in zip((item.a, item.b), COMPUTED[name](), strict=True):
+        printed = [(float(m[0].replace("−", "-")), 0.5001 * 0.1 ** len(m[1] or ""))
+                   for m in NUMBER.finditer(wording.right.replace("m/s²", ""))]  # fmt: skip
+        assert len(printed) == len(computed)
+        for (value, digit), number in zip(printed, computed, strict=True):
+            assert abs(value - number) <= digit, (name, wording.right, computed)
+        assert len({wording.right, *wording.wrong}) == 4
+
+
+def test_holding_still_shows_one_fault_and_hides_the_other():
+    """The experiment of both forms; a quick motion shows both faults, so it does not tell them."""
+    (item,) = [x for x in ITEMS if x.name not in COMPUTED]
+    assert item.a.right == item.b.right == "hold still at a target that stands still"
+    still, quick = np.zeros(7), np.array([0.5, 0.3, 0.0, -0.4, 0.3, 0.2, 0.9])
+    for gravity, other in (("b", "f"), ("c", "h")):
+        assert tells_apart(gravity, "", 0.0, still) > CLEAR > tells_apart(other, "", 0.0, still)
+        assert min(tells_apart(x, "", 0.0, quick) for x in (gravity, other)) > CLEAR
+
+
+def test_twelve_items_for_all_outcomes_in_two_forms():
+    """No form repeats a text of the other one's, and each has all letters as keys."""
+    assert len(ITEMS) == 12 and {item.outcome for item in ITEMS} == set(OUTCOMES)
+    assert all(item.a.asks != item.b.asks for item in ITEMS)
+    for form in FORMS:
+        keys = [item.key for item in asked(COURSE, form)]
+        assert max(map(keys.count, "abcd")) <= 5, keys
+
+
+def test_every_distractor_has_its_reason():
+    """A name of a question is that of one of its known mistakes; more than a third are such."""
+    known = {f"{p.name}: {w.name}" for name in COURSE.names() for p in COURSE.problems(name)
+             for w in p.wrong}  # fmt: skip
+    reasons = [reason for item in ITEMS for reason in item.because]
+    named = [reason for reason in reasons if re.match(r"\w+: ", reason)]
+    assert set(named) <= known | {x for x in named if x.endswith(".")}
+    assert sum(reason in known for reason in reasons) >= 14
+    for form in FORMS:
+        assert all(o.says for item in asked(COURSE, form) for o in item.options if not o.right)
+
+
+def test_every_layout_has_all_items_and_the_right_key(tmp_path, capsys):
+    """Moodle's XML and Canvas's QTI are read back; the paper has its key on another page."""
+    for form in FORMS:
+        test = asked(COURSE, form)
+        right = {item.asks: next(o.text for o in item.options if o.right) for item in test}
+        quiz = ET.fromstring(LAYOUTS["moodle-quiz"](COURSE, form))
+        found = {q.findtext("questiontext/text"): q.findtext("answer[@fraction='100']/text")
+                 for q in quiz.iterfind("question[@type='multichoice']")}  # fmt: skip
+        assert found == right
+        with zipfile.ZipFile(io.BytesIO(LAYOUTS["canvas-quiz"](COURSE, form))) as archive:
+            manifest = ET.fromstring(archive.read("imsmanifest.xml"))
+            (file,) = (x.attrib["href"] for x in manifest.iter() if x.tag.endswith("}file"))
+            quiz = ET.fromstring(archive.read(file))
+        assert dict(_of_canvas(quiz)) == right
+        page = tmp_path / f"{form}.html"
+        words = ["--layout", "paper", "--form", form, "--to", str(page), "--course", str(ROOT)]
+        assert main(["export", *words]) == 0
+        sheet, _, key = page.read_text().partition('<div class="key">')
+        assert sheet.count("<li>(") == 4 * 12 and "Key of form" not in sheet
+        assert key.count("<tr>") == 13
+    assert main(["export", "--layout", "paper", "--course", str(ROOT)]) == 2
+    assert "--form a --to FILE" in capsys.readouterr().err
+
+
+def _of_canvas(quiz):
+    space = {"q": "http://www.imsglobal.org/xsd/ims_qtiasiv1p2"}
+    for item in quiz.iterfind(".//q:item", space):
+        texts = {x.attrib["ident"]: x.findtext(".//q:mattext", namespaces=space)
+                 for x in item.iterfind(".//q:response_label", space)}  # fmt: skip
+        (scores,) = [x for x in item.iterfind(".//q:respcondition", space)
+                     if x.find("q:setvar", space) is not None]  # fmt: skip
+        key = scores.findtext(".//q:varequal", namespaces=space)
+        yield item.findtext("q:presentation/q:material/q:mattext", namespaces=space), texts[key]
+
+
+def test_no_public_file_has_an_item():
+    """Neither what goes into the students' zip nor the book's sources."""
+    parts = [text[:40] for item in ITEMS for text in (item.a.asks, item.b.asks)]
+    places = [*ROOT.glob("assignments/*/*"), *ROOT.glob("book/**/*.md"), *ROOT.glob("book/**/*.py"),
+              *ROOT.glob("labkit/**/*.py"), *ROOT.glob("labkit/**/*.j2")]  # fmt: skip
+    for path in places:
+        if path.is_file():
+            text = path.read_text(encoding="utf-8", errors="replace")
+            assert not any(part in text for part in parts), path

@@ -1,0 +1,120 @@
+"""The defence: questions from a student's own accepted code, and one mark in the gradebook."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from dataclasses import replace
+
+import nbformat
+import pytest
+from handmade import ROOT, cell_of, hand_in, raw
+from made import NAME, result_of
+
+from labkit.__main__ import main
+from labkit.course.bundle import Bundle
+from labkit.course.layout import DEFENCE
+from labkit.course.marking import try_public
+from labkit.grader.defence import ASKED, draw
+from labkit.grader.defence_mark import await_mark, give_mark
+from labkit.grader.defence_page import write_page
+from labkit.grader.gradebook import record
+from labkit.grader.marks import marks_of
+from labkit.grader.nbgrader_api import nbgrader_api
+from labkit.grader.results import Results
+
+
+def accepted(course, student, notebook):
+    """Hand in, with a result that accepts all of it."""
+    hand_in(course, NAME, student, notebook)
+    result = result_of(course, student, data=raw(notebook))
+    answers = tuple(replace(a, source=cell_of(notebook, a.verdict.name)["source"])
+                    for a in result.questions)  # fmt: skip
+    result = replace(result, questions=answers)
+    Results(course, NAME).keep(result)
+    record(course, NAME, [result])
+
+
+def says(course, *words):
+    return main([*words, "--course", str(course.root)])
+
+
+@pytest.mark.slow
+def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
+    """Three of a student's functions that the checks now reject; others for another student; the
+    same when it is printed again, and then its mark stays."""
+    for student in ("ada", "bob"):
+        accepted(course, student, solved)
+    asked = draw(course, "ada")
+    assert len({one.of.question.name for one in asked}) == ASKED
+    for one in asked:
+        names = {}
+        own = cell_of(solved, one.of.question.name)["source"]
+        exec(one.edit.put_into(own), names)
+        assert not try_public(one.of.question, names[one.of.question.name]).outcome == "right"
+        exec(own, names)
+        assert try_public(one.of.question, names[one.of.question.name]).outcome == "right"
+        assert one.lines[one.at - 1] == one.edit.now and '"""' not in "".join(one.lines)
+    other = [(one.of.question.name, one.edit) for one in draw(course, "bob")]
+    assert other != [(one.of.question.name, one.edit) for one in asked]
+
+    page = write_page(course, "ada", asked)
+    before = page.read_text()
+    students, _, examiners = before.partition("For the examiner alone")
+    assert "handed in</th>" not in students and examiners.count("handed in</th>") == ASKED
+    await_mark(course, "ada", asked)
+    (mark,) = marks_of(course, DEFENCE)
+    assert mark.open == ("question_1", "question_2", "question_3")
+    assert says(course, "defence", "ada", "--mark", "2,3,1") == 0
+    assert says(course, "defence", "ada") == 0
+    assert page.read_text() == before
+    (mark,) = marks_of(course, DEFENCE)
+    assert (mark.score, mark.points, mark.open, mark.remark) == (6.0, 9.0, (), "")
+
+    (course.root / "course.toml").write_text(f"[assignments.{DEFENCE}]\nweight = 3\n")
+    capsys.readouterr()
+    assert says(course, "export", DEFENCE) == 0
+    assert "ada,2.0,3.0,1.0,0.0,6.0" in capsys.readouterr().out
+    says(course, "export")
+    table = capsys.readouterr().out
+    assert DEFENCE in table.splitlines()[0] and ",3" in table.splitlines()[2]
+    (shown,) = nbgrader_api(course).get_submissions(DEFENCE)
+    assert (shown["student"], shown["score"], shown["needs_manual_grade"]) == ("ada", 6.0, False)
+    written = course.root / "autograded/ada" / DEFENCE / f"{DEFENCE}.ipynb"
+    nbformat.validate(nbformat.read(written, as_version=4))
+
+
+def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
+    """A student who is unknown, has too few accepted answers or is not graded; a mark that is none,
+    or that comes before the page."""
+    hand_in(course, NAME, "eve", solved)
+    hand_in(course, NAME, "bob", solved)
+    Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
+    for words, sentence in [
+        (["zoe"], "there is no student 'zoe'"),
+        (["eve"], "eve has 0; 01_paths: handed in and not graded"),
+        (["bob"], "3 accepted answers that a mistake can be put into are needed, and bob has 0"),
+        (["bob", "--mark", "2,3"], "2,3 is not a mark; give 3 whole numbers from 0 to 3"),
+        (["bob", "--mark", "2,3,4"], "2,3,4 is not a mark"),
+        (["bob", "--mark", "2,3,x"], "2,3,x is not a mark"),
+        (["bob", "--mark", "2,3,1"], "no page was printed for bob; type: labkit defence bob"),
+    ]:
+        assert says(course, "defence", *words) == 2
+        assert sentence in capsys.readouterr().err
+
+
+def test_the_guide_s_commands_give_the_mark(course, capsys):
+    """The guide's own lines, for a student whose page was printed."""
+    text = (ROOT / "book/instructor_guide.md").read_text()
+    lines = [
+        shlex.split(x, comments=True)[1:] for x in re.findall(r"^labkit defence .*", text, re.M)
+    ]
+    assert [words[2:] for words in lines] == [[], ["--mark", "2,3,1"]]
+    student = lines[0][1]
+    bundle = Bundle.of(course, NAME)
+    assert bundle.questions
+    await_mark(course, student, ())
+    assert says(course, *lines[1]) == 0
+    assert [mark.score for mark in marks_of(course, DEFENCE)] == [6.0]
+    give_mark(course, student, (3, 3, 3))
+    assert [mark.score for mark in marks_of(course, DEFENCE)] == [9.0]
