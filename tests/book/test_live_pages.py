@@ -163,7 +163,7 @@ def test_no_single_stiffness_keeps_both_limits_and_two_do(live):
 
 
 def test_the_tag_tells_nothing_before_the_reader_has(live):
-    """Numbers, curves and table of "Age, not noise" wait for a prediction, typed without a mouse."""
+    """Numbers, curves and table of "Age, not noise" wait for a prediction, typed by keys."""
     page = live("live_age", phone=True)
     results = page.locator(".lk-live .lk-table")
     assert results.is_hidden()
