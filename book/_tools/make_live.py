@@ -113,7 +113,7 @@ def geometry(name: str) -> Any:
 
 
 def tag_data() -> dict[str, Any]:
-    """The circle of the tag, the place of the tip above it, and the camera's focal length in [px]."""
+    """The circle of the tag, the tip's place above it, the camera's focal length in [px]."""
     return {
         "duration": tag_task.DURATION,
         "rate": tag_task.RATE,

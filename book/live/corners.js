@@ -30,9 +30,9 @@ export function named(image, before) {
 /** How a pose stands, in words. */
 function told({ R, p, miss }) {
   const normal = [R[2], R[5], R[8]], angle = Math.acos(Math.min(1, -dot(normal, p) / length(p)));
-  const [side, up] = [normal[0] > 0 ? "right" : "left", normal[1] > 0 ? "down" : "up"];
+  const [side, up] = [normal[0] > 0 ? "to the right" : "to the left", normal[1] > 0 ? "downwards" : "upwards"];
   const way = Math.abs(normal[0]) > Math.abs(normal[1]) ? side : up;
-  return `${((angle * 180) / Math.PI).toFixed(0)}° to the ${way}, ${length(p).toFixed(3)} m away, misses the corners by ${(TAG.focal * miss).toFixed(2)} px`;
+  return `${((angle * 180) / Math.PI).toFixed(0)}° ${way}, ${length(p).toFixed(3)} m away, misses the corners by ${(TAG.focal * miss).toFixed(2)} px`;
 }
 
 /** The field. */

@@ -12,10 +12,10 @@ export const AXES = { "+x": [1, 0, 0], "−x": [-1, 0, 0], "+y": [0, 1, 0], "−
 
 /** Let pointers take hold of the arm, or of `things` {name: {move(point), end()}}; calls `touched` as they do. */
 export function hold(picture, sessions, things, touched) {
-  picture.grab((found) => {
-    // Target and spring begin at the tip: near it the hand is meant, farther out they move the target.
-    const near = ["target", "spring"].includes(found.thing) && length(subtract(found.at, picture.tip.p)) < NEAR;
-    const picked = near ? picture.atTip() : found;
+  picture.grab((found, event) => {
+    // Target, spring and wall meet at the tip: who points near it means the hand, whatever is drawn in front of it.
+    const { p } = picture.tip, near = length(subtract(picture.dragged(event, p), p)) < NEAR;
+    const picked = near && found.thing !== undefined ? picture.atTip() : found;
     if (picked.thing) {
       const thing = things[picked.thing];
       return thing && { move: (event) => thing.move(picture.dragged(event, picked.at)), end: () => thing.end?.() };

@@ -6,8 +6,10 @@ import { tire } from "./hands.js";
 import { NAMES, PRESETS } from "./settings.js";
 import { Session } from "./session.js";
 import { TASK } from "./numbers.js";
+import { write } from "./predict.js";
 
 const GHOST = 0x1f77d0;
+export const CALM = 800; // ms without another curve until the last one is told
 const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "below σ =" }; // of gains, as the text has them
 
 export class Panel extends Drawing {
@@ -149,7 +151,7 @@ export class Panel extends Drawing {
         if (asked !== this.asked) return;
         this.host.dataset.rerun = String(Math.round(performance.now() - began));
         this.said.textContent = `${this.words()}: ${told}`;
-        this.say(told);
+        this.say(told, CALM);
         this.computed?.();
       } catch (problem) { this.lost(problem); }
     }, this.curves.last ? 60 : 0);
@@ -162,9 +164,14 @@ export class Panel extends Drawing {
     this.say(this.numbers.textContent);
   }
 
-  /** Tell a screen reader something, once and politely. */
-  say(text) { this.status.textContent = text; }
-  tell(later = 0) { clearTimeout(this.telling); this.telling = setTimeout(() => this.say(this.numbers.textContent), later); }
+  /** Tell a screen reader something, once and politely: of what comes in a row, the last alone. */
+  say(text, later = 0) {
+    clearTimeout(this.telling);
+    if (later) this.telling = setTimeout(() => this.say(text), later);
+    else write(this.status, typeof text === "function" ? text() : text);
+  }
+
+  tell(later = 0) { this.say(() => this.numbers.textContent, later); }
 
   dispose() {
     cancelAnimationFrame(this.tick);

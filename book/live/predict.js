@@ -1,19 +1,26 @@
 // A box for the reader's prediction: what they say stands beside what the arm does.
 
+/** Words for an element that a screen reader hears: the same words again are no news. */
+export function write(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
 /** `found()` gives what the arm does; `commit()` is called when the reader has said a number. */
 export function predictBox(h, { question, unit, commit, found }) {
   const number = h("input", { type: "number", step: "any", "aria-label": `Your prediction in ${unit}` });
   const answer = h("p", { role: "status" });
-  let said = null;
+  let said = null, told = false; // once the arm has answered, what a hand does to it later does not count
   const tell = () => {
-    if (said === null) return;
+    if (said === null || told) return;
     const now = found();
-    answer.textContent = now === null ? `You said ${said} ${unit}. Watch.`
-      : `You said ${said} ${unit}; the arm: ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`;
+    told = now !== null;
+    write(answer, now === null ? `You said ${said} ${unit}. Watch.`
+      : `You said ${said} ${unit}; the arm: ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`);
   };
   const go = () => {
     if (!Number.isFinite(number.valueAsNumber)) { answer.textContent = "Say a number first; a guess will do."; return; }
     said = number.valueAsNumber;
+    told = false;
     commit();
     tell();
   };

@@ -1,7 +1,7 @@
 // "Stiffness has a direction": a hand before a wall, with a weight in it, and one dial or three.
 import { add } from "./algebra.js";
 import { Panel } from "./panel.js";
-import { predictBox } from "./predict.js";
+import { predictBox, write } from "./predict.js";
 import { READY } from "./settings.js";
 
 const LIMITS = { wall: 12, sag: 5 }; // N and mm
@@ -64,7 +64,7 @@ class Stiffness extends Panel {
     this.bars.wall.set(this.wallForce);
     this.bars.sag.set(this.sag);
     this.predicted.tell();
-    if (!this.settled()) { this.verdict.textContent = "Coming to rest…"; this.told = false; return; }
+    if (!this.settled()) { write(this.verdict, "Coming to rest…"); this.told = false; return; }
     if (this.told) return;
     this.told = true; // once it is at rest, once for a screen reader
     const both = this.wallForce <= LIMITS.wall && this.sag <= LIMITS.sag;

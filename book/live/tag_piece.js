@@ -3,7 +3,7 @@ import { add, length, subtract } from "./algebra.js";
 import { CAMERA, Chase } from "./chase.js";
 import { corners } from "./corners.js";
 import { TAG } from "./numbers.js";
-import { Panel } from "./panel.js";
+import { CALM, Panel } from "./panel.js";
 import { predictBox } from "./predict.js";
 import { READY } from "./settings.js";
 
@@ -111,7 +111,7 @@ class Age extends Panel {
     const rms = miss(settings), { age, rate, predict } = settings.camera;
     const turn = settings.move === "circle" ? ` The circle turns by ω T = ${((settings.tagSpeed / TAG.radius) * age).toFixed(2)} in the age of a picture.` : "";
     this.said.textContent = `Aims ${rms.toFixed(1)} mm beside the tag; speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
-    if (this.predicted.said !== null) this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`);
+    if (this.predicted.said !== null) this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`, CALM);
     this.host.dataset.rerun = String(Math.round(performance.now() - began));
   }
 }

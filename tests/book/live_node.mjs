@@ -3,6 +3,7 @@ import { readFileSync } from "node:fs";
 import { runInThisContext } from "node:vm";
 import { gunzipSync } from "node:zlib";
 import { Arm } from "../../book/live/arm.js";
+import { named, pictured, tilted } from "../../book/live/corners.js";
 import * as laws from "../../book/live/controllers.js";
 import { jointTrajectory } from "../../book/live/inverse.js";
 import { Model } from "../../book/live/model.js";
@@ -34,6 +35,16 @@ const ASK = {
   commands: ({ plant, controller, states }) => {
     const law = laws[controller](new Model(ROBOT, PLANTS[plant]), CONTROLLERS[plant][controller].gains);
     return states.map(([state, target]) => law(state, target).value);
+  },
+  flip: ({ distance, tilt }) => { // half pixels of the upper right corner, downwards
+    const corners = pictured(tilted(distance, tilt));
+    let found = named(corners, null), count = 0;
+    while (found.better === "A" && count < 100) {
+      corners[1][1] += 0.5;
+      found = named(corners, found);
+      count += 1;
+    }
+    return count;
   },
   poses: ({ size, image }) => twoPoses(size, image),
   run: (request) => {

@@ -153,3 +153,12 @@ def test_the_two_poses_of_a_tag_are_opencvs():
             np.testing.assert_allclose(R, cv2.Rodrigues(turn)[0], atol=1e-6)
             np.testing.assert_allclose(pose["p"], place.ravel(), atol=1e-6)
             assert pose["miss"] == pytest.approx(np.sqrt(2.0) * error, rel=1e-4)
+
+
+def test_half_pixels_flip_a_far_tag_as_the_page_says():
+    """One half pixel at 1.5 m and 10 degrees, 21 at 0.5 m and 30 degrees."""
+    far, near = ({"distance": 1.5, "tilt": 10}, {"distance": 0.5, "tilt": 30})
+    assert javascript({"ask": "flip", **far}, {"ask": "flip", **near}) == [1, 21]
+    page = (ROOT / "book/live_age.md").read_text()
+    assert "At 1.5 m and 10° its first half pixel flips the pose" in page
+    assert "at 0.5 m and\n30° it takes 21 of them" in page

@@ -160,3 +160,25 @@ def test_no_single_stiffness_keeps_both_limits_and_two_do(live):
         type_into(page, name, value)
     settled()
     assert "Both limits are kept" in verdict.inner_text()
+
+
+def test_the_tag_tells_nothing_before_the_reader_has(live):
+    """Numbers, curves and table of "Age, not noise" wait for a prediction, typed by keys."""
+    page = live("live_age", phone=True)
+    results = page.locator(".lk-live .lk-table")
+    assert results.is_hidden()
+    assert "beside" not in page.inner_text(".lk-live .lk-readout")
+    page.keyboard.type("12")  # the box has the focus
+    page.keyboard.press("Enter")
+    results.wait_for()
+    assert "the arm: 13" in page.inner_text(".lk-predict")
+
+
+def test_half_a_pixel_flips_a_tag(live):
+    """By keys: at 1.5 m and 10 degrees one corner's half pixel changes the better pose."""
+    page = live("live_age")
+    type_into(page, "Distance", 1.5)
+    type_into(page, "Turned by", 10)
+    page.get_by_label("Corner", exact=True).select_option("upper right")
+    page.get_by_label("Corner down by half a pixel").press("Enter")
+    assert "flipped: now B" in page.locator(".lk-twoposes [role=status]").inner_text()
