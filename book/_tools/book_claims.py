@@ -1,8 +1,9 @@
 """Which sentences of the book rest on what: ``python book/_tools/book_claims.py [--read] [PAGE]``.
 
 A sentence counts if it shows a number with a unit or compares.  It is *bound* if it shows a number
-that `figures.claims.told` was given, or holds the words of a `claim`; it is *caught* if wrong data
-of every kind stop the build.  What is left is listed: those sentences nobody checks.
+that `figures.claims.told` was given, or holds the words of a `claim`, and if these words hold every
+number that was typed into it; it is *caught* if wrong data of every kind stop the build.  What is
+left is listed: those sentences nobody checks.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from book_pages import BOOK, ROOT
@@ -39,6 +40,7 @@ _COMPARES = re.compile(
     r"\b(more|less|fewer|better|worse|larger|smaller|faster|slower|stiffer|softer|quicker|higher|"
     r"lower|easier|nearer|further|longer|shorter)\b[^.]*\bthan\b|\btwice\b|\bhalf the\b"
 )
+_TEX = re.compile(r"\$[^$]*\$|\{cite[^}]*\}\S*")
 _GLUE = re.compile(r"\{glue:text\}`([^`]+)`")
 _CELL = re.compile(r"^```\{code-cell\}\n(?::[^\n]*\n)*(.*?)^```", re.M | re.S)
 
@@ -49,8 +51,8 @@ def sentences(text: str) -> Iterator[str]:
     text = re.sub(r"^\$\$[^\n]+\$\$[^\n]*$", "\n\n", text, flags=re.M)  # a formula of one line
     text = re.sub(r"^(```+|:::+|\$\$).*?^\1[^\n]*$", "\n\n", text, flags=re.M | re.S)
     for block in re.split(r"\n\s*\n|\n(?=[:|-] |\|)", text):
-        plain = " ".join(block.split())
-        for sentence in re.split(r"(?<=[.:?!])\s+(?=[A-Z*$\[{])", plain):
+        joined = " ".join(block.split())
+        for sentence in re.split(r"(?<=[.:?!])\s+(?=[A-Z*$\[{])", joined):
             shown = re.sub(r"\$[^$]*\$|\{cite[^}]*\}`[^`]*`", "x", _GLUE.sub("0 mm", sentence))
             if _NUMBER.search(shown) or _COMPARES.search(shown):
                 yield sentence
@@ -75,9 +77,22 @@ def noted() -> Mapping[str, Any]:
 
 def bound(sentence: str, notes: Mapping[str, Any]) -> list[str]:
     """The names of what a sentence rests on."""
-    plain = re.sub(r"[*`]", "", sentence)
-    claims = [name for name in notes if " " in name and name in plain]
+    claims = [name for name in notes if " " in name and name in plain(sentence)]
     return [*_GLUE.findall(sentence), *claims]
+
+
+def loose(sentence: str, names: Iterable[str]) -> list[str]:
+    """The numbers typed into a sentence that stand outside the words of its claims."""
+    text = plain(sentence)
+    claims = [re.finditer(re.escape(name), text) for name in names if " " in name]
+    held = {k for found in claims for one in found for k in range(*one.span())}
+    shown = _TEX.sub(lambda tex: "x" * len(tex[0]), text)
+    return [one[0] for one in _NUMBER.finditer(shown) if one.start() not in held]
+
+
+def plain(sentence: str) -> str:
+    """A sentence without its marks of emphasis."""
+    return re.sub(r"[*`]", "", sentence)
 
 
 def count(notes: Mapping[str, Any]) -> dict[str, Any]:
@@ -88,7 +103,8 @@ def count(notes: Mapping[str, Any]) -> dict[str, Any]:
             total += 1
             names = bound(sentence, notes)
             known = [notes[name] for name in names if name in notes]
-            if known and len(known) == len(names) and not any(x["survived"] for x in known):
+            sound = len(known) == len(names) and not any(x["survived"] for x in known)
+            if known and sound and not loose(sentence, names):
                 caught += 1
             else:
                 left.setdefault(page, []).append(sentence)

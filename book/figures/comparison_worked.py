@@ -17,8 +17,9 @@ from solutions.study.campaign import BASELINE
 from solutions.study.claims import Interval, Outcome, interval
 from solutions.study.grid import pick
 
-from .claims import claim
+from .claims import claim, shows
 from .comparison import found
+from .facts import CLAIMS, LEVEL
 from .page import Question, figure, number, numbers, quiz
 from .tags_worked import by_hand
 
@@ -26,7 +27,6 @@ PATHS = [task for task in campaign.TASKS if task != "tag"]
 FIRST = (10.4, 8.8, 12.1, 9.5, 11.2)
 SECOND = (9.9, 8.1, 11.7, 8.7, 10.6)
 """Errors of two made-up controllers in [mm], seed by seed."""
-CLAIMS = 8
 
 
 def differences(way: str) -> dict[str, list[float]]:
@@ -49,7 +49,9 @@ def one_number() -> None:
     e = np.array(((3.0, 4.0, 0.0), (0.0, 0.0, 1.0)))
     by_hand("the RMS error is 3.6 mm", 3.6, metrics.rms(e), 0.01)
     by_hand("the number would be 2.1 mm", 2.1, float(np.sqrt(np.mean(e**2))), 0.02)
-    by_hand("the mean length is 3 mm", 3.0, float(np.mean(np.linalg.norm(e, axis=1))))
+    lengths = np.linalg.norm(e, axis=1)
+    shows("Their lengths are 5 and 1 mm, so the mean length is 3 mm", (5.0, 1.0, 3.0),
+          (*lengths, lengths.mean()))  # fmt: skip
 
 
 def intervals() -> None:
@@ -64,7 +66,8 @@ def intervals() -> None:
         t=factors,
     )
     by_hand("intervals 30 % too short", 0.30, 1.0 - factors[4] / factors[2], 0.03)
-    by_hand("is wrong in one of twenty cases", 20.0, 1.0 / (1.0 - 0.95))
+    shows("An interval with 95 % confidence is wrong in one of twenty cases", (0.95, 20.0),
+          (LEVEL, 1.0 / (1.0 - LEVEL)))  # fmt: skip
     true, pooled = 1.0 / 3.0 + 0.25 / 15.0, 1.25 / 15.0
     by_hand("its variance is too small by a factor of 4.2", 4.2, true / pooled)
     kinds = (Outcome.HELD, Outcome.DID_NOT_HOLD, Outcome.UNDECIDED)
@@ -90,8 +93,15 @@ def five_pairs() -> None:
         lambda s: np.allclose(s, (1.31, 1.44), rtol=0.01),
         s=spread,
     )
-    apart = float(student.ppf(0.975, 8) * math.hypot(*spread) / math.sqrt(5.0))
-    by_hand("an interval of ± 2.0 mm", 2.0, apart, 0.02)
+    alone, t = math.hypot(*spread) / math.sqrt(5.0), float(student.ppf(0.975, 8))
+    shows(
+        "= 0.87 mm and, with the factor 2.306 for eight degrees of freedom, an interval of "
+        "± 2.0 mm "
+        "about the same 0.60 mm",
+        (0.87, 2.306, 2.0, 0.60),
+        (alone, t, t * alone, mean),
+        0.02,
+    )
     rho = float(np.corrcoef(FIRST, SECOND)[0, 1])
     by_hand("a correlation of 0.998", 0.998, rho, 0.002)
 
@@ -138,6 +148,7 @@ def more_seeds() -> None:
 
 def luck() -> None:
     """How often pure noise passes for a result."""
+    by_hand("of them exclude the truth, instead of 5 %", 5.0, 100.0 * (1.0 - LEVEL))
     random = np.random.default_rng(3)
     many = 4000
     b, w = random.standard_normal((many, 3, 1)), 0.5 * random.standard_normal((many, 3, 5))
@@ -145,7 +156,7 @@ def luck() -> None:
 
     def wrong(x: np.ndarray) -> float:
         n = x.shape[1]
-        half = student.ppf(0.975, n - 1) * x.std(axis=1, ddof=1) / math.sqrt(n)
+        half = student.ppf(0.5 + LEVEL / 2.0, n - 1) * x.std(axis=1, ddof=1) / math.sqrt(n)
         return 100.0 * float(np.mean(np.abs(x.mean(axis=1)) > half))
 
     pooled, by_task = wrong(d.reshape(many, 15)), wrong(d.mean(axis=2))

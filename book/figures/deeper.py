@@ -9,6 +9,7 @@ from IPython.display import HTML
 import labkit as lk
 from labkit.plotting import STYLES
 from solutions.study import identification, image_servoing, passivity, redundancy, tasks
+from solutions.study.gains import TIP_SPRING
 
 from .claims import claim, shows
 from .page import figure, holds, numbers, shown, table
@@ -23,7 +24,7 @@ def friction() -> HTML:
     true_dry = lk.BAXTER.each("stiction", 7)
     off = np.abs(found.dry / true_dry - 1.0)
     claim(
-        "viscous friction there comes out too large",
+        "viscous friction there comes out too large (the plant has 0.7 N m s/rad)",
         lambda found, true: all(x > true > 0.0 for x in found),
         found=list(found.viscous[:4]),
         true=float(lk.BAXTER.viscous[0]),
@@ -77,7 +78,7 @@ def compensation() -> HTML:
     )
 
 
-MASS, SAMPLING = 8.0, 0.005
+MASS, SAMPLING, DAMPER = 8.0, 0.005, 60.0
 
 
 def passive() -> HTML:
@@ -85,8 +86,8 @@ def passive() -> HTML:
     damping = np.linspace(1.0, 30.0, 16)
     limit = 2.0 * damping / SAMPLING
     alone = [passivity.stiffest(MASS, b, 0.0, SAMPLING) for b in damping]
-    damped = [passivity.stiffest(MASS, b, 60.0, SAMPLING) for b in damping]
-    wall = [passivity.stiffest(MASS, b, 60.0, SAMPLING, wall=5e5) for b in damping]
+    damped = [passivity.stiffest(MASS, b, DAMPER, SAMPLING) for b in damping]
+    wall = [passivity.stiffest(MASS, b, DAMPER, SAMPLING, wall=5e5) for b in damping]
     exact = [passivity.least_damping(K, B, SAMPLING) - K * SAMPLING / 2 - abs(B)
              for K, B in ((300.0, 0.0), (300.0, 50.0), (2000.0, -20.0))]  # fmt: skip
     holds(np.abs(exact).max() < 1e-3, "the general condition is b > KT/2 + |B| here")
@@ -97,9 +98,10 @@ def passive() -> HTML:
         passive=list(limit[::5]),
     )
     claim(
-        "the condition never holds in this figure",
-        lambda b, least: 0.0 < max(b) < 60.0 and least > 300.0,
+        "With a damper of 60 N s/m the condition never holds in this figure, for $b$ is below 60",
+        lambda b, computed, least: 0.0 < max(b) < computed == 60.0 and least > 300.0,
         b=[damping[0], damping[-1]],
+        computed=DAMPER,
         least=min(damped),
     )
     holds(passivity.is_stable(passivity.loop(MASS, 5.0, 300.0, 60.0, SAMPLING, 5e5)),
@@ -110,7 +112,15 @@ def passive() -> HTML:
         own=300.0,
         limits=[float(np.interp(5.0, damping, x)) for x in (damped, wall)],
     )
-    numbers({"need_300": 300.0 * SAMPLING / 2}, ".2g")
+    own = TIP_SPRING[0]
+    need = [passivity.least_damping(own, B, SAMPLING) for B in (0.0, DAMPER)]
+    shows(
+        "For the lab's spring of 300 N/m at 200 Hz the first term",
+        (300.0, 200.0),
+        (own, 1.0 / SAMPLING),
+    )
+    shows("a damper of 60 N s/m asks for 60 more", 60.0, need[1] - need[0], 1e-3)
+    numbers({"need_300": own * SAMPLING / 2}, ".2g")
     numbers({"stable_5": round(np.interp(5.0, damping, damped), -3),
              "stable_wall_5": round(np.interp(5.0, damping, wall), -2)}, ",.0f")  # fmt: skip
     _, ax = plt.subplots(figsize=(6.0, 3.4))

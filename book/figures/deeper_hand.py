@@ -10,8 +10,9 @@ from IPython.display import HTML
 
 import labkit as lk
 from solutions.study import image_servoing
+from solutions.study.gains import TIP_SPRING
 
-from .claims import claim
+from .claims import claim, shows
 from .page import figure, number, numbers, table
 
 STIFFNESS, SLOW, SPEED, DEPTH = 300.0, 0.1, 0.1, 0.05
@@ -35,9 +36,12 @@ def trip() -> HTML:
         returned=returned,
         formula=STIFFNESS * SPEED * SLOW * DEPTH,
     )
-    lab = 300.0 * 0.2 * 0.005 * 0.05
-    numbers({"trip_mj": 1e3 * lab, "trip_stored": 1e3 * 0.5 * 300.0 * 0.05**2}, ".3g")
-    number("trip_need", lab / (2.0 * 0.2 * 0.05), ".2g")
+    k, rate, deep, v = TIP_SPRING[0], 200.0, 0.05, 0.2
+    shows("The lab's spring of 300 N/m at 200 Hz, pressed by 5 cm at 0.2 m/s",
+          (300.0, 200.0, 5.0, 0.2), (k, rate, 100.0 * deep, v))  # fmt: skip
+    lab = k * v * deep / rate
+    numbers({"trip_mj": 1e3 * lab, "trip_stored": 1e3 * 0.5 * k * deep**2}, ".3g")
+    number("trip_need", lab / (2.0 * v * deep), ".2g")
     _, ax = plt.subplots(figsize=(6.0, 3.2))
     for k, (name, parts, way) in enumerate((("in", inwards, 1.0), ("out", outwards, -1.0))):
         x = np.array([(a, a + way * step) for a, _ in parts]).ravel()
@@ -61,6 +65,7 @@ def viscous_tip() -> None:
     model = lk.Model("left")
     J = model.tip_jacobian(model.robot.ready)
     b = lk.BAXTER.viscous[0]
+    shows("With Baxter's 0.7 N m s/rad", 0.7, b)
     tip = [b / float(J[k] @ J[k]) for k in range(3)]
     numbers({"tip_viscous_x": tip[0], "tip_viscous_z": tip[2]}, ".2g")
     claim(
@@ -79,6 +84,7 @@ def projections() -> HTML:
         J, M = model.tip_jacobian(q), model.mass_matrix(q)
         Jbar = np.linalg.solve(M, J.T) @ np.array(model.operational_inertia(q))
         tau = np.eye(7)[2]
+        shows("A torque of 1 N m at e0", 1.0, tau[2])
         found = [
             float(np.linalg.norm((J @ np.linalg.solve(M, tau - J.T @ (G.T @ tau)))[:3]))
             for G in (np.linalg.pinv(J), Jbar)
@@ -107,6 +113,7 @@ def freedom() -> None:
     J = model.tip_jacobian(model.robot.ready)
     _, sigma, axes = np.linalg.svd(J)
     n = axes[6] / axes[6][2]
+    shows("For 1 rad/s of e0", 1.0, n[2])
     numbers({"free_s0": -n[0], "free_w0": -n[4], "free_w2": n[6]}, ".2g")
     claim(
         "s1, e1 and w1 do not take part",

@@ -9,11 +9,15 @@ import numpy as np
 import labkit as lk
 from labkit.plant import EVIDENCE, SPRINGS
 from labkit.scene import TIP_STIFFNESS
-from solutions.study import experiments
-from solutions.study.gains import KD, KP
+from solutions.study import experiments, report_gains, speed_gains
+from solutions.study.gains import KD, KP, TIP_SPRING
+from solutions.study.workspace_velocity import WorkspaceVelocityPD
 
 from .claims import claim
 from .claims import shows as _is
+
+CLAIMS, LEVEL, RATE = 8, 0.95, 200.0
+"""About tracking; of an interval; of the report's control [Hz]."""
 
 
 def velocity() -> None:
@@ -21,13 +25,20 @@ def velocity() -> None:
     _is("= 30 ms", 0.03, lk.BAXTER.velocity_lag)
     _is("Its state arrives 4 ms late", 0.004, lk.BAXTER.state_delay)
     _is("is about 11.5 ms", 0.0115, 0.004 + 0.5 / 100.0 + 0.5 / 200.0)
-    _is("that ends at 0.6", 0.6, KD)
+    step, pays = speed_gains.TRIED[1] - speed_gains.TRIED[0], speed_gains.PAYS
+    _is("until a step of 0.15 takes away less than 2 % of the error; that ends at 0.6",
+        (0.15, 0.02, 0.6),
+        (step, pays, KD))  # fmt: skip
+    _is("If a radian counts as 0.26 m, as in the [impedance](impedance.md) of 300 N/m and "
+        "20 N m/rad",
+        (0.26, 300.0, 20.0), (WorkspaceVelocityPD.lever, TIP_SPRING[0], TIP_SPRING[3]))  # fmt: skip
 
 
 def comparison() -> None:
     """Of the comparison."""
     claim("3 1/s and a $K_d$ of 0.6", lambda p, d: (p, d) == (3.0, 0.6), p=KP, d=KD)
-    _is("would decide one of three by luck alone", 1.0 / 3.0, 1.0 - 0.95**8, 0.02)
+    _is("Eight claims about tracking at 95 % each would decide one of three by luck alone",
+        (8.0, 0.95, 1.0 / 3.0), (CLAIMS, LEVEL, 1.0 - LEVEL**CLAIMS), 0.02)  # fmt: skip
 
 
 def model() -> None:
@@ -47,8 +58,13 @@ def model() -> None:
 def impedance() -> None:
     """Of the chapter on impedance."""
     _is("a critically damped spring has 2 % to go", 0.02, 6.8 * math.exp(-5.8), 0.05)
-    _is("holds against 2 N at the hand", 2.0, lk.BAXTER.stiction[0] / 0.5)
+    dry, lever, push = lk.BAXTER.stiction[0], 0.5, 10.0
+    _is("dry friction of 1 N m and a lever of half a metre holds against 2 N at the hand, so of "
+        "10 N only about 8", (1.0, 0.5, 2.0, 10.0, 8.0),
+        (dry, lever, dry / lever, push, push - dry / lever))  # fmt: skip
     _is("viscous friction of 0.7 N m s/rad", 0.7, lk.BAXTER.viscous[0])
+    _is("The arm has 300 N/m, the contact", 300.0, TIP_SPRING[0])
+    _is("The workspace impedance of 300 N/m presses with", 300.0, TIP_SPRING[0])
     wall = experiments.the_wall()
     claim(
         "The wall has 5,000 N/m and the finger's pad 10,000 N/m",
@@ -59,13 +75,22 @@ def impedance() -> None:
 
 def report() -> None:
     """Of the page on the report."""
-    _is("24.5 rad/s for the report's gain", 24.5, math.sqrt(3.0 * 200.0), 0.002)
+    _is(
+        "24.5 rad/s for the report's gain at 200 Hz",
+        (24.5, 200.0),
+        (math.sqrt(KP * RATE), RATE),
+        0.002,
+    )
     _is("fixes the mean speed at 0.2 m/s", 0.2, 1.0 / 5.0)
     _is("0.4 m/s by equation 1", 0.4, 2.0 / 5.0)
-    _is("a push of 1 N would move the hand 2 m", 2.0, 1.0 / 0.5)
+    law = report_gains.TABLE_1["workspace impedance"](lk.Model("left", lk.BAXTER)).controller
+    _is("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
+        (law.D[0], 1.0, 1.0 / law.D[0]))  # fmt: skip
     _is("dry friction of about 1 N m explains it", 1.0, lk.BAXTER.stiction[0])
     _is("0.3 N m/rad is as large as the dry friction of the wrist", 0.3, lk.BAXTER.stiction[6])
-    _is("and 45 N/m under", 45.0, 3.0 * 15.0)
+    _is('has 0.5 to 0.1 N/m under "proportional gain" and 45 N/m under', (0.5, 0.1, 45.0),
+        (law.D[0], law.D[-1], law.K[0]))  # fmt: skip
+    _is("45 N/m with a damping of 0.5 N s/m is an arm", (45.0, 0.5), (law.K[0], law.D[0]))
 
 
 def plant() -> None:
@@ -75,8 +100,13 @@ def plant() -> None:
     inertia = float(model.mass_matrix(q)[0, 0])
     off = model.pose(q + np.array(EVIDENCE["encoder_offset"].most))[:3, 3] - model.pose(q)[:3, 3]
     _is("the hand is then about 5 mm from where", 5.0, 1e3 * np.linalg.norm(off), 0.1)
-    _is("may stop 0.12 rad from its target", 0.125, lk.BAXTER.stiction[0] / 8.0)
-    _is("times 2.1 kg m²", 2.1, inertia, 0.05)
+    springs = report_gains.TABLE_1["joint torque"](model).controller.Kp
+    _is("its gains of 8 to 12 N m/rad", (8.0, 12.0), (min(springs), max(springs)))
+    dry = lk.BAXTER.stiction[0]
+    _is("A spring of 8 N m/rad against dry friction of 1 N m may stop 0.12 rad from its target",
+        (8.0, 1.0, 0.125), (min(springs), dry, dry / min(springs)))  # fmt: skip
+    _is("225 1/s² times 2.1 kg m²", (225.0, 2.1), (225.0, inertia), 0.05)
+    _is("even under the report's own $K_p$ = 3 1/s", 3.0, KP)
     _is("about 60 times as stiff at the shoulder", 60.0, 225.0 * inertia / 8.0, 0.1)
     swing = math.sqrt(SPRINGS["joint_stiffness"][0] / inertia)
     _is("on the other side at some 20 rad/s", 20.0, swing, 0.1)

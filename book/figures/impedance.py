@@ -18,11 +18,11 @@ from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
-from .claims import claim
+from .claims import claim, shows
 from .page import Question, figure, number, numbers, quiz, replay
 
 SEED = 7
-PUSH = 10.0
+PUSH, BEGINS = 10.0, 0.5
 ROTORS = replace(lk.IDEAL, name="ideal with rotors", armature=lk.BAXTER.armature)
 TURN = 20.0
 """Rotational stiffness of the hand, in N m/rad."""
@@ -61,7 +61,7 @@ def push_run(stiffness: float, plant: lk.Plant = ROTORS) -> lk.Log:
     q0 = model.robot.ready
     K = np.array((stiffness,) * 3 + (TURN,) * 3)
     law = WorkspaceImpedance(model, K=K, gravity=not plant.gravity_compensation)
-    world = lk.World(things=[lk.Push(force=(0.0, PUSH, 0.0), start=0.5, duration=1.5)])
+    world = lk.World(things=[lk.Push(force=(0.0, PUSH, 0.0), start=BEGINS, duration=1.5)])
     rate = 200.0 if plant.state_rate else 1000.0
     with lk.Arm("left", plant, SEED, q0=q0, world=world) as arm:
         return lk.run(arm, lk.Hold(model.pose(q0), 3.5), law, rate=rate)
@@ -74,24 +74,29 @@ def _sideways(log: lk.Log) -> np.ndarray:
 def push() -> HTML:
     """The arm answers a push like the spring that was commanded."""
     _, ax = plt.subplots(figsize=(6.0, 3.2))
-    told, shown = [], []
-    for k, stiffness in enumerate((150.0, 300.0, 600.0)):
+    told, found = [], []
+    told_to_be, read_at = (150.0, 300.0, 600.0), 1.95
+    shows("a spring of 150, 300 and 600 N/m", (150.0, 300.0, 600.0), told_to_be)
+    shows("read 1.45 s into the push", 1.45, read_at - BEGINS)
+    for k, stiffness in enumerate(told_to_be):
         log = push_run(stiffness)
         y = _sideways(log)
-        felt = 1e3 * PUSH / float(np.interp(1.95, log.t, y))
-        shown.append(felt)
+        felt = 1e3 * PUSH / float(np.interp(read_at, log.t, y))
+        found.append(felt)
         ax.plot(log.t, y, f"C{k}{STYLES[k]}", label=f"{stiffness:g} N/m")
         told.append(f"told {stiffness:g} N/m, felt {felt:.4g} N/m")
         number(f"felt_{stiffness:.0f}", felt, ".4g")
+    above = max(x / k for x, k in zip(found, told_to_be, strict=True)) - 1.0
+    shows("They are up to 2.2 % above what was asked", 2.2, 100.0 * above, 0.02)
     claim(
         "an arm without friction shows",
-        lambda felt: all(0.95 < x / k < 1.05 for x, k in zip(felt, (150, 300, 600), strict=True)),
-        felt=shown,
+        lambda felt: all(0.95 < x / k < 1.05 for x, k in zip(felt, told_to_be, strict=True)),
+        felt=found,
     )
     real = push_run(300.0, lk.BAXTER)
     y = _sideways(real)
     ax.plot(real.t, y, "C4:", label="300 N/m, realistic arm")
-    felt = 1e3 * PUSH / float(np.interp(1.95, real.t, y))
+    felt = 1e3 * PUSH / float(np.interp(read_at, real.t, y))
     left = abs(float(y[-1]))
     claim(
         "holds against small forces",
@@ -142,7 +147,7 @@ def wall() -> HTML:
         share=soft / expected,
     )
     claim(
-        "its wrist w1 has reached its limit of torque",
+        "its wrist w1 has reached its limit of torque, 15 N m",
         lambda wrist, hard, rigid: abs(wrist - 15.0) < 0.01 and 0.0 < hard < 0.5 * rigid,
         wrist=wrist,
         hard=hard,

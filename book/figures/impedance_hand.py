@@ -21,6 +21,7 @@ from .page import figure, number, numbers, table
 
 JOINT_SPRINGS = np.array((200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0))
 """Of the joint impedance controller on the ideal arm, in [N m/rad]."""
+PUSH = 10.0
 
 
 def _coil(a: Array, b: Array, turns: int = 7, wide: float = 0.06) -> Array:
@@ -94,7 +95,7 @@ def planar() -> None:
         x=[L[0, 0], L[1, 1], L[0, 1]],
     )
     claim(
-        "feels 4 kg along $y$ if it may slip sideways",
+        "feels 4 kg along $y$ if it may slip sideways, and 5 kg if a rail keeps it on the line",
         lambda free, guided: math.isclose(free, 4.0) and math.isclose(guided, 5.0),
         free=1.0 / mobility[1, 1],
         guided=L[1, 1],
@@ -113,7 +114,8 @@ def one_mass_by_hand() -> None:
         lambda x: math.isclose(x[0], 10.0) and math.isclose(x[1], 40.0),
         x=[math.sqrt(k / m), 2.0 * math.sqrt(k * m)],
     )
-    claim("it rests 50 mm away", lambda x: math.isclose(x, 50.0), x=1e3 * push / k)
+    shows("For 2 kg on 200 N/m", (2.0, 200.0), (m, k))
+    shows("Pushed with 10 N it rests 50 mm away", (10.0, 50.0), (push, 1e3 * push / k))
     peak = 1e3 * push / k * (1.0 + math.exp(-math.pi * z / math.sqrt(1.0 - z**2)))
     number("peak_02", peak, ".2g")
     claim(
@@ -169,7 +171,12 @@ def wall_by_hand() -> None:
     stiffness = 400.0 / float(mobility[0, 0])
     contact = contact_stiffness(experiments.the_wall())
     number("stiff_torque", stiffness, ".3g")
-    force = 0.03 / (1.0 / stiffness + 1.0 / contact)
+    depth, gain = 0.03, 400.0
+    shows("the target is 3 cm behind the surface", 3.0, 100.0 * depth)
+    shows("a rigid arm, 3 cm too far", 3.0, 100.0 * depth)
+    shows("compressed by 3 cm", 3.0, 100.0 * depth)
+    shows("which is 400 1/s² times", gain, stiffness * float(mobility[0, 0]))
+    force = depth / (1.0 / stiffness + 1.0 / contact)
     number("hand_torque", force, ".2g")
     found = experiments.wall(names=("joint torque",))[0]
     claim(
@@ -178,7 +185,7 @@ def wall_by_hand() -> None:
         by_hand=force,
         run=float(-found.force_at_rest[0]),
     )
-    hold = 0.03 / (1.0 / TIP_SPRING[0] + 1.0 / contact)
+    hold = depth / (1.0 / TIP_SPRING[0] + 1.0 / contact)
     claim("8.26 N by the calculator", lambda f: math.isclose(f, 8.26, rel_tol=1e-3), f=hold)
 
 
@@ -186,17 +193,18 @@ def joint_springs() -> HTML:
     """Where the tip goes when joints with springs of their own are pushed at it."""
     model = lk.Model("left", lk.IDEAL)
     J = model.tip_jacobian(model.robot.ready)
-    moved = 1e4 * (J / JOINT_SPRINGS) @ J.T  # mm for 10 N
+    moved = 1e3 * PUSH * (J / JOINT_SPRINGS) @ J.T  # mm
     rows = [
         (f"10 N along {axis}", *(f"{moved[i, k]:.0f}" for i in range(3)))
         for k, axis in enumerate("xyz")
     ]
     q, start = np.array(model.robot.ready), np.array(model.robot.ready)
-    for force in np.linspace(1.0, 10.0, 10):
+    shows("A push of 10 N upwards", 10.0, PUSH)
+    for force in np.linspace(1.0, PUSH, 10):
         push = force * np.eye(6)[2]
         q = fsolve(lambda q, f=push: JOINT_SPRINGS * (start - q) + model.tip_jacobian(q).T @ f, q)
     rest = 1e3 * (model.pose(q) - model.pose(start))[:3, 3]
-    met = experiments.push((0.0, 0.0, 10.0), names=("joint impedance",))[0]
+    met = experiments.push((0.0, 0.0, PUSH), names=("joint impedance",))[0]
     found = 1e3 * met.at_rest
     numbers({"side_x": moved[0, 2], "side_z": moved[2, 2]}, ".2g")
     numbers({"side_run_x": found[0], "side_run_z": found[2]}, ".2g")

@@ -82,7 +82,8 @@ def singular() -> HTML:
         sigma.append(np.linalg.svd(J, compute_uv=False)[-1])
         speed.append(np.abs(np.linalg.pinv(J) @ pull).max())
     at, top = float(angles[int(np.argmin(sigma))]), float(np.max(speed))
-    fast = [float(np.interp(x, angles, speed)) for x in (1.0, 0.3, 0.02)]
+    at_e1 = (1.0, 0.3, 0.02)
+    fast = [float(np.interp(x, angles, speed)) for x in at_e1]
     _, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.0))
     left.plot(angles, sigma, "C1-")
     left.axvline(at, color="C5", linestyle=":")
@@ -109,6 +110,9 @@ def singular() -> HTML:
         beyond=fast[2],
     )
     number("singular_at", at, ".2f")
+    shows("With the elbow bent to 1 rad", 1.0, at_e1[0])
+    shows("at e1 = 0.02 rad", 0.02, at_e1[2])
+    shows("against a limit of 1.5 rad/s", 1.5, LIMIT)
     numbers({"bent": fast[0], "straight": fast[2], "singular_peak": top}, ".2g")
     return figure(
         "Pulling the tip towards the shoulder at 0.2 m/s, position and orientation held by the "

@@ -95,7 +95,9 @@ def hangs() -> HTML:
         ),
     )
     numbers({"flip_velocity": where[0], "flip_torque": where[1]}, ".0f")
-    numbers({"hang_low": error[10.0], "hang_high": error[100.0]}, ".2g")
+    ends = min(error), max(error)
+    shows("from 10 to 100 1/s its error falls", (10.0, 100.0), ends)
+    numbers({"hang_low": error[ends[0]], "hang_high": error[ends[1]]}, ".2g")
     spring = pick(rows, way="joint velocity", assumption="joint_stiffness, most")
     number("spring_velocity", spring[0]["late_rms_mm"], ".0f")
     words = "; ".join(f"{c}: {', '.join(t) or 'never'}" for c, t in turned.items())

@@ -11,7 +11,7 @@ from labkit import metrics
 from solutions.study import report_gains
 from solutions.study.workspace_impedance import WorkspaceImpedance
 
-from .claims import claim
+from .claims import claim, shows
 from .page import holds, number, numbers
 
 SEED = 6
@@ -19,16 +19,25 @@ SEED = 6
 
 def paths() -> None:
     """Equations 1 to 15."""
-    numbers({"a_10": 4.0 * 0.1 / (5.0 * 0.1) ** 2, "a_1": 4.0 * 0.01 / (5.0 * 0.01) ** 2})
-    duration = lk.BangBang.within(0.01, 0.4, 1.0).duration
-    holds(abs(4.0 * 0.01 / duration**2) < 1.0 + 1e-9, "with both limits the acceleration is kept")
+    far, near, v, a = 0.1, 0.01, 0.4, 1.0
+    shows("m/s² at 10 cm", 10.0, 100.0 * far)
+    shows("m/s² at 1 cm", 1.0, 100.0 * near)
+    shows("With 0.4 m/s and 1 m/s² a move of 1 cm", (0.4, 1.0, 1.0), (v, a, 100.0 * near))
+    numbers({"a_10": 4.0 * far / (5.0 * far) ** 2, "a_1": 4.0 * near / (5.0 * near) ** 2})
+    duration = lk.BangBang.within(near, v, a).duration
+    holds(abs(4.0 * near / duration**2) < 1.0 + 1e-9, "with both limits the acceleration is kept")
     number("t_1", duration, ".2g")
 
     # Equation 4 at t = 0, for a start at x = 0.6 m, 0.2 m to go in 1 s
-    number("p_printed", 4.0 * 0.2 / 1.0**2 * 0.6, ".2f")
+    x, a = 0.6, 4.0 * 0.2 / 1.0**2
+    shows("A start at 0.60 m with $a = 0.8$ m/s²", (0.60, 0.8), (x, a))
+    number("p_printed", a * x, ".2f")
 
     # Equation 8 at half time, theta_0 = 0.7 rad, radius 0.2 m
     theta_0, r, tau = 0.7, 0.2, 4.0
+    shows("With $\\theta_0 = 0.7$ rad the angle jumps by", 0.7, theta_0)
+    shows("on a radius of 0.2 m", 0.2, r)
+    shows("A second into a circle of 0.2 m in 4 s", (0.2, 4.0), (r, tau))
 
     def alpha(t: float) -> float:
         return 8.0 * np.pi / tau**2 * (1.0 if t <= tau / 2 else -1.0)
@@ -71,7 +80,9 @@ def paths() -> None:
 def recursion() -> None:
     """Equation 17 on the ideal arm: add the correction to the measured speed."""
     q0 = lk.robot("left").ready
-    goal = q0 + 0.02 * np.eye(7)[0]  # small enough for the speed limit
+    beside = 0.02  # small enough for the speed limit
+    shows("a joint 0.02 rad off rings", 0.02, beside)
+    goal = q0 + beside * np.eye(7)[0]
 
     def printed(state: lk.State, target: lk.Sample) -> lk.JointVelocity:
         e, de = target.position - state.q, target.velocity - state.dq
@@ -109,6 +120,7 @@ def impedance() -> None:
     """Equations 19 and 21, and whether impedance needs a force sensor."""
     # Equation 19 in one dimension, 2 kg, M_d = M, at rest on the target, pushed by 5 N
     mass, push = 2.0, 5.0
+    shows("One dimension, 2 kg, at rest on the target, pushed with 5 N", (2.0, 5.0), (mass, push))
     desired = push / mass
     law = push + mass * push  # its two terms of F_ext; all others vanish here
     printed = (law + push) / mass  # the push is on the arm
@@ -128,7 +140,11 @@ def impedance() -> None:
     model = lk.Model("left", plant)
     q0 = model.robot.ready
     T_wd = model.pose(q0)
-    T_off = lk.se3.pose(T_wd[:3, :3], T_wd[:3, 3] + np.array((0.002, 0.0, 0.0)))
+    beside, lasts, gone_at = 0.002, 2.0, 0.1
+    shows("From 2 mm beside the target", 2.0, 1e3 * beside)
+    shows("mm within 2 s with", 2.0, lasts)
+    shows("it is 10 cm away after", 10.0, 100.0 * gone_at)
+    T_off = lk.se3.pose(T_wd[:3, :3], T_wd[:3, 3] + np.array((beside, 0.0, 0.0)))
     start = model.inverse_kinematics(T_off, q0)
     K = np.array((300.0, 300.0, 300.0, 20.0, 20.0, 20.0))
     D = np.array((60.0, 60.0, 60.0, 4.0, 4.0, 4.0))
@@ -143,17 +159,21 @@ def impedance() -> None:
 
         with lk.Arm("left", plant, q0=start) as arm:
             try:
-                log = lk.run(arm, lk.Hold(T_wd, 2.0), law, rate=1000)
+                log = lk.run(arm, lk.Hold(T_wd, lasts), law, rate=1000)
             except lk.errors.Diverged as error:
                 log = error.log
         off = np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1)
-        gone[sign] = (1e3 * off[-1], log.t[np.argmax(off > 0.1)] if off.max() > 0.1 else np.inf)
+        gone[sign] = (
+            1e3 * off[-1],
+            log.t[np.argmax(off > gone_at)] if off.max() > gone_at else np.inf,
+        )
     holds(gone[1.0][0] < 1.0, "with the right sign of stiffness the tip comes back")
     holds(gone[-1.0][1] < 2.0, "with the printed sign the tip is driven away")
     numbers({"k_back": gone[1.0][0], "k_away": gone[-1.0][1]}, ".2g")
 
     # A push, measured by no one: M_d = Lambda
     force = np.array((0.0, 10.0, 0.0))
+    shows("pushed with 10 N it moved", 10.0, force[1])
     world = lk.World(things=[lk.Push(force=force)])
     with lk.Arm("left", plant, q0=q0, world=world) as arm:
         law_2 = WorkspaceImpedance(model, K=K)

@@ -27,8 +27,9 @@ from .page import Question, address, figure, framed, holds, number, numbers, pos
 SEED = 8
 FOCAL = 600.0
 SIZE = 0.08
-NOISE = 0.001
-"""Of the readings of the target that sways, in [m]."""
+NOISE, PERIOD, AGE = 0.001, 0.1, 0.1
+"""Of the readings of the target that sways: noise [m]; time from one to the next and to now [s]."""
+LOST = 0.3
 
 
 def seen() -> HTML:
@@ -184,7 +185,7 @@ class Sway(NamedTuple):
 def swaying() -> Sway:
     """Pictures at 10 Hz, each 100 ms old when it arrives, with 1 mm of noise."""
     random = np.random.default_rng(SEED)
-    period, age, noise = 0.1, 0.1, NOISE
+    period, age, noise = PERIOD, AGE, NOISE
     t = np.arange(0.0, 8.0, 0.005)
     shots = np.arange(0.0, 8.0, period)
     seen = 0.1 * np.sin(1.2 * shots) + noise * random.standard_normal(shots.size)
@@ -230,7 +231,7 @@ def following() -> HTML:
     start, law = ready_pose(), known(lk.Model("left", lk.BAXTER), lk.BAXTER)["workspace velocity"]
     for way, follower, dials in (
         ("predicts", TagFollower(start, OFFSET), {}),
-        ("loses readings", TagFollower(start, OFFSET), {"dropout": 0.3}),
+        ("loses readings", TagFollower(start, OFFSET), {"dropout": LOST}),
         ("looks, then moves", SequentialServoing(start, OFFSET), {"rate": 0.2, "delay": 1.0}),
     ):
         made = closed_loop(SEED, law.controller, follower, **dials)

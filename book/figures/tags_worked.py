@@ -19,10 +19,20 @@ from solutions.tags.following import TagFollower, blend, carry_forward
 
 from .claims import claim, shows
 from .page import figure, numbers
-from .tags import FOCAL, NOISE, SIZE, ambiguity_gap, corners_seen, swaying
+from .tags import (
+    AGE,
+    FOCAL,
+    LOST,
+    NOISE,
+    PERIOD,
+    SIZE,
+    ambiguity_gap,
+    corners_seen,
+    swaying,
+)
 
 LENS = Intrinsics(width=640, height=480, fx=FOCAL, fy=FOCAL)
-PERIOD, AGE, SPEED = 0.1, 0.1, 0.1
+SPEED = 0.1
 AHEAD = TagFollower.horizon + AGE
 PUSHES = {2: 0.03, 3: 0.0035}
 """How unsteady the velocity [m²/s³], or the acceleration [m²/s⁵], of a tag is believed to be."""
@@ -121,10 +131,21 @@ def geometry() -> None:
     away = at[2] + SIZE / 2.0 * math.sin(math.radians(24.6)) * np.array((-1.0, 1.0))
     shows("48.8 pixels tall, the right side 47.2", (48.8, 47.2), FOCAL * SIZE / away, 0.002)
     shows("0.984 m and 1.017 m", (0.984, 1.017), FOCAL * SIZE / np.array((48.8, 47.2)), 0.001)
-    by_hand("= 20 mm from where it is", 20.0, 1e3 * 0.5 * 0.1 * 0.4)
+    right = FOCAL * SIZE / np.array((48.8, 47.2, 47.7))
+    shows("is 80 mm wide and its right side is 33.3 mm farther away", (80.0, 33.3),
+          (1e3 * SIZE, 1e3 * (right[1] - right[0])), 0.01)  # fmt: skip
+    shows("the right side is at 1.006 m, the difference is 22.6 mm", (1.006, 22.6),
+          (right[2], 1e3 * (right[2] - right[0])), 0.01)  # fmt: skip
+    turning, way = 0.5, 0.4
+    shows("turns at 0.5 rad/s while a picture is 100 ms under way has turned by 0.05 rad, "
+          "and a tag at "
+          "a distance of 0.4 m then appears $0.05\\cdot0.4$ = 20 mm", (0.5, 100.0, 0.05, 0.4, 20.0),
+          (turning, 1e3 * AGE, turning * AGE, way, 1e3 * turning * AGE * way))  # fmt: skip
     by_hand("errors are twice as large as they are claimed to be", 2.0, math.sqrt(12.0 / 3.0))
     by_hand("is uncertain by 1.47 mm", 1.47, 1e3 * math.sqrt(square[2, 2]))
-    by_hand("Sideways it is 0.083 mm", 0.083, 1e3 * math.sqrt(tilted[0, 0]))
+    sideways = math.sqrt(tilted[0, 0])
+    shows("Sideways it is 0.083 mm, since $0.1\\cdot1/(2\\cdot600)$ = 0.000083 m",
+          (0.083, 0.000083), (1e3 * sideways, 0.1 * at[2] / (2.0 * FOCAL)), 0.01)  # fmt: skip
     by_hand("an unknown tilt makes it 0.118 mm", 0.118, 1e3 * math.sqrt(square[0, 0]))
     by_hand("the tilt by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
     by_hand("the covariance says 0.27°", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03)
@@ -134,8 +155,12 @@ def geometry() -> None:
     ):
         by_hand(words, value, _tilt_read(*heights))
     by_hand("3.8 pixels for each radian", 3.84, FOCAL * SIZE**2)
-    by_hand("27 pixels for each radian", 27.1, FOCAL * SIZE * math.sin(0.6))
-    gap = ambiguity_gap(math.radians(30.0), 2.5)
+    lean = 0.6
+    shows("at 0.6 rad (34°) it changes by $48\\sin\\theta$, 27 pixels", (0.6, 34.4, 27.1),
+          (lean, math.degrees(lean), FOCAL * SIZE * math.sin(lean)), 0.01)  # fmt: skip
+    angle, afar = 30.0, 2.5
+    shows("At 2.5 m and 30°", (2.5, 30.0), (afar, angle))
+    gap = ambiguity_gap(math.radians(angle), afar)
     by_hand("comes to 0.154 pixels", 0.154, gap, 0.05)
 
 
@@ -171,7 +196,10 @@ def two_pictures() -> None:
     noise, q, z = 1e-6 * np.eye(3), 0.0025, 0.012
     by_hand("A first picture says 0 mm, with $R = 1$ mm²", 1.0, 1e6 * noise[0, 0])
     shows("The second picture, 0.1 s later, says 12 mm", (0.1, 12.0), (PERIOD, 1e3 * z))
-    by_hand("$\\sqrt2/0.1 = 14$ mm/s", 14.0, 1e3 * math.sqrt(2.0 * noise[0, 0]) / PERIOD, 0.02)
+    sure = 1e3 * math.sqrt(noise[0, 0])
+    shows("Two readings with 1 mm of noise each, 0.1 s apart, give $\\sqrt2/0.1 = 14$ mm/s",
+          (1.0, 0.1, 14.0), (sure, PERIOD, math.sqrt(2.0) * sure / PERIOD), 0.02)  # fmt: skip
+    by_hand("Take in 12 mm", 12.0, 1e3 * z)
     fastest = 0.2
     shows("anything up to some 200 mm/s, so $P = \\mathrm{diag}(1, 40\\,000)$", (200.0, 4e4),
           (1e3 * fastest, 1e6 * fastest**2))  # fmt: skip
@@ -193,19 +221,20 @@ def two_pictures() -> None:
     by_hand("4012.5/402.8 = 9.96$ 1/s", 9.96, P[0, 1] / (P[0, 0] + 1.0))
     after = update(then, (z, 0.0, 0.0), noise)
     claim(
-        "The belief is now 11.97 mm and 119.5 mm/s",
-        lambda m: np.allclose(m, (11.97, 119.53), rtol=1e-3),
-        m=[1e3 * after.mean[0], 1e3 * after.mean[3]],
+        "The belief is now 11.97 mm and 119.5 mm/s: nearly the difference quotient 12 mm / 0.1 s",
+        lambda m: np.allclose(m, (11.97, 119.53, 12.0, 0.1), rtol=1e-3),
+        m=[1e3 * after.mean[0], 1e3 * after.mean[3], 1e3 * z, PERIOD],
     )
     P = 1e6 * after.covariance[np.ix_((0, 3), (0, 3))]
     by_hand("known to 16.8 mm/s", 16.8, math.sqrt(P[1, 1]))
     mean, covariance = carry_forward(after.mean, after.covariance, AGE, q)
-    by_hand("because this reading was 100 ms under way", 100.0, 1e3 * AGE)
+    shows("Now is 0.1 s later, because this reading was 100 ms under way", (0.1, 100.0),
+          (AGE, 1e3 * AGE))  # fmt: skip
     by_hand("it expects the target at 23.9 mm", 23.9, 1e3 * mean[0])
     spread = 1e3 * math.sqrt(covariance[0, 0])
     by_hand("with a standard deviation of 2.6 mm", 2.58, spread)
     shows("said 12 mm, and would have been sure of it to 1 mm", (12.0, 1.0),
-          (1e3 * z, 1e3 * math.sqrt(noise[0, 0])))  # fmt: skip
+          (1e3 * z, sure))  # fmt: skip
     shows("an error of 12 mm and pays with 2.6 mm of noise", (12.0, 2.6),
           (1e3 * (mean[0] - z), spread), 0.02)  # fmt: skip
     random, more = np.random.default_rng(0), []
@@ -232,8 +261,9 @@ def old_pictures() -> None:
     by_hand("By hand that makes 13.0 mm", 13.0, sway.rms(sway.last), 0.02)
     by_hand("at 0.1 m/s and 100 ms, 10 mm", 10.0, 1e3 * SPEED * AGE)
     by_hand("The readings had 1 mm of noise", 1.0, 1e3 * NOISE)
-    by_hand("its RMS speed is", 0.085, speed, 0.05)
-    by_hand("its root is", 0.153, age)
+    by_hand("its RMS speed is $0.1\\cdot1.2/\\sqrt2$ = 0.085 m/s", 0.085, speed, 0.05)
+    by_hand("its root is $\\sqrt{0.15^2 + 0.1^2/12}$ = 0.153 s", 0.153, age)
+    shows("With pictures at 10 Hz that are 100 ms old", (10.0, 100.0), (1.0 / PERIOD, 1e3 * AGE))
 
 
 def steering() -> None:
@@ -242,7 +272,8 @@ def steering() -> None:
     gain = 1.0 / (math.e * delay)
     by_hand("with an age of 100 ms it is 3.7 1/s", 3.7, gain)
     by_hand("is unstable beyond 15.7 1/s", 15.7, math.pi / 2.0 / delay)
-    by_hand("stays 27 mm behind", 27.0, 1e3 * (1.0 - _steered(gain, 0.1)[-1]), 0.02)
+    shows("at 0.1 m/s the hand stays 27 mm behind", (0.1, 27.0),
+          (SPEED, 1e3 * (1.0 - _steered(gain, SPEED)[-1])), 0.02)  # fmt: skip
     claim(
         "Beyond that gain the hand overshoots",
         lambda most: abs(most[0]) < 1e-3 and 0.02 < most[1] < 1.0 < most[2],
@@ -326,6 +357,7 @@ def question() -> None:
     """How fast the tag of the task goes round: a quintic's peak is 15/8 of its mean."""
     by_hand("a circle of 12 cm", 0.12, 2.0 * RADIUS)
     by_hand("The hand is to stay 20 cm above the tag", 0.2, OFFSET[2])
+    by_hand("With 30 % of the readings lost at random", 0.3, LOST)
     dials = inspect.signature(TagStream).parameters
     pictures, late = dials["rate"].default, dials["delay"].default
     shows("takes ten pictures a second, and it takes 100 ms", (10.0, 100.0), (pictures, 1e3 * late))

@@ -18,7 +18,7 @@ from solutions.study.joint_torque import ComputedTorque
 
 from .claims import claim, shows
 from .page import figure, number, numbers
-from .torque import DAMPER, KP, REPORT_KD, REPORT_KP, SPRING, circle_run, radius
+from .torque import DAMPER, KP, ON_CIRCLE, REPORT_KD, REPORT_KP, SPRING, circle_run, radius
 
 WEIGHT = 0.5
 """Of the thing in the hand, in [kg]."""
@@ -110,6 +110,7 @@ def springs() -> None:
     zeta = [DAMPER[k] / (2.0 * math.sqrt(SPRING[k] * M[k, k])) for k in (0, 5)]
     numbers({"omega_s0": omega[0], "omega_w1": omega[1]}, ".2g")
     numbers({"zeta_s0": zeta[0], "zeta_w1": zeta[1]}, ".2g")
+    shows("200 N m/rad and 30 N m s/rad at s0", (200.0, 30.0), (SPRING[0], DAMPER[0]))
     numbers({"inertia_s0": M[0, 0], "inertia_w1": M[5, 5]}, ".2g")
 
 
@@ -117,7 +118,14 @@ def ticks() -> None:
     """The bare wrist at 200 Hz by trace and determinant, and the conditions against eigenvalues."""
     model = lk.Model("left", lk.IDEAL)
     I = float(model.mass_matrix(lk.robot("left").neutral)[6, 6])
-    h = 1.0 / 200.0
+    rate, moving = 200.0, 1.0
+    h = 1.0 / rate
+    shows(
+        "With 8 N m/rad and 1.5 N m s/rad at 200 Hz",
+        (8.0, 1.5, 200.0),
+        (REPORT_KP, REPORT_KD, rate),
+    )
+    shows("at its target but moving at 1 rad/s", 1.0, moving)
     a, c = REPORT_KP * h**2 / (2.0 * I), REPORT_KD * h / I
     trace, det = 2.0 - a - c, 1.0 + a - c
     numbers({"tick_a": a, "tick_c": c, "tick_trace": trace, "tick_det": det}, ".3g")
@@ -138,7 +146,7 @@ def ticks() -> None:
         tried.append(said == (radius(inertia, kp, kd, h) < 1.0))
     claim("together they are exact", lambda right: right == 400, right=float(sum(tried)))
     step = np.array([[1.0, h], [0.0, 1.0]]) - np.outer((h * h / 2, h), (8.0, 1.5)) / 0.051
-    x = [np.array([0.0, 1.0])]
+    x = [np.array([0.0, moving])]
     for _ in range(400):
         x.append(step @ x[-1])
     q = [float(one[0]) for one in x]
@@ -159,6 +167,8 @@ def lifted() -> None:
     g, J = model.gravity(q0), model.tip_jacobian(q0)
     numbers({"lift_g1": -g[1], "lift_g3": -g[3], "lift_j1": -J[2, 1], "lift_j3": -J[2, 3]}, ".3g")
     numbers({"lift_q1": -g[1] / K[1], "lift_q3": -g[3] / K[3]}, ".2g")
+    shows("N m on a spring of 200 N m/rad", 200.0, K[1])
+    shows("N m on 100 N m/rad", 100.0, K[3])
     by_hand = 1e3 * float(J[2] @ (g / K))
     number("lift_hand", by_hand, ".3g")
     rest = fsolve(lambda q: K * (q0 - q) + model.gravity(q), q0)
@@ -175,15 +185,17 @@ def wrists() -> None:
     for q, dq in zip(circle_run().q[::7], circle_run().dq[::7], strict=True):
         drag = np.array(lk.BAXTER.stiction) * np.sign(dq) + lk.BAXTER.viscous[0] * dq
         inertia = model.mass_matrix(q)
-        alone.append(drag[5] / inertia[5, 5] / 225.0)
-        coupled.append(np.linalg.solve(inertia, drag)[5] / 225.0)
+        alone.append(drag[5] / inertia[5, 5] / ON_CIRCLE)
+        coupled.append(np.linalg.solve(inertia, drag)[5] / ON_CIRCLE)
     claim(
         "because the other joints' friction reaches it through $M^{-1}$",
         lambda x: 0.0 < abs(x[1] / x[2] - 1.0) < 0.2 and x[0] < 0.7 * x[2],
         x=[*(1e3 * math.sqrt(np.square(one).mean()) for one in (alone, coupled)), float(off[5])],
     )
-    numbers({"spring_s0": 225.0 * M[0, 0], "spring_w1": 225.0 * M[5, 5]}, ".2g")
-    number("held_w1", 1e3 * lk.BAXTER.stiction[5] / (225.0 * M[5, 5]), ".2g")
+    numbers({"spring_s0": ON_CIRCLE * M[0, 0], "spring_w1": ON_CIRCLE * M[5, 5]}, ".2g")
+    shows("On the circle, with 225 1/s²", 225.0, ON_CIRCLE)
+    shows("A friction of 0.3 N m alone", 0.3, lk.BAXTER.stiction[5])
+    number("held_w1", 1e3 * lk.BAXTER.stiction[5] / (ON_CIRCLE * M[5, 5]), ".2g")
     claim(
         "the wrist errs by more than ten times as much as the shoulder",
         lambda shoulder, wrist: wrist > 10.0 * shoulder > 0.0,
@@ -201,7 +213,9 @@ def payload() -> HTML:
     _, ax = plt.subplots(figsize=(6.0, 2.9))
     shows("Put 0.5 kg into the hand", 0.5, WEIGHT)
     force, ends, said = 9.81 * WEIGHT, [], []
-    for k, gain in enumerate((100.0, 400.0)):
+    gains = (100.0, 400.0)
+    shows("and $K_p$ is 400 1/s²", 400.0, gains[1])
+    for k, gain in enumerate(gains):
         law = ComputedTorque(model, gain, 2.0 * math.sqrt(gain))
         with lk.Arm("left", replace(lk.IDEAL, name="with a weight", payload=WEIGHT), q0=q0) as arm:
             log = lk.run(arm, lk.Hold(q0, 1.5), law, rate=1000)

@@ -175,6 +175,7 @@ def gains() -> HTML:
         small=float(over[kps <= 8.0].max()),
         large=float(over[-1]),
     )
+    shows("and at 30 1/s it is", 30.0, kps[-1])
     numbers({"kp_first": first, "over_last": 100.0 * over[-1], "margin_5": phase_margin(5.0)})
     return figure(
         "The realistic arm: overshoot of a 0.1 rad step, measured, and phase margin of the loop, "

@@ -43,10 +43,15 @@ def paths() -> None:
     _bends(tick)
     _, joints = line_task()
     fastest = np.abs([joints(t)[1:] for t in np.linspace(0.0, DURATION, 801)]).max((0, 2))
-    shows("step of 5 ms that is 1.6 rad/s², while", (1.6, 0.23), (4e-5 / tick**2, fastest[1]), 0.01)
-    shows("turns at 0.227 rad/s, far below its limit", (0.227, 1.5), (fastest[0], 1.5), 3e-3)
+    shows("step of 5 ms that is 1.6 rad/s², while the fastest joint of this chapter's line truly "
+          "accelerates by 0.23 rad/s²", (5.0, 1.6, 0.23),
+          (1e3 * tick, 4e-5 / tick**2, fastest[1]), 0.01)  # fmt: skip
+    shows("turns at 0.227 rad/s, far below its limit of 1.5 rad/s", (0.227, 1.5),
+          (fastest[0], lk.robot("left").speed[0]), 3e-3)  # fmt: skip
     shows("It falls to 37 % in", 0.37, exp(-1.0), 0.01)
-    shows("0.25 m/s at the first instant", 0.25, KP * 0.05)
+    apart = 0.05
+    shows("If they differ by 5 cm, a controller with $K_p = 5$ 1/s asks for 0.25 m/s",
+          (5.0, 5.0, 0.25), (100.0 * apart, KP, KP * apart))  # fmt: skip
     shows("angles that are up to 14 ms old", 14.0, 1e3 * (lk.BAXTER.state_delay + 0.01))
 
 
@@ -56,7 +61,8 @@ def _durations(D: float) -> None:
     quintic, bang = lk.Quintic.within(D, v, a).duration, lk.BangBang.within(D, v, a).duration
     trapezoid = lk.Trapezoid(D, v, a).duration
     pull = sqrt(lk.Quintic.PEAK_ACCELERATION * D / a)
-    shows("2.02 s and the acceleration for 1.76 s", (2.02, 1.76), (quintic, pull), 3e-3)
+    shows("2.02 s and the acceleration for 1.76 s, so it takes 2.02 s", (2.02, 1.76),
+          (quintic, pull), 3e-3)  # fmt: skip
     shows("The bang-bang schedule needs 2.15 s", 2.15, bang, 3e-3)
     shows("it needs 1.58 s", 1.58, trapezoid, 3e-3)
     claim(
@@ -86,8 +92,11 @@ def _bends(tick: float) -> None:
     circle = lk.Circle(np.array((0.1, 0.0, 0.0)), np.zeros(3))
     middle = lk.Trajectory(circle, lk.Quintic(5.0))(2.5)
     v, a = np.linalg.norm(middle.velocity), np.linalg.norm(middle.acceleration)
-    shows("of radius 0.10 m in five seconds", 0.375, lk.Quintic(5.0)(2.5)[1])
-    shows("which is 0.236 m/s, and the acceleration towards", (0.236, 0.555), (v, a), 2e-3)
+    shows("radius 0.10 m in five seconds, the quintic's pace peaks at 0.375 per second",
+          (0.10, 0.375), (circle.radius, lk.Quintic(5.0)(2.5)[1]))  # fmt: skip
+    shows("which is 0.236 m/s, and the acceleration towards the centre is $v^2/r$, "
+          "which is 0.555 m/s²",
+          (0.236, 0.555), (v, a), 2e-3)  # fmt: skip
     claim("above the limit of 0.5", lambda a: 0.5 < a < 0.6, a=float(a))
     corner = lk.Polyline([[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0]])
     jump = 0.5 * np.linalg.norm(corner(0.5).velocity - corner(0.4999).velocity)
@@ -118,7 +127,8 @@ def model() -> None:
     M, g, dq = arm.mass_matrix(POSE), arm.gravity(POSE), np.array((1.0, 2.0))
     C = arm.coriolis(POSE, dq)
     inertia = np.linalg.inv(J @ np.linalg.inv(M) @ J.T)
-    shows("the hand moves at 0.57 m/s", 0.57, np.linalg.norm(J[:, 0]), 0.01)
+    shows("At 1 rad/s of the shoulder alone the hand moves at 0.57 m/s", (1.0, 0.57),
+          (dq[0], np.linalg.norm(J[:, 0] * dq[0])), 0.01)  # fmt: skip
     shows("presses the hand down with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
     shows("the hand must press up with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
     shows("The shoulder gives 4 N m and the elbow nothing", (4.0, 0.0), J.T @ (0.0, 10.0))
@@ -144,7 +154,9 @@ def model() -> None:
 def _rods(J: np.ndarray) -> None:
     """The data of the arm of two rods, and its exercises."""
     rods = (ROD, ELBOW_MASS, HAND_MASS)
-    shows("two rods of 0.4 m without mass", (0.4, 4.0, 2.0), rods)
+    shows("two rods of 0.4 m without mass, a mass $m_1$ of 4 kg at the elbow and a mass "
+          "$m_2$ of 2 kg",
+          (0.4, 4.0, 2.0), rods)  # fmt: skip
     shows("Both masses have the horizontal distance 0.4 m", (0.4, 23.5),
           (ROD, 9.81 * sum(rods[1:]) * ROD), 3e-3)  # fmt: skip
     shows("0.4189 and 0.0611", (0.4189, 0.0611), np.linalg.eigvalsh(J @ J.T)[::-1], 1e-3)
@@ -160,8 +172,10 @@ def _elbow() -> None:
     (upper, drop), (fore, sink) = (
         (1e3 * hypot(*(b - a)[:2]), 1e3 * (a - b)[2]) for a, b in ((s1, e1), (e1, w1))
     )
-    shows("is 364.4 mm in front of the shoulder's and 69 mm below it", (364.4, 69.0, 374.3, 10.0),
+    shows("is 364.4 mm in front of the shoulder's and 69 mm below it, and the wrist's axis is "
+          "374.3 mm in front of the elbow's and 10 mm below it", (364.4, 69.0, 374.3, 10.0),
           (upper, drop, fore, sink), 1e-3)  # fmt: skip
+    shows("set off from the elbow's axis by 69 mm", 69.0, drop, 1e-3)
     slopes = atan(drop / upper), atan(sink / fore)
     shows("\\arctan(69/364.4) = 0.1872$ rad", 0.1872, slopes[0], 1e-3)
     shows("\\arctan(10/374.3) = 0.0267$ rad", 0.0267, slopes[1], 1e-3)
@@ -190,7 +204,8 @@ def velocity() -> None:
           crossing * hypot(1.0, lag * crossing), 2e-3)  # fmt: skip
     phase = degrees(atan(lag * crossing)), degrees(crossing * DELAY)
     shows("which is 8.4°, the delay takes", 8.4, phase[0], 0.01)
-    shows("which is 3.3°, and", (3.3, 78.3), (phase[1], 90.0 - sum(phase)), 0.02)
+    shows("which is 3.3°, and $90 - 8.4 - 3.3$ leaves 78.3°", (3.3, 78.3),
+          (phase[1], 90.0 - sum(phase)), 0.02)  # fmt: skip
     J = np.array([[2.0, 1.0]])
     shows("with the length $\\sqrt{0.2} = 0.447$", (0.4, 0.2), np.linalg.pinv(J)[:, 0])
     free = np.eye(2) - np.linalg.pinv(J) @ J
@@ -198,10 +213,16 @@ def velocity() -> None:
     _finite()
     _wanted()
     cut, even = np.minimum((3.0, 0.9), 1.5), 0.5 * np.array((3.0, 0.9))
-    shows("asked for 3.0 and 0.9 rad/s", (1.5, 0.9, 1.5, 0.45), (*cut, *even))
+    shows(
+        "asked for 3.0 and 0.9 rad/s, and the limit is 1.5 rad/s",
+        (1.5, 0.9, 1.5, 0.45),
+        (*cut, *even),
+    )
     shows("points 31° away from the x axis and the second 16.7°", (31.0, 16.7),
           [degrees(atan(y / x)) for x, y in (cut, even)], 4e-3)  # fmt: skip
-    shows("another 5 ms old on average", (5.0, 2.5), (0.5e3 / lk.BAXTER.state_rate, 0.5e3 / 200.0))
+    shows("published at 100 Hz, is another 5 ms old on average; a command is held for 5 ms",
+          (100.0, 5.0, 2.5),
+          (lk.BAXTER.state_rate, 0.5e3 / lk.BAXTER.state_rate, 0.5e3 / 200.0))  # fmt: skip
 
 
 def _wanted() -> None:
@@ -238,7 +259,8 @@ def _finite() -> None:
     damping = WorkspaceVelocityPD.damping
     factor = float(damped_inverse(np.array([[0.05]]), damping)[0, 0])
     shows("with $\\sigma = 0.05$ m/rad the tip should move at 0.1 m/s", 2.0, 0.1 / 0.05)
-    shows("or 2 rad/s, too much for a shoulder", (2.0, 1.5), (0.1 / 0.05, 1.5))
+    shows("or 2 rad/s, too much for a shoulder with a limit of 1.5 rad/s", (2.0, 1.5),
+          (0.1 / 0.05, lk.robot("left").speed[0]))  # fmt: skip
     shows("With $\\lambda^2 = 0.004$, as in this lab", 0.004, damping)
     shows("so the joints turn at 0.769 rad/s", (7.69, 0.769), (factor, 0.1 * factor), 1e-3)
     shows("or 0.0385 m/s: the share", 0.0385, 0.005 * factor, 2e-3)

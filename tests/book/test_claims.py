@@ -1,11 +1,15 @@
 """Sentences bound to data: wrong data stop the build."""
 
+import ast
 import os
 
 import pytest
-from book_claims import sentences
+from book_claims import loose, plain, sentences
+from book_pages import BOOK
 from figures import claims
 from figures.claims import ConclusionFails, claim, mutations, told
+
+BINDING = ("claim", "shows", "by_hand", "_is")
 
 
 @pytest.fixture(autouse=True)
@@ -54,3 +58,25 @@ $$
 | Claim | 3 mm |
 """
     assert [s.split()[0] for s in sentences(text)] == ["It", "One", "At", "|"]
+
+
+def test_a_typed_number_is_loose_unless_a_claim_holds_it():
+    """Formulas are bound by their derivation, glued numbers by their names."""
+    sentence = "Pushed with **10 N** on $k = 200$ N/m it rests {glue:text}`rest` mm and 5 cm away."
+    assert loose(sentence, ["rest"]) == ["10 N", "5 cm"]
+    assert loose(sentence, ["rest", "Pushed with 10 N on"]) == ["5 cm"]
+
+
+def test_the_words_of_every_claim_stand_on_a_page():
+    """A sentence that is rewritten takes its claim along, or is bound to nothing."""
+    sources = (p for p in BOOK.rglob("*.md") if "_build" not in p.parts)
+    pages = [plain(" ".join(p.read_text().split())) for p in sources]
+    calls = [
+        node
+        for path in (BOOK / "figures").glob("*.py")
+        for node in ast.walk(ast.parse(path.read_text()))
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") in BINDING
+    ]
+    words = [x.args[0].value for x in calls if x.args and isinstance(x.args[0], ast.Constant)]
+    assert len(words) > 200
+    assert [w for w in words if not any(w in page for page in pages)] == []
