@@ -12,7 +12,7 @@ import click
 from ..course.cli import PATH, verb
 from ..course.layout import Course
 from ..errors import LabkitError
-from .cli_course import of_assignment, of_course
+from .cli_course import of_assignment
 from .each import Failed, Failures
 
 if TYPE_CHECKING:

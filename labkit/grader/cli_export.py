@@ -34,9 +34,9 @@ Form = Literal["a", "b"]
     "--layout",
     type=click.Choice([*TABLES, *QUIZZES, "gradescope"]),
     default="questions",
-    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle. Not "
-    "marks are: paper, moodle-quiz, canvas-quiz, the concept test; gradescope, the zip with which "
-    "Gradescope grades ASSIGNMENT itself.",
+    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
+    "paper, moodle-quiz, canvas-quiz: the concept test instead of marks; gradescope: the zip with "
+    "which Gradescope grades ASSIGNMENT itself.",
 )
 @click.option("--form", type=click.Choice(["a", "b"]), help="Which form of the concept test.")
 @click.option(

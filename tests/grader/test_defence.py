@@ -41,8 +41,7 @@ def says(course, *words):
 
 @pytest.mark.slow
 def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
-    """Three of a student's functions that the checks now reject; others for another student; the
-    same when it is printed again, and then its mark stays."""
+    """Three functions that the checks now reject, each student's own; printed again, the same."""
     for student in ("ada", "bob"):
         accepted(course, student, solved)
     asked = draw(course, "ada")
@@ -51,7 +50,7 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
         names = {}
         own = cell_of(solved, one.of.question.name)["source"]
         exec(one.edit.put_into(own), names)
-        assert not try_public(one.of.question, names[one.of.question.name]).outcome == "right"
+        assert try_public(one.of.question, names[one.of.question.name]).outcome != "right"
         exec(own, names)
         assert try_public(one.of.question, names[one.of.question.name]).outcome == "right"
         assert one.lines[one.at - 1] == one.edit.now and '"""' not in "".join(one.lines)
@@ -85,8 +84,7 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
 
 
 def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
-    """A student who is unknown, has too few accepted answers or is not graded; a mark that is none,
-    or that comes before the page."""
+    """An unknown student, too few accepted answers, a mark that is none or that comes too early."""
     hand_in(course, NAME, "eve", solved)
     hand_in(course, NAME, "bob", solved)
     Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
