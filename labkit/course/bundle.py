@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -104,7 +105,9 @@ def write_bundle(
         added: Those that are new to students who have handed in already.
     """
     path = course.bundle / f"{assignment}.json"
-    before = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    before: Mapping[str, Any] = {}
+    with suppress(OSError, TypeError, ValueError):  # a damaged one is made anew
+        before = dict(json.loads(path.read_text(encoding="utf-8")))
     late = sorted({*before.get("added", ()), *added} & set(questions))
     data: dict[str, Any] = {
         **stamp(),

@@ -82,6 +82,8 @@ def collect(
     """
     if not source.exists():
         raise LabkitError(f"there is no {source}")
+    if not (source.is_file() or source.is_dir()):  # a device or a pipe, which has no end
+        raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
     now = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
     with alone(course):
         if named is not None:

@@ -10,11 +10,16 @@ from pathlib import Path
 from typing import Any
 
 from ..course.layout import Course
+from ..errors import LabkitError
 from .clean import clean_line
 
 
 def nbgrader_api(course: Course) -> Any:
-    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says."""
+    """The interface of nbgrader to this course, set up as its own ``nbgrader_config.py`` says.
+
+    Raises:
+        LabkitError: That file cannot be run.
+    """
     from nbgrader.apps import NbGraderAPI
     from nbgrader.coursedir import CourseDirectory
     from traitlets.config import Config
@@ -23,7 +28,11 @@ def nbgrader_api(course: Course) -> Any:
     here = str(Path(sys.executable).parent)  # nbgrader calls programs that lie beside Python
     if here not in os.environ["PATH"].split(os.pathsep):
         os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
-    config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+    try:
+        config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+    except (Exception, SystemExit) as error:  # it is a program, the instructor's
+        why = clean_line(f"{type(error).__name__}: {error}")
+        raise LabkitError(f"nbgrader_config.py cannot be run: {why}; correct it") from None
     settings = Config(config)
     settings.CourseDirectory.root = str(course.root)
     settings.Application.log_level = logging.CRITICAL

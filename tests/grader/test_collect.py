@@ -578,3 +578,12 @@ def test_names_and_work_go_with_the_term(bare, tmp_path):
     folder = archive(bare)
     assert {"attempts", "submitted", "roster.csv", "lms.json"} <= {x.name for x in folder.iterdir()}
     assert not (bare.root / "attempts").exists() and not (bare.root / ROSTER).exists()
+
+
+def test_a_download_without_an_end_is_refused(bare, tmp_path):
+    """A pipe, and what leads to a device, are not waited for."""
+    os.mkfifo(tmp_path / "pipe.zip")
+    (tmp_path / "device.zip").symlink_to("/dev/zero")
+    for name in ("pipe.zip", "device.zip"):
+        with pytest.raises(LabkitError, match="is neither a file nor a folder; give the download"):
+            list(collect(bare, NAME, tmp_path / name))

@@ -162,6 +162,15 @@ def test_failures_are_told_at_the_end(capsys):
     assert capsys.readouterr().err == "not done: ada: why\n"
 
 
+@pytest.mark.parametrize("text", ["c = get_config(\n", "1 / 0\n", "raise SystemExit\n"])
+def test_a_config_that_cannot_be_run_is_a_sentence(marked, capsys, text):
+    """It is the instructor's own program: exit 2, and what it failed with."""
+    (marked.root / "nbgrader_config.py").write_text(text)
+    code, _, err = verb(marked, capsys, "feedback")
+    assert (code, err.count("\n")) == (2, 1)
+    assert "nbgrader_config.py cannot be run: " in err
+
+
 @pytest.mark.parametrize("damage", [b"no database at all" * 90, None])
 def test_a_damaged_gradebook_is_a_sentence(marked, capsys, damage):
     """Garbage or half a file: exit 2, what to do, results kept; restored, all is as it was."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 import copy
 import json
 import os
+import shutil
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -624,6 +625,14 @@ def _gone(name: str) -> Any:
     return lambda root: (root / name).unlink()
 
 
+def _as_file(name: str) -> Any:
+    def change(root: Path) -> None:
+        shutil.rmtree(root / name)
+        (root / name).write_bytes(b"")
+
+    return change
+
+
 def _as_folder(name: str) -> Any:
     def change(root: Path) -> None:
         (root / name).unlink(missing_ok=True)
@@ -669,7 +678,7 @@ STATES = {
     "result: nobody's": lambda root: (root / "results/01_paths/nobody.json").write_bytes(
         (root / _RESULT).read_bytes()
     ),
-    "result: lock is a folder": _as_folder("results/01_paths/.running-1-of-1"),
+    "lock is a folder": _as_folder("results/01_paths/.running-1-of-1"),
     "result: left half written": _write("results/01_paths/.zoe.json.99.new", b"{"),
     "gradebook: garbage": _write(_BOOK, b"garbage" * 1000),
     "gradebook: empty": _write(_BOOK, b""),
@@ -699,7 +708,7 @@ STATES = {
     "term: negative": _write(_TERM, b'{"seed": -1}'),
     "term: no UTF-8": _write(_TERM, b"\xff"),
     "feedback: file": _write("feedback", b""),
-    "autograded: file": _write("autograded", b""),
+    "autograded: file": _as_file("autograded"),
     "config: broken": _write("nbgrader_config.py", b"c = get_config(\n"),
     "config: raises": _write("nbgrader_config.py", b"1 / 0\n"),
     "config: no UTF-8": _write("nbgrader_config.py", b"# \xff\n"),
