@@ -52,8 +52,10 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
 
 def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
     """Each measure that has a limit: its words, now, as handed in, at most."""
-    now = {} if one.run is None else {row.words: row.value for row in measures(one.run)}
-    own = () if one.own is None else measures(one.own)
-    for row in own:
+    now, own = (
+        {} if run is None else {x.words: x for x in measures(run)} for run in (one.run, one.own)
+    )
+    for words, row in (own | now).items():
         if row.limit:
-            yield row.words, now.get(row.words, "none"), row.value, row.limit
+            values = (table[words].value if words in table else "none" for table in (now, own))
+            yield words, *values, row.limit
