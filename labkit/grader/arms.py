@@ -7,7 +7,7 @@ import re
 
 from ..course.layout import Course
 from ..course.own_arm import FILE, HANDLES, Arms
-from .results import write
+from .atomic import write
 from .roster import Roster
 
 

@@ -31,9 +31,10 @@ import msgspec
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .atomic import write
 from .clean import safe_name
 from .exchange import SECRET, TIMESTAMP, read_secret, read_stamp, read_time
-from .results import digest, write
+from .results import digest
 from .rules import read_rules
 from .sandbox.limits import Limits
 from .submission import read_file
@@ -295,10 +296,6 @@ def _read(path: Path) -> Attempt:
 
 
 def _put(path: Path, data: bytes) -> None:
-    """Write a file whole or not at all."""
-    if path.is_file() and path.read_bytes() == data:
-        return
-    path.parent.mkdir(parents=True, exist_ok=True)
-    new = path.with_name(f".{path.name}.{os.getpid()}.new")
-    new.write_bytes(data)
-    new.replace(path)
+    """Write a file unless it holds this already; then it keeps its time."""
+    if not path.is_file() or path.read_bytes() != data:
+        write(path, data)

@@ -10,10 +10,10 @@ from nbgrader.api import MissingEntry
 
 from ..course.layout import DEFENCE, Course
 from ..errors import LabkitError
+from .atomic import write
 from .autograded_notebook import as_text, as_typed
 from .defence import ASKED, FULL, Asked
 from .gradebook import open_gradebook
-from .results import write
 
 LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
 """What the gradebook calls the questions."""

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from ..course.layout import Course
 from ..replay import recorded_html
+from .atomic import write
 from .defence import ASKED, FULL, Asked
 from .feedback import error_over_time, measures, number_by_number
 from .pages import file, policy, render, scripts
-from .results import write
 from .rules import read_rules
 
 RUBRIC = (
@@ -57,5 +57,5 @@ def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
     )
     for words, row in (own | now).items():
         if row.limit:
-            values = (table[words].value if words in table else "none" for table in (now, own))
-            yield words, *values, row.limit
+            found, was = (t[words].value if words in t else "none" for t in (now, own))
+            yield words, found, was, row.limit

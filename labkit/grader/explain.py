@@ -17,11 +17,12 @@ from ..course.messages import summary, wrapped
 from ..course.question import Question
 from ..course.verdict import Verdict
 from ..errors import LabkitError, UnknownName
+from .atomic import write
 from .feedback import page
 from .grade import grade
 from .marks import Line, Mark, marks_of
 from .plan import imports
-from .results import Result, write
+from .results import Result
 from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits, slowness
 from .submission import Submission

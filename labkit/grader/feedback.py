@@ -22,12 +22,13 @@ from ..errors import LabkitError
 from ..metrics import SETTLED
 from ..replay import recorded_html
 from ..replay.motion import unpack
+from .atomic import write
 from .drawing import curve, side_by_side
 from .each import Failed, for_student
 from .marks import Mark, mark_of
 from .pages import file, policy, render, scripts
 from .peers import Review, reviews
-from .results import Result, write
+from .results import Result
 from .rules import read_rules
 
 MEASURES = {

@@ -16,10 +16,10 @@ from nbgrader.api import Gradebook, MissingEntry
 from ..course.layout import Course
 from ..course.own_arm import HANDLES
 from ..errors import LabkitError
+from .atomic import write
 from .gradebook import quiet_database
 from .identity import FILE as LMS
 from .identity import alone
-from .results import write
 from .roster import FILE as ROSTER
 from .rules import FILE as RULES
 from .rules import read_rules

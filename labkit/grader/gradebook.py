@@ -21,11 +21,12 @@ from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.notebook import about, by_hand, grade_id, question_of, read_cells
 from ..errors import LabkitError
+from .atomic import write
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 from .each import Failed, for_student
 from .exchange import read_stamp, read_time
 from .nbgrader_api import nbgrader_api
-from .results import Result, write
+from .results import Result
 from .rules import settle_lateness
 from .whys import settle_whys
 

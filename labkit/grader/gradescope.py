@@ -21,10 +21,11 @@ from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.messages import summary
 from ..course.verdict import Verdict
+from .atomic import write
 from .clean import clean_line
 from .grade import grade, rejection
 from .plan import imports
-from .results import Result, write
+from .results import Result
 from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits
 from .sandbox.mounts import Isolation

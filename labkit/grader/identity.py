@@ -24,9 +24,9 @@ import msgspec
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .atomic import write
 from .clean import clean_line, safe_name
 from .platforms import LmsUser
-from .results import write
 from .roster import Roster, same_name
 
 FILE = "course_private/lms.json"

@@ -7,7 +7,7 @@ import secrets
 from collections.abc import Callable
 
 from ..course.layout import Course
-from .results import write
+from .atomic import write
 
 FILE = "course_private/pseudonyms.key"
 """Without it nobody can tell who is who; it goes with the term."""

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import copy
-import glob
 import hashlib
 import json
-import os
 import platform
 import shutil
 from collections.abc import Iterator, Mapping
@@ -24,6 +22,7 @@ from ..course.verdict import Points, Verdict
 from ..errors import LabkitError
 from ..formats import check_stamp, stamp
 from ..sim import ENGINES
+from .atomic import write
 from .clean import clean_data, clean_line
 
 
@@ -264,23 +263,6 @@ class Results:
             result = self.get(student)
             if result is not None:
                 yield result
-
-
-def write(path: Path, text: str) -> None:
-    """Write a file whole or not at all; what a run that was killed left unfinished goes."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    for left in path.parent.glob(f".{glob.escape(path.name)}.*.new"):
-        if not Path("/proc", left.name.split(".")[-2]).exists():
-            left.unlink(missing_ok=True)
-    new = path.with_name(f".{path.name}.{os.getpid()}.new")
-    try:
-        with new.open("w", encoding="utf-8") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        new.replace(path)
-    finally:
-        new.unlink(missing_ok=True)
 
 
 def _damaged(name: str, why: str) -> LabkitError:

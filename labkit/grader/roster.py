@@ -14,11 +14,11 @@ from functools import cached_property
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .atomic import write
 from .class_list import read_table, refuse_long_rows
 from .clean import safe_name
 from .gradebook import open_gradebook
 from .platforms import LmsUser
-from .results import write
 
 FILE = "course_private/roster.csv"
 

@@ -16,8 +16,8 @@ from ..course.own_arm import HANDLES
 from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 from . import attempts, identity, pseudonyms, roster
+from .atomic import write
 from .release import release
-from .results import write
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),

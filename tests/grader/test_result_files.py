@@ -19,11 +19,12 @@ from labkit.__main__ import main
 from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError
 from labkit.formats import FORMAT, stamp
-from labkit.grader import results as module
+from labkit.grader import atomic as module
+from labkit.grader.atomic import write
 from labkit.grader.clean import clean_data
 from labkit.grader.each import Failed
 from labkit.grader.grade import grade
-from labkit.grader.results import Result, Results, write
+from labkit.grader.results import Result, Results
 from labkit.grader.standing import standing
 
 WRONG = {

@@ -23,7 +23,8 @@ from labkit.course.predictions import Prediction
 from labkit.course.problem import Problem
 from labkit.course.question import Question
 from labkit.errors import LabkitError
-from labkit.grader.results import Results, write
+from labkit.grader.atomic import write
+from labkit.grader.results import Results
 
 from . import kinds
 from .inline import inline

@@ -11,6 +11,7 @@ from pathlib import Path
 from labkit.course.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import LabkitError
+from labkit.grader.atomic import write
 from labkit.grader.batch import GradeOptions, common_failures, grade_class
 from labkit.grader.class_report import report
 from labkit.grader.collect import collect
@@ -20,7 +21,6 @@ from labkit.grader.feedback import write_feedback
 from labkit.grader.gradebook import record
 from labkit.grader.marks import marks_of
 from labkit.grader.release import release
-from labkit.grader.results import write
 from labkit.grader.standing import standing
 from labkit.grader.submission import students
 
