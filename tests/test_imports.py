@@ -59,7 +59,7 @@ ORDER = [
         "course.outcomes",
     },
     {"course.judges", "course.withheld", "course.forms"},
-    {"course.bugs"},
+    {"course.baxter_cup", "course.bugs"},
     {"course.own_arm"},
     {"course.equivalence"},
     {"course.question"},
