@@ -97,7 +97,8 @@ def look(path: Path) -> HandIn:
     name, questions = data["assignment"], data["questions"]
     problems, notes = [], []
     if path.name != f"{name}.ipynb":
-        problems.append(f"the file is called {path.name}; rename it to {name}.ipynb")
+        called = "".join(x if x.isprintable() else "\ufffd" for x in path.name)
+        problems.append(f"the file is called {called}; rename it to {name}.ipynb")
     size = path.stat().st_size / 1e6
     if size > LARGEST:
         problems.append(

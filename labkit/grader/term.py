@@ -57,11 +57,20 @@ def seed_for(course: Course, assignment: str) -> int:
 
     It is the term's.  Where no term was begun, it is that of the last release, so that a
     correction leaves hidden cases as they are; and the public one where that is the first.
+
+    Raises:
+        LabkitError: The bundle of the last release is damaged, and its seed lost.
     """
     seed = seed_of(course)
     bundle = course.bundle / f"{assignment}.json"
     if seed == PUBLIC_SEED and bundle.exists():
-        seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
+        try:
+            seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
+        except (TypeError, ValueError, KeyError) as error:
+            raise LabkitError(
+                f"{bundle} is damaged, and the seed of its hidden cases is lost ({error}); restore "
+                f"it, or name a seed: labkit release {assignment} --seed {seed}"
+            ) from None
     return seed
 
 
