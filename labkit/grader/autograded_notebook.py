@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 import re
+from pathlib import Path
 from typing import Any
 
 import nbformat
@@ -14,6 +15,8 @@ import nbformat
 from ..course.layout import Course
 from ..course.messages import summary
 from ..course.notebook import Notebook, about, by_hand, grade_id, kind, question_of
+from ..errors import LabkitError
+from .clean import clean_line
 from .results import Answer, Result
 
 
@@ -79,9 +82,13 @@ def _told(answer: Answer) -> list[str]:
 
 
 def release_source(course: Course, assignment: str) -> Notebook:
-    """The release as graders have it; what students write in is as they were given it."""
+    """The release as graders have it; what students write in is as they were given it.
+
+    Raises:
+        LabkitError: A file of the release is damaged.
+    """
     source, given = (
-        nbformat.read(folder / assignment / f"{assignment}.ipynb", as_version=4)
+        _read(folder / assignment / f"{assignment}.ipynb", assignment)
         for folder in (course.source, course.release)
     )
     blank = {grade_id(cell): cell for cell in given.cells}
@@ -89,6 +96,15 @@ def release_source(course: Course, assignment: str) -> Notebook:
         if about(cell).get("solution"):
             cell.source, cell.metadata = (blank[grade_id(cell)][x] for x in ("source", "metadata"))
     return source
+
+
+def _read(path: Path, assignment: str) -> Notebook:
+    try:
+        return nbformat.read(path, as_version=4)
+    except (OSError, ValueError, nbformat.ValidationError) as error:
+        why = clean_line(str(error), 80)
+        remedy = f"type: labkit release {assignment}"
+        raise LabkitError(f"{path} is damaged: {why}; {remedy}") from None
 
 
 def as_text(notebook: Notebook) -> str:
