@@ -19,7 +19,7 @@ from ..formats import check_stamp
 from .advice import line_of
 from .calling import heard
 from .marking import Evidence, mark, not_counted, try_public
-from .messages import tell, wrapped
+from .messages import HEADS, tell, wrapped
 from .notebook import verdict_metadata
 from .question import Question
 from .reply import Here
@@ -58,7 +58,6 @@ class Desk:
         self.questions = questions
         self.seen: dict[str, tuple[Any, Verdict]] = {}
         self.attempted: set[str] = set()
-        self.badges: set[str] = set()
         self.committed: dict[str, Any] = {}
         self.chosen: dict[str, Any] = {}
         self.revealed: set[str] = set()
@@ -222,7 +221,7 @@ def use(
         anyway: Whether to use yours even if it is wrong, to see what the arm makes of it.
 
     Returns:
-        One of them; a badge says once which, if it is not yours.
+        One of them; a badge says so each time that it is not yours, and why.
     """
     known, verdict = desk().seen.get(name, (None, None))
     if known is not function or verdict is None:
@@ -232,11 +231,12 @@ def use(
         print(f"[anyway] {name}: yours is not right yet, and drives the arm all the same.")
     if verdict.right or (anyway and wrong):
         return yours or function
-    if name not in desk().badges:
-        desk().badges.add(name)
-        print(f"[stand-in] {name}: yours is not ready, so a stand-in takes its place.")
-        if wrong:
-            print("(To see what yours does, add anyway=True to that use.)")
+    text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
+    if wrong:
+        text += " To see what yours does, add anyway=True to this use(...)."
+    elif anyway:
+        text += " anyway=True takes only a function that runs to its end on every case."
+    print(wrapped(text))
     return given
 
 

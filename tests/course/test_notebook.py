@@ -80,7 +80,7 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     check("double", answers["double"])
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
-    assert "it uses your double, which is not right yet" in capsys.readouterr().out
+    assert "it uses your double, not right yet" in capsys.readouterr().out
 
 
 def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
@@ -176,14 +176,26 @@ def test_hints_lead_on(capsys):
 
 
 def test_use_takes_yours_only_if_right(capsys):
-    """A right function is used, or what wraps it; any other is replaced, with one badge."""
+    """A right function is used, or what wraps it; any other is replaced, with a badge each time."""
     given, wrapped = object(), object()
     assert use("double", double, given) is double
     assert use("double", double, given, yours=wrapped) is wrapped
     assert capsys.readouterr().out == ""
     for function in (stub, square, lambda x: 1 / 0):
         assert use("double", function, given, yours=wrapped) is given
-    assert capsys.readouterr().out.count("[stand-in] double") == 1
+    out = capsys.readouterr().out
+    assert out.count("[stand-in] double: yours is replaced here") == 3
+    assert out.count("add anyway=True to this use(...)") == 1, "a stub and an error cannot drive"
+
+
+def test_anyway_takes_yours_only_if_it_runs(capsys):
+    """A wrong function drives if it is asked to; one that stops with an error says that it cannot."""
+    given = object()
+    assert use("double", square, given, anyway=True) is square
+    assert "[anyway] double" in capsys.readouterr().out
+    assert use("double", lambda x: 1 / 0, given, anyway=True) is given
+    out = " ".join(capsys.readouterr().out.split())
+    assert "(it stopped with an error)" in out and "runs to its end" in out
 
 
 def test_use_remembers_the_check():
