@@ -25,6 +25,7 @@ from .question import Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
+from .unfinished import watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
 
@@ -143,6 +144,8 @@ def cells_run(function: Callable[..., Any]) -> list[str]:
 
 
 _desks: dict[Path, Desk] = {}
+_unfinished = watch(shell()) if shell() else set()
+"""Answers that stand there from an earlier run of their cell, because it then had an error."""
 
 
 def desk() -> Desk:
@@ -151,6 +154,12 @@ def desk() -> Desk:
     if folder not in _desks:
         _desks[folder] = Desk.beside(folder)
     return _desks[folder]
+
+
+_NOT_RUN = (
+    "{name}: not tried, because its cell did not run: it stopped with an error, which stands below "
+    "that cell. Run the cell without an error first, then this one."
+)
 
 
 def check(name: str, function: Callable[..., Any]) -> float:
@@ -167,6 +176,9 @@ def check(name: str, function: Callable[..., Any]) -> float:
         UnknownName: No such question.
     """
     question = desk().question(name)
+    if name in _unfinished:
+        print(wrapped(_NOT_RUN.format(name=name)))
+        return 0.0
     verdict, printed, found = desk().verdict(name, function)
     _say(tell(question, verdict, printed, desk().leaning(name, function)), verdict)
     if verdict.mistake is not None and found is not None:
@@ -223,6 +235,9 @@ def use(
     Returns:
         One of them; a badge says so each time that it is not yours, and why.
     """
+    if name in _unfinished:
+        print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
+        return given
     known, verdict = desk().seen.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)

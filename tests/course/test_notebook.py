@@ -147,6 +147,28 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     assert then == stamp() | {"verdict": record_data(mark(circle, lambda x: 2 * x))}
 
 
+def test_an_older_answer_is_not_tried_when_its_cell_has_an_error(desk):
+    """After a syntax error, or an error above the definition, the check names the cell's error."""
+    program = KERNEL.format(folder=str(desk)).replace("        assert shell", "        shell") + (
+        "shell.run_cell('from labkit.course import use')\n"
+        "def say(cell):\n"
+        "    with capture_output() as out:\n"
+        "        shell.run_cell(cell, store_history=True)\n"
+        '        shell.run_cell(\'check("double", double);use("double", double, 1)\')\n'
+        "    print('not tried' in out.stdout, '[stand-in]' in out.stdout)\n"
+        "for before in '', 'return 1 +', '':\n"
+        "    say(f'def double(x):\\n    {before}\\n    return 2 * x')\n"
+        "say('1 / 0\\ndef double(x): return x')\n"
+        "say('def double(x): return 2 * x\\n1 / 0')\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    said = done.stdout.splitlines()
+    fine, older = "False False", "True True"
+    assert said == [fine, older, fine, older, fine], done.stdout
+
+
 def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
     """Who interrupts a check hears in which line it was, and the streams work again."""
 
@@ -189,7 +211,7 @@ def test_use_takes_yours_only_if_right(capsys):
 
 
 def test_anyway_takes_yours_only_if_it_runs(capsys):
-    """A wrong function drives if it is asked to; one that stops with an error says that it cannot."""
+    """A wrong function drives if it is asked to; one that stops with an error does not."""
     given = object()
     assert use("double", square, given, anyway=True) is square
     assert "[anyway] double" in capsys.readouterr().out
