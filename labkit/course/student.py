@@ -145,7 +145,7 @@ def cells_run(function: Callable[..., Any]) -> list[str]:
 
 _desks: dict[Path, Desk] = {}
 _unfinished = watch(shell()) if shell() else set()
-"""Answers that stand there from an earlier run of their cell, because it then had an error."""
+"""Answers that are left from an earlier run of their cell, because it then had an error."""
 
 
 def desk() -> Desk:
@@ -157,8 +157,8 @@ def desk() -> Desk:
 
 
 _NOT_RUN = (
-    "{name}: not tried, because its cell did not run: it stopped with an error, which stands below "
-    "that cell. Run the cell without an error first, then this one."
+    "{name}: not tried, because its cell did not run: it stopped with an error, which is shown "
+    "below that cell. Run the cell without an error first, then this one."
 )
 
 
@@ -199,7 +199,8 @@ def hint(name: str, level: int = 1) -> None:
     if not isinstance(level, int) or not 1 <= level <= len(hints):
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
-            "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
+            "of them, ask the teacher or a forum; what to send there says, in a new cell: "
+            f"!labkit submit-check --forum {read_checks(Path.cwd())['assignment']}.ipynb"
         )
         print(wrapped(text))
         return
