@@ -156,6 +156,14 @@ def desk() -> Desk:
     return _desks[folder]
 
 
+class Points(float):
+    """Points earned: a float, which nbgrader reads from a cell's output and students do not see."""
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows in place of the bare number: nothing, for the verdict is above."""
+        return ""
+
+
 _NOT_RUN = (
     "{name}: not tried, because its cell did not run: it stopped with an error, which is shown "
     "below that cell. Run the cell without an error first, then this one."
@@ -170,7 +178,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
         function: What you wrote.
 
     Returns:
-        The points earned, a plain float, which is what nbgrader reads.
+        The points earned, which nbgrader reads.
 
     Raises:
         UnknownName: No such question.
@@ -178,12 +186,12 @@ def check(name: str, function: Callable[..., Any]) -> float:
     question = desk().question(name)
     if name in _unfinished:
         print(wrapped(_NOT_RUN.format(name=name)))
-        return 0.0
+        return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
     _say(tell(question, verdict, printed, desk().leaning(name, function)), verdict)
     if verdict.mistake is not None and found is not None:
         _show(found)
-    return float(verdict.earned)
+    return Points(verdict.earned)
 
 
 def hint(name: str, level: int = 1) -> None:

@@ -37,11 +37,11 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_check_prints_and_ends_in_a_plain_float(capfd):
-    """The last line's value, which nbgrader reads, is a Python float, whatever the answer was."""
+def test_check_prints_and_ends_in_a_float(capfd):
+    """The last line's value, which nbgrader reads, is a float, whatever the answer was."""
     for function, points in ((double, 4.0), (square, 0.0), (stub, 0.0), (lambda x: 1 / 0, 0.0)):
         earned = check("double", function)
-        assert type(earned) is float and earned == points
+        assert isinstance(earned, float) and earned == points
         out, err = capfd.readouterr()
         assert out.startswith("double: ") and err == ""
 
@@ -167,6 +167,18 @@ def test_an_older_answer_is_not_tried_when_its_cell_has_an_error(desk):
     said = done.stdout.splitlines()
     fine, older = "False False", "True True"
     assert said == [fine, older, fine, older, fine], done.stdout
+
+
+def test_nbgrader_reads_the_points_and_a_student_sees_no_number(desk):
+    """The output holds the number as plain text, and as HTML, which notebooks prefer, nothing."""
+    program = KERNEL.format(folder=str(desk)) + (
+        "from labkit.course.student import Points\n"
+        "print(shell.display_formatter.format(Points(2.0))[0])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    assert ast.literal_eval(done.stdout) == {"text/plain": "2.0", "text/html": ""}
 
 
 def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
