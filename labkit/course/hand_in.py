@@ -8,6 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from .handin import look
+from .messages import wrapped
 from .notebook import read_cells
 
 
@@ -25,14 +26,15 @@ def hand_in(name: str) -> None:
     """
     path = Path.cwd() / f"{name}.ipynb"
     found = look(path)
-    saved = datetime.fromtimestamp(path.stat().st_mtime, UTC)
-    right = [question for question, v in found.verdicts.items() if v is not None and v.right]
-    print(found)
-    print(
+    saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
+    lines = [
+        f"This is {path.name} as it was saved at {saved:%H:%M:%S}. What you did since then is not "
+        "in it: save, and run this cell again.",
+        *str(found).splitlines(),
         f"receipt: {receipt(cell['source'] for cell in read_cells(path))} of {path.name}, saved "
-        f"{saved:%Y-%m-%d %H:%M} UTC; right or committed when last run: {', '.join(right) or '-'}"
-    )
-    print("If you changed anything since you saved, save and run this cell again.")
+        f"{saved:%Y-%m-%d %H:%M %Z}",
+    ]
+    print("\n".join(map(wrapped, lines)))
 
 
 def receipt(sources: Iterable[str]) -> str:

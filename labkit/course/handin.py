@@ -10,16 +10,19 @@ import copy
 import platform
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError
 from ..sim import chosen
+from .forms import COMMITTED
+from .gaps import first_error, undefined
 from .messages import head
 from .notebook import (
+    PLACEHOLDER,
     WORDS,
     about,
     check_id,
@@ -50,12 +53,16 @@ class HandIn:
         problems: What to correct before handing in, sentences.
         notes: What is worth knowing.
         verdicts: The last verdict in the file for each question, None where it was not run.
+        predictions: Those of the questions that ask for a prediction.
+        texts: The number of words in each text that a person marks.
     """
 
     assignment: str
     problems: tuple[str, ...]
     notes: tuple[str, ...]
     verdicts: Mapping[str, Verdict | None]
+    predictions: Collection[str] = ()
+    texts: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def lines(self) -> list[str]:
@@ -66,11 +73,19 @@ class HandIn:
         lines = [f"[fix] {text}" for text in self.problems]
         lines += [f"[note] {text}" for text in self.notes]
         lines += [f"  {line}" for line in self.lines]
-        right = sum(v is not None and v.right for v in self.verdicts.values())
+        lines += [
+            f"  {name}: {words} words; a person reads it" for name, words in self.texts.items()
+        ]
+        right = {name for name, v in self.verdicts.items() if v is not None and v.right}
+        tasks = self.verdicts.keys() - set(self.predictions)
+        end = f"{len(right & tasks)} of {len(tasks)} tasks were right"
+        if self.predictions:
+            committed = len(right & set(self.predictions))
+            end += f", and {committed} of {len(self.predictions)} predictions committed"
         end = (
-            "correct the above first."
+            "correct what is marked with [fix] first."
             if self.problems
-            else f"whole; when it was last run, {right} of {len(self.verdicts)} tasks were right."
+            else f"whole; when it was last run, {end}."
         )
         return "\n".join([*lines, f"{self.assignment}: {end}"])
 
@@ -105,10 +120,17 @@ def look(path: Path) -> HandIn:
             f"it has {size:.0f} MB, more than {LARGEST:g}; clear the outputs of large cells"
         )
     for question in questions:
-        more, worth_knowing = _cells_of(cells, question["name"])
+        more, worth_knowing = _cells_of(cells, question["name"], name)
         problems += more
         notes += worth_knowing
+    problems += undefined(cells, [question["name"] for question in questions])
+    problems += filter(None, [first_error(cells)])
     verdicts = {question["name"]: _verdict(cells, question) for question in questions}
+    predictions = [
+        question["name"]
+        for question in questions
+        if [test["name"] for test in question["tests"]["items"]] == [COMMITTED]
+    ]
     problems += [
         f"{head(verdict)} Write it yourself."
         for verdict in verdicts.values()
@@ -120,21 +142,28 @@ def look(path: Path) -> HandIn:
             f"changed since it was checked: {', '.join(stale)}; the verdicts below are old, run "
             "the notebook from the top and save it"
         )
-    unrun = [name for name, verdict in verdicts.items() if verdict is None]
+    unrun = sum(verdict is None for verdict in verdicts.values())
     if unrun:
-        notes.append(f"not run since it was opened: {', '.join(unrun)}; marking runs them again")
+        notes.append(
+            f"for {unrun} of {len(verdicts)} the saved file holds no result; if you have run their "
+            "checks, save the file and look again (marking runs them in any case)"
+        )
+    texts = {}
     for cell in cells:
         if kind(cell) == "why" and grade_id(cell):
-            words = len(str(cell["source"]).split())
+            words = texts[grade_id(cell)] = len(cell["source"].replace(PLACEHOLDER, "").split())
             if words < WORDS[0]:
-                notes.append(f"{grade_id(cell)} has {words} words; its point needs {WORDS[0]}")
+                notes.append(
+                    f"{grade_id(cell)} has {words} words; for its "
+                    f"{about(cell).get('points', 0):g} points it needs at least {WORDS[0]}"
+                )
     wrong = [name for name, v in verdicts.items() if v and not v.right]
     if wrong:
         notes.append(f"not yet right: {', '.join(wrong)}; what is right counts all the same")
-    return HandIn(name, tuple(problems), tuple(notes), verdicts)
+    return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
 
 
-def _cells_of(cells: list[dict[str, Any]], question: str) -> tuple[list[str], list[str]]:
+def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:
     """What must be corrected in the cells of a question, and what is worth knowing of them."""
     problems, notes = [], []
     ids = Counter(map(grade_id, cells))
@@ -145,7 +174,7 @@ def _cells_of(cells: list[dict[str, Any]], question: str) -> tuple[list[str], li
             f"the cell of {question} begins with %%{magic}, which keeps what it defines to itself; "
             "take that line away"
             if magic
-            else f"no cell defines {question}; bring it back with: labkit merge"
+            else _bring_back(question, name, any(cell["cell_type"] != "code" for cell in homes))
         )
     for each in (question, check_id(question)):
         if not ids[each]:
@@ -155,6 +184,18 @@ def _cells_of(cells: list[dict[str, Any]], question: str) -> tuple[list[str], li
                 f"the cell of {each} is there {ids[each]} times; keep one, for the last one counts"
             )
     return problems, notes
+
+
+def _bring_back(question: str, name: str, is_text: bool) -> str:
+    """How to get back the cell of a question."""
+    if is_text:
+        return f"the cell of {question} is not code any more; click on it, press Esc and then Y"
+    return (
+        f"no cell defines {question}. To bring its cell back, lay a fresh copy of the notebook in "
+        "a folder `fresh` beside this file, and run in a new cell: "
+        f"!labkit merge {name}.ipynb fresh/{name}.ipynb --to again.ipynb (again.ipynb then holds "
+        f"all your work; call it {name}.ipynb)"
+    )
 
 
 def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:

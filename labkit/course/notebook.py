@@ -259,6 +259,8 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
 WORDS = 25, 80
 """The fewest and the most words of a why."""
 WHY_POINTS = 2.0
+PLACEHOLDER = "*Your text goes here, in place of this line.*"
+"""What the cell of a why says at first; nbgrader's settings say the same."""
 
 
 def brief(question: Question) -> str:

@@ -19,12 +19,13 @@ from ..formats import check_stamp
 from .advice import line_of
 from .calling import heard
 from .marking import Evidence, mark, not_counted, try_public
-from .messages import tell, wrapped
+from .messages import HEADS, tell, wrapped
 from .notebook import verdict_metadata
 from .question import Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
+from .unfinished import watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
 
@@ -58,7 +59,6 @@ class Desk:
         self.questions = questions
         self.seen: dict[str, tuple[Any, Verdict]] = {}
         self.attempted: set[str] = set()
-        self.badges: set[str] = set()
         self.committed: dict[str, Any] = {}
         self.chosen: dict[str, Any] = {}
         self.revealed: set[str] = set()
@@ -144,6 +144,8 @@ def cells_run(function: Callable[..., Any]) -> list[str]:
 
 
 _desks: dict[Path, Desk] = {}
+_unfinished = watch(shell()) if shell() else set()
+"""Answers that are left from an earlier run of their cell, because it then had an error."""
 
 
 def desk() -> Desk:
@@ -154,6 +156,20 @@ def desk() -> Desk:
     return _desks[folder]
 
 
+class Points(float):
+    """Points earned: a float, which nbgrader reads from a cell's output and students do not see."""
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows in place of the bare number: nothing, for the verdict is above."""
+        return ""
+
+
+_NOT_RUN = (
+    "{name}: not tried, because its cell did not run: it stopped with an error, which is shown "
+    "below that cell. Run the cell without an error first, then this one."
+)
+
+
 def check(name: str, function: Callable[..., Any]) -> float:
     """Try your function and print what came of it.
 
@@ -162,17 +178,20 @@ def check(name: str, function: Callable[..., Any]) -> float:
         function: What you wrote.
 
     Returns:
-        The points earned, a plain float, which is what nbgrader reads.
+        The points earned, which nbgrader reads.
 
     Raises:
         UnknownName: No such question.
     """
     question = desk().question(name)
+    if name in _unfinished:
+        print(wrapped(_NOT_RUN.format(name=name)))
+        return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
     _say(tell(question, verdict, printed, desk().leaning(name, function)), verdict)
     if verdict.mistake is not None and found is not None:
         _show(found)
-    return float(verdict.earned)
+    return Points(verdict.earned)
 
 
 def hint(name: str, level: int = 1) -> None:
@@ -188,7 +207,8 @@ def hint(name: str, level: int = 1) -> None:
     if not isinstance(level, int) or not 1 <= level <= len(hints):
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
-            "of them, ask the teacher or a forum; labkit submit-check --forum says what to send."
+            "of them, ask the teacher or a forum; what to send there says, in a new cell: "
+            f"!labkit submit-check --forum {read_checks(Path.cwd())['assignment']}.ipynb"
         )
         print(wrapped(text))
         return
@@ -222,8 +242,11 @@ def use(
         anyway: Whether to use yours even if it is wrong, to see what the arm makes of it.
 
     Returns:
-        One of them; a badge says once which, if it is not yours.
+        One of them; a badge says so each time that it is not yours, and why.
     """
+    if name in _unfinished:
+        print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
+        return given
     known, verdict = desk().seen.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
@@ -232,11 +255,12 @@ def use(
         print(f"[anyway] {name}: yours is not right yet, and drives the arm all the same.")
     if verdict.right or (anyway and wrong):
         return yours or function
-    if name not in desk().badges:
-        desk().badges.add(name)
-        print(f"[stand-in] {name}: yours is not ready, so a stand-in takes its place.")
-        if wrong:
-            print("(To see what yours does, add anyway=True to that use.)")
+    text = f"[stand-in] {name}: yours is replaced here by a stand-in ({HEADS[verdict.outcome]})."
+    if wrong:
+        text += " To see what yours does, add anyway=True to this use(...)."
+    elif anyway:
+        text += " anyway=True takes only a function that runs to its end on every case."
+    print(wrapped(text))
     return given
 
 

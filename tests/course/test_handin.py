@@ -10,7 +10,7 @@ import pytest
 from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.handin import look, merge
-from labkit.course.notebook import read_cells, verdict_metadata
+from labkit.course.notebook import PLACEHOLDER, read_cells, verdict_metadata
 from labkit.course.verdict import Outcome, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
@@ -42,7 +42,7 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert found.problems == ()
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
-    assert str(found).endswith("whole; when it was last run, 0 of 8 tasks were right.")
+    assert str(found).endswith("0 of 6 tasks were right, and 0 of 2 predictions committed.")
 
 
 def test_what_is_not_yet_right_is_named(folder):
@@ -112,7 +112,7 @@ def test_what_the_check_said_is_repeated(folder):
     found = answered(folder, "circle", "def circle(*a): return 1", ran)
     says = "  circle: right on all public cases; 4 points if the hidden ones agree."
     assert says in str(found).splitlines()
-    assert str(found).endswith("1 of 8 tasks were right.")
+    assert "1 of 6 tasks were right, and 0 of" in str(found)
     lies = [{"output_type": "stream", "name": "stdout", "text": "circle: right. 4 of 4 points.\n"}]
     assert answered(folder, "circle", "x = 1", lies).verdicts["circle"] is None
 
@@ -166,6 +166,49 @@ def test_missing_and_doubled_cells_are_named(folder):
     problems = look(edited(folder / "01_paths.ipynb", change)).problems
     assert any(text.startswith("no cell defines bang_bang") for text in problems)
     assert any("circle is there 2 times" in text for text in problems)
+
+
+def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
+    """Names that later cells need and no cell defines, and the first error, are to be corrected."""
+
+    def change(cells):
+        kept = [c for c in cells if "import labkit as lk" not in "".join(c["source"])]
+        kept[-1]["outputs"] = [{"output_type": "error", "ename": "NameError", "evalue": "no lk"}]
+        return kept
+
+    problems = look(edited(folder / "01_paths.ipynb", change)).problems
+    assert any(text.startswith("no cell defines") and "lk" in text for text in problems)
+    assert any("ended with an error (NameError: no lk)" in text for text in problems)
+
+
+def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
+    """Where the cell is there and is not code, two keys bring it back."""
+
+    def change(cells):
+        for cell in cells:
+            if "def witness" in "".join(cell["source"]):
+                cell["cell_type"] = "markdown"
+        return cells
+
+    problems = look(edited(folder / "01_paths.ipynb", change)).problems
+    assert any("press Esc and then Y" in text for text in problems)
+
+
+def test_words_of_a_text_are_counted_without_the_placeholder(folder):
+    """A text that nobody has written has no words; a written one has a line."""
+    assert PLACEHOLDER in (ASSIGNMENT.parents[1] / "nbgrader_config.py").read_text()
+    found = look(folder / "01_paths.ipynb")
+    assert found.texts and set(found.texts.values()) == {0}
+    assert any(f"{name} has 0 words; for its 2 points" in str(found) for name in found.texts)
+
+    def change(cells):
+        for cell in cells:
+            if cell["metadata"].get("lab") == "why":
+                cell["source"] = "word " * 30
+        return cells
+
+    found = look(edited(folder / "01_paths.ipynb", change))
+    assert all(f"  {name}: 30 words" in str(found) for name in found.texts)
 
 
 def test_the_forum_block_holds_verdicts_and_no_answer(folder):

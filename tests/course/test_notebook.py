@@ -37,11 +37,11 @@ def desk(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_check_prints_and_ends_in_a_plain_float(capfd):
-    """The last line's value, which nbgrader reads, is a Python float, whatever the answer was."""
+def test_check_prints_and_ends_in_a_float(capfd):
+    """The last line's value, which nbgrader reads, is a float, whatever the answer was."""
     for function, points in ((double, 4.0), (square, 0.0), (stub, 0.0), (lambda x: 1 / 0, 0.0)):
         earned = check("double", function)
-        assert type(earned) is float and earned == points
+        assert isinstance(earned, float) and earned == points
         out, err = capfd.readouterr()
         assert out.startswith("double: ") and err == ""
 
@@ -80,7 +80,7 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     check("double", answers["double"])
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
-    assert "it uses your double, which is not right yet" in capsys.readouterr().out
+    assert "it uses your double, not right yet" in capsys.readouterr().out
 
 
 def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
@@ -147,6 +147,40 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     assert then == stamp() | {"verdict": record_data(mark(circle, lambda x: 2 * x))}
 
 
+def test_an_older_answer_is_not_tried_when_its_cell_has_an_error(desk):
+    """After a syntax error, or an error above the definition, the check names the cell's error."""
+    program = KERNEL.format(folder=str(desk)).replace("        assert shell", "        shell") + (
+        "shell.run_cell('from labkit.course import use')\n"
+        "def say(cell):\n"
+        "    with capture_output() as out:\n"
+        "        shell.run_cell(cell, store_history=True)\n"
+        '        shell.run_cell(\'check("double", double);use("double", double, 1)\')\n'
+        "    print('not tried' in out.stdout, '[stand-in]' in out.stdout)\n"
+        "for before in '', 'return 1 +', '':\n"
+        "    say(f'def double(x):\\n    {before}\\n    return 2 * x')\n"
+        "say('1 / 0\\ndef double(x): return x')\n"
+        "say('def double(x): return 2 * x\\n1 / 0')\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    said = done.stdout.splitlines()
+    fine, older = "False False", "True True"
+    assert said == [fine, older, fine, older, fine], done.stdout
+
+
+def test_nbgrader_reads_the_points_and_a_student_sees_no_number(desk):
+    """The output holds the number as plain text, and as HTML, which notebooks prefer, nothing."""
+    program = KERNEL.format(folder=str(desk)) + (
+        "from labkit.course.student import Points\n"
+        "print(shell.display_formatter.format(Points(2.0))[0])\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+    )
+    assert ast.literal_eval(done.stdout) == {"text/plain": "2.0", "text/html": ""}
+
+
 def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):
     """Who interrupts a check hears in which line it was, and the streams work again."""
 
@@ -176,14 +210,26 @@ def test_hints_lead_on(capsys):
 
 
 def test_use_takes_yours_only_if_right(capsys):
-    """A right function is used, or what wraps it; any other is replaced, with one badge."""
+    """A right function is used, or what wraps it; any other is replaced, with a badge each time."""
     given, wrapped = object(), object()
     assert use("double", double, given) is double
     assert use("double", double, given, yours=wrapped) is wrapped
     assert capsys.readouterr().out == ""
     for function in (stub, square, lambda x: 1 / 0):
         assert use("double", function, given, yours=wrapped) is given
-    assert capsys.readouterr().out.count("[stand-in] double") == 1
+    out = capsys.readouterr().out
+    assert out.count("[stand-in] double: yours is replaced here") == 3
+    assert out.count("add anyway=True to this use(...)") == 1, "a stub and an error cannot drive"
+
+
+def test_anyway_takes_yours_only_if_it_runs(capsys):
+    """A wrong function drives if it is asked to; one that stops with an error does not."""
+    given = object()
+    assert use("double", square, given, anyway=True) is square
+    assert "[anyway] double" in capsys.readouterr().out
+    assert use("double", lambda x: 1 / 0, given, anyway=True) is given
+    out = " ".join(capsys.readouterr().out.split())
+    assert "(it stopped with an error)" in out and "runs to its end" in out
 
 
 def test_use_remembers_the_check():

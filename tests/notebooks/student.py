@@ -41,9 +41,9 @@ class Sheet:
     earned: dict[str, float] = field(default_factory=dict)
     used: tuple[str, ...] = ()
 
-    def badges(self, name: str) -> int:
-        """How often the notebook said that a stand-in takes a part's place."""
-        return self.printed.count(f"[stand-in] {name}:")
+    def badges(self, name: str) -> bool:
+        """Whether the notebook said that a stand-in takes a part's place."""
+        return f"[stand-in] {name}:" in self.printed
 
 
 def questions(name):

@@ -1,0 +1,63 @@
+"""What is wrong with a notebook's cells, seen from the file: names nowhere defined, and errors."""
+
+from __future__ import annotations
+
+import builtins
+import textwrap
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+from .source import look
+from .unfinished import defined_in
+
+_KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "___", "__file__"}
+"""Names that every notebook has."""
+
+Cell = Mapping[str, Any]
+
+
+def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[str]:
+    """A sentence for each cell that uses names which no cell defines.
+
+    Args:
+        cells: Of the notebook.
+        asked: Names of the questions; of these others tell.
+    """
+    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    defined = _KNOWN.union(asked, *map(defined_in, code))
+    if "*" in defined:  # of an import: nobody knows what it brings
+        return
+    for source in code:
+        names = [name for name in look(source)["uses"] if name not in defined]
+        defined.update(names)
+        if names:
+            yield (
+                f"no cell defines {' or '.join(names)}, which the cell that begins with "
+                f"`{_first_line(source)}` uses; if you deleted a cell, copy it from a fresh "
+                "copy of the notebook, which is in the zip that you were given"
+            )
+
+
+def first_error(cells: list[dict[str, Any]]) -> str:
+    """A sentence about the first cell that ended with an error, "" if none did."""
+    for cell in cells:
+        outputs = cell.get("outputs")
+        for output in outputs if isinstance(outputs, list) else ():
+            if isinstance(output, dict) and output.get("output_type") == "error":
+                says = _shown(f"{output.get('ename')}: {output.get('evalue')}", 120)
+                return (
+                    f"the cell that begins with `{_first_line(cell['source'])}` ended with an "
+                    f"error ({says}), and Run All Cells stops there; correct or delete it"
+                )
+    return ""
+
+
+def _first_line(source: str) -> str:
+    lines = (line.strip() for line in source.splitlines())
+    return _shown(next((line for line in lines if line and line[0] != "#"), ""), 60)
+
+
+def _shown(text: str, most: int) -> str:
+    """The text in one line of at most `most` printable characters."""
+    text = "".join(x if x.isprintable() else " " for x in text)
+    return textwrap.shorten(text, most, placeholder=" ...")

@@ -1,0 +1,44 @@
+"""Cells that stopped before they defined an answer, so that an older answer is still there."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from .source import look
+
+_DEFINES = re.compile(r"^(?:def|class)\s+(\w+)|^(\w+)\s*=", re.MULTILINE)
+
+
+def defined_in(source: str) -> set[str]:
+    """The names that a cell is to define, also where Python cannot read the cell."""
+    found = look(source)
+    if not found["broken"]:
+        return set(found["binds"])
+    return {function or value for function, value in _DEFINES.findall(source)}
+
+
+def watch(shell: Any) -> set[str]:
+    """Follow the cells that run in an IPython shell.
+
+    Returns:
+        A set that is kept up to date: the names that the last cell to define them did not define,
+        because of an error in the cell.
+    """
+    unfinished: set[str] = set()
+    before: dict[str, Any] = {}
+
+    def begins(_: Any) -> None:
+        before.clear()
+        before.update(shell.user_ns)
+
+    def ends(result: Any) -> None:
+        names = defined_in(result.info.raw_cell or "")
+        unfinished.difference_update(names)
+        if not result.success:
+            same = {name for name in names if shell.user_ns.get(name) is before.get(name)}
+            unfinished.update(same)
+
+    shell.events.register("pre_run_cell", begins)
+    shell.events.register("post_run_cell", ends)
+    return unfinished
