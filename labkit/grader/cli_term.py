@@ -44,7 +44,7 @@ def term(
     older: float | None,
     yes: bool,
 ) -> int:
-    r"""Begin a term, list terms, delete old records.
+    """Begin a term, list terms, delete old records.
 
     \b
     new     archives the last term and releases each NAME, or all assignments,
@@ -54,7 +54,7 @@ def term(
             everything of one student; with --yes it deletes them
 
     The law may say how long marks must be kept.
-    """
+    """  # noqa: D301
     from .forget import forget, places_of
     from .term import about, archives, new_term
 

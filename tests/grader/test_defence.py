@@ -29,7 +29,7 @@ def accepted(course, student, notebook):
     """Hand in, with a result that accepts all of it."""
     hand_in(course, NAME, student, notebook)
     result = result_of(course, student, data=raw(notebook))
-    answers = tuple(replace(a, source=cell_of(notebook, a.verdict.name)["source"])
+    answers = tuple(replace(a, source="".join(cell_of(notebook, a.verdict.name)["source"]))
                     for a in result.questions)  # fmt: skip
     result = replace(result, questions=answers)
     Results(course, NAME).keep(result)
@@ -49,7 +49,7 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
     assert len({one.of.question.name for one in asked}) == ASKED
     for one in asked:
         names = {"lk": lk, "np": np}
-        own = cell_of(solved, one.of.question.name)["source"]
+        own = "".join(cell_of(solved, one.of.question.name)["source"])
         exec(one.edit.put_into(own), names)
         assert try_public(one.of.question, names[one.of.question.name]).outcome != "right"
         exec(own, names)

@@ -15,12 +15,14 @@ from handmade import ROOT, cell_of, hand_in, raw
 
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
+from labkit.course.marking import all_alike
+from labkit.course.verdict import Outcome
 from labkit.errors import LabkitError
 from labkit.grader.grade import rejection
 from labkit.grader.gradebook import record
 from labkit.grader.peers import handed_out, readers, sheet_of, without_names
 from labkit.grader.release import release
-from labkit.grader.results import Results
+from labkit.grader.results import Answer, Results
 from labkit.grader.roster import Student
 
 NAME = "08_report"
@@ -86,7 +88,9 @@ def course(tmp_path_factory):
         notebook["cells"].append(code)
         hand_in(course, NAME, author, notebook)
         result = rejection("", author, bundle, "made by hand", raw(notebook))
-        result = replace(result, written={"claim_and_prediction": claim})
+        blank = [all_alike(q, Outcome.NOT_ATTEMPTED) for q in bundle.questions]
+        result = replace(result, questions=tuple(Answer(verdict, source="") for verdict in blank),
+                         written={"claim_and_prediction": claim})  # fmt: skip
         Results(course, NAME).keep(result)
         record(course, NAME, [result])
     return course
