@@ -83,7 +83,7 @@ def tell(
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         call = f'hint("{question.name}", 1)'
-        lines.append(f"  Stuck? {call} costs nothing, and nobody sees that you asked.")
+        lines.append(f"  Stuck? Run {call} in a new cell (press Esc, then B). It is free.")
     return "\n".join(wrapped(line) for line in lines)
 
 
