@@ -40,7 +40,7 @@ def head(verdict: Verdict) -> str:
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
-        return f"{verdict.name}: {says} on all public cases; {points} if the hidden ones agree."
+        return f"{verdict.name}: {says} on all cases here; {points} if the teacher's cases agree."
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
 
 

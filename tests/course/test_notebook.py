@@ -143,7 +143,7 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     assert first.startswith("double: not counted: uses lk.Circle")
     verdict = verdict_in({"metadata": {"labkit": kept}})
     assert verdict == not_counted(circle, ("labkit.Circle",))
-    assert second == "double: right on all public cases; 4 points if the hidden ones agree."
+    assert second == "double: right on all cases here; 4 points if the teacher's cases agree."
     assert then == stamp() | {"verdict": record_data(mark(circle, lambda x: 2 * x))}
 
 
