@@ -87,5 +87,5 @@ def ready() -> None:
     print(  # short enough for one line of a notebook beside its file browser
         f"labkit {__version__}: the arm moved {1e3 * np.linalg.norm(b - a):.0f} mm; Python "
         f"{platform.python_version()}, {sys.platform} {platform.machine()}, {engines}, "
-        f"{free:.0f} GB free"
+        f"{free:.0f} GB memory free"
     )

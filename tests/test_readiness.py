@@ -21,7 +21,7 @@ def test_ready_prints_one_line_with_versions_platform_memory_and_the_motion(caps
         "Python 3",
         f"{chosen()} ",
         "pin ",
-        "GB free",
+        "GB memory free",
     ):
         assert word in out
     assert len(out) <= 110  # a notebook beside its file browser breaks longer lines

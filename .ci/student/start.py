@@ -55,9 +55,11 @@ def main(words):
         return 0
     os.environ["PATH"] = str(python.parent) + os.pathsep + os.environ.get("PATH", "")
     words = ["--log-level=ERROR", "--notebook-dir=" + str(HERE / "assignments")]
+    words += ["--KernelManager.transport_encryption=auto"]  # or each kernel warns of eavesdroppers
     words += ["--LabApp.default_url=/lab/tree/START_HERE.ipynb"]
     words += ["--allow-root"] if is_root() else []
-    print("opening JupyterLab at START_HERE; to end it, press Ctrl-C here", flush=True)
+    print("opening JupyterLab at START_HERE, which takes about ten seconds;", end=" ")
+    print("to end it, press Ctrl-C here", flush=True)
     return become([python, "-m", "jupyterlab"] + words)
 
 

@@ -16,6 +16,11 @@ COMMITTED = "committed before the arm answers"
 """The one test of a prediction."""
 
 
+def letters(said: Any) -> str:
+    """What was written, in small letters and without spaces around it; "" if it is not a text."""
+    return said.strip().lower() if isinstance(said, str) else ""
+
+
 class _Form:
     """What the four forms share: a prediction of the right form is accepted, whatever it says."""
 
@@ -30,6 +35,8 @@ class _Form:
 
     def same(self, answer: Any, other: Any) -> bool:
         """Whether two predictions are the same one."""
+        if isinstance(answer, str):
+            return letters(answer) == letters(other)
         return bool(answer == other)
 
     def distance(self, answer: Any, expected: Any) -> float:
@@ -54,13 +61,13 @@ class Choose(_Form):
 
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction; "" if nothing is."""
-        if isinstance(said, str) and said in self.options:
+        if letters(said) in self.options:
             return ""
         return f"it is {said!r}; choose one of {', '.join(map(repr, self.options))}"
 
     def words(self, said: Any) -> str:
         """A prediction as a sentence's object."""
-        return f"({said}) {self.options[said]}"
+        return f"({letters(said)}) {self.options[letters(said)]}"
 
 
 @dataclass(frozen=True)
@@ -82,13 +89,13 @@ class Rank(_Form):
 
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction; "" if nothing is."""
-        if isinstance(said, str) and sorted(said) == sorted(self.options):
+        if sorted(letters(said)) == sorted(self.options):
             return ""
         return f"it is {said!r}; write each of the letters {''.join(self.options)} once"
 
     def words(self, said: Any) -> str:
         """A prediction as a sentence's object."""
-        return ", ".join(self.options[letter] for letter in said)
+        return ", ".join(self.options[letter] for letter in letters(said))
 
 
 @dataclass(frozen=True)

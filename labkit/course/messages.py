@@ -40,7 +40,7 @@ def head(verdict: Verdict) -> str:
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
-        return f"{verdict.name}: {says} on all public cases; {points} if the hidden ones agree."
+        return f"{verdict.name}: {says} on all cases here; {points} if the teacher's cases agree."
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
 
 
@@ -83,7 +83,7 @@ def tell(
     lines += _printed(printed)
     if verdict.outcome is not Outcome.RIGHT and question.hints:
         call = f'hint("{question.name}", 1)'
-        lines.append(f"  Stuck? {call} costs nothing, and nobody sees that you asked.")
+        lines.append(f"  Stuck? Run {call} in a new cell (press Esc, then B). It is free.")
     return "\n".join(wrapped(line) for line in lines)
 
 

@@ -64,7 +64,7 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
     if isinstance(form, Number):
         print(wrapped(f"Your number is {said / truth:.2g} times the arm's." if truth else ""))
     else:
-        agrees = said == truth
+        agrees = form.same(said, truth)
         print("That is what you said." if agrees else "That is not what you said. Look again: why?")
 
 

@@ -198,11 +198,15 @@ def hint(name: str, level: int = 1) -> None:
     """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
 
     The last one opens after an attempt that the check has seen and that was not right.  Beyond it
-    `hint` says so, and where else to ask.
-
-    Raises:
-        UnknownName: There is no question of that name.
+    `hint` says so, and where else to ask.  A name that no question has is answered by a sentence.
     """
+    if name not in desk().questions:
+        print(
+            wrapped(
+                f"There are no hints for {name!r:.60}. The names are {', '.join(desk().questions)}."
+            )
+        )
+        return
     hints = desk().question(name).hints
     if not isinstance(level, int) or not 1 <= level <= len(hints):
         text = (

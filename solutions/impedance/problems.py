@@ -310,7 +310,7 @@ WORKSPACE_IMPEDANCE = Problem(
     asks="Give the `lk.JointTorque` that makes the tip answer a push as if it were tied to its target "
     "by springs `stiffness` and dampers `damping`, one for each of x, y, z and the three rotations, in "
     "world axes, with the inertia Λ that the tip has anyway. The arm does not carry its own weight: add "
-    "g(q). What the tip does not feel of a torque is left to you.",
+    "g(q). Torque that has no effect at the tip does not count; choose that part as you like.",
     answer=answers.workspace_impedance,
     expected=_at_tip(answers.workspace_impedance),
     judge=AtTip(),

@@ -291,8 +291,8 @@ ORIENTATION_ERROR = Problem(
         ),
         Wrong(
             "the turn in the tool's axes",
-            "The right turn, but its components are along the tool's axes. With the gripper down "
-            "two of them have the other sign in the world. Use R_wd R_wtᵀ.",
+            "The right turn, but its components are along the tool's axes, and the world's are asked "
+            "for. Which frame do the neighbouring letters of your product leave over?",
             mistakes.in_tool_axes,
             "R_wtᵀ R_wd is in the tool's axes, R_wd R_wtᵀ in the world's.",
         ),
@@ -319,14 +319,14 @@ ORIENTATION_ERROR = Problem(
         Wrong(
             "two rotation vectors subtracted",
             "The logarithms of two orientations are turns about different axes, and their "
-            "difference is not a rotation vector. Multiply first, R_wd R_wtᵀ, then take one logarithm.",
+            "difference is not a rotation vector. Multiply first, then take one logarithm.",
             mistakes.logarithms_subtracted,
             "Orientations are compared by a product.",
         ),
         Wrong(
             "the wrong one transposed",
-            "R_wdᵀ R_wt goes from the desired to the actual orientation, in the tool's axes. "
-            "The actual one is undone, and R_wtᵀ belongs on the right.",
+            "Your product goes from the desired to the actual orientation, and in the tool's axes. "
+            "Solve E R_wt = R_wd for E, and see which one is undone, and on which side.",
             mistakes.backwards_in_tool_axes,
             "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
         ),

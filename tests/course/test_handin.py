@@ -110,7 +110,7 @@ def test_what_the_check_said_is_repeated(folder):
     """The same words, from the data in the output, not from its text."""
     ran = [output("circle", Outcome.RIGHT, 4.0, complete=False)]
     found = answered(folder, "circle", "def circle(*a): return 1", ran)
-    says = "  circle: right on all public cases; 4 points if the hidden ones agree."
+    says = "  circle: right on all cases here; 4 points if the teacher's cases agree."
     assert says in str(found).splitlines()
     assert "1 of 6 tasks were right, and 0 of" in str(found)
     lies = [{"output_type": "stream", "name": "stdout", "text": "circle: right. 4 of 4 points.\n"}]

@@ -143,7 +143,7 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     assert first.startswith("double: not counted: uses lk.Circle")
     verdict = verdict_in({"metadata": {"labkit": kept}})
     assert verdict == not_counted(circle, ("labkit.Circle",))
-    assert second == "double: right on all public cases; 4 points if the hidden ones agree."
+    assert second == "double: right on all cases here; 4 points if the teacher's cases agree."
     assert then == stamp() | {"verdict": record_data(mark(circle, lambda x: 2 * x))}
 
 
@@ -248,9 +248,16 @@ def test_use_remembers_the_check():
 
 def test_unknown_questions_are_a_sentence():
     """A question that is not there is named, beside those that are."""
-    for call in (lambda: check("treble", double), lambda: hint("treble"), lambda: use("t", 1, 2)):
+    for call in (lambda: check("treble", double), lambda: use("t", 1, 2)):
         with pytest.raises(UnknownName, match="'double'"):
             call()
+
+
+def test_a_misspelt_hint_names_those_that_exist(capsys):
+    """A hint is asked for by hand, so a wrong name is a sentence and not an error."""
+    hint("treble", 1)
+    said = capsys.readouterr().out
+    assert said == "There are no hints for 'treble'. The names are double, again.\n"
 
 
 def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):

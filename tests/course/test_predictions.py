@@ -50,6 +50,15 @@ def test_the_truth_waits_for_a_prediction(place, capsys):
     assert "You predicted: (b) down" in said and "The arm says:  (a) up" in said
 
 
+def test_a_capital_letter_is_the_same_letter(place, capsys):
+    """A student who writes B means b, in the notebook and to a grader."""
+    predict("x", " B")
+    assert verdict(Choose(TWO), " B").earned == 1.0
+    predict("x", truth="b")
+    said = capsys.readouterr().out
+    assert "You predicted: (b) down" in said and "That is what you said." in said
+
+
 def test_the_first_prediction_stays(place):
     """What is changed after the reveal is not what was committed to."""
     predict("x", "b")

@@ -39,7 +39,7 @@ def test_not_attempted_says_what_to_do():
 def test_right_says_what_else_is_tried():
     """Where hidden cases are still to come, a right answer hears of them, and no promise."""
     assert said(double).splitlines() == [
-        "double: right on all public cases; 4 points if the hidden ones agree.",
+        "double: right on all cases here; 4 points if the teacher's cases agree.",
         "  The teacher also tries: any number.",
     ]
     graded = replace(
@@ -108,7 +108,7 @@ def test_a_test_that_nobody_can_see_is_told():
     assert "Not tried here" not in said(double)
     for wrong in (square, lambda x: None, lambda x: 1 / 0):
         assert "  [not tried here] elsewhere" in said(wrong, question).splitlines()
-    assert "double: right on all public cases" in said(double, question)
+    assert "double: right on all cases here" in said(double, question)
 
 
 def test_the_same_failure_is_told_once():

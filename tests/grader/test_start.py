@@ -48,6 +48,7 @@ def test_the_second_start_installs_nothing(start, monkeypatch):
     monkeypatch.setattr(start, "make", lambda python: pytest.fail("made twice"))
     start.main([])
     assert "jupyterlab" in start.said[-1]
+    assert "--KernelManager.transport_encryption=auto" in start.said[-1], "else each kernel warns"
     assert start.said[-1][-1 - start.is_root()].endswith("/lab/tree/START_HERE.ipynb")
 
 
