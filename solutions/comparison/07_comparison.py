@@ -466,8 +466,9 @@ predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled >
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell. It says what is missing and prints a receipt; keep it. Hand in the file without renaming
-# it. The teacher runs your functions on further cases; the text above each stub says what kind of cases.
+# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
+# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
+# above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("07_comparison")

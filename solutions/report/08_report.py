@@ -237,8 +237,8 @@ mine = lk.my_arm(HANDLE)
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell. It says what is missing and prints a receipt; keep it. Hand in the file without renaming
-# it. One member hands in for the team.
+# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
+# keep it. Hand in the file without renaming it. One member hands in for the team.
 
 # %% setup=true
 lk.hand_in("08_report")
