@@ -93,7 +93,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
 
     MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
     """
-    from .handin import merge
+    from .merge import merge
     from .notebook import read_cells
 
     cells, released = read_cells(mine), read_cells(new)

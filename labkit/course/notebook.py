@@ -277,9 +277,7 @@ def brief(question: Question) -> str:
         names = ", ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
         lines.append(f"- Write it yourself: {names} may not be used in the answer.")
     if question.hints:
-        lines.append(
-            f'- Stuck? `hint("{question.name}", 1)` in a new cell (Esc, B): free, nobody is told.'
-        )
+        lines.append(f'- Stuck? `hint("{question.name}", 1)` in a new cell (Esc, B): it is free.')
     return "\n".join(lines)
 
 

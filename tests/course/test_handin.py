@@ -9,7 +9,8 @@ import pytest
 
 from labkit import LabkitError
 from labkit.__main__ import main
-from labkit.course.handin import look, merge
+from labkit.course.handin import look
+from labkit.course.merge import merge
 from labkit.course.notebook import PLACEHOLDER, read_cells, verdict_metadata
 from labkit.course.verdict import Outcome, Verdict
 
