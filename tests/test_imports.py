@@ -60,7 +60,7 @@ ORDER = [
     },
     {"course.judges", "course.withheld", "course.forms", "course.unfinished"},
     {"course.gaps"},
-    {"course.bugs"},
+    {"course.baxter_cup", "course.bugs"},
     {"course.own_arm"},
     {"course.equivalence"},
     {"course.question"},

@@ -256,9 +256,8 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
     yield _cell("markdown", begins + model, "why", meta)
 
 
-WORDS = 25, 80
-"""The fewest and the most words of a why."""
-WHY_POINTS = 2.0
+WORDS, WHY_POINTS = (25, 80), 2.0
+"""The fewest and the most words of a why, and its points."""
 PLACEHOLDER = "*Your text goes here, in place of this line.*"
 """What the cell of a why says at first; nbgrader's settings say the same."""
 
