@@ -26,6 +26,9 @@ Functions = Mapping[str, Sequence[Callable[..., Any]]]
 
 DRAWS = 20
 
+LARGEST_PART = 0.6
+"""Share of the points that one right part of an answer in two parts may earn."""
+
 
 @dataclass(frozen=True)
 class Row:
@@ -35,7 +38,8 @@ class Row:
         assignment: Where it is asked.
         question: Its name.
         mistakes: Wrong answers tried.
-        rejected: Of these, how many earned less than half.
+        rejected: Of these, how many earned less than half, or one part of two: a right part of an
+            answer earns its share, of at most `LARGEST_PART`.
         named: Of the course's own, how many were called by their name.
         variants: Right answers tried, the reference included.
         accepted: Of these, how many earned full marks.
@@ -152,9 +156,12 @@ def _row(
     }
     marks = {label: [verdict.earned for verdict in found] for label, found in verdicts.items()}
     failures = []
+    weights = [test.weight for test in questions[0].tests if test.weight]
+    share = max(weights) / sum(weights) if len(weights) == 2 else 0.0
+    part = share * problem.points + 1e-9 if share <= LARGEST_PART else 0.0
     rejected = named = accepted = 0
     for label in wrong:
-        if max(marks[label]) < 0.5 * problem.points:
+        if max(marks[label]) < 0.5 * problem.points or max(marks[label]) <= part:
             rejected += 1
         else:
             failures.append(f"{label}: earned {max(marks[label]):g} of {problem.points:g}")
