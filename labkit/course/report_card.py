@@ -19,13 +19,13 @@ from .layout import Course
 from .margins import least, remembering
 from .marking import mark
 from .problem import Problem
+from .question import Question
 from .verdict import Outcome
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question, its name, or "assignment/name" where two assignments ask it."""
 
 DRAWS = 20
-
 LARGEST_PART = 0.6
 """Share of the points that one right part of an answer in two parts may earn."""
 
@@ -38,8 +38,7 @@ class Row:
         assignment: Where it is asked.
         question: Its name.
         mistakes: Wrong answers tried.
-        rejected: Of these, how many earned less than half, or one part of two: a right part of an
-            answer earns its share, of at most `LARGEST_PART`.
+        rejected: Of these, how many earned less than `rejected_below`.
         named: Of the course's own, how many were called by their name.
         variants: Right answers tried, the reference included.
         accepted: Of these, how many earned full marks.
@@ -93,6 +92,13 @@ class Card:
             "without_spread": [row.question for row in self.rows if row.margin_sigma is None],
             "questions": [asdict(row) for row in self.rows],
         }
+
+
+def rejected_below(question: Question) -> float:
+    """The points that a wrong answer may not earn: half of them, or more than one part of two."""
+    weights = [test.weight for test in question.tests if test.weight]
+    share = max(weights) / sum(weights) if len(weights) == 2 else 0.5
+    return (share + 1e-9 if 0.5 < share <= LARGEST_PART else 0.5) * question.points
 
 
 def make(
@@ -156,12 +162,10 @@ def _row(
     }
     marks = {label: [verdict.earned for verdict in found] for label, found in verdicts.items()}
     failures = []
-    weights = [test.weight for test in questions[0].tests if test.weight]
-    share = max(weights) / sum(weights) if len(weights) == 2 else 0.0
-    part = share * problem.points + 1e-9 if share <= LARGEST_PART else 0.0
+    limit = rejected_below(questions[0])
     rejected = named = accepted = 0
     for label in wrong:
-        if max(marks[label]) < 0.5 * problem.points or max(marks[label]) <= part:
+        if max(marks[label]) < limit:
             rejected += 1
         else:
             failures.append(f"{label}: earned {max(marks[label]):g} of {problem.points:g}")

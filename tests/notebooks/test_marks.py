@@ -8,6 +8,7 @@ import pytest
 from labkit.course import Call, Choice, Loop, Outcome, Tuned, fingerprint
 from labkit.course.layout import Course
 from labkit.course.marking import mark, recognise
+from labkit.course.report_card import rejected_below
 
 COURSE = Course.here(Path(__file__))
 NAMES = [name for name in COURSE.names() if COURSE.problems(name)]
@@ -48,12 +49,12 @@ def test_zeros_of_the_right_shape_earn_nothing(problem):
 
 @each
 def test_known_mistakes_are_rejected_and_named(problem):
-    """Each earns less than half, and is called by its name."""
+    """Each earns less than half, or one right part of two, and is called by its name."""
     assert problem.wrong
     question = problem.question(1)
     for wrong in problem.wrong:
         verdict = mark(question, wrong.function)
-        assert verdict.earned < 0.5 * problem.points, wrong.name
+        assert verdict.earned < rejected_below(question), wrong.name
         assert verdict.mistake is not None, wrong.name
         assert verdict.mistake.name == wrong.name
 

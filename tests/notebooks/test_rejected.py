@@ -15,6 +15,7 @@ import labkit as lk
 from labkit.course import Outcome
 from labkit.course.layout import Course
 from labkit.course.marking import mark
+from labkit.course.report_card import rejected_below
 from solutions.comparison.hidden import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
 
 COURSE = Course.here(Path(__file__))
@@ -206,9 +207,10 @@ REJECTED = [
     ids=[f"{question}: {name or f.__name__}" for question, f, name in REJECTED],
 )
 def test_it_is_rejected_and_called_by_its_own_name(question, answer, name):
-    """Less than half of the points, and the sentence of another mistake for none of them."""
-    verdict = mark(PROBLEMS[question].question(2019), answer)
-    assert verdict.earned < 0.5 * verdict.points, verdict.tests
+    """Less than half of the points, or one part of two, and the sentence of another mistake for none of them."""
+    asked = PROBLEMS[question].question(2019)
+    verdict = mark(asked, answer)
+    assert verdict.earned < rejected_below(asked), verdict.tests
     assert (verdict.mistake.name if verdict.mistake else None) == name
 
 
