@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 DEFENCE = "09_defence"
-"""The oral examination: an assignment of the gradebook that nobody hands in."""
+"""The oral examination, an assignment of the gradebook that nobody hands in."""
 
 
 @dataclass(frozen=True)
