@@ -24,7 +24,7 @@ EXCHANGED = {
     "sin": "cos",
     "tip_jacobian": "body_jacobian",
 }
-"""Names that are taken for one another: a derivative, the frame of a Jacobian, a sine."""
+"""Names that are taken for one another, such as the two Jacobians, or sine and cosine."""
 _SIGNS: dict[type[ast.operator], str] = {
     ast.Add: "+",
     ast.Sub: "-",

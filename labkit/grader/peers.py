@@ -24,7 +24,7 @@ from .submission import Submission, students
 EACH = 2
 """So many reports each student reads."""
 LEAST_NAME = 3
-"""A name with fewer letters is not taken out of a text: "An" and "Li" are words and symbols too."""
+"""A name with fewer letters stays in a text; "An" and "Li" are words and symbols too."""
 LONGEST_COMMENT = 2000
 _FORM = re.compile(r"^\s*level\s*[:=]\s*([0-3])\b.*?^\s*comment\s*[:=](.*)", re.I | re.M | re.S)
 
