@@ -158,8 +158,15 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
 
 
 def _outcome(results: Iterable[TestResult]) -> Outcome:
-    """What the tests come to together; one that was not tried has nothing to say."""
+    """What the tests come to together; one that was not tried has nothing to say.
+
+    A stub is a stub although its hidden cases, which do not say how they failed, are wrong.
+    """
+    results = tuple(results)
     outcomes = {result.outcome for result in results}
+    shown = {result.outcome for result in results if not result.hidden}
+    if Outcome.NOT_ATTEMPTED in shown <= {Outcome.NOT_ATTEMPTED, Outcome.NOT_TRIED}:
+        return Outcome.NOT_ATTEMPTED
     if len(outcomes) > 1:
         outcomes.discard(Outcome.NOT_TRIED)
     if len(outcomes) == 1:

@@ -27,7 +27,7 @@ Functions = Mapping[str, Sequence[Callable[..., Any]]]
 
 DRAWS = 20
 LARGEST_PART = 0.6
-"""Share of the points that one right part of an answer in two parts may earn."""
+"""Share of the points that one right part of an answer may earn."""
 
 
 @dataclass(frozen=True)
@@ -95,9 +95,9 @@ class Card:
 
 
 def rejected_below(question: Question) -> float:
-    """The points that a wrong answer may not earn: half of them, or more than one part of two."""
-    weights = [test.weight for test in question.tests if test.weight]
-    share = max(weights) / sum(weights) if len(weights) == 2 else 0.5
+    """The points that a wrong answer may not earn: half of them, or more than the largest part."""
+    weights = [test.weight for test in question.tests]
+    share = max(weights) / sum(weights)
     return (share + 1e-9 if 0.5 < share <= LARGEST_PART else 0.5) * question.points
 
 

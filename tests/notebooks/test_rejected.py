@@ -207,7 +207,7 @@ REJECTED = [
     ids=[f"{question}: {name or f.__name__}" for question, f, name in REJECTED],
 )
 def test_it_is_rejected_and_called_by_its_own_name(question, answer, name):
-    """It earns less than half, or one part of two; no other mistake's sentence is given for it."""
+    """It earns less than half, or its largest part; no other mistake's sentence is given for it."""
     asked = PROBLEMS[question].question(2019)
     verdict = mark(asked, answer)
     assert verdict.earned < rejected_below(asked), verdict.tests
