@@ -5,7 +5,7 @@ The function may live here or in another process; marking does not care.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -157,12 +157,11 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
     return Tried(results, answers)
 
 
-def _outcome(results: Iterable[TestResult]) -> Outcome:
+def _outcome(results: Sequence[TestResult]) -> Outcome:
     """What the tests come to together; one that was not tried has nothing to say.
 
     A stub is a stub although its hidden cases, which do not say how they failed, are wrong.
     """
-    results = tuple(results)
     outcomes = {result.outcome for result in results}
     shown = {result.outcome for result in results if not result.hidden}
     if Outcome.NOT_ATTEMPTED in shown <= {Outcome.NOT_ATTEMPTED, Outcome.NOT_TRIED}:
@@ -171,10 +170,8 @@ def _outcome(results: Iterable[TestResult]) -> Outcome:
         outcomes.discard(Outcome.NOT_TRIED)
     if len(outcomes) == 1:
         return outcomes.pop()
-    for worst in (Outcome.NOT_COUNTED, Outcome.WRONG):
-        if worst in outcomes:
-            return worst
-    return Outcome.ERROR
+    ranked = (Outcome.NOT_COUNTED, Outcome.WRONG)
+    return next((worst for worst in ranked if worst in outcomes), Outcome.ERROR)
 
 
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
