@@ -106,7 +106,7 @@ export function corners({ h, svg, unique }) {
   const id = unique("corner");
   const choose = h("select", { id, onchange: () => { chosen = +choose.value; draw(); } }, NAMES.map((name, k) => h("option", { value: k }, name)));
   const keys = Object.entries({ left: [-STEP, 0], right: [STEP, 0], up: [0, -STEP], down: [0, STEP] }).map(([name, by]) =>
-    h("button", { type: "button", "aria-label": `Corner ${name} by half a pixel`, onclick: () => move(chosen, add(image[chosen], by)) }, `${name} ½ px`));
+    h("button", { type: "button", "aria-label": `Corner ${name} ½ px`, onclick: () => move(chosen, add(image[chosen], by)) }, `${name} ½ px`));
   start({});
   said.textContent = "";
   return h("fieldset", {}, h("legend", {}, "One picture, two poses: drag the corners"), art,

@@ -180,5 +180,5 @@ def test_half_a_pixel_flips_a_tag(live):
     type_into(page, "Distance", 1.5)
     type_into(page, "Turned by", 10)
     page.get_by_label("Corner", exact=True).select_option("upper right")
-    page.get_by_label("Corner down by half a pixel").press("Enter")
+    page.get_by_label("Corner down ½ px").press("Enter")
     assert "flipped: now B" in page.locator(".lk-twoposes [role=status]").inner_text()
