@@ -18,12 +18,12 @@ from ..course.layout import Course
 from ..errors import LabkitError
 from .arms import give_arms
 from .attempts import attempts, counts, install, keep, move
-from .class_list import Entry, read_list
+from .class_list import Entry, Student, read_list
 from .clean import safe_name
 from .exchange import read_time
 from .identity import all_lms_users, alone, lms_users, places, remember
 from .platforms import LmsUser
-from .roster import FILE, Roster, Student, read_roster, same_name, save_roster, tell_gradebook
+from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
 from .rules import read_rules
 from .term import seed_of
 
@@ -61,16 +61,17 @@ def enrol(
         LabkitError: Two rows, or a row and the roster, contradict each other.
     """
     _refuse_contradictions(entries)
-    names = Counter(name for name, *_ in {(same_name(e.name), *_keys(e)) for e in entries})
+    listed = {(same_name(x.student.name), *_keys(x.student)) for x in entries}
+    names = Counter(name for name, *_ in listed)
     students = {student.id: student for student in roster.students}
     by_mark: dict[_Mark, set[str]] = {}
     for student in roster.students:
         _index(student, by_mark)
     rows: list[tuple[Entry, str]] = []
     for entry in entries:
-        alone = names[same_name(entry.name)] == 1
+        alone = names[same_name(entry.student.name)] == 1
         id = _find(entry, alone, students, by_mark) or f"\n{entry.line}"  # for want of a folder
-        said = {k: getattr(entry, k) for k in _FIELDS if getattr(entry, k)}
+        said = {k: v for k in _FIELDS if (v := getattr(entry.student, k))}
         students[id] = replace(students.get(id, Student(id)), **said)
         _index(students[id], by_mark)
         rows.append((entry, id))
@@ -201,11 +202,11 @@ def keep_times(course: Course, assignment: str, rows: Iterable[tuple[Entry, Stud
     return taken
 
 
-def _keys(one: Entry | Student) -> tuple[str, ...]:
+def _keys(one: Student) -> tuple[str, ...]:
     return tuple(getattr(one, key).casefold() for key in _KEYS)
 
 
-def _shared(one: Entry | Student, other: Entry | Student) -> list[bool]:
+def _shared(one: Student, other: Student) -> list[bool]:
     """For each key that both have, whether it is the same."""
     return [a == b for a, b in zip(_keys(one), _keys(other), strict=True) if a and b]
 
@@ -213,22 +214,23 @@ def _shared(one: Entry | Student, other: Entry | Student) -> list[bool]:
 def _refuse_contradictions(entries: Sequence[Entry]) -> None:
     by: dict[tuple[str, object], list[Entry]] = {}
     for entry in entries:
-        name = same_name(entry.name)
-        for key in {*zip(_KEYS, _keys(entry), strict=True), ("name", name)}:
+        who, name = entry.student, same_name(entry.student.name)
+        for key in {*zip(_KEYS, _keys(who), strict=True), ("name", name)}:
             for other in by.get(key, ()) if key[1] else ():
-                shared = _shared(entry, other)
+                shared = _shared(who, other.student)
                 lines = f"lines {other.line} and {entry.line}"
                 if key[0] == "name" and not shared:
                     raise LabkitError(
-                        f"{lines} are both {entry.name}, and nothing tells them apart; give each a "
+                        f"{lines} are both {who.name}, and nothing tells them apart; give each a "
                         "login, an address or a number, or delete one"
                     )
-                if any(shared) and not (all(shared) and same_name(other.name) == name):
-                    raise LabkitError(f"{lines} contradict each other: {_says(other, entry)}")
+                if any(shared) and not (all(shared) and same_name(other.student.name) == name):
+                    says = _says(other.student, who)
+                    raise LabkitError(f"{lines} contradict each other: {says}")
             by.setdefault(key, []).append(entry)
 
 
-def _says(one: Entry, other: Entry) -> str:
+def _says(one: Student, other: Student) -> str:
     pairs = [(getattr(one, k), getattr(other, k)) for k in ("name", *_KEYS)]
     same = " and ".join(a for a, b in pairs if a and a.casefold() == b.casefold())
     differ = " and ".join(
@@ -247,7 +249,7 @@ def _find(
     entry: Entry, alone: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
 ) -> str:
     """The student whom a row means; empty if they are new."""
-    keys = [mark for mark in zip(_KEYS, _keys(entry), strict=True) if mark[1]]
+    keys = [mark for mark in zip(_KEYS, _keys(entry.student), strict=True) if mark[1]]
     found = set().union(*(by_mark.get(mark, set()) for mark in keys))
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
@@ -255,9 +257,9 @@ def _find(
             f"line {entry.line} could be {people} of the roster; correct the list, or "
             "course_private/roster.csv"
         )
-    name = same_name(entry.name)
+    name = same_name(entry.student.name)
     called = by_mark.get(("name", name), set()) if name and alone and not found else set()
-    if len(called) == 1 and not _shared(students[min(called)], entry):
+    if len(called) == 1 and not _shared(students[min(called)], entry.student):
         return min(called)
     return min(found, default="")
 
