@@ -196,7 +196,7 @@ def keep_times(course: Course, assignment: str, rows: Iterable[tuple[Entry, Stud
         first = chosen.first
         if first.origin == "moodle" and not first.exact:
             exact = replace(first, when=stated, exact=True)
-            keep(course, student.id, assignment, chosen.attempt.path.read_bytes(), exact)
+            keep(course, student.id, assignment, chosen.attempt.file.read_bytes(), exact)
             install(course, student.id, assignment)
             taken += 1
     return taken
