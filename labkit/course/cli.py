@@ -71,7 +71,7 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
 @click.option("--forum", is_flag=True, help="Print a summary to copy into a forum.")
 def submit_check(notebook: Path, forum: bool) -> int:
     """Check before you hand in: is the notebook complete?"""
-    from .handin import look
+    from .before_handing_in import look
 
     found = look(notebook)
     print(found.for_the_forum() if forum else found)
@@ -93,7 +93,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
 
     MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
     """
-    from .handin import merge
+    from .merge import merge
     from .notebook import read_cells
 
     cells, released = read_cells(mine), read_cells(new)

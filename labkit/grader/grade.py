@@ -12,8 +12,8 @@ from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
 
+from ..course.before_handing_in import receipt
 from ..course.bundle import Bundle
-from ..course.hand_in import receipt
 from ..course.marking import Tried, all_alike, mark, not_counted, try_public
 from ..course.messages import uses
 from ..course.question import Question

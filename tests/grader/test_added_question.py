@@ -11,8 +11,8 @@ import pytest
 from handmade import QUICK, ROOT, hand_in
 
 from labkit.__main__ import main
-from labkit.course.handin import merge
 from labkit.course.layout import Course
+from labkit.course.merge import merge
 from labkit.course.notebook import read_cells
 from labkit.errors import LabkitError
 from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class

@@ -1,26 +1,25 @@
 """Before handing in: is the notebook whole, is it run, and what do its checks say?
 
-It reads the file and runs nothing.  `merge` brings a student's work into a corrected release.
+It reads the file and runs nothing.  The last cell of a notebook calls `hand_in`, which also prints
+a receipt.
 """
 
 from __future__ import annotations
 
-import ast
-import copy
+import hashlib
 import platform
-import re
 from collections import Counter
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from ..errors import LabkitError
 from ..sim import chosen
 from .forms import COMMITTED
 from .gaps import first_error, undefined
-from .messages import head
+from .messages import head, wrapped
 from .notebook import (
     PLACEHOLDER,
     WORDS,
@@ -34,7 +33,6 @@ from .notebook import (
     read_cells,
 )
 from .serialize import decode
-from .source import is_stub, plain
 from .source import look as look_at
 from .student import read_checks
 from .verdict import Outcome, Verdict
@@ -163,6 +161,40 @@ def look(path: Path) -> HandIn:
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
 
 
+def hand_in(name: str) -> None:
+    """Say what a look at the saved file finds, and print a receipt.
+
+    With a receipt and the file students can prove which work was done by then.  The feedback page
+    has the receipt of the file that was marked.
+
+    Args:
+        name: Of the notebook in the working directory, without ``.ipynb``.
+
+    Raises:
+        LabkitError: The file is missing or is not a notebook.
+    """
+    path = Path.cwd() / f"{name}.ipynb"
+    found = look(path)
+    saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
+    lines = [
+        f"This is {path.name} as it was saved at {saved:%H:%M:%S}. What you did since then is not "
+        "in it: save, and run this cell again.",
+        *str(found).splitlines(),
+        f"receipt: {receipt(cell['source'] for cell in read_cells(path))} of {path.name}, saved "
+        f"{saved:%Y-%m-%d %H:%M %Z}",
+    ]
+    print("\n".join(map(wrapped, lines)))
+
+
+def receipt(sources: Iterable[str]) -> str:
+    """A short name for what is written in a notebook's cells, in order.
+
+    Outputs do not count: to run the cell that prints the receipt changes the file.
+    """
+    text = "\0".join(sources).encode(errors="surrogatepass")
+    return hashlib.sha256(text).hexdigest()[:16]
+
+
 def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:
     """What must be corrected in the cells of a question, and what is worth knowing of them."""
     problems, notes = [], []
@@ -215,99 +247,3 @@ def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdic
         points = float(question["points"])
         return Verdict(name, Outcome.NOT_COUNTED, 0.0, points, withheld=tools)
     return last_verdict(cells, name)
-
-
-def merge(mine: list[dict[str, Any]], new: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The new release's cells with the student's answers, and the cells that they added.
-
-    Args:
-        mine: The student's cells.
-        new: The cells of the new release.
-
-    Returns:
-        The new release, in its order.  An answer is found by the function that it defines, else by
-        the question that its cell was made for; a cell of the student's own follows the cell that
-        it followed.
-
-    Raises:
-        LabkitError: The new notebook is not a release, or none of the student's cells answers any
-            of its questions.
-    """
-    if not new or not all(isinstance(cell.get("id"), str) for cell in new):
-        raise LabkitError("the new notebook is not a release; fetch the assignment's folder again")
-    merged = copy.deepcopy(new)
-    home = _homes(new)
-    asked = [cell for cell in merged if _is_asked(cell)]
-    answers = [_answer(mine, grade_id(cell)) for cell in asked]
-    if asked and not any(_cells_for(mine, grade_id(cell)) for cell in asked):
-        raise LabkitError(
-            f"your notebook answers nothing that the new one asks ({grade_id(asked[0])}, ...); "
-            "are they two releases of the same assignment?"
-        )
-    for cell, answer in zip(asked, answers, strict=True):
-        if answer is not None:
-            cell["source"] = answer
-    anchor = -1
-    after: dict[int, list[dict[str, Any]]] = {}
-    for cell in mine:
-        place = home(cell)
-        if place is not None:
-            anchor = place
-        elif _is_own(cell, new):
-            number = sum(map(len, after.values()))
-            after.setdefault(anchor, []).append(copy.deepcopy(cell) | {"id": f"own-{number:04d}"})
-    result = after.get(-1, [])
-    for k, cell in enumerate(merged):
-        result += [cell, *after.get(k, [])]
-    return result
-
-
-def _homes(new: list[dict[str, Any]]) -> Callable[[dict[str, Any]], int | None]:
-    """A function that tells where in the new release a released cell belongs.
-
-    Ids count the cells of a release, so where a question was added they mean other cells from there
-    on; what a cell is for and what it says are better signs.
-    """
-    purposes = {grade_id(cell): k for k, cell in enumerate(new) if grade_id(cell)}
-    sources = {cell["source"]: k for k, cell in enumerate(new)}
-    ids = {cell["id"]: k for k, cell in enumerate(new)}
-
-    def home(cell: dict[str, Any]) -> int | None:
-        for found in (purposes.get(grade_id(cell)), sources.get(cell["source"])):
-            if found is not None:
-                return found
-        return ids.get(str(cell.get("id")))
-
-    return home
-
-
-def _is_asked(cell: dict[str, Any]) -> bool:
-    return bool(about(cell).get("solution"))
-
-
-def _is_own(cell: dict[str, Any], new: list[dict[str, Any]]) -> bool:
-    """Whether the student added a cell; one of an older release has an id of the release's form."""
-    stem = new[0]["id"].rpartition("-")[0]
-    released = re.fullmatch(rf"{re.escape(stem)}-\d+", str(cell.get("id", "")))
-    return not grade_id(cell) and not released and bool(cell["source"].strip())
-
-
-def _answer(mine: list[dict[str, Any]], name: str) -> str | None:
-    """The last cell in which something was written, which is the one that counts in marking."""
-    sources = [str(cell["source"]) for cell in _cells_for(mine, name)]
-    return next((source for source in reversed(sources) if not _is_unwritten(source)), None)
-
-
-def _cells_for(mine: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
-    """The cells that define an answer, else those that were made for it."""
-    defining = [cell for cell in mine if defines(cell, name)]
-    return defining or [cell for cell in mine if grade_id(cell) == name]
-
-
-def _is_unwritten(source: str) -> bool:
-    """Whether a cell holds nothing but functions that say that they are still to be written."""
-    try:
-        written = ast.parse(plain(source)).body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return False
-    return all(is_stub(x) for x in written if not isinstance(x, ast.Import | ast.ImportFrom))
