@@ -1,4 +1,4 @@
-"""Reads a zip from Moodle or Canvas, or a folder: each file, and whose it is by the name that they gave it.
+"""Reads zips and folders: each file, and whose it is by the name that the platform gave it.
 
 Both put what they know of the person first and the student's own name of the file last, so a name
 is read from its beginning, and nothing that a student calls a file changes whose it is.
