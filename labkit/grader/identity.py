@@ -47,7 +47,7 @@ def lms_users(course: Course, assignment: str) -> dict[str, LmsUser]:
 
 
 def all_lms_users(course: Course) -> dict[str, dict[str, LmsUser]]:
-    """The same for each assignment.
+    """Who was collected, by assignment and by the name of their folder.
 
     Raises:
         LabkitError: The record is damaged.

@@ -1,6 +1,6 @@
 """Reads zips and folders: each file, and whose it is by the name that the platform gave it.
 
-Both put what they know of the person first and the student's own name of the file last, so a name
+Moodle and Canvas put what they know of the person first and the student's own name of the file last, so a name
 is read from its beginning, and nothing that a student calls a file changes whose it is.
 
 Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE``, with the student's own
@@ -102,6 +102,10 @@ class Named:
     kind: str = "file"
 
 
+Reader = Callable[[str], tuple[Named, ...]]
+"""Reads whose a file is by its name, with folders."""
+
+
 def readings(entry: str) -> tuple[Named, ...]:
     """The ways to read a name: none if it is nobody's, two if it could be either of two people's.
 
@@ -175,7 +179,7 @@ def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
 def in_zip(
     archive: zipfile.ZipFile,
     made: datetime,
-    read: Callable[[str], tuple[Named, ...]] = readings,
+    read: Reader = readings,
 ) -> Iterator[File]:
     """The files of a zip.
 
@@ -257,8 +261,6 @@ def _without_utf8_flags(path: Path) -> BinaryIO:
     return io.BytesIO(data)
 
 
-Reader = Callable[[str], tuple[Named, ...]]
-"""Reads whose a file is by its name, with folders."""
 _PARTS = {"{student}": "(?P<student>[^/]+?)", "**": ".*", "*": "[^/]*"}
 
 
