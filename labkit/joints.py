@@ -140,7 +140,7 @@ class Touch(NamedTuple):
     outwards: Array | None = None
 
     def pushes(self, v: Array) -> bool:
-        """Whether it pushes a tip that moves at ``v``, shape (3,) in [m/s]; a face never pulls one."""
+        """Whether its force on a tip at ``v``, shape (3,) in [m/s], is one that it can exert."""
         if self.outwards is None:
             return True
         return float(self.outwards @ (self.wrench[:3] - self.damping @ v)) >= 0.0

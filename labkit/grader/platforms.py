@@ -1,7 +1,8 @@
 """Reads zips and folders: each file, and whose it is by the name that the platform gave it.
 
-Moodle and Canvas put what they know of the person first and the student's own name of the file last, so a name
-is read from its beginning, and nothing that a student calls a file changes whose it is.
+Moodle and Canvas put what they know of the person first and the student's own name of the file
+last, so a name is read from its beginning, and nothing that a student calls a file changes whose it
+is.
 
 Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE``, with the student's own
 folders between, or ``_FILE``.  It makes spaces of the underscores in NAME, so the first number is
