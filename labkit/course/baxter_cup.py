@@ -56,7 +56,7 @@ class CupRun:
         seed: Of what was drawn.
         score: RMS distance of the tip from where it should have been, in [mm]; infinite if the
             arm ran away.
-        log: The run; its target is what the controller was told.
+        log: The run; its target is what the controller was given.
     """
 
     seed: int

@@ -256,9 +256,8 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
     yield _cell("markdown", begins + model, "why", meta)
 
 
-WORDS = 25, 80
-"""The fewest and the most words of a why."""
-WHY_POINTS = 2.0
+WORDS, WHY_POINTS = (25, 80), 2.0
+"""The fewest and the most words of a why, and its points."""
 PLACEHOLDER = "*Your text goes here, in place of this line.*"
 """What the cell of a why says at first; nbgrader's settings say the same."""
 
@@ -277,9 +276,7 @@ def brief(question: Question) -> str:
         names = ", ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
         lines.append(f"- Write it yourself: {names} may not be used in the answer.")
     if question.hints:
-        lines.append(
-            f'- Stuck? `hint("{question.name}", 1)` in a new cell (Esc, B): free, nobody is told.'
-        )
+        lines.append(f'- Stuck? `hint("{question.name}", 1)` in a new cell (Esc, B): it is free.')
     return "\n".join(lines)
 
 

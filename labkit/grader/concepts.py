@@ -100,7 +100,7 @@ def items(course: Course) -> tuple[Item, ...]:
 
 
 def asked(course: Course, form: Form) -> tuple[Asked, ...]:
-    """One form of the test; its options stand in an order that is the same each time."""
+    """One form of the test; its options have the same order each time."""
     known = {
         f"{problem.name}: {wrong.name}": wrong.says
         for name in course.names()

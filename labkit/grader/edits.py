@@ -126,7 +126,7 @@ def _mistakes(node: Any, lines: list[str]) -> Iterator[_Piece]:
         return bytes(line[node.col_offset : node.end_col_offset]).decode()
 
     if isinstance(node, ast.If | ast.IfExp) and isinstance(node.test, ast.Name):
-        yield node.test, f"not {node.test.id}", "a condition is turned round"
+        yield node.test, f"not {node.test.id}", "a condition is reversed"
     if getattr(node, "lineno", None) is None or node.lineno != node.end_lineno:
         return
     match node:
@@ -135,9 +135,9 @@ def _mistakes(node: Any, lines: list[str]) -> Iterator[_Piece]:
         case ast.AugAssign(op=ast.Add() | ast.Sub()):
             sign = _SIGNS[type(node.op)]
             now = text(node).replace(f"{sign}=", f"{_TURNED[sign]}=", 1)
-            yield node, now, "the sign of a term is turned round"
+            yield node, now, "the sign of a term is reversed"
         case ast.UnaryOp(op=ast.Not()):
-            yield node, text(node.operand), "a condition is turned round"
+            yield node, text(node.operand), "a condition is reversed"
         case ast.UnaryOp(op=ast.USub()):
             yield node, text(node)[1:].lstrip(), "a sign is left out"
         case ast.Attribute(attr="T"):
@@ -168,12 +168,12 @@ def _of_two(node: ast.BinOp, sign: str, left: str, right: str) -> Iterator[_Piec
     of_terms = isinstance(node.left, ast.BinOp) and isinstance(node.left.op, ast.Add | ast.Sub)
     match sign:
         case "+" | "-" if of_terms or sign == "+":
-            yield node, f"{left} {_TURNED[sign]} {right}", "the sign of a term is turned round"
+            yield node, f"{left} {_TURNED[sign]} {right}", "the sign of a term is reversed"
             yield node, left, "a term is left out"
             if not of_terms:
                 yield node, right, "a term is left out"
         case "-":
-            yield node, f"{right} - {left}", "a difference is turned round"
+            yield node, f"{right} - {left}", "a difference is reversed"
             yield node, f"-{right}", "a term is left out"
         case "*" | "@":
             yield node, right, f"a {'factor' if sign == '*' else 'matrix'} is left out"

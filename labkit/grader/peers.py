@@ -53,7 +53,7 @@ def readers(
 ) -> dict[str, tuple[str, ...]]:
     """Whose reports each student reads, by HMAC-SHA256 under the term's seed.
 
-    The reports stand in a circle.  The members of a team take the reports after their own, two by
+    The reports form a circle.  The members of a team take the reports after their own, two by
     two, so each report has at least two readers, and nobody reads a report of their own team.
 
     Args:

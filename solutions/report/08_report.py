@@ -45,7 +45,7 @@ def computed_torque(state, target, kp=40.0):
 
 
 def height_after(start, seed):
-    """Time in s and the hand's height above its target in mm, from a start so many m above it."""
+    """Time in s and the hand's height above its target in mm, from a start that many m above it."""
     arm = lk.my_arm("demo", seed)
     arm.reset(ready + start * up)
     log = lk.run(arm, lk.Hold(ready, 2.0), computed_torque)

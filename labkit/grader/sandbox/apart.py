@@ -20,7 +20,7 @@ TRIES = 50
 
 
 class Bare:
-    """Nothing: a folder and limits, for whoever typed ``--unsafe-no-isolation``."""
+    """Nothing: a folder and limits, where somebody typed ``--unsafe-no-isolation``."""
 
     def fork(self) -> int:
         """Fork; as `os.fork`."""

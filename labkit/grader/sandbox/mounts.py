@@ -52,7 +52,7 @@ class NoIsolation(LabkitError):
 
 
 class Isolation(Enum):
-    """What keeps a student's code apart, in words; chosen by whoever starts a sandbox."""
+    """What keeps a student's code apart, in words; chosen by the code that starts a sandbox."""
 
     BUBBLEWRAP = "bubblewrap"
     USER = "no bubblewrap but a user id"
