@@ -61,7 +61,7 @@ def enrol(
         LabkitError: Two rows, or a row and the roster, contradict each other.
     """
     _refuse_contradictions(entries)
-    listed = {(same_name(x.student.name), *_keys(x.student)) for x in entries}
+    listed = {(same_name(x.student.name), *_marks(x.student).items()) for x in entries}
     names = Counter(name for name, *_ in listed)
     students = {student.id: student for student in roster.students}
     by_mark: dict[_Mark, set[str]] = {}
@@ -69,8 +69,9 @@ def enrol(
         _index(student, by_mark)
     rows: list[tuple[Entry, str]] = []
     for entry in entries:
-        alone = names[same_name(entry.student.name)] == 1
-        id = _find(entry, alone, students, by_mark) or f"\n{entry.line}"  # for want of a folder
+        unique = names[same_name(entry.student.name)] == 1
+        # who is new has no folder yet, and until `_folders` an id that no folder can have
+        id = _find(entry, unique, students, by_mark) or f"\n{entry.line}"
         said = {k: v for k in _FIELDS if (v := getattr(entry.student, k))}
         students[id] = replace(students.get(id, Student(id)), **said)
         _index(students[id], by_mark)
@@ -202,20 +203,22 @@ def keep_times(course: Course, assignment: str, rows: Iterable[tuple[Entry, Stud
     return taken
 
 
-def _keys(one: Student) -> tuple[str, ...]:
-    return tuple(getattr(one, key).casefold() for key in _KEYS)
+def _marks(one: Student) -> dict[str, str]:
+    """What tells a student from others, as far as it is known."""
+    return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
 
 
 def _shared(one: Student, other: Student) -> list[bool]:
     """For each key that both have, whether it is the same."""
-    return [a == b for a, b in zip(_keys(one), _keys(other), strict=True) if a and b]
+    a, b = _marks(one), _marks(other)
+    return [a[key] == b[key] for key in a.keys() & b.keys()]
 
 
 def _refuse_contradictions(entries: Sequence[Entry]) -> None:
     by: dict[tuple[str, object], list[Entry]] = {}
     for entry in entries:
         who, name = entry.student, same_name(entry.student.name)
-        for key in {*zip(_KEYS, _keys(who), strict=True), ("name", name)}:
+        for key in {*_marks(who).items(), ("name", name)}:
             for other in by.get(key, ()) if key[1] else ():
                 shared = _shared(who, other.student)
                 lines = f"lines {other.line} and {entry.line}"
@@ -240,17 +243,15 @@ def _says(one: Student, other: Student) -> str:
 
 
 def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
-    marks = (*zip(_KEYS, _keys(student), strict=True), ("name", same_name(student.name)))
-    for mark in marks:
+    for mark in (*_marks(student).items(), ("name", same_name(student.name))):
         by_mark.setdefault(mark, set()).add(student.id)
 
 
 def _find(
-    entry: Entry, alone: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
+    entry: Entry, unique: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
 ) -> str:
     """The student whom a row means; empty if they are new."""
-    keys = [mark for mark in zip(_KEYS, _keys(entry.student), strict=True) if mark[1]]
-    found = set().union(*(by_mark.get(mark, set()) for mark in keys))
+    found = set().union(*(by_mark.get(mark, set()) for mark in _marks(entry.student).items()))
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
         raise LabkitError(
@@ -258,7 +259,7 @@ def _find(
             "course_private/roster.csv"
         )
     name = same_name(entry.student.name)
-    called = by_mark.get(("name", name), set()) if name and alone and not found else set()
+    called = by_mark.get(("name", name), set()) if name and unique and not found else set()
     if len(called) == 1 and not _shared(students[min(called)], entry.student):
         return min(called)
     return min(found, default="")
