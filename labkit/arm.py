@@ -80,7 +80,8 @@ class Arm:
         self.plant, self.model = plant, model
         elastic = any(plant.joint_stiffness)
         self._springs = Springs(plant, robot.n, dt) if elastic else None
-        # Behind springs there are rotors and friction; the links have neither.
+        # Behind springs there are rotors and friction; the links have neither.  So there are up to
+        # four models: the arm's, the one it believes in, the links' and the one its sensors feel.
         links = replace(plant, armature=0.0, viscous=0.0, joint_stiffness=0.0)
         links = links if elastic else plant
         self._engine = new_arm(self.world.engine, robot, links, dt)

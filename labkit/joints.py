@@ -25,8 +25,9 @@ from .shapes import Array
 LOW, SLIP_UP, STICK, SLIP_DOWN, HIGH = range(1, 6)
 """Where a joint stands, from its lower stop to its upper one.
 
-Between the stops it is given all there is upwards, is at its target, or is given all there is
-downwards."""
+Between the stops a joint that is slower than its target gets the whole bound as torque upwards
+(``SLIP_UP``), one that is quicker gets it downwards (``SLIP_DOWN``), and one at its target speed is
+held there (``STICK``)."""
 
 QUICK = 50.0
 """A joint that could not reach a stop at this speed, in [rad/s], will not meet it in this step."""
@@ -139,7 +140,7 @@ class Touch(NamedTuple):
     outwards: Array | None = None
 
     def pushes(self, v: Array) -> bool:
-        """Whether it does what it may to a tip at ``v``, shape (3,) in [m/s]."""
+        """Whether its force on a tip at ``v``, shape (3,) in [m/s], is one that it can exert."""
         if self.outwards is None:
             return True
         return float(self.outwards @ (self.wrench[:3] - self.damping @ v)) >= 0.0

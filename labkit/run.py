@@ -102,7 +102,7 @@ def loop(
             if not k % often and not dq.dot(dq) <= RUNAWAY**2:  # a NaN runs away too
                 raise Diverged(_runaway(robot, dq, who, t))
             if k >= last:
-                driven.stop()
+                driven.stop()  # here an arm that gets lost still leaves its log
                 break
             if not lost[k]:
                 driven.apply(command)
@@ -121,7 +121,7 @@ def loop(
     except (ControllerError, Closed):
         raise
     except Exception as error:
-        samples.blame(t)
+        samples.read(samples.latest, t)  # was it the target that broke the controller?
         raise ControllerError(
             f"{asked} failed at t = {t:.3f} s, tick {k}: {_what(error, samples.latest, robot.n)}"
         ) from error
@@ -192,10 +192,6 @@ class _Samples:
             return type(sample)(*(np.array(as_array(x, n, name)) for name, x, n in parts))
         except LabkitError as error:
             raise ControllerError(f"{self.name} at t = {t:.3f} s: {error}") from error
-
-    def blame(self, t: float) -> None:
-        """Raise if it was the target that broke the controller."""
-        self.read(self.latest, t)
 
     def check_all(self, log: Log) -> None:
         """Raise if one held a NaN that did no harm; harmful ones were blamed at once."""

@@ -6,10 +6,10 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 from __future__ import annotations
 
 from .baxter_cup import cup
+from .before_handing_in import hand_in
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
 from .forms import Choose, Curve, Measured, Number, Rank
-from .hand_in import hand_in
 from .identification import Identification
 from .judges import AtMost, Close, Gains, Within
 from .marking import fingerprint, mark

@@ -71,7 +71,7 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
 @click.option("--forum", is_flag=True, help="Print a summary to copy into a forum.")
 def submit_check(notebook: Path, forum: bool) -> int:
     """Check before you hand in: is the notebook complete?"""
-    from .handin import look
+    from .before_handing_in import look
 
     found = look(notebook)
     print(found.for_the_forum() if forum else found)

@@ -1,4 +1,4 @@
-"""A student's work brought into a corrected release."""
+"""Merge: a student's work, brought into a corrected release of the notebook."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class Wrong:
     Attributes:
         name: In a few words, as the student reads it.
         says: What to tell who made it.
-        function: It.
+        function: The wrong answer.
         lecture: What to say in the next lecture, for the class report.
     """
 

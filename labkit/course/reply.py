@@ -48,7 +48,8 @@ def reply(
 ) -> dict[str, Any]:
     """What a function does with some arguments, as JSON data, whatever that is.
 
-    A value, such as a prediction, answers with itself; None is one that is still to be written.
+    A value that is not a function, such as a prediction, is its own answer; None stands for a value
+    that the student has not written yet.
 
     Returns:
         What it ``is``; or the tool that is ``withheld`` and that it used; or the type of what it
@@ -115,7 +116,7 @@ class Here:
     """A student's function of this process, asked as one in a sandbox is.
 
     Args:
-        function: It.
+        function: The student's function.
         withheld: The tools that the question withholds.
         seconds: After so long a call is stopped, and no other is made.
     """

@@ -269,7 +269,7 @@ def use(
 
 
 def _say(text: str, verdict: Verdict) -> None:
-    """Print a verdict; in a notebook its output also keeps it as data, for `handin`."""
+    """Print a verdict; in a notebook its output also keeps it as data, for `before_handing_in`."""
     if shell() is None:
         print(text)
         return

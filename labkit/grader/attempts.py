@@ -47,12 +47,12 @@ _REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
 
 @dataclass(frozen=True)
 class Seen:
-    """Once that a notebook was handed in, or shown by a download.
+    """One time at which a notebook was handed in, or shown by a download.
 
     Attributes:
-        when: The time of it.
+        when: That time.
         origin: "moodle", "canvas", "exchange", or "by hand".
-        number: Who that was, as the platform knows them.
+        number: The student, as the platform knows them.
         file: What the student called it.
         exact: Whether this is the hand-in's own time, and not only the download's.
         late: Whether the platform calls it late.
@@ -70,31 +70,27 @@ class Seen:
 
 @dataclass(frozen=True)
 class Attempt:
-    """One notebook, as it was handed in.
+    """One notebook, as it was handed in; ``attempt.json`` holds it, with the name of the file.
 
     Attributes:
-        path: The file.
+        file: The file.
         sha256: The digest of its bytes.
         seen: When and where it was shown.
     """
 
-    path: Path
+    file: Path
     sha256: str
     seen: tuple[Seen, ...]
 
 
 @dataclass(frozen=True)
-class _Record:
-    """What ``attempt.json`` holds."""
+class Counted:
+    """The attempt that counts.
 
-    file: str
-    sha256: str
-    seen: tuple[Seen, ...]
-
-
-@dataclass(frozen=True)
-class HandIn:
-    """The attempt that counts, with the first sight of it."""
+    Attributes:
+        attempt: The attempt.
+        first: When it was handed in, or first shown by a download after every other attempt.
+    """
 
     attempt: Attempt
     first: Seen
@@ -110,9 +106,9 @@ def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ..
     return tuple(_read(path) for path in sorted(place.glob(f"*/{_RECORD}")))
 
 
-def counts(all: Sequence[Attempt], assignment: str) -> HandIn | None:
+def counts(all: Sequence[Attempt], assignment: str) -> Counted | None:
     """The attempt that counts; None if there is none."""
-    found: list[HandIn] = []
+    found: list[Counted] = []
     for origin in sorted({seen.origin for one in all for seen in one.seen}):
         shown = [(seen, one) for one in all for seen in one.seen if seen.origin == origin]
         shown.sort(key=lambda pair: (pair[0].when, *_rank(pair[0], assignment), pair[1].sha256))
@@ -122,11 +118,11 @@ def counts(all: Sequence[Attempt], assignment: str) -> HandIn | None:
             if one is not last:
                 break
             first = seen
-        found.append(HandIn(last, first))
+        found.append(Counted(last, first))
     return max(found, key=lambda x: (x.first.when, x.first.origin == BY_HAND), default=None)
 
 
-def that_counts(course: Course, student: str, assignment: str) -> HandIn | None:
+def that_counts(course: Course, student: str, assignment: str) -> Counted | None:
     """The attempt of a student that counts by the rules of the course; None if there is none.
 
     Raises:
@@ -173,14 +169,15 @@ def keep(
         name = f"{seen.when:%Y-%m-%dT%H%M%SZ}-{sha256[:16]}"
         folder = course.root / FOLDER / student / assignment / name
         before = Attempt(folder / f"{safe_name(Path(seen.file).stem)}.ipynb", sha256, ())
-        _put(before.path, data)
+        _put(before.file, data)
     newest = max((one.when for one in before.seen if one.origin == "exchange"), default=seen.when)
     if secret is not None and seen.when >= newest:
-        _put(before.path.parent / SECRET, secret)
+        _put(before.file.parent / SECRET, secret)
     if all((x.when, x.origin, x.file) != (seen.when, seen.origin, seen.file) for x in before.seen):
-        record = _Record(before.path.name, sha256, (*before.seen, seen))
-        text = msgspec.json.format(msgspec.json.encode(record), indent=1).decode()
-        write(before.path.parent / _RECORD, text + "\n")
+        record = replace(before, seen=(*before.seen, seen))
+        data = msgspec.json.encode(record, enc_hook=lambda file: file.name)
+        text = msgspec.json.format(data, indent=1).decode()
+        write(before.file.parent / _RECORD, text + "\n")
     return sha256 not in there
 
 
@@ -218,7 +215,7 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
             keep(course, student, assignment, data, seen, read_secret(folder) if new else None)
 
 
-def install(course: Course, student: str, assignment: str) -> HandIn | None:
+def install(course: Course, student: str, assignment: str) -> Counted | None:
     """Copy the attempt that counts to where nbgrader reads it.
 
     Returns:
@@ -230,7 +227,7 @@ def install(course: Course, student: str, assignment: str) -> HandIn | None:
     chosen = that_counts(course, student, assignment)
     if chosen is None:
         return None
-    source, when = chosen.attempt.path, chosen.first.when
+    source, when = chosen.attempt.file, chosen.first.when
     data = source.read_bytes()
     if digest(data) != chosen.attempt.sha256:
         raise LabkitError(f"{source} is not as it was handed in; restore it")
@@ -286,13 +283,15 @@ def _rank(seen: Seen, assignment: str) -> tuple[bool, int, str]:
 
 
 def _read(path: Path) -> Attempt:
+    def beside(_: type, name: str) -> Path:
+        return path.with_name(name)
+
     try:
-        record = msgspec.json.decode(path.read_bytes(), type=_Record)
+        return msgspec.json.decode(path.read_bytes(), type=Attempt, dec_hook=beside)
     except msgspec.DecodeError:
         raise LabkitError(
             f"{path} is damaged; restore it, or move its folder out of {FOLDER}/ and collect again"
         ) from None
-    return Attempt(path.with_name(record.file), record.sha256, record.seen)
 
 
 def _put(path: Path, data: bytes) -> None:

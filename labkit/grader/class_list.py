@@ -44,39 +44,55 @@ _PARTICIPANT = re.compile(r"[^\d]*([0-9]+)")
 
 
 @dataclass(frozen=True)
-class Entry:
-    """One row of a list; what it does not say is empty.
+class Student:
+    """One student; all but ``id`` may be empty.
 
     Attributes:
-        line: Where it ends in the file, as an editor counts.
+        id: The name of their folder, and nbgrader's name for them.
         first_name: First name.
         last_name: Last name.
         email: Address.
         lms_user_id: Canvas's number of the user.
         login: The name that they log in with.
         id_number: The university's number.
-        participant: Moodle's number of the participant in one assignment.
         github: The name on GitHub.
-        team: The name of their team.
-        handed_in: When the participant handed in, as Moodle's worksheet writes it.
+        team: Those who have the same one share an arm.
     """
 
-    line: int
+    id: str
     first_name: str = ""
     last_name: str = ""
     email: str = ""
     lms_user_id: str = ""
     login: str = ""
     id_number: str = ""
-    participant: str = ""
     github: str = ""
     team: str = ""
-    handed_in: str = ""
 
     @property
     def name(self) -> str:
         """First and last name."""
         return f"{self.first_name} {self.last_name}".strip()
+
+    def __str__(self) -> str:
+        return f"{self.name} ({self.id})" if self.name else self.id
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One row of a list; what it does not say is empty.
+
+    Attributes:
+        line: Where it ends in the file, as an editor counts.
+        student: Who it is; without an ``id``, which is for the roster to give.
+        participant: Moodle's number of the participant in one assignment.
+        handed_in: When the participant handed in, as Moodle's worksheet writes it.
+    """
+
+    line: int
+    student: Student
+    participant: str = ""
+    handed_in: str = ""
 
 
 def read_list(path: Path) -> tuple[Entry, ...]:
@@ -180,7 +196,8 @@ def _entries(
             cells |= {"first_name": first.strip(), "last_name": last.strip()}
         if number := _PARTICIPANT.fullmatch(cells.get("participant", "")):
             cells["participant"] = number[1]
-        entry = Entry(line, **cells)
-        if not (entry.name or entry.login):
+        of_hand_in = {k: cells.pop(k, "") for k in ("participant", "handed_in")}
+        student = Student("", **cells)
+        if not (student.name or student.login):
             raise LabkitError(f"{path}, line {line} has neither a name nor a login")
-        yield entry
+        yield Entry(line, student, **of_hand_in)

@@ -12,7 +12,7 @@ __all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "safe_name"]
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 LONGEST = 80
-"""Bytes of a folder's name, after which results, pages and attempts are called."""
+"""The longest name of a student's folder, in bytes; results, pages and attempts take that name."""
 
 
 def clean_data(data: Any) -> Any:

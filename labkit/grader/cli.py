@@ -52,11 +52,10 @@ def feedback(
     --unmarked writes the pages before. What readers said of a report is on its authors' page.
     """
     from .exchange import for_exchange
-    from .feedback import write_feedback
+    from .feedback import moodle_zip, write_feedback
     from .marks import marks_of
     from .peer_sheet import hand_out
     from .peers import reviews
-    from .return_feedback import moodle_zip
 
     with Failures() as failures:
         if peer_review:

@@ -20,9 +20,8 @@ from .attempts import Seen, adopt, called, install, keep, that_counts
 from .each import Failed, for_student
 from .enrol import settle
 from .exchange import in_exchange
-from .files import in_folder, reader
 from .identity import all_lms_users, alone, places, remember
-from .platforms import File, LmsUser, Named, in_zip, open_zip
+from .platforms import File, LmsUser, Named, in_folder, in_zip, open_zip, reader
 from .results import digest
 from .roster import Roster, read_roster
 

@@ -36,7 +36,7 @@ class Finding:
     """One thing that was looked at.
 
     Attributes:
-        what: It.
+        what: The thing, in a few words.
         fine: Whether it is as it should be.
         says: What was found, or the command that repairs it.
         needed: Whether grading refuses without it.

@@ -18,12 +18,12 @@ from ..course.layout import Course
 from ..errors import LabkitError
 from .arms import give_arms
 from .attempts import attempts, counts, install, keep, move
-from .class_list import Entry, read_list
+from .class_list import Entry, Student, read_list
 from .clean import safe_name
 from .exchange import read_time
 from .identity import all_lms_users, alone, lms_users, places, remember
 from .platforms import LmsUser
-from .roster import FILE, Roster, Student, read_roster, same_name, save_roster, tell_gradebook
+from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
 from .rules import read_rules
 from .term import seed_of
 
@@ -61,16 +61,18 @@ def enrol(
         LabkitError: Two rows, or a row and the roster, contradict each other.
     """
     _refuse_contradictions(entries)
-    names = Counter(name for name, *_ in {(same_name(e.name), *_keys(e)) for e in entries})
+    listed = {(same_name(x.student.name), *_marks(x.student).items()) for x in entries}
+    names = Counter(name for name, *_ in listed)
     students = {student.id: student for student in roster.students}
     by_mark: dict[_Mark, set[str]] = {}
     for student in roster.students:
         _index(student, by_mark)
     rows: list[tuple[Entry, str]] = []
     for entry in entries:
-        alone = names[same_name(entry.name)] == 1
-        id = _find(entry, alone, students, by_mark) or f"\n{entry.line}"  # for want of a folder
-        said = {k: getattr(entry, k) for k in _FIELDS if getattr(entry, k)}
+        unique = names[same_name(entry.student.name)] == 1
+        # who is new has no folder yet, and until `_folders` an id that no folder can have
+        id = _find(entry, unique, students, by_mark) or f"\n{entry.line}"
+        said = {k: v for k in _FIELDS if (v := getattr(entry.student, k))}
         students[id] = replace(students.get(id, Student(id)), **said)
         _index(students[id], by_mark)
         rows.append((entry, id))
@@ -195,40 +197,43 @@ def keep_times(course: Course, assignment: str, rows: Iterable[tuple[Entry, Stud
         first = chosen.first
         if first.origin == "moodle" and not first.exact:
             exact = replace(first, when=stated, exact=True)
-            keep(course, student.id, assignment, chosen.attempt.path.read_bytes(), exact)
+            keep(course, student.id, assignment, chosen.attempt.file.read_bytes(), exact)
             install(course, student.id, assignment)
             taken += 1
     return taken
 
 
-def _keys(one: Entry | Student) -> tuple[str, ...]:
-    return tuple(getattr(one, key).casefold() for key in _KEYS)
+def _marks(one: Student) -> dict[str, str]:
+    """What tells a student from others, as far as it is known."""
+    return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
 
 
-def _shared(one: Entry | Student, other: Entry | Student) -> list[bool]:
+def _shared(one: Student, other: Student) -> list[bool]:
     """For each key that both have, whether it is the same."""
-    return [a == b for a, b in zip(_keys(one), _keys(other), strict=True) if a and b]
+    a, b = _marks(one), _marks(other)
+    return [a[key] == b[key] for key in a.keys() & b.keys()]
 
 
 def _refuse_contradictions(entries: Sequence[Entry]) -> None:
     by: dict[tuple[str, object], list[Entry]] = {}
     for entry in entries:
-        name = same_name(entry.name)
-        for key in {*zip(_KEYS, _keys(entry), strict=True), ("name", name)}:
+        who, name = entry.student, same_name(entry.student.name)
+        for key in {*_marks(who).items(), ("name", name)}:
             for other in by.get(key, ()) if key[1] else ():
-                shared = _shared(entry, other)
+                shared = _shared(who, other.student)
                 lines = f"lines {other.line} and {entry.line}"
                 if key[0] == "name" and not shared:
                     raise LabkitError(
-                        f"{lines} are both {entry.name}, and nothing tells them apart; give each a "
+                        f"{lines} are both {who.name}, and nothing tells them apart; give each a "
                         "login, an address or a number, or delete one"
                     )
-                if any(shared) and not (all(shared) and same_name(other.name) == name):
-                    raise LabkitError(f"{lines} contradict each other: {_says(other, entry)}")
+                if any(shared) and not (all(shared) and same_name(other.student.name) == name):
+                    says = _says(other.student, who)
+                    raise LabkitError(f"{lines} contradict each other: {says}")
             by.setdefault(key, []).append(entry)
 
 
-def _says(one: Entry, other: Entry) -> str:
+def _says(one: Student, other: Student) -> str:
     pairs = [(getattr(one, k), getattr(other, k)) for k in ("name", *_KEYS)]
     same = " and ".join(a for a, b in pairs if a and a.casefold() == b.casefold())
     differ = " and ".join(
@@ -238,26 +243,24 @@ def _says(one: Entry, other: Entry) -> str:
 
 
 def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
-    marks = (*zip(_KEYS, _keys(student), strict=True), ("name", same_name(student.name)))
-    for mark in marks:
+    for mark in (*_marks(student).items(), ("name", same_name(student.name))):
         by_mark.setdefault(mark, set()).add(student.id)
 
 
 def _find(
-    entry: Entry, alone: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
+    entry: Entry, unique: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
 ) -> str:
     """The student whom a row means; empty if they are new."""
-    keys = [mark for mark in zip(_KEYS, _keys(entry), strict=True) if mark[1]]
-    found = set().union(*(by_mark.get(mark, set()) for mark in keys))
+    found = set().union(*(by_mark.get(mark, set()) for mark in _marks(entry.student).items()))
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
         raise LabkitError(
             f"line {entry.line} could be {people} of the roster; correct the list, or "
             "course_private/roster.csv"
         )
-    name = same_name(entry.name)
-    called = by_mark.get(("name", name), set()) if name and alone and not found else set()
-    if len(called) == 1 and not _shared(students[min(called)], entry):
+    name = same_name(entry.student.name)
+    called = by_mark.get(("name", name), set()) if name and unique and not found else set()
+    if len(called) == 1 and not _shared(students[min(called)], entry.student):
         return min(called)
     return min(found, default="")
 

@@ -56,7 +56,11 @@ class Times:
         return datetime.fromtimestamp(int(came), UTC)
 
     def _shown_by(self, other: Times) -> bool:
-        """Whether another, no sooner there than it says, was there before and says it was after."""
+        """Whether another hand-in shows that this one came later than it states.
+
+        The other states a later time, was on the disk before this one, and was not on the disk
+        before the time that it states itself.
+        """
         return (
             other.stated > self.stated + SLACK
             and self.changed > other.changed + SLACK

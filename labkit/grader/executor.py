@@ -23,7 +23,7 @@ from ..errors import LabkitError
 from .sandbox.cgroup import sweep
 
 TRIES = 2
-"""How often a call is tried whose worker dies."""
+"""How often a call is tried whose worker dies; within a worker `worker.TRIES` counts anew."""
 
 
 @contextmanager

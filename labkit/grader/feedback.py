@@ -3,11 +3,17 @@
 It is made from the result alone, so it cannot hold a hidden case or a reference value of one;
 whatever a student's code said is shown as text.  A page with a replay brings the viewer and the
 robot along, 1.7 MB; its policy names each script by its hash, and nothing is loaded from anywhere.
+
+Moodle takes pages back as a zip, and knows a participant by the number in the name of a folder,
+``NAME_PARTICIPANT_assignfeedback_file`` (github.com/moodle/moodle,
+``mod/assign/feedback/file/importziplib.php``).
 """
 
 from __future__ import annotations
 
 import json
+import re
+import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -25,6 +31,7 @@ from ..replay.motion import unpack
 from .atomic import write
 from .drawing import curve, side_by_side
 from .each import Failed, for_student
+from .identity import lms_users
 from .marks import Mark, mark_of
 from .pages import file, policy, render, scripts
 from .peers import Review, reviews
@@ -166,3 +173,38 @@ def measures(run: Mapping[str, Any]) -> Iterator[Measure]:
 def _plain(x: float) -> str:
     """Three digits or more, without an exponent up to a billion."""
     return f"{x:.0f}" if 1e3 <= abs(x) < 1e9 else f"{x:.3g}"
+
+
+def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path) -> int:
+    """Write the zip that Moodle takes under *Upload multiple feedback files in a zip*.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        pages: ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
+        to: The file to write.
+
+    Returns:
+        How many pages are in it.
+
+    Raises:
+        LabkitError: No page is of a student whom Moodle's download named.
+    """
+    people = lms_users(course, assignment)
+    mine = [
+        (people[student], page)
+        for page in pages
+        if (student := page.parents[1].name) in people and people[student].system == "moodle"
+    ]
+    if not mine:
+        raise LabkitError(
+            f"nobody's {assignment} was collected from Moodle, whose numbers the zip needs; "
+            f"first: labkit collect {assignment} MOODLES.zip"
+        )
+    to.parent.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
+        for who, page in mine:
+            name = re.sub(r"[_/\\]", " ", who.name)  # the number comes after the first underscore
+            folder = f"{name}_{who.number}_assignfeedback_file"
+            archive.write(page, f"{folder}/{page.name}")
+    return len(mine)

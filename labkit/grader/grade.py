@@ -7,13 +7,13 @@ plain data, read with limits.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
 
+from ..course.before_handing_in import receipt
 from ..course.bundle import Bundle
-from ..course.hand_in import receipt
 from ..course.marking import Tried, all_alike, mark, not_counted, try_public
 from ..course.messages import uses
 from ..course.question import Question
@@ -33,6 +33,15 @@ ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "
     "until the new notebook is handed in, into which `labkit merge` brings the work done so far"
 )
+
+_THEIRS = {
+    "tricks": ("tricks",),
+    "cells": ("error", "output"),
+    "own": ("source",),
+    "written": ("written",),
+    "questions": ("source", "found"),
+}
+"""The texts of a result that the student wrote; what comes first is kept first."""
 
 
 def _nobody(verdict: Verdict) -> None:
@@ -112,43 +121,25 @@ def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = 
 
 
 def _shortened(result: Result) -> Result:
-    """The same with no more of the student's texts than a result has room for."""
-    budget = TextBudget()
+    """The same, cleaned, with no more of the student's texts than a result has room for."""
+    budget, data = TextBudget(), record_data(result)
 
-    tricks = tuple(map(budget.take, result.tricks[:TRICKS]))
-    more = len(result.tricks) - TRICKS
-    cells: Any = tuple(
-        x | {"error": budget.take(x["error"]), "output": budget.take(x["output"])}
-        for x in result.cells
-    )
-    own: Any = tuple(x | {"source": budget.take(x["source"])} for x in result.own)
-    written = {name: budget.take(text) for name, text in result.written.items()}
-    result = replace(
-        result,
-        tricks=(*tricks, f"and {more} more such things") if more > 0 else tricks,
-        questions=tuple(
-            replace(x, source=budget.take(x.source), verdict=_short(x.verdict, budget))
-            for x in result.questions
-        ),
-        cells=cells,
-        own=own,
-        written=written,
-    )
-    if not budget.cut:
-        return result
+    def cut(x: Any, names: Collection[str], theirs: bool) -> Any:
+        if isinstance(x, str):
+            return budget.take(x) if theirs else x
+        if isinstance(x, dict):
+            order = sorted(x, key=lambda name: name != "source")  # before what became of it
+            return {name: cut(x[name], names, theirs or name in names) for name in order}
+        return [cut(y, names, theirs) for y in x] if isinstance(x, list | tuple) else x
+
+    more = len(data["tricks"]) - TRICKS
+    data["tricks"] = data["tricks"][:TRICKS]
+    for part, names in _THEIRS.items():
+        data |= cut({part: data[part]}, names, theirs=False)
+    data["tricks"] += [f"and {more} more such things"] * (more > 0)
     note = f"there is more text than is kept; {budget.cut} of its pieces are cut short here"
-    return replace(result, notes=(*result.notes, note))
-
-
-def _short(verdict: Verdict, budget: TextBudget) -> Verdict:
-    """A verdict in which what the student's code said has found room."""
-    tests = []
-    for test in verdict.tests:
-        why = test.difference
-        if why is not None and isinstance(why.found, str):
-            why = replace(why, found=budget.take(why.found))
-        tests.append(replace(test, difference=why))
-    return replace(verdict, tests=tuple(tests))
+    data["notes"] = [*data["notes"], *[note] * bool(budget.cut)]
+    return read_record(Result, clean_data(data))
 
 
 def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
@@ -223,8 +214,7 @@ def _lost(question: Question) -> Verdict:
 def _answer(question: Question, verdict: Verdict, tried: Tried | None, todo: Plan) -> Answer:
     why = (f"it {uses(verdict.withheld)}",) if verdict.withheld else ()
     notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()))))
-    clean = read_record(Verdict, clean_data(record_data(verdict)))
-    answer = Answer(clean, notes, todo.source(verdict.name))
+    answer = Answer(verdict, notes, todo.source(verdict.name))
     if tried is None:
         return answer
     try:

@@ -11,8 +11,9 @@ from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.own_arm import HANDLES, Arms
+from .class_list import Student
 from .pages import TEMPLATES
-from .roster import Student, read_roster
+from .roster import read_roster
 from .student_bundle import wheel
 
 

@@ -47,7 +47,7 @@ def lms_users(course: Course, assignment: str) -> dict[str, LmsUser]:
 
 
 def all_lms_users(course: Course) -> dict[str, dict[str, LmsUser]]:
-    """The same for each assignment.
+    """Who was collected, by assignment and by the name of their folder.
 
     Raises:
         LabkitError: The record is damaged.
@@ -159,8 +159,8 @@ def places(
         else:
             plain = _plain(one)
             by_hand = not folder and ("folder", plain) in owners.get(plain.casefold(), ())
-            alone = names[plain.casefold()] == 1 and not students
-            folder = folder or _free(one, alone, owners)
+            unique = names[plain.casefold()] == 1 and not students
+            folder = folder or _free(one, unique, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
             if roster.students:
                 found[key] = Place(folder, _doubt(one, len(students)))
@@ -212,11 +212,11 @@ def _owners(
     return owners
 
 
-def _free(one: LmsUser, alone: bool, owners: Mapping[str, set[tuple[str, ...]]]) -> str:
+def _free(one: LmsUser, unique: bool, owners: Mapping[str, set[tuple[str, ...]]]) -> str:
     """The name of a folder that is nobody else's."""
     plain, mine = _plain(one), {one.key, _all_term(one)}
     if one.system == "exchange":
         mine.add(("folder", plain))  # nbgrader's own collect calls it after the user
     numbered = [f"{plain}-{one.number}"] * (one.system == "moodle")
-    names = chain([plain] * alone, numbered, (f"{plain}-{k}" for k in count(2)))
+    names = chain([plain] * unique, numbered, (f"{plain}-{k}" for k in count(2)))
     return next(name for name in names if owners.get(name.casefold(), set()) <= mine)

@@ -13,13 +13,14 @@ from typing import Any
 
 from ..course.layout import Course
 from ..course.notebook import question_of
+from .class_list import Student
 from .clean import clean_line, clean_text
 from .each import Failed
 from .gradebook import open_gradebook
 from .identity import lms_users
 from .platforms import LmsUser
 from .results import Result
-from .roster import Student, read_roster
+from .roster import read_roster
 from .rules import settle_lateness
 from .standing import grade_again, standing
 from .submission import is_name, plain_name, students

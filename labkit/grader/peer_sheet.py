@@ -20,11 +20,12 @@ from ..course.layout import Course
 from ..course.notebook import Notebook, grade_id, read_cells
 from ..errors import LabkitError
 from .atomic import write
+from .class_list import Student
 from .clean import clean_text
 from .each import Failed, for_student
 from .peers import handed_out, of_class, readers, sheet_of, team_of, without_names
 from .pseudonyms import pseudonyms
-from .roster import Student, read_roster
+from .roster import read_roster
 from .sandbox.limits import Limits
 from .submission import Submission
 

@@ -15,9 +15,10 @@ from pathlib import Path
 from ..course.layout import Course
 from ..course.notebook import read_cells
 from ..errors import LabkitError
+from .class_list import Student
 from .clean import clean_text
 from .pseudonyms import pseudonyms
-from .roster import Roster, Student, read_roster
+from .roster import Roster, read_roster
 from .sandbox.limits import Limits
 from .submission import Submission, students
 

@@ -1,7 +1,8 @@
-"""Reads a zip from Moodle or Canvas: each file, and whose it is by the name that they gave it.
+"""Reads zips and folders: each file, and whose it is by the name that the platform gave it.
 
-Both put what they know of the person first and the student's own name of the file last, so a name
-is read from its beginning, and nothing that a student calls a file changes whose it is.
+Moodle and Canvas put what they know of the person first and the student's own name of the file
+last, so a name is read from its beginning, and nothing that a student calls a file changes whose it
+is.
 
 Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE``, with the student's own
 folders between, or ``_FILE``.  It makes spaces of the underscores in NAME, so the first number is
@@ -14,12 +15,18 @@ begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zippe
 
 Every file comes with all ways to read whose it is, and with the reason for which it is refused.
 Nothing is unpacked, so a name in a download leads nowhere.
+
+Folders and zips that no platform named are read by a pattern of the lecturer's: the clones of
+GitHub Classroom, ``paths-ada/01_paths.ipynb``, or files from anywhere, ``01_paths_4711.ipynb``.
+What stands for the student must be known to the roster: a login, an address, a number, the name on
+GitHub, or the student's own name.
 """
 
 from __future__ import annotations
 
 import io
 import lzma
+import os
 import re
 import stat
 import struct
@@ -37,7 +44,7 @@ from typing import BinaryIO
 from ..errors import LabkitError
 from .clean import clean_line
 from .sandbox.limits import Limits
-from .submission import check_size
+from .submission import check_size, read_file
 
 _MOODLE = re.compile(
     r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
@@ -94,6 +101,10 @@ class Named:
     file: str
     late: bool = False
     kind: str = "file"
+
+
+Reader = Callable[[str], tuple[Named, ...]]
+"""Reads whose a file is by its name, with folders."""
 
 
 def readings(entry: str) -> tuple[Named, ...]:
@@ -169,7 +180,7 @@ def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
 def in_zip(
     archive: zipfile.ZipFile,
     made: datetime,
-    read: Callable[[str], tuple[Named, ...]] = readings,
+    read: Reader = readings,
 ) -> Iterator[File]:
     """The files of a zip.
 
@@ -249,3 +260,48 @@ def _without_utf8_flags(path: Path) -> BinaryIO:
         data[local + 7] &= ~8
         at += 46 + sum(struct.unpack_from("<3H", data, at + 28))
     return io.BytesIO(data)
+
+
+_PARTS = {"{student}": "(?P<student>[^/]+?)", "**": ".*", "*": "[^/]*"}
+
+
+def reader(pattern: str) -> Reader:
+    """A reader for names that are all made alike.
+
+    Args:
+        pattern: Such as ``paths-{student}/*.ipynb``; ``*`` stands for anything within one name,
+            ``**`` for folders too.
+
+    Raises:
+        LabkitError: It does not say once where the student stands.
+    """
+    if pattern.count("{student}") != 1:
+        raise LabkitError(
+            f"{pattern!r} needs {{student}} once, such as in 'paths-{{student}}/*.ipynb'"
+        )
+    parts = re.split(r"(\{student\}|\*\*|\*)", pattern)
+    whole = re.compile("".join(_PARTS.get(part, re.escape(part)) for part in parts))
+
+    def read(name: str) -> tuple[Named, ...]:
+        match = whole.fullmatch(name)
+        if match is None:
+            return ()
+        who = person(match["student"])
+        return (Named(LmsUser("files", who, who), clean_line(Path(name).name)),)
+
+    return read
+
+
+def in_folder(folder: Path, read: Reader) -> Iterator[File]:
+    """The notebooks in a folder and all folders in it; links are not followed.
+
+    Their times are when they were written here, by a download or a clone.
+    """
+    for top, folders, names in os.walk(folder):
+        folders[:] = sorted(x for x in folders if not x.startswith("."))
+        for name in sorted(x for x in names if x.endswith(".ipynb") and not x.startswith(".")):
+            path = Path(top, name)
+            label = str(path.relative_to(folder))
+            when = datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
+            load = partial(read_file, path, Limits().notebook)
+            yield File(clean_line(label)[-120:], read(label), when, load)

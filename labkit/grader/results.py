@@ -67,7 +67,7 @@ class OwnCell(TypedDict):
 
 
 class Hashes(TypedDict):
-    """What a result is known by."""
+    """What a result is known by; ``engine`` stands for the code that grades."""
 
     submission: str
     bundle: str
@@ -204,7 +204,7 @@ class Results:
 
     @property
     def aside(self) -> Results:
-        """Results that count for nothing until somebody grades again."""
+        """Results that no mark is made of until `grade_class` takes them over."""
         other = copy.copy(self)
         other.folder = self.folder / "aside"
         return other

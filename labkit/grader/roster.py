@@ -15,49 +15,12 @@ from functools import cached_property
 from ..course.layout import Course
 from ..errors import LabkitError
 from .atomic import write
-from .class_list import read_table, refuse_long_rows
+from .class_list import Student, read_table, refuse_long_rows
 from .clean import safe_name
 from .gradebook import open_gradebook
 from .platforms import LmsUser
 
 FILE = "course_private/roster.csv"
-
-
-@dataclass(frozen=True)
-class Student:
-    """One student; all but ``id`` may be empty.
-
-    Attributes:
-        id: The name of their folder, and nbgrader's name for them.
-        first_name: First name.
-        last_name: Last name.
-        email: Address.
-        lms_user_id: Canvas's number of the user.
-        login: The name that they log in with.
-        id_number: The university's number.
-        github: The name on GitHub.
-        team: Those who have the same one share an arm.
-    """
-
-    id: str
-    first_name: str = ""
-    last_name: str = ""
-    email: str = ""
-    lms_user_id: str = ""
-    login: str = ""
-    id_number: str = ""
-    github: str = ""
-    team: str = ""
-
-    @property
-    def name(self) -> str:
-        """First and last name."""
-        return f"{self.first_name} {self.last_name}".strip()
-
-    def __str__(self) -> str:
-        return f"{self.name} ({self.id})" if self.name else self.id
-
-
 COLUMNS = tuple(field.name for field in fields(Student))
 
 

@@ -44,7 +44,8 @@ def numbers(question: Question, tried: Tried) -> Numbers | None:
     """The numbers of the first public call whose answer differs; None if there are none.
 
     Returns:
-        ``call``, the first `MOST` numbers ``expected`` and ``given``, and ``of`` how many.
+        The ``call``; the first `MOST` numbers that were ``expected`` and that were ``given``; and
+        ``of``, how many numbers the answer has.
     """
     found = tried.evidence(question)
     if found is None or not len(found.given) or not np.isfinite(found.expected).all():

@@ -22,7 +22,11 @@ from .sandbox.mounts import Isolation, NoIsolation
 from .submission import Submission
 
 TRIES = 2
-"""How often a submission is tried whose sandbox is lost."""
+"""How often a worker tries a submission whose sandbox is lost.
+
+The worker may die as well, and `executor.TRIES` gives the submission to another one, so it is tried
+four times at most.
+"""
 
 
 @dataclass(frozen=True)
@@ -32,14 +36,14 @@ class Task:
     Attributes:
         course: Where it belongs; hidden from the sandbox.
         submission: The student's files.
-        bundle: The hash of the release that it is held against.
+        bundle_hash: Of the release that it is held against.
         isolated: Whether its code runs in a sandbox.
         limits: What it may use on a quick machine.
     """
 
     course: Course
     submission: Submission
-    bundle: str
+    bundle_hash: str
     isolated: bool
     limits: Limits
 
@@ -79,7 +83,7 @@ def grade_submission(task: Task) -> Result:
 
 
 def _grade(task: Task, limits: Limits) -> Result:
-    bundle = _bundle(task.course, task.submission.assignment, task.bundle)
+    bundle = _bundle(task.course, task.submission.assignment, task.bundle_hash)
     student = task.submission.student
     data, note, why = task.submission.read(limits.notebook)
     lost = ""

@@ -92,9 +92,9 @@ def test_a_newer_hand_in_counts_and_the_earlier_one_is_kept(bare, tmp_path):
     said = take(bare, shown(tmp_path / "2.zip", 2, (f"{NAME}.ipynb", "second")))
     assert said == [f"Ada-Lovelace: {NAME}.ipynb: taken, in place of an earlier one, which is kept"]
     first, _ = attempts(bare, "Ada-Lovelace", NAME)
-    assert first.path.name == f"{NAME}.ipynb"
-    assert first.path.parent.name.startswith("2026-03-01T")
-    assert first.path.read_text() == "first"
+    assert first.file.name == f"{NAME}.ipynb"
+    assert first.file.parent.name.startswith("2026-03-01T")
+    assert first.file.read_text() == "first"
 
 
 def test_the_same_download_twice_changes_nothing(bare, tmp_path):

@@ -21,8 +21,9 @@ from labkit.course.bundle import Bundle
 from labkit.course.cli import FOR_INSTRUCTORS
 from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader import gradescope, gradescope_zip
+from labkit.grader.class_list import Student
 from labkit.grader.gradescope import report
-from labkit.grader.roster import Roster, Student
+from labkit.grader.roster import Roster
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits

@@ -7,10 +7,10 @@ import io
 
 import pytest
 
+from labkit.grader.class_list import Student
 from labkit.grader.export import LAYOUTS, as_csv, left_out
 from labkit.grader.marks import Mark
 from labkit.grader.platforms import LmsUser
-from labkit.grader.roster import Student
 
 ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")
 

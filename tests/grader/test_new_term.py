@@ -14,11 +14,12 @@ from labkit.course.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import UnknownName
 from labkit.grader import term
+from labkit.grader.class_list import Student
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.identity import remember
 from labkit.grader.platforms import LmsUser
 from labkit.grader.release import FORBIDDEN
-from labkit.grader.roster import Roster, Student, read_roster, save_roster, tell_gradebook
+from labkit.grader.roster import Roster, read_roster, save_roster, tell_gradebook
 from labkit.grader.student_bundle import export_course
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -12,18 +12,22 @@ from hypothesis import strategies as st
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.class_list import Entry, read_list
+from labkit.grader.class_list import Entry, Student, read_list
 from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.enrol import enrol
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.platforms import LmsUser
-from labkit.grader.roster import FILE, Roster, Student, read_roster, same_name, save_roster
+from labkit.grader.roster import FILE, Roster, read_roster, same_name, save_roster
 
 
 def listed(tmp_path, text, encoding="utf-8"):
     path = tmp_path / "list.csv"
     path.write_bytes(text.encode(encoding))
     return read_list(path)
+
+
+def people(tmp_path, text, encoding="utf-8"):
+    return [entry.student for entry in listed(tmp_path, text, encoding)]
 
 
 def enrolled(entries, roster=None, collected=None):
@@ -46,23 +50,23 @@ GERMAN = "Vorname;Nachname;E-Mail-Adresse\nAda;Lovelace;ada@uni.org\nZoë;O'Brie
 @pytest.mark.parametrize("text", [MOODLE, CANVAS, GERMAN, CANVAS.replace("\n", "\r\n")])
 def test_lists_as_platforms_export_them(tmp_path, text, encoding):
     """Delimiter, encoding, byte order mark and order of the name are found out."""
-    ada, zoe = listed(tmp_path, text, encoding)
+    ada, zoe = people(tmp_path, text, encoding)
     assert (ada.first_name, ada.last_name) == ("Ada", "Lovelace")
     assert (zoe.first_name, zoe.last_name) == ("Zoë", "O'Brien")
 
 
 def test_what_columns_hold(tmp_path):
     """Canvas's ID is its own number; a column "id" elsewhere is the login, or else a number."""
-    ada, _ = listed(tmp_path, CANVAS)
+    ada, _ = people(tmp_path, CANVAS)
     assert (ada.lms_user_id, ada.id_number, ada.login) == ("7", "1001", "alovelace")
-    ada, _ = listed(tmp_path, MOODLE)
+    ada, _ = people(tmp_path, MOODLE)
     assert (ada.lms_user_id, ada.id_number, ada.email) == ("", "1001", "ada@uni.org")
-    (one,) = listed(tmp_path, "id,first_name,last_name,email,lms_user_id\nada,A,L,a@x,7\n")
+    (one,) = people(tmp_path, "id,first_name,last_name,email,lms_user_id\nada,A,L,a@x,7\n")
     assert (one.login, one.lms_user_id) == ("ada", "7")  # nbgrader's own list
-    (one,) = listed(tmp_path, "ID\tLogin\tName\n1001\tada\tAda de la Cruz\n")
+    (one,) = people(tmp_path, "ID\tLogin\tName\n1001\tada\tAda de la Cruz\n")
     assert (one.id_number, one.login, one.name) == ("1001", "ada", "Ada de la Cruz")
     (one,) = listed(tmp_path, "Identifier,Full name,Status\nParticipant 77,Ada,-\n")
-    assert (one.participant, one.first_name + one.last_name) == ("77", "Ada")
+    assert (one.participant, one.student.name) == ("77", "Ada")
 
 
 @pytest.mark.parametrize(
@@ -151,7 +155,7 @@ def test_a_row_between_two_students_is_refused():
     """The login of one and the address of another."""
     roster = Roster((Student("a", "A", email="a@x"), Student("b", "B", login="b")))
     with pytest.raises(LabkitError, match=r"line 2 could be A \(a\) or B \(b\) of the roster"):
-        enrolled([Entry(2, "A", email="a@x", login="b")], roster)
+        enrolled([Entry(2, Student("", "A", email="a@x", login="b"))], roster)
 
 
 @settings(max_examples=50)
@@ -181,8 +185,10 @@ FIELDS = st.text(st.characters(exclude_categories=("Cs", "Cc")), max_size=8)
 @given(st.lists(st.tuples(FIELDS, FIELDS, FIELDS), max_size=4))
 def test_a_roster_is_read_as_it_was_written(rows):
     """Whatever people are called, quotation marks and commas included."""
-    entries = [Entry(k, first, last, login=f"{k}{login}") for k, (first, last, login) in
-               enumerate(rows)]  # fmt: skip
+    entries = [
+        Entry(k, Student("", first, last, login=f"{k}{login}"))
+        for k, (first, last, login) in enumerate(rows)
+    ]
     with tempfile.TemporaryDirectory() as folder:
         course = bare_course(Path(folder, "course"))
         roster = enrolled(entries)

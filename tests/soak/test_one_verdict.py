@@ -14,8 +14,8 @@ import pytest
 from handmade import put, raw
 
 from labkit.course import question_data
+from labkit.course.before_handing_in import look
 from labkit.course.bundle import Bundle
-from labkit.course.handin import look
 from labkit.course.layout import Course
 from labkit.course.notebook import manifest, source_notebook, verdict_in
 from labkit.course.withheld import find

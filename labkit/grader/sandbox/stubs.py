@@ -66,7 +66,7 @@ def use(
 ) -> Callable[..., Any]:
     """The student's function where it is right, else the one given, as in a notebook.
 
-    The cells run before anything is tried, so that which of them it is must wait for a call.
+    The cells run before any function is tried, so each call finds out anew which of the two it is.
     """
 
     def either(*args: Any, **kwargs: Any) -> Any:

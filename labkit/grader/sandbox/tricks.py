@@ -36,13 +36,6 @@ STUDENTS = {"labkit.course"} | {
     f"labkit.course.{name}" for name in ("check", "hint", "predict", "use")
 }
 
-_WORTH_A_LOOK = re.compile(
-    r"__|\b(_\w|eval|exec|compile|getattr|setattr|vars|sys|os|operator|labkit|pinocchio)"
-    rf"|\b({'|'.join(MODULES)}|asyncio|concurrent)\b"
-    r"|(?<![\w.])(lk|np|numpy)(\.\w+)++\s*+(=[^=]|,)"  # what is passed is not read again
-)
-"""What every cell with a trick has; with it a look at a notebook takes half the time."""
-
 
 def tricks(source: str) -> list[str]:
     """What a code cell does that no answer needs.
@@ -53,8 +46,6 @@ def tricks(source: str) -> list[str]:
     Returns:
         The ends of sentences that begin with the cell: "imports pickle".
     """
-    if not _WORTH_A_LOOK.search(source):
-        return []
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")

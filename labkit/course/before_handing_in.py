@@ -1,14 +1,17 @@
 """Before handing in: is the notebook whole, is it run, and what do its checks say?
 
-It reads the file and runs nothing.
+It reads the file and runs nothing.  The last cell of a notebook calls `hand_in`, which also prints
+a receipt.
 """
 
 from __future__ import annotations
 
+import hashlib
 import platform
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -16,7 +19,7 @@ from typing import Any
 from ..sim import chosen
 from .forms import COMMITTED
 from .gaps import first_error, undefined
-from .messages import head
+from .messages import head, wrapped
 from .notebook import (
     PLACEHOLDER,
     WORDS,
@@ -156,6 +159,40 @@ def look(path: Path) -> HandIn:
     if wrong:
         notes.append(f"not yet right: {', '.join(wrong)}; what is right counts all the same")
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
+
+
+def hand_in(name: str) -> None:
+    """Say what a look at the saved file finds, and print a receipt.
+
+    With a receipt and the file students can prove which work was done by then.  The feedback page
+    has the receipt of the file that was marked.
+
+    Args:
+        name: Of the notebook in the working directory, without ``.ipynb``.
+
+    Raises:
+        LabkitError: The file is missing or is not a notebook.
+    """
+    path = Path.cwd() / f"{name}.ipynb"
+    found = look(path)
+    saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
+    lines = [
+        f"This is {path.name} as it was saved at {saved:%H:%M:%S}. What you did since then is not "
+        "in it: save, and run this cell again.",
+        *str(found).splitlines(),
+        f"receipt: {receipt(cell['source'] for cell in read_cells(path))} of {path.name}, saved "
+        f"{saved:%Y-%m-%d %H:%M %Z}",
+    ]
+    print("\n".join(map(wrapped, lines)))
+
+
+def receipt(sources: Iterable[str]) -> str:
+    """A short name for what is written in a notebook's cells, in order.
+
+    Outputs do not count: to run the cell that prints the receipt changes the file.
+    """
+    text = "\0".join(sources).encode(errors="surrogatepass")
+    return hashlib.sha256(text).hexdigest()[:16]
 
 
 def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:

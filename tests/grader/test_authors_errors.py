@@ -11,7 +11,7 @@ from handmade import ROOT
 from labkit.course.layout import Course
 from labkit.course.problem import Problem, Trial, call
 from labkit.errors import LabkitError
-from labkit.grader import authoring
+from labkit.grader import release
 
 NAME = "01_paths"
 
@@ -38,8 +38,8 @@ def released(monkeypatch, problems, source="def double(x):\n    pass", first="# 
         made = {p.name: p.question(seed) for p in problems}
         return SimpleNamespace(source=SimpleNamespace(cells=cells), questions=made)
 
-    monkeypatch.setattr(authoring, "prepare", prepare)
-    return authoring.prepared(Course(ROOT), NAME, 1)
+    monkeypatch.setattr(release, "prepare", prepare)
+    return release.prepared(Course(ROOT), NAME, 1)
 
 
 def test_what_is_in_order_passes(monkeypatch):
