@@ -85,6 +85,11 @@ class Bundle:
         """Full marks."""
         return float(sum(q["points"] for q in self.data["questions"]))
 
+    @property
+    def is_report(self) -> bool:
+        """Whether people give most of the points; one member hands in for the whole team."""
+        return sum(cell.get("points", 0.0) for cell in self.data["cells"]) > self.points
+
 
 def write_bundle(
     course: Course,

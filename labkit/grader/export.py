@@ -124,8 +124,10 @@ def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
     for mark in marks:
         if mark.missing:
             yield f"no mark: {mark.student}: {mark.missing}"
-        elif mark.remark and not mark.absent:
+        elif mark.remark and not (mark.absent or mark.author):
             yield f"{mark.student}: {mark.remark}"
+    if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
+        yield f"{len(team)} have the mark of a report that their team handed in: {_some(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
         yield f"{len(absent)} handed in nothing: {_some(absent)}"
     yield from filter(None, [left_out(layout, marks)])

@@ -7,10 +7,11 @@ why: nobody is given a 0 that they did not earn.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.notebook import question_of
 from .clean import clean_line, clean_text
@@ -90,6 +91,7 @@ class Mark:
         result: What the grader found; None where there is no whole result.
         missing: Why no mark counts, and what to do; empty where one does, or nothing came.
         remark: What else should be known of the mark, such as that the file was rejected.
+        author: Who handed in the team's report, if that was another member of the team.
     """
 
     student: str
@@ -109,6 +111,7 @@ class Mark:
     result: Result | None = None
     missing: str = ""
     remark: str = ""
+    author: str = ""
 
     @property
     def absent(self) -> bool:
@@ -165,8 +168,33 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterat
     Args:
         course: The course.
         assignment: Which.
-        only: One student; by default all.
+        only: One student, by what they handed in themselves; by default all.
     """
+    rows = _own_marks(course, assignment, only)
+    released = (course.bundle / f"{assignment}.json").exists()
+    if only is None and released and Bundle.of(course, assignment).is_report:
+        yield from _for_teams(list(rows))
+    else:
+        yield from rows
+
+
+def _for_teams(rows: Iterable[Mark]) -> Iterator[Mark]:
+    """What one member of a team handed in counts for each who handed in nothing."""
+    reports: dict[str, Mark] = {}
+    for row in rows:
+        if row.person and row.person.team and not row.absent:
+            reports.setdefault(row.person.team, row)
+    for row in rows:
+        report = reports.get(row.person.team) if row.person and row.absent else None
+        if report is not None:
+            whose = {"student": row.student, "person": row.person, "user": row.user}
+            remark = f"the team's report, handed in by {report.student}"
+            row = _named(replace(report, **whose, author=report.student, remark=remark))
+        yield row
+
+
+def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Mark]:
+    """The mark of each student for what they handed in themselves."""
     by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
     roster = read_roster(course)
     stand = {one.student: one for one in standing(course, assignment, only)}
