@@ -8,7 +8,7 @@ name them.  A student keeps the folder in which work of theirs lies.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
@@ -133,6 +133,7 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
     if absent:
         told.append(f"not in this list, and still in the roster: {', '.join(absent)}")
+    told += _teams(entry.team for entry in entries if entry.team)
     if assignment:
         told.append(f"participants of {assignment}: {numbered}, times of hand-ins: {times}")
     elif numbered:
@@ -145,6 +146,19 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         for group in done.roster.namesakes()
     )
     return Imported(tuple(told), tuple(left), () if assignment else tuple(alike))
+
+
+def _teams(named: Iterable[str]) -> Iterator[str]:
+    """What follows from a list's teams, which may be groups that were made for something else."""
+    teams = Counter(named)
+    if teams:
+        some = ", ".join(sorted(teams)[:5]) + (", ..." if len(teams) > 5 else "")
+        yield (
+            f"teams in this list: {len(teams)} ({some}), the largest of {max(teams.values())} "
+            "students; a team has one arm and hands in one report. If these are other groups, such "
+            f"as tutorials, delete their column from the list, clear the column team of {FILE}, "
+            "and import the list again"
+        )
 
 
 def settle(course: Course, roster: Roster) -> list[str]:

@@ -14,7 +14,7 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.class_list import Entry, read_list
 from labkit.grader.clean import LONGEST, safe_name
-from labkit.grader.enrol import enrol
+from labkit.grader.enrol import enrol, import_list
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.platforms import LmsUser
 from labkit.grader.roster import FILE, Roster, Student, read_roster, same_name, save_roster
@@ -191,6 +191,19 @@ def test_a_roster_is_read_as_it_was_written(rows):
         assert [s.id for s in again.students] == [s.id for s in roster.students]
         save_roster(course, again)
         assert read_roster(course) == again
+
+
+def test_the_import_says_what_groups_become(tmp_path):
+    """Moodle's groups become teams, which share an arm; who is in none gets no team."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    head = "First name,Last name,Email address,Groups\n"
+    rows = "Ada,Ay,a@x,Monday\nBob,Be,b@x,Monday\nEve,Ee,e@x,No groups\nZoe,Zet,z@x,No groups\n"
+    file.write_text(head + rows)
+    _, teams = import_list(course, file).told
+    assert teams.startswith("teams in this list: 1 (Monday), the largest of 2 students; a team has")
+    assert [s.team for s in read_roster(course).students] == ["Monday", "Monday", "", ""]
+    file.write_text("First name,Last name,Email address\nAda,Ay,a@x\n")
+    assert not any("teams" in sentence for sentence in import_list(course, file).told)
 
 
 @pytest.mark.slow
