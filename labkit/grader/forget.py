@@ -8,6 +8,7 @@ import io
 import json
 import re
 import shutil
+import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -22,7 +23,6 @@ from .identity import FILE as LMS
 from .identity import alone
 from .roster import FILE as ROSTER
 from .rules import FILE as RULES
-from .rules import read_rules
 from .submission import is_name
 
 _OLD = r"-(([0-9a-f]{8}-){2}[0-9a-f]{8}|--)\.json"
@@ -43,6 +43,9 @@ def places_of(course: Course, student: str) -> list[Path]:
     for root in _terms(course):
         found += sorted(root.glob(f"results/*/{plain}.json"))
         found += [x / f"{student}.html" for x in (root / "build/course/defence", root / "defence")]
+        explained = re.compile(re.escape(student) + r"-\w+\.html")
+        pages = [*root.glob("build/course/explain/*.html"), *root.glob("explain/*.html")]
+        found += [x for x in sorted(pages) if explained.fullmatch(x.name)]
         found += sorted(root.glob(f"results/*/aside/{plain}.json"))
         old = re.compile(re.escape(student) + _OLD)
         found += [x for x in sorted(root.glob("results/*/old/*.json")) if old.fullmatch(x.name)]
@@ -70,8 +73,10 @@ def forget(course: Course, found: Sequence[Path], student: str | None = None) ->
             private = root / "course_private" if root == course.root else root
             for path in _leave_records(private, student):
                 yield f"no more in {path.relative_to(course.root)}"
-    if any(x.student == student for x in read_rules(course).extensions):
-        yield f"{RULES} names an extension of theirs; delete it there"
+    for file in filter(Path.exists, (root / RULES for root in _terms(course))):
+        granted = tomllib.loads(file.read_text(encoding="utf-8")).get("extensions", ())
+        if any(one.get("student") == student for one in granted):
+            yield f"{file.relative_to(course.root)} names an extension of theirs; delete it there"
     yield (
         "copies elsewhere are yours to delete: downloads, exported tables and reports, backups, "
         "the exchange, the platform itself"

@@ -12,16 +12,19 @@ from pathlib import Path
 from typing import Any
 
 from ..course.layout import Course
+from ..course.own_arm import FILE as ARMS
 from ..course.own_arm import HANDLES
 from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 from . import attempts, identity, pseudonyms, roster
 from .atomic import write
 from .release import release
+from .rules import FILE as RULES
+from .rules import read_rules
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
-    "build/course/defence",
+    *("build/course/defence", "build/course/explain"),
     *(attempts.FOLDER, roster.FILE, HANDLES, identity.FILE, pseudonyms.FILE),
 )
 """The files of one term alone, with students' names, what leads to them, and hidden cases.
@@ -122,7 +125,12 @@ def _keep(course: Course, record: dict[str, Any]) -> None:
 
 
 def archive(course: Course) -> Path | None:
-    """Move what holds the last term's names into one folder; None if there is nothing."""
+    """Move what holds the last term's names into one folder; None if there is nothing.
+
+    The rules are copied, as most of them serve again; arms are deleted where students get them.
+    """
+    for path in course.release.glob(f"*/{ARMS}"):
+        path.unlink()
     there = [course.root / name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None
@@ -133,7 +141,18 @@ def archive(course: Course) -> Path | None:
     record = _private(course) / "term.json"
     if record.exists():
         shutil.move(record, folder / record.name)
+    if (course.root / RULES).exists():
+        shutil.copy(course.root / RULES, folder)
     return folder
+
+
+def old_rules(course: Course) -> str:
+    """What of the last term's rules is still in force, in a sentence; "" if nothing is."""
+    rules = read_rules(course)
+    over = [x for x in rules.assignments if (due := rules.due(x)) and due < datetime.now(UTC)]
+    said = [f"due dates that are over: {', '.join(over)}"] * bool(over)
+    said += [f"extensions: {len(rules.extensions)}"] * bool(rules.extensions)
+    return f"{RULES} still has {'; '.join(said)}. Edit it before students hand in" if said else ""
 
 
 @dataclass(frozen=True)
