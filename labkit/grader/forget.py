@@ -21,6 +21,8 @@ from .atomic import write
 from .gradebook import quiet_database
 from .identity import FILE as LMS
 from .identity import alone
+from .pseudonyms import FILE as KEY
+from .pseudonyms import pseudonym
 from .roster import FILE as ROSTER
 from .rules import FILE as RULES
 from .submission import is_name
@@ -77,10 +79,24 @@ def forget(course: Course, found: Sequence[Path], student: str | None = None) ->
         granted = tomllib.loads(file.read_text(encoding="utf-8")).get("extensions", ())
         if any(one.get("student") == student for one in granted):
             yield f"{file.relative_to(course.root)} names an extension of theirs; delete it there"
+    sheets = [str(path.relative_to(course.root)) for path in _read_by_others(course, student)]
+    if sheets:
+        yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
     yield (
         "copies elsewhere are yours to delete: downloads, exported tables and reports, backups, "
         "the exchange, the platform itself"
     )
+
+
+def _read_by_others(course: Course, student: str) -> Iterator[Path]:
+    """Sheets of peer review, given out or handed in, that hold a student's report."""
+    for root in _terms(course):
+        key = root / (KEY if root == course.root else Path(KEY).name)
+        if key.exists():
+            name = pseudonym(key.read_bytes(), student)
+            for folder in _FOLDERS:
+                sheets = sorted(root.glob(f"{folder}/*/*_review/**/*.ipynb"))
+                yield from (x for x in sheets if f"{name}_" in x.read_text(errors="replace"))
 
 
 def _terms(course: Course) -> list[Path]:

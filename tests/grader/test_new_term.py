@@ -17,6 +17,7 @@ from labkit.grader import term
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.identity import remember
 from labkit.grader.platforms import LmsUser
+from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.release import FORBIDDEN
 from labkit.grader.roster import Roster, Student, read_roster, save_roster, tell_gradebook
 from labkit.grader.student_bundle import export_course
@@ -122,12 +123,17 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
     shutil.copytree(archived, course.root, dirs_exist_ok=True)
     shutil.copy(archived / "roster.csv", course.root / "course_private")
     shutil.copy(archived / "lms.json", course.root / "course_private")
+    for reader, author in (("bob", "ada"), ("eve", "ada-2")):
+        sheet = course.root / "feedback" / reader / "08_report_review/08_report_review.ipynb"
+        sheet.parent.mkdir(parents=True)
+        sheet.write_text(f'"id": "{pseudonyms(course)(author)}_claim"')
     words = ["term", "forget", "--student", "ada", "--course", str(course.root)]
     assert main(words) == 0
     assert capsys.readouterr().out.count("would go: ") == 16
     assert main([*words, "--yes"]) == 0
     said = capsys.readouterr().out
     assert said.count("no more in") == 6 and "backups" in said
+    assert "hold their report: feedback/bob/08_report_review/08_report_review.ipynb\n" in said
     left = {str(x.relative_to(course.root)) for x in course.root.rglob("ada*")}
     assert not [x for x in left if "ada-2" not in x and "solutions" not in x]
     assert any("ada-2" in x for x in left)
