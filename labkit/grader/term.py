@@ -43,7 +43,7 @@ def seed_of(course: Course) -> int:
     Raises:
         LabkitError: The term's record cannot be read.
     """
-    file = _private(course) / "term.json"
+    file = course.term
     if not file.exists():
         return PUBLIC_SEED
     try:
@@ -121,7 +121,7 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
 
 
 def _keep(course: Course, record: dict[str, Any]) -> None:
-    write(_private(course) / "term.json", json.dumps(record, indent=1) + "\n")
+    write(course.term, json.dumps(record, indent=1) + "\n")
 
 
 def archive(course: Course) -> Path | None:
@@ -138,9 +138,8 @@ def archive(course: Course) -> Path | None:
     folder.mkdir(parents=True)
     for path in there:
         shutil.move(path, folder / path.name)
-    record = _private(course) / "term.json"
-    if record.exists():
-        shutil.move(record, folder / record.name)
+    if course.term.exists():
+        shutil.move(course.term, folder / course.term.name)
     if (course.root / RULES).exists():
         shutil.copy(course.root / RULES, folder)
     return folder
@@ -186,7 +185,7 @@ def archives(course: Course, older: float = 0.0) -> list[Archive]:
 
 def about(course: Course) -> Iterator[str]:
     """The term that is under way, and those that are over, a line each."""
-    file = _private(course) / "term.json"
+    file = course.term
     if file.exists():
         record = json.loads(file.read_text(encoding="utf-8"))
         released = ", ".join(sorted(record.get("bundles", ()))) or "nothing"
