@@ -143,6 +143,22 @@ def test_mistakes_of_the_caller_are_one_sentence(capsys):
     assert "nbgrader_config.py" in capsys.readouterr().err
 
 
+def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
+    """The others are released, and the reason comes at the end, with the name."""
+
+    def release(course, name, seed):
+        if name == "01_paths":
+            raise LabkitError("the first cell says 24 points")
+        return f"{name} is made"
+
+    monkeypatch.setattr("labkit.grader.release.release", release)
+    words = ["00_warmup", "01_paths", "08_report", "--course", str(COURSE.root), "--seed", "7"]
+    assert main(["release", *words]) == 2
+    said = capsys.readouterr()
+    assert said.out == "00_warmup is made\n08_report is made\n"
+    assert "01_paths: the first cell says 24 points" in said.err
+
+
 def test_the_public_file_is_small_and_valid():
     """What lies beside the notebook is one line of JSON without a hidden case."""
     for name in COURSE.names():
