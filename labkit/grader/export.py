@@ -130,6 +130,11 @@ def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
         yield f"{len(team)} have the mark of a report that their team handed in: {_some(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
         yield f"{len(absent)} handed in nothing: {_some(absent)}"
+    if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
+        yield (
+            f"{len(lost)} have no Canvas ID, so Canvas must find them by SIS ID or login: "
+            f"{_some(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
+        )
     yield from filter(None, [left_out(layout, marks)])
 
 
