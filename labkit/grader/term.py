@@ -177,7 +177,7 @@ def archives(course: Course, older: float = 0.0) -> list[Archive]:
     found = []
     for folder in sorted(_private(course).glob("archive-*")):
         ended = date.fromisoformat(folder.name.removeprefix("archive-")[:10])
-        people = len(list((folder / "submitted").glob("*/")))
+        people = len({path.parts[-3] for path in (folder / "submitted").glob("*/*/*")})
         if (datetime.now(UTC).date() - ended).days >= 365.25 * older:
             found.append(Archive(folder, ended, people))
     return found

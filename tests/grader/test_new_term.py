@@ -70,6 +70,9 @@ def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
     folder = term.archive(course)
     assert not course.submitted.exists() and not page.exists() and not arms.exists()
     assert (folder / "explain" / page.name).exists()
+    assert term.archives(course)[0].people == 0, "a folder without a file is nobody's work"
+    (folder / "submitted/ada/01_paths/01_paths.ipynb").touch()
+    assert term.archives(course)[0].people == 1
     assert (folder / "submitted" / "ada").is_dir()
     words = ["term", "forget", "--course", str(course.root)]
     assert main(words) == 2
