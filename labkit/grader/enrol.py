@@ -140,12 +140,21 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         told.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"
         )
-    alike = (
-        f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who is "
-        "who until you import the assignment's grading worksheet, with --assignment"
-        for group in done.roster.namesakes()
-    )
-    return Imported(tuple(told), tuple(left), () if assignment else tuple(alike))
+    known = all_lms_users(course)
+    alike = () if assignment else tuple(_alike(done.roster, known))
+    return Imported(tuple(told), tuple(left), alike)
+
+
+def _alike(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) -> Iterator[str]:
+    """Who is called alike, and the assignments in which their numbers tell them apart."""
+    for group in roster.namesakes():
+        told_apart = [x for x, people in known.items() if all(one.id in people for one in group)]
+        yield (
+            f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who "
+            "is who until you import the grading worksheet of that assignment, with --assignment"
+            + f"; this is done for {', '.join(sorted(told_apart))}"
+            * bool(told_apart)
+        )
 
 
 def _teams(named: Iterable[str]) -> Iterator[str]:

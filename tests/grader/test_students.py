@@ -16,6 +16,7 @@ from labkit.grader.class_list import Entry, read_list
 from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.enrol import enrol, import_list
 from labkit.grader.gradebook import open_gradebook
+from labkit.grader.identity import remember
 from labkit.grader.platforms import LmsUser
 from labkit.grader.roster import FILE, Roster, Student, read_roster, same_name, save_roster
 
@@ -217,6 +218,9 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     said = capsys.readouterr()
     assert f"{FILE}: 4 students, 4 of them new" in said.out
     assert "called alike: Li Wei (Li-Wei-li), Wei Li (Wei-Li-wei)" in said.err
+    remember(course, NAME, {n: LmsUser("moodle", n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
+    assert main(["students", "import", str(file), *where]) == 0
+    assert "with --assignment; this is done for 01_paths" in capsys.readouterr().err
     with open_gradebook(course) as book:
         ada = book.find_student("Ada-Lovelace")
         about = (ada.first_name, ada.last_name, ada.email, ada.lms_user_id)
