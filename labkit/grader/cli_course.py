@@ -70,7 +70,8 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     names = names or course.names()
     for name in names:
         course.notebook_source(name)
-    seeds, refused = set(), []
+    seeds: set[int] = set()
+    refused: list[str] = []
     for name in names:
         used = seed_for(course, name) if seed is None else seed
         try:

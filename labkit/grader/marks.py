@@ -187,9 +187,9 @@ def _for_teams(rows: Iterable[Mark]) -> Iterator[Mark]:
     for row in rows:
         report = reports.get(row.person.team) if row.person and row.absent else None
         if report is not None:
-            whose = {"student": row.student, "person": row.person, "user": row.user}
             remark = f"the team's report, handed in by {report.student}"
-            row = _named(replace(report, **whose, author=report.student, remark=remark))
+            mine = replace(report, student=row.student, person=row.person, user=row.user)
+            row = _named(replace(mine, author=report.student, remark=remark))
         yield row
 
 
