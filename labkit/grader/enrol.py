@@ -8,7 +8,7 @@ name them.  A student keeps the folder in which work of theirs lies.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
@@ -22,6 +22,7 @@ from .class_list import Entry, read_list
 from .clean import safe_name
 from .exchange import read_time
 from .identity import all_lms_users, alone, lms_users, places, remember
+from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, Student, read_roster, same_name, save_roster, tell_gradebook
 from .rules import read_rules
@@ -133,7 +134,7 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
     if absent:
         told.append(f"not in this list, and still in the roster: {', '.join(absent)}")
-    told += _teams(entry.team for entry in entries if entry.team)
+    told += about_teams(entry.team for entry in entries if entry.team)
     if assignment:
         told.append(f"participants of {assignment}: {numbered}, times of hand-ins: {times}")
     elif numbered:
@@ -141,33 +142,8 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"
         )
     known = all_lms_users(course)
-    alike = () if assignment else tuple(_alike(done.roster, known))
+    alike = () if assignment else tuple(about_namesakes(done.roster, known))
     return Imported(tuple(told), tuple(left), alike)
-
-
-def _alike(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) -> Iterator[str]:
-    """Who is called alike, and the assignments in which their numbers tell them apart."""
-    for group in roster.namesakes():
-        told_apart = [x for x, people in known.items() if all(one.id in people for one in group)]
-        yield (
-            f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who "
-            "is who until you import the grading worksheet of that assignment, with --assignment"
-            + f"; this is done for {', '.join(sorted(told_apart))}"
-            * bool(told_apart)
-        )
-
-
-def _teams(named: Iterable[str]) -> Iterator[str]:
-    """What follows from a list's teams, which may be groups that were made for something else."""
-    teams = Counter(named)
-    if teams:
-        some = ", ".join(sorted(teams)[:5]) + (", ..." if len(teams) > 5 else "")
-        yield (
-            f"teams in this list: {len(teams)} ({some}), the largest of {max(teams.values())} "
-            "students; a team has one arm and hands in one report. If these are other groups, such "
-            f"as tutorials, delete their column from the list, clear the column team of {FILE}, "
-            "and import the list again"
-        )
 
 
 def settle(course: Course, roster: Roster) -> list[str]:

@@ -7,11 +7,10 @@ why: nobody is given a 0 that they did not earn.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.notebook import question_of
 from .clean import clean_line, clean_text
@@ -24,6 +23,7 @@ from .roster import Student, read_roster
 from .rules import settle_lateness
 from .standing import grade_again, standing
 from .submission import is_name, plain_name, students
+from .team_reports import for_teams
 from .whys import settle_whys
 
 
@@ -171,26 +171,7 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterat
         only: One student, by what they handed in themselves; by default all.
     """
     rows = _own_marks(course, assignment, only)
-    released = (course.bundle / f"{assignment}.json").exists()
-    if only is None and released and Bundle.of(course, assignment).is_report:
-        yield from _for_teams(list(rows))
-    else:
-        yield from rows
-
-
-def _for_teams(rows: Iterable[Mark]) -> Iterator[Mark]:
-    """What one member of a team handed in counts for each who handed in nothing."""
-    reports: dict[str, Mark] = {}
-    for row in rows:
-        if row.person and row.person.team and not row.absent:
-            reports.setdefault(row.person.team, row)
-    for row in rows:
-        report = reports.get(row.person.team) if row.person and row.absent else None
-        if report is not None:
-            remark = f"the team's report, handed in by {report.student}"
-            mine = replace(report, student=row.student, person=row.person, user=row.user)
-            row = _named(replace(mine, author=report.student, remark=remark))
-        yield row
+    yield from rows if only else for_teams(course, assignment, rows)
 
 
 def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Mark]:
