@@ -82,8 +82,18 @@ class Bundle:
 
     @property
     def points(self) -> float:
-        """Full marks."""
+        """Full marks for the questions that are graded here."""
         return float(sum(q["points"] for q in self.data["questions"]))
+
+    @property
+    def is_report(self) -> bool:
+        """Whether people give most of the points; one member hands in for the whole team."""
+        return self.by_hand > self.points
+
+    @property
+    def by_hand(self) -> float:
+        """Points that a person gives, on top."""
+        return float(sum(cell.get("points", 0.0) for cell in self.data["cells"]))
 
 
 def write_bundle(

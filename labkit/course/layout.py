@@ -75,6 +75,11 @@ class Course:
         return self.build / "bundle"
 
     @property
+    def term(self) -> Path:
+        """The record of the term, with its seed."""
+        return self.root / "course_private" / "term.json"
+
+    @property
     def release(self) -> Path:
         """The students' notebooks."""
         return self.root / "assignments"

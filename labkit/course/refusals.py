@@ -63,13 +63,16 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
     if earned > most:
         yield (
             f"an answer that memorises its public cases earns {earned:g} of {question.points:g} "
-            f"points, and {most:g} are stated; give the tests that pay hidden cases"
+            f"points; the problem's free_share allows {most:g}. Give the tests that "
+            "pay hidden cases"
         )
     earned = 0.0 if text is None else _stand_in_earns(question, text)
     if earned > most:
         yield (
-            f"its notebook's stand-in earns {earned:g} of {question.points:g} points, and {most:g} "
-            "are stated; make the stand-in worse than the answer, or withhold the tool that it uses"
+            "the stand-in that the notebook uses until a student has an answer, the third argument "
+            f"of use(), earns {earned:g} of {question.points:g} points; the problem's free_share "
+            f"allows {most:g}. Make the stand-in worse than the answer, or withhold the tool that "
+            "it uses"
         )
     yield from _alike(question, problem)
 

@@ -263,6 +263,8 @@ def move(course: Course, assignment: str, old: str, new: str) -> str:
         if source.exists() and not target.exists():
             target.parent.mkdir(parents=True, exist_ok=True)
             source.rename(target)
+            if not any(source.parent.iterdir()):
+                source.parent.rmdir()
     there = (
         *(base / old / assignment for base in (course.root / FOLDER, course.submitted)),
         course.results / assignment / f"{old}.json",

@@ -29,6 +29,8 @@ FAILURE_RATE_ALERT = 0.3
 """If more than this share of a class fails one test, the run asks whether the test is to blame."""
 MIN_ATTEMPTS = 5
 """Nothing is concluded from fewer than these."""
+MIN_FAILURES = 3
+"""Two students who make one known mistake say nothing of a test."""
 
 
 @dataclass(frozen=True)
@@ -226,7 +228,8 @@ def common_failures(results: Sequence[Result]) -> Iterator[str]:
                 failed[question.verdict.name, one.name] += one.outcome is not Outcome.RIGHT
     loud: dict[str, list[tuple[int, str]]] = {}
     for (name, test), count in failed.most_common():
-        if count > FAILURE_RATE_ALERT * tried[name] and tried[name] >= MIN_ATTEMPTS:
+        share = FAILURE_RATE_ALERT * tried[name]
+        if count > share and count >= MIN_FAILURES and tried[name] >= MIN_ATTEMPTS:
             loud.setdefault(name, []).append((count, test))
     for name, ((count, test), *others) in loud.items():
         more = f"; so it is with {len(others)} more of its tests" if others else ""

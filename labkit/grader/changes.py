@@ -52,8 +52,12 @@ def changes(
     """Grade aside, and compare with the results that count; no mark is changed.
 
     What was graded is kept aside, so that `grade_class` need not do it again.
+
+    Raises:
+        LabkitError: The assignment's sources are newer than its release.
     """
     bundle, now = Bundle.of(course, assignment), Results(course, assignment)
+    _refuse_unreleased(course, assignment)
     aside = now.aside
     todo: list[Submission] = []
     for student in students:
@@ -69,6 +73,18 @@ def changes(
         else:
             aside.keep(result)
             yield Change(now.get(result.student), result)
+
+
+def _refuse_unreleased(course: Course, assignment: str) -> None:
+    """Refuse to compare with tests that were corrected since they were released."""
+    released = (course.bundle / f"{assignment}.json").stat().st_mtime
+    sources = sorted(course.notebook_source(assignment).parent.glob("*.py"))
+    newer = [file.name for file in sources if file.stat().st_mtime > released]
+    if newer:
+        raise LabkitError(
+            f"{', '.join(newer)} changed after {assignment} was released, so --diff would not try "
+            f"the change; type: labkit release {assignment}, and correct what it refuses"
+        )
 
 
 def summary(found: Sequence[Change]) -> Iterator[str]:

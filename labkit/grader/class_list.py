@@ -40,6 +40,8 @@ HEADS = {
 """What a column may be called, by what it holds; a column "id" is settled by its neighbours."""
 _FIELDS = {head: field for field, heads in HEADS.items() for head in heads.split(", ")}
 _NOT_A_STUDENT = "points possible"
+_NO_TEAM = {"no groups", "keine gruppen"}
+"""What Moodle's column Groups says of a student who is in none."""
 _PARTICIPANT = re.compile(r"[^\d]*([0-9]+)")
 
 
@@ -194,6 +196,8 @@ def _entries(
             last, comma, first = name.partition(",")
             first, _, last = (first, "", last) if comma else name.rpartition(" ")
             cells |= {"first_name": first.strip(), "last_name": last.strip()}
+        if cells.get("team", "").casefold() in _NO_TEAM:
+            cells["team"] = ""
         if number := _PARTICIPANT.fullmatch(cells.get("participant", "")):
             cells["participant"] = number[1]
         of_hand_in = {k: cells.pop(k, "") for k in ("participant", "handed_in")}

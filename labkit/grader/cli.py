@@ -100,7 +100,7 @@ def class_report(
     from .pseudonyms import pseudonyms
 
     with Failures() as failures:
-        marks = list(marks_of(course, assignment))
+        marks = [mark for mark in marks_of(course, assignment) if not mark.author]
         if not any(mark.result for mark in marks):
             raise nobody(assignment, None, next((m.missing for m in marks if m.missing), ""))
         out = [mark for mark in marks if mark.missing and not mark.lines]
@@ -118,12 +118,13 @@ def class_report(
 
 def _wait_for_marks(marks: Iterable[Mark]) -> None:
     """Raise a LabkitError if a person still has something to mark."""
-    waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in marks if mark.open]
+    open_ones = [mark for mark in marks if mark.open and not mark.author]
+    waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
     if waiting:
         some = ", ".join(waiting[:5]) + (", ..." if len(waiting) > 5 else "")
         raise LabkitError(
-            f"{len(waiting)} are not marked by hand in full: {some}; mark them in formgrader, or "
-            "add --unmarked to write the pages without these marks"
+            f"{some}: these answers wait for a mark by hand, {len(waiting)} students in all; give "
+            "it in formgrader, or add --unmarked to write the pages without these marks"
         )
 
 

@@ -61,17 +61,26 @@ names = click.argument("names", nargs=-1, metavar="[NAME]...")
 def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     """Make the students' notebooks.
 
-    Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made.
+    Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made. One that
+    is refused stops none of the others; the reasons come at the end, with exit code 2.
     """
     from .release import release
     from .term import public_warning, seed_for
 
-    seeds = set()
-    for name in names or course.names():
+    names = names or course.names()
+    for name in names:
         course.notebook_source(name)
+    seeds: set[int] = set()
+    refused: list[str] = []
+    for name in names:
         used = seed_for(course, name) if seed is None else seed
-        print(release(course, name, used), flush=True)
-        seeds.add(used)
+        try:
+            print(release(course, name, used), flush=True)
+            seeds.add(used)
+        except LabkitError as error:
+            refused.append(str(error) if name in str(error) else f"{name}: {error}")
+    if refused:
+        raise LabkitError("\n".join(refused))
     print("tried: known mistakes, stand-ins, public cases from memory; more by: labkit report-card")
     for warning in filter(None, map(public_warning, seeds)):
         print(warning)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -92,6 +93,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             with exclusive_run(Results(course, assignment).folder):
                 found = changes(course, assignment, who, options)
                 tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
+            tell(_on_top(course, assignment), sys.stdout)
             return failures.code
         graded: list[Result] = []
         done = failures.sift(grade_class(course, assignment, who, options), "not graded")
@@ -104,8 +106,17 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             everybody = graded if student else list(Results(course, assignment))
             tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
         if graded and not as_json:
+            tell(_on_top(course, assignment), sys.stdout)
             print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
     return failures.code
+
+
+def _on_top(course: Course, assignment: str) -> Iterator[str]:
+    """What the points that are printed leave out."""
+    from ..course.bundle import Bundle
+
+    if by_hand := Bundle.of(course, assignment).by_hand:
+        yield f"all this without what is marked by hand, {by_hand:g} points more"
 
 
 def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import sys
+
 import click
 
 from ..course.cli import verb
 from ..course.layout import Course
 from ..errors import LabkitError
+from .cli import tell
 from .cli_course import SEED, names, of_course
 
 
@@ -56,7 +59,7 @@ def term(
     The law may say how long marks must be kept.
     """  # noqa: D301
     from .forget import forget, places_of
-    from .term import about, archives, new_term
+    from .term import about, archives, new_term, old_rules
 
     if action == "new":
         record = new_term(course, seed, names)
@@ -64,6 +67,7 @@ def term(
             print(f"{name}: bundle {digest[:16]}")
         begun = f"a term with seed {record['seed']} begins"
         print(f"{begun}; keep course_private/term.json, which holds it")
+        tell(filter(None, [old_rules(course)]), sys.stdout)
     elif action == "list":
         print("\n".join(about(course)))
     else:

@@ -157,7 +157,10 @@ def _whose(file: File, roster: Roster) -> Named | str:
         who = file.readings[0].who
         if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
             known = len(roster.whose(who)) or "no"
-            return f"not taken; the roster has {known} students who are {who.name!r}"
+            return (
+                f"not taken; the roster has {known} students who are {who.name!r}; correct it with "
+                "labkit students import LIST.csv, and collect again"
+            )
         return file.readings[0]
     fits = [named for named in file.readings if _is_called_so(named.who, roster)]
     if len(fits) == 1:
@@ -254,6 +257,8 @@ def _keep_notebooks(
         if after is None or after.attempt.sha256 != sha256:
             beside = {x.when: x.file for x in after.attempt.seen} if after else {}
             which = beside.get(seen.when, "a later one")
+            if after and which == seen.file:
+                which = f"another {which}, of {after.first.when:%Y-%m-%d %H:%M %Z},"
             says = f"{'kept' if new else 'there already'}, but {which} counts"
         elif before is not None and before.attempt.sha256 == sha256:
             says = "there already"

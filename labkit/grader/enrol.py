@@ -22,6 +22,7 @@ from .class_list import Entry, Student, read_list
 from .clean import safe_name
 from .exchange import read_time
 from .identity import all_lms_users, alone, lms_users, places, remember
+from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
 from .rules import read_rules
@@ -135,18 +136,16 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
     if absent:
         told.append(f"not in this list, and still in the roster: {', '.join(absent)}")
+    told += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
         told.append(f"participants of {assignment}: {numbered}, times of hand-ins: {times}")
     elif numbered:
         told.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"
         )
-    alike = (
-        f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who is "
-        "who until you import the assignment's grading worksheet, with --assignment"
-        for group in done.roster.namesakes()
-    )
-    return Imported(tuple(told), tuple(left), () if assignment else tuple(alike))
+    known = all_lms_users(course)
+    alike = () if assignment else tuple(about_namesakes(done.roster, known))
+    return Imported(tuple(told), tuple(left), alike)
 
 
 def settle(course: Course, roster: Roster) -> list[str]:

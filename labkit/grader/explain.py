@@ -27,7 +27,7 @@ from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits, slowness
 from .submission import Submission
 
-_ALONE = "this page shows hidden cases, so it is for teachers and not for students"
+_ALONE = "all cases are laid open here, so this page is for teachers and not for students"
 
 
 @dataclass(frozen=True)
@@ -64,6 +64,8 @@ class Explanation:
             yield "\nThe hidden case that decided; do not show it before the term ends:"
             tests = tuple(test for test in self.found.tests if test.name in hidden)
             yield from map(wrapped, summary(replace(self.found, tests=tests))[1:])
+        elif not self.told.right:
+            yield "\nWhat the student has read decided; no hidden case did."
         if (self.told.right, self.told.earned) != (self.found.right, self.found.earned):
             yield "\nATTENTION: this time it came out otherwise:"
             yield from map(wrapped, summary(self.found))
@@ -105,9 +107,9 @@ def explain(
     file = course.build / "explain" / f"{student}-{question}.html"
     lines = tuple(line for line in mark.lines if line.name == question)
     notes = (*result.notes, _ALONE)
-    shown = replace(mark, lines=lines, penalty=0.0, late="")
-    write(file, page(replace(result, notes=notes), shown))
     line = lines[0] if lines else Line(question, told.verdict.points, told.verdict.earned)
+    shown = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
+    write(file, page(replace(result, notes=notes), shown))
     return Explanation(mark, line, told.verdict, answer.verdict, told.source, file)
 
 

@@ -124,10 +124,17 @@ def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
     for mark in marks:
         if mark.missing:
             yield f"no mark: {mark.student}: {mark.missing}"
-        elif mark.remark and not mark.absent:
+        elif mark.remark and not (mark.absent or mark.author):
             yield f"{mark.student}: {mark.remark}"
+    if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
+        yield f"{len(team)} have the mark of a report that their team handed in: {_some(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
         yield f"{len(absent)} handed in nothing: {_some(absent)}"
+    if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
+        yield (
+            f"{len(lost)} have no Canvas ID, so Canvas must find them by SIS ID or login: "
+            f"{_some(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
+        )
     yield from filter(None, [left_out(layout, marks)])
 
 

@@ -15,6 +15,7 @@ import json
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -125,7 +126,8 @@ def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> li
         if mark.result is None or (mark.missing and not mark.lines):
             raise LabkitError(mark.missing or "there is no result of theirs; grade again")
         path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
-        write(path, page(mark.result, mark, name, said.get(mark.student, ())))
+        result = replace(mark.result, student=mark.student)  # a report is of the whole team
+        write(path, page(result, mark, name, said.get(mark.author or mark.student, ())))
         return path
 
     return [for_student(mark.student, partial(make, mark)) for mark in marks]

@@ -8,6 +8,7 @@ import io
 import json
 import re
 import shutil
+import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -20,9 +21,10 @@ from .atomic import write
 from .gradebook import quiet_database
 from .identity import FILE as LMS
 from .identity import alone
+from .pseudonyms import FILE as KEY
+from .pseudonyms import pseudonym
 from .roster import FILE as ROSTER
 from .rules import FILE as RULES
-from .rules import read_rules
 from .submission import is_name
 
 _OLD = r"-(([0-9a-f]{8}-){2}[0-9a-f]{8}|--)\.json"
@@ -43,6 +45,9 @@ def places_of(course: Course, student: str) -> list[Path]:
     for root in _terms(course):
         found += sorted(root.glob(f"results/*/{plain}.json"))
         found += [x / f"{student}.html" for x in (root / "build/course/defence", root / "defence")]
+        explained = re.compile(re.escape(student) + r"-\w+\.html")
+        pages = [*root.glob("build/course/explain/*.html"), *root.glob("explain/*.html")]
+        found += [x for x in sorted(pages) if explained.fullmatch(x.name)]
         found += sorted(root.glob(f"results/*/aside/{plain}.json"))
         old = re.compile(re.escape(student) + _OLD)
         found += [x for x in sorted(root.glob("results/*/old/*.json")) if old.fullmatch(x.name)]
@@ -70,12 +75,28 @@ def forget(course: Course, found: Sequence[Path], student: str | None = None) ->
             private = root / "course_private" if root == course.root else root
             for path in _leave_records(private, student):
                 yield f"no more in {path.relative_to(course.root)}"
-    if any(x.student == student for x in read_rules(course).extensions):
-        yield f"{RULES} names an extension of theirs; delete it there"
+    for file in filter(Path.exists, (root / RULES for root in _terms(course))):
+        granted = tomllib.loads(file.read_text(encoding="utf-8")).get("extensions", ())
+        if any(one.get("student") == student for one in granted):
+            yield f"{file.relative_to(course.root)} names an extension of theirs; delete it there"
+    sheets = [str(path.relative_to(course.root)) for path in _read_by_others(course, student)]
+    if sheets:
+        yield f"the sheets of their readers still hold their report: {', '.join(sheets)}"
     yield (
         "copies elsewhere are yours to delete: downloads, exported tables and reports, backups, "
         "the exchange, the platform itself"
     )
+
+
+def _read_by_others(course: Course, student: str) -> Iterator[Path]:
+    """Sheets of peer review, given out or handed in, that hold a student's report."""
+    for root in _terms(course):
+        key = root / (KEY if root == course.root else Path(KEY).name)
+        if key.exists():
+            name = pseudonym(key.read_bytes(), student)
+            for folder in _FOLDERS:
+                sheets = sorted(root.glob(f"{folder}/*/*_review/**/*.ipynb"))
+                yield from (x for x in sheets if f"{name}_" in x.read_text(errors="replace"))
 
 
 def _terms(course: Course) -> list[Path]:

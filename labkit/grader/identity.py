@@ -176,7 +176,10 @@ def _claim(one: LmsUser, folder: str, roster: Roster) -> tuple[str, ...]:
 
 def _doubt(one: LmsUser, students: int) -> str:
     if not students:
-        return f"{one} is not in the roster, so their work is kept apart"
+        return (
+            f"{one} is not in the roster, so their work is kept apart; import a list that "
+            "has them, labkit students import LIST.csv, and collect again"
+        )
     until = "their work is kept apart until you import the assignment's grading worksheet"
     if students > 1:
         return f"{one} has the name of {students} students of the roster; {until}"

@@ -24,6 +24,7 @@ from .roster import read_roster
 from .rules import settle_lateness
 from .standing import grade_again, standing
 from .submission import is_name, plain_name, students
+from .team_reports import for_teams
 from .whys import settle_whys
 
 
@@ -91,6 +92,7 @@ class Mark:
         result: What the grader found; None where there is no whole result.
         missing: Why no mark counts, and what to do; empty where one does, or nothing came.
         remark: What else should be known of the mark, such as that the file was rejected.
+        author: Who handed in the team's report, if that was another member of the team.
     """
 
     student: str
@@ -110,6 +112,7 @@ class Mark:
     result: Result | None = None
     missing: str = ""
     remark: str = ""
+    author: str = ""
 
     @property
     def absent(self) -> bool:
@@ -166,8 +169,14 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterat
     Args:
         course: The course.
         assignment: Which.
-        only: One student; by default all.
+        only: One student, by what they handed in themselves; by default all.
     """
+    rows = _own_marks(course, assignment, only)
+    yield from rows if only else for_teams(course, assignment, rows)
+
+
+def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Mark]:
+    """The mark of each student for what they handed in themselves."""
     by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
     roster = read_roster(course)
     stand = {one.student: one for one in standing(course, assignment, only)}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hmac
 import secrets
 from collections.abc import Callable
+from functools import partial
 
 from ..course.layout import Course
 from .atomic import write
@@ -18,5 +19,9 @@ def pseudonyms(course: Course) -> Callable[[str], str]:
     file = course.root / FILE
     if not file.exists():
         write(file, secrets.token_hex(16) + "\n")
-    key = file.read_bytes()
-    return lambda student: f"S-{hmac.new(key, student.encode(), 'sha256').hexdigest()[:6]}"
+    return partial(pseudonym, file.read_bytes())
+
+
+def pseudonym(key: bytes, student: str) -> str:
+    """What a student is called under a term's key."""
+    return f"S-{hmac.new(key, student.encode(), 'sha256').hexdigest()[:6]}"

@@ -12,16 +12,19 @@ from pathlib import Path
 from typing import Any
 
 from ..course.layout import Course
+from ..course.own_arm import FILE as ARMS
 from ..course.own_arm import HANDLES
 from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 from . import attempts, identity, pseudonyms, roster
 from .atomic import write
 from .release import release
+from .rules import FILE as RULES
+from .rules import read_rules
 
 PERSONAL_FILES = (
     *("submitted", "autograded", "feedback", "results", "gradebook.db", "build/course/bundle"),
-    "build/course/defence",
+    *("build/course/defence", "build/course/explain"),
     *(attempts.FOLDER, roster.FILE, HANDLES, identity.FILE, pseudonyms.FILE),
 )
 """The files of one term alone, with students' names, what leads to them, and hidden cases.
@@ -40,7 +43,7 @@ def seed_of(course: Course) -> int:
     Raises:
         LabkitError: The term's record cannot be read.
     """
-    file = _private(course) / "term.json"
+    file = course.term
     if not file.exists():
         return PUBLIC_SEED
     try:
@@ -118,11 +121,16 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
 
 
 def _keep(course: Course, record: dict[str, Any]) -> None:
-    write(_private(course) / "term.json", json.dumps(record, indent=1) + "\n")
+    write(course.term, json.dumps(record, indent=1) + "\n")
 
 
 def archive(course: Course) -> Path | None:
-    """Move what holds the last term's names into one folder; None if there is nothing."""
+    """Move what holds the last term's names into one folder; None if there is nothing.
+
+    The rules are copied, as most of them serve again; arms are deleted where students get them.
+    """
+    for path in course.release.glob(f"*/{ARMS}"):
+        path.unlink()
     there = [course.root / name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None
@@ -130,10 +138,20 @@ def archive(course: Course) -> Path | None:
     folder.mkdir(parents=True)
     for path in there:
         shutil.move(path, folder / path.name)
-    record = _private(course) / "term.json"
-    if record.exists():
-        shutil.move(record, folder / record.name)
+    if course.term.exists():
+        shutil.move(course.term, folder / course.term.name)
+    if (course.root / RULES).exists():
+        shutil.copy(course.root / RULES, folder)
     return folder
+
+
+def old_rules(course: Course) -> str:
+    """What of the last term's rules is still in force, in a sentence; "" if nothing is."""
+    rules = read_rules(course)
+    over = [x for x in rules.assignments if (due := rules.due(x)) and due < datetime.now(UTC)]
+    said = [f"due dates that are over: {', '.join(over)}"] * bool(over)
+    said += [f"extensions: {len(rules.extensions)}"] * bool(rules.extensions)
+    return f"{RULES} still has {'; '.join(said)}. Edit it before students hand in" if said else ""
 
 
 @dataclass(frozen=True)
@@ -159,7 +177,7 @@ def archives(course: Course, older: float = 0.0) -> list[Archive]:
     found = []
     for folder in sorted(_private(course).glob("archive-*")):
         ended = date.fromisoformat(folder.name.removeprefix("archive-")[:10])
-        people = len(list((folder / "submitted").glob("*/")))
+        people = len({path.parts[-3] for path in (folder / "submitted").glob("*/*/*")})
         if (datetime.now(UTC).date() - ended).days >= 365.25 * older:
             found.append(Archive(folder, ended, people))
     return found
@@ -167,7 +185,7 @@ def archives(course: Course, older: float = 0.0) -> list[Archive]:
 
 def about(course: Course) -> Iterator[str]:
     """The term that is under way, and those that are over, a line each."""
-    file = _private(course) / "term.json"
+    file = course.term
     if file.exists():
         record = json.loads(file.read_text(encoding="utf-8"))
         released = ", ".join(sorted(record.get("bundles", ()))) or "nothing"

@@ -15,12 +15,12 @@ from ..course.bundle import Bundle
 from ..course.layout import Course
 
 DRAWN = 2
-"""So many whys of each student a person marks, of all those of the course."""
+"""So many whys of each student a person marks, of all those that the term handed out."""
 _WHY = re.compile(r'^# %% \[markdown\].*\bwhy="(\w+)"', re.MULTILINE)
 
 
 def drawn(seed: int, student: str, whys: Iterable[str]) -> frozenset[str]:
-    """Which of the course's whys a person marks."""
+    """Which of these whys a person marks."""
     return frozenset(sorted(whys, key=partial(rank, seed, student))[:DRAWN])
 
 
@@ -32,7 +32,9 @@ def rank(seed: int, student: str, what: str) -> bytes:
 def settle_whys(course: Course, book: Any, assignment: str) -> None:
     """Give full points in the gradebook to the whys that were written and are not drawn.
 
-    A mark that somebody gave by hand stays, and so does the 0 of a why that is blank.
+    They are drawn among those of the notebooks that were released since the term began; among all
+    of the course's if no term was begun.  A mark that somebody gave by hand stays, and so does the
+    0 of a why that is blank.
 
     Raises:
         LabkitError: There is such a why, and the assignment was not released here.
@@ -46,13 +48,15 @@ def settle_whys(course: Course, book: Any, assignment: str) -> None:
     ]
     if not waiting:
         return
-    texts = [course.notebook_source(name).read_text(encoding="utf-8") for name in course.names()]
-    whys = {name for text in texts for name in _WHY.findall(text)}
+    texts = {x: course.notebook_source(x).read_text(encoding="utf-8") for x in course.names()}
+    whys = {name: x for x, text in texts.items() for name in _WHY.findall(text)}
     waiting = [(student, grade) for student, grade in waiting if grade.name in whys]
     if not waiting:
         return
+    released = {path.stem for path in course.bundle.glob("*.json")}
+    asked = [name for name, x in whys.items() if x in released or not course.term.exists()]
     seed = int(Bundle.of(course, assignment).data["seed"])
     for student, grade in waiting:
-        if grade.name not in drawn(seed, student, whys):
+        if grade.name not in drawn(seed, student, asked):
             grade.auto_score, grade.needs_manual_grade = grade.max_score, False
     book.db.commit()

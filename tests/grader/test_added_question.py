@@ -101,6 +101,16 @@ def test_nbgrader_alone_refuses(marked):
     assert "Cannot add or remove cells" in f"{result['log']}{result.get('error')}"
 
 
+def test_a_diff_of_what_was_not_released_is_refused(marked, capsys):
+    """Who corrected a test, and whose release was refused, reads no "0 marks move"."""
+    course, _ = marked
+    source = course.root / "solutions/paths/problems.py"
+    source.touch()
+    assert main(["grade", NAME, "--course", str(course.root), "--diff"]) == 2
+    said = capsys.readouterr()
+    assert "problems.py changed after 01_paths was released" in said.err and "move" not in said.out
+
+
 def test_an_added_question_leaves_other_marks_alone(marked, capsys):
     """The new question counts 0 for those who have handed in, in words; all else stays."""
     course, become = marked

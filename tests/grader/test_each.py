@@ -232,3 +232,10 @@ def test_nobody_who_cannot_be_graded_stops_a_class(course, capsys):
     code, out, _ = verb(course, capsys, "grade")
     assert code == 0, out
     assert Results(course, NAME).get("ada") is not None
+
+
+def test_two_who_fail_a_test_say_nothing_of_it(course):
+    """Two of six may have made one known mistake; of three the lecturer is told."""
+    results = [result_of(course, f"s{k}", share=float(k > 2)) for k in range(6)]
+    assert list(batch.common_failures(results))
+    assert not list(batch.common_failures([*results[1:], result_of(course, "s6")]))

@@ -8,6 +8,7 @@ import pytest
 from handmade import hand_in, put
 
 from labkit.__main__ import main
+from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError, UnknownName
 from labkit.grader.explain import explain
 
@@ -40,6 +41,21 @@ def test_the_hidden_case_that_decided_is_laid_open(course, solved, capsys):
     assert "not for students" in page
     whole = json.loads((course.results / NAME / "ada.json").read_text())
     assert "not for students" not in json.dumps(whole), "nothing of it reaches the result"
+
+
+@pytest.mark.slow
+def test_where_a_visible_case_decided_it_is_said(course, solved, capsys):
+    """No hidden case is promised, and the page's head has the points of this question alone."""
+    wrong = "def bang_bang(t, duration):\n    return 0.0, 0.0, 0.0\n"
+    hand_in(course, NAME, "ada", put(solved, "bang_bang", wrong))
+    assert main(["grade", NAME, "--course", str(course.root)]) == 0
+    capsys.readouterr()
+    assert main(["explain", "ada", "bang_bang", "--course", str(course.root)]) == 0
+    out = capsys.readouterr().out
+    assert "What the student has read decided" in out and "do not show it" not in out
+    page = (course.build / "explain/ada-bang_bang.html").read_text()
+    (points,) = (q.points for q in Bundle.of(course, NAME).questions if q.name == "bang_bang")
+    assert f" of {points:g} points.</strong>" in page
 
 
 def test_what_cannot_be_explained_is_a_sentence(course):

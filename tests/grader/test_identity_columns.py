@@ -8,7 +8,7 @@ import io
 import pytest
 
 from labkit.grader.class_list import Student
-from labkit.grader.export import LAYOUTS, as_csv, left_out
+from labkit.grader.export import LAYOUTS, as_csv, left_out, remarks
 from labkit.grader.marks import Mark
 from labkit.grader.platforms import LmsUser
 
@@ -49,6 +49,14 @@ def test_no_participant_has_two_marks():
     ]
     assert [line["Identifier"] for line in table("moodle-worksheet", *marks)] == ["Participant 3"]
     assert left_out("moodle-worksheet", marks) == "2 of 3 cannot be matched by this table: a, b"
+
+
+def test_who_has_no_number_of_canvas_is_named():
+    """Such a row may match nobody, so the export says whose it is."""
+    marks = [row("ada", person=ADA), row("bob", person=Student("bob", login="bob"))]
+    (said,) = remarks("canvas", marks)
+    assert said.startswith("1 have no Canvas ID") and ": bob; import Canvas's own list" in said
+    assert not list(remarks("canvas", marks[:1])) and not list(remarks("moodle-worksheet", []))
 
 
 @pytest.mark.parametrize("login", ["+491234", "-ada", "@ada", "+a-b.c@x.org"])

@@ -18,6 +18,7 @@ from labkit.grader.class_list import Student
 from labkit.grader.gradebook import open_gradebook
 from labkit.grader.identity import remember
 from labkit.grader.platforms import LmsUser
+from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.release import FORBIDDEN
 from labkit.grader.roster import Roster, read_roster, save_roster, tell_gradebook
 from labkit.grader.student_bundle import export_course
@@ -63,8 +64,16 @@ def test_a_public_seed_is_said_to_be_public(course, capsys):
 def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
     """What holds names moves into one folder, and one command deletes it."""
     (course.submitted / "ada" / "01_paths").mkdir(parents=True)
+    page, arms = course.build / "explain/ada-bang_bang.html", course.release / "03/arms.json"
+    for file in (page, arms):
+        file.parent.mkdir(parents=True)
+        file.write_text("{}")
     folder = term.archive(course)
-    assert not course.submitted.exists()
+    assert not course.submitted.exists() and not page.exists() and not arms.exists()
+    assert (folder / "explain" / page.name).exists()
+    assert term.archives(course)[0].people == 0, "a folder without a file is nobody's work"
+    (folder / "submitted/ada/01_paths/01_paths.ipynb").touch()
+    assert term.archives(course)[0].people == 1
     assert (folder / "submitted" / "ada").is_dir()
     words = ["term", "forget", "--course", str(course.root)]
     assert main(words) == 2
@@ -74,6 +83,20 @@ def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
     assert "nothing is deleted yet; add --yes" in capsys.readouterr().out
     assert main([*words, "--older", "0", "--yes"]) == 0
     assert not folder.exists()
+
+
+def test_rules_of_the_last_term_are_named(course):
+    """Due dates that are over and extensions stay in force, so the command says so."""
+    assert term.old_rules(course) == ""
+    rules = course.root / "course.toml"
+    rules.write_text("[assignments.01_paths]\ndue = 2999-11-02T23:59:00\n")
+    assert term.old_rules(course) == ""
+    more = '[assignments.02_model]\ndue = 2020-11-02\n[[extensions]]\nstudent = "ada"\ndays = 3\n'
+    rules.write_text(rules.read_text() + more.replace("11-02", "11-02T23:59:00"))
+    said = term.old_rules(course)
+    assert "over: 02_model; extensions: 1" in said and "Edit it" in said
+    course.submitted.mkdir()
+    assert (term.archive(course) / rules.name).read_text() == rules.read_text()
 
 
 def test_a_new_term_has_nothing_of_the_last_one(course):
@@ -91,6 +114,9 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
             (course.root / kind / student / "01_paths").mkdir(parents=True)
     results = course.results / "01_paths"
     old = "-".join(["0123abcd"] * 3) + ".json"
+    for student in ("ada", "ada-2"):
+        (course.build / "explain").mkdir(parents=True, exist_ok=True)
+        (course.build / f"explain/{student}-bang_bang.html").write_text("")
     for name in ("ada.json", f"old/ada-{old}", "aside/ada.json", "ada-2.json", f"old/ada-2-{old}"):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).write_text("{}")
@@ -101,12 +127,17 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
     shutil.copytree(archived, course.root, dirs_exist_ok=True)
     shutil.copy(archived / "roster.csv", course.root / "course_private")
     shutil.copy(archived / "lms.json", course.root / "course_private")
+    for reader, author in (("bob", "ada"), ("eve", "ada-2")):
+        sheet = course.root / "feedback" / reader / "08_report_review/08_report_review.ipynb"
+        sheet.parent.mkdir(parents=True)
+        sheet.write_text(f'"id": "{pseudonyms(course)(author)}_claim"')
     words = ["term", "forget", "--student", "ada", "--course", str(course.root)]
     assert main(words) == 0
-    assert capsys.readouterr().out.count("would go: ") == 14
+    assert capsys.readouterr().out.count("would go: ") == 16
     assert main([*words, "--yes"]) == 0
     said = capsys.readouterr().out
     assert said.count("no more in") == 6 and "backups" in said
+    assert "hold their report: feedback/bob/08_report_review/08_report_review.ipynb\n" in said
     left = {str(x.relative_to(course.root)) for x in course.root.rglob("ada*")}
     assert not [x for x in left if "ada-2" not in x and "solutions" not in x]
     assert any("ada-2" in x for x in left)

@@ -21,6 +21,7 @@ from labkit.errors import LabkitError
 from labkit.grader.class_list import Student
 from labkit.grader.grade import rejection
 from labkit.grader.gradebook import record
+from labkit.grader.marks import marks_of
 from labkit.grader.peers import handed_out, readers, sheet_of, without_names
 from labkit.grader.release import release
 from labkit.grader.results import Answer, Results
@@ -98,6 +99,25 @@ def course(tmp_path_factory):
 
 def typed(course, *words):
     return main([*words, "--course", str(course.root)])
+
+
+def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
+    """Bob has Ada's mark, and a page of his own; nobody of his team is called absent."""
+    marks = {mark.student: mark for mark in marks_of(course, NAME)}
+    assert {name: mark.author for name, mark in marks.items()} == {
+        "ada": "", "bob": "ada", "eve": "", "zoe": ""
+    }  # fmt: skip
+    bob, ada = marks["bob"], marks["ada"]
+    assert (bob.lines, bob.missing, bob.points) == (ada.lines, ada.missing, ada.points)
+    assert bob.email == "bob@uni.org" and not bob.absent
+    assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
+    html = (course.root / "feedback/bob" / NAME / f"{NAME}.html").read_text()
+    assert "feedback for bob" in html and "Handed in by ada for your team." in html
+    capsys.readouterr()
+    typed(course, "export", NAME, "--absent-zero")
+    said = capsys.readouterr()
+    assert "1 have the mark of a report that their team handed in: bob (ada)" in said.err
+    assert "handed in nothing" not in said.err and "bob,0" not in said.out
 
 
 def test_reports_go_out_and_reviews_come_back_without_names(course, monkeypatch, capsys):

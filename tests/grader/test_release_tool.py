@@ -143,6 +143,22 @@ def test_mistakes_of_the_caller_are_one_sentence(capsys):
     assert "nbgrader_config.py" in capsys.readouterr().err
 
 
+def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
+    """The others are released, and the reason comes at the end, with the name."""
+
+    def release(course, name, seed):
+        if name == "01_paths":
+            raise LabkitError("the first cell says 24 points")
+        return f"{name} is made"
+
+    monkeypatch.setattr("labkit.grader.release.release", release)
+    words = ["00_warmup", "01_paths", "08_report", "--course", str(COURSE.root), "--seed", "7"]
+    assert main(["release", *words]) == 2
+    said = capsys.readouterr()
+    assert said.out == "00_warmup is made\n08_report is made\n"
+    assert "01_paths: the first cell says 24 points" in said.err
+
+
 def test_the_public_file_is_small_and_valid():
     """What lies beside the notebook is one line of JSON without a hidden case."""
     for name in COURSE.names():
@@ -198,7 +214,10 @@ def test_public_cases_by_heart_pay_only_what_is_stated():
     """A table of the public calls with their answers earns what no hidden case takes away."""
     bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none) if k < 2 else t)
     by_test, by_heart = refused(bare)
-    assert "memorises its public cases earns 1 of 2 points, and 0 are stated" in by_heart
+    assert (
+        "memorises its public cases earns 1 of 2 points; the problem's free_share allows 0. Give"
+        in by_heart
+    )
     stated = {"inverse_transform": replace(bare["inverse_transform"], free_share=0.5)}
     assert refused(bare | stated) == [by_test]
 
@@ -210,12 +229,12 @@ def test_a_stand_in_pays_only_what_is_stated(tmp_path):
     answer = "return T_ab[:3, :3] @ p_b + T_ab[:3, 3]"
     text.write_text(source.replace("return np.full(3, np.nan)", answer))
     (sentence,) = refused(PROBLEMS, text)
-    assert "transform_point: its notebook's stand-in earns 2 of 2 points, and 0 are st" in sentence
+    assert "third argument of use(), earns 2 of 2 points; the problem's free_share" in sentence
     stated = {"transform_point": replace(PROBLEMS["transform_point"], free_share=1.0)}
     assert refused(PROBLEMS | stated, text) == []
     open_door = {"inverse_transform": replace(PROBLEMS["inverse_transform"], withheld=())}
     (sentence,) = refused(PROBLEMS | open_door)
-    assert "inverse_transform: its notebook's stand-in earns 2 of 2" in sentence
+    assert "inverse_transform: the stand-in" in sentence and "earns 2 of 2 points" in sentence
 
 
 def test_a_stand_in_is_run_alone():

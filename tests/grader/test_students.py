@@ -14,8 +14,9 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.class_list import Entry, Student, read_list
 from labkit.grader.clean import LONGEST, safe_name
-from labkit.grader.enrol import enrol
+from labkit.grader.enrol import enrol, import_list
 from labkit.grader.gradebook import open_gradebook
+from labkit.grader.identity import remember
 from labkit.grader.platforms import LmsUser
 from labkit.grader.roster import FILE, Roster, read_roster, same_name, save_roster
 
@@ -199,6 +200,19 @@ def test_a_roster_is_read_as_it_was_written(rows):
         assert read_roster(course) == again
 
 
+def test_the_import_says_what_groups_become(tmp_path):
+    """Moodle's groups become teams, which share an arm; who is in none gets no team."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    head = "First name,Last name,Email address,Groups\n"
+    rows = "Ada,Ay,a@x,Monday\nBob,Be,b@x,Monday\nEve,Ee,e@x,No groups\nZoe,Zet,z@x,No groups\n"
+    file.write_text(head + rows)
+    _, teams = import_list(course, file).told
+    assert teams.startswith("teams in this list: 1 (Monday), the largest of 2 students; a team has")
+    assert [s.team for s in read_roster(course).students] == ["Monday", "Monday", "", ""]
+    file.write_text("First name,Last name,Email address\nAda,Ay,a@x\n")
+    assert not any("teams" in sentence for sentence in import_list(course, file).told)
+
+
 @pytest.mark.slow
 def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys):
     """New ones are counted, namesakes are named, and the gradebook has what the list says."""
@@ -210,6 +224,9 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     said = capsys.readouterr()
     assert f"{FILE}: 4 students, 4 of them new" in said.out
     assert "called alike: Li Wei (Li-Wei-li), Wei Li (Wei-Li-wei)" in said.err
+    remember(course, NAME, {n: LmsUser("moodle", n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
+    assert main(["students", "import", str(file), *where]) == 0
+    assert "with --assignment; this is done for 01_paths" in capsys.readouterr().err
     with open_gradebook(course) as book:
         ada = book.find_student("Ada-Lovelace")
         about = (ada.first_name, ada.last_name, ada.email, ada.lms_user_id)

@@ -44,3 +44,15 @@ def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
     assert main(["feedback", NAME, "--course", str(course.root)]) == 2
     said = capsys.readouterr().err
     assert f"eve ({WHY})" in said and "ada" not in said
+
+
+def test_whys_of_notebooks_that_were_not_handed_out_are_not_drawn(course):
+    """In a term with this notebook alone, a person marks the one why that there is."""
+    course.term.parent.mkdir(exist_ok=True)
+    course.term.write_text('{"seed": 7}')
+    hand_in(course, NAME, "ada", notebook_of("ada"))
+    result = result_of(course, "ada", written={WHY: "Because it is so."}, data=notebook_of("ada"))
+    Results(course, NAME).keep(result)
+    record(course, NAME, [result])
+    with open_gradebook(course) as book:
+        assert book.find_grade(WHY, NAME, NAME, "ada").needs_manual_grade

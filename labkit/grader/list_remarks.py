@@ -1,0 +1,34 @@
+"""What a person should know of a list of students that was imported, in sentences."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
+
+from .platforms import LmsUser
+from .roster import FILE, Roster
+
+
+def about_teams(named: Iterable[str]) -> Iterator[str]:
+    """What follows from a list's teams, which may be groups that were made for something else."""
+    teams = Counter(named)
+    if teams:
+        some = ", ".join(sorted(teams)[:5]) + (", ..." if len(teams) > 5 else "")
+        yield (
+            f"teams in this list: {len(teams)} ({some}), the largest of {max(teams.values())} "
+            "students; a team has one arm and hands in one report. If these are other groups, such "
+            f"as tutorials, delete their column from the list, clear the column team of {FILE}, "
+            "and import the list again"
+        )
+
+
+def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) -> Iterator[str]:
+    """Who is called alike, and the assignments in which their numbers tell them apart."""
+    for group in roster.namesakes():
+        told_apart = [x for x, people in known.items() if all(one.id in people for one in group)]
+        yield (
+            f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who "
+            "is who until you import the grading worksheet of that assignment, with --assignment"
+            + f"; this is done for {', '.join(sorted(told_apart))}"
+            * bool(told_apart)
+        )
