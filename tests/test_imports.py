@@ -1,6 +1,7 @@
 """Imports point one way, keep foreign libraries to their modules, and stay quick."""
 
 import ast
+import graphlib
 import os
 import subprocess
 import sys
@@ -137,8 +138,7 @@ def test_foreign_libraries_stay_in_their_modules(path):
 
 def place(name):
     """The module in an imported name below labkit: "tags" of "tags.Board", "labkit" of "Arm"."""
-    known = {module(path) for path in FILES}
-    while name and name not in known:
+    while name and name not in MODULES:
         name = name.rpartition(".")[0]
     return name or "labkit"
 
@@ -148,6 +148,7 @@ def module(path):
     return names(path)[-1].removesuffix("__init__").rstrip(".") or "labkit"
 
 
+MODULES = {module(path) for path in FILES}
 BELOW = [path for path in FILES if names(path)[0] not in UPSTAIRS]
 
 
@@ -165,6 +166,15 @@ def test_imports_point_one_way(path):
             pytest.fail(f"{where(path, line)}: {here} imports {name} from the package itself")
         assert other in LEVEL, f"{where(path, line)}: {here} may not import {other}"
         assert LEVEL[other] < LEVEL[here], f"{where(path, line)}: {here} imports {other}"
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    """Nor in the grader, nor late, nor for a type alone."""
+    below = {}
+    for path in FILES:
+        found = {place(name.partition(".")[2]) for name, _ in imported(path) if "labkit." in name}
+        below[module(path)] = found - {module(path), "labkit", "grader", "course"}
+    graphlib.TopologicalSorter(below).prepare()
 
 
 def test_the_order_names_modules_that_exist():

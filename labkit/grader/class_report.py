@@ -20,7 +20,7 @@ from ..course.question import Question
 from ..course.verdict import Outcome, Verdict
 from .batch import common_failures
 from .clean import clean_line
-from .marks import Mark
+from .mark import Mark
 from .pages import render
 from .results import Result
 

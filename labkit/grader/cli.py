@@ -16,7 +16,7 @@ from .cli_course import of_assignment
 from .each import Failed, Failures
 
 if TYPE_CHECKING:
-    from .marks import Mark
+    from .mark import Mark
 
 one_student = click.option("--student", metavar="S", help="Only this student.")
 to_file = click.option(

@@ -17,7 +17,7 @@ from .cli_course import of_course
 from .each import Failed, Failures
 
 if TYPE_CHECKING:
-    from .marks import Mark
+    from .mark import Mark
 
 TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
 """Layouts of marks."""

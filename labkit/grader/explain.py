@@ -20,7 +20,8 @@ from ..errors import LabkitError, UnknownName
 from .atomic import write
 from .feedback import page
 from .grade import grade
-from .marks import Line, Mark, marks_of
+from .mark import Line, Mark
+from .marks import marks_of
 from .plan import imports
 from .results import Result
 from .sandbox.launch import Sandbox

@@ -25,7 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from .marks import Mark
+from .mark import Mark
 
 
 def nbgrader(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:

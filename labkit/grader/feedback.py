@@ -33,7 +33,8 @@ from .atomic import write
 from .drawing import curve, side_by_side
 from .each import Failed, for_student
 from .identity import lms_users
-from .marks import Mark, mark_of
+from .mark import Mark
+from .marks import mark_of
 from .pages import file, policy, render, scripts
 from .peers import Review, reviews
 from .results import Result

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from ..course.bundle import Bundle
 from ..course.layout import Course
-
-if TYPE_CHECKING:
-    from .marks import Mark
+from .mark import Mark
 
 
 def for_teams(course: Course, assignment: str, rows: Iterable[Mark]) -> Iterator[Mark]:

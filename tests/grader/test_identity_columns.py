@@ -9,7 +9,7 @@ import pytest
 
 from labkit.grader.class_list import Student
 from labkit.grader.export import LAYOUTS, as_csv, left_out, remarks
-from labkit.grader.marks import Mark
+from labkit.grader.mark import Mark
 from labkit.grader.platforms import LmsUser
 
 ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")

@@ -23,7 +23,8 @@ from labkit.grader.class_report import report
 from labkit.grader.export import LAYOUTS, as_csv, left_out
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
-from labkit.grader.marks import Line, Mark, mark_of, marks_of
+from labkit.grader.mark import Line, Mark
+from labkit.grader.marks import mark_of, marks_of
 from labkit.grader.platforms import LmsUser
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.results import Results
