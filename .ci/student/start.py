@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import threading
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -23,6 +24,10 @@ CACHE = HERE / ".fetched"
 LOG = HERE / "install.log"
 VERSIONS = ("3.13", "3.12", "3.11")
 PLACES = ("/opt/homebrew/bin", "/usr/local/bin", "/usr/bin", "~/.local/bin")
+BY_CONDA = (
+    "install Miniforge, and type in this folder, one after the other: conda env create -f "
+    "environment.yml; conda activate baxter-lab; python start.py"
+)
 SYSTEMS = (("linux", "x86_64"), ("linux", "aarch64"), ("darwin", "arm64"))
 FREE = 1.6e9
 NO_NETWORK = (
@@ -54,13 +59,24 @@ def main(words):
     if words == ["install"]:
         return 0
     os.environ["PATH"] = str(python.parent) + os.pathsep + os.environ.get("PATH", "")
+    keep_to_this_folder()
     words = ["--log-level=ERROR", "--notebook-dir=" + str(HERE / "assignments")]
     words += ["--KernelManager.transport_encryption=auto"]  # or each kernel warns of eavesdroppers
     words += ["--LabApp.default_url=/lab/tree/START_HERE.ipynb"]
+    words += ["--ServerApp.answer_yes=True"]  # Ctrl-C ends it, and asks nothing
     words += ["--allow-root"] if is_root() else []
     print("opening JupyterLab at START_HERE, which takes about ten seconds;", end=" ")
     print("to end it, press Ctrl-C here", flush=True)
     return become([python, "-m", "jupyterlab"] + words)
+
+
+def keep_to_this_folder():
+    """Open no notebooks of other lessons again; where the home cannot be written, need none."""
+    room = Path(sys.prefix) if in_conda() else ENV
+    os.environ["JUPYTERLAB_WORKSPACES_DIR"] = str(room / "workspaces")
+    if not os.access(os.path.expanduser("~"), os.W_OK):
+        os.environ["HOME"] = str(room / "home")
+        Path(os.environ["HOME"]).mkdir(exist_ok=True)
 
 
 def in_conda():
@@ -72,9 +88,9 @@ def right_python():
     """None where this Python will do, else another one that will."""
     if (sys.platform, platform.machine()) not in SYSTEMS:
         raise Stop(
-            "on {} ({}) pip has not all that the lab needs, but conda has. Install Miniforge, and "
-            "type in this folder, one after the other: conda env create -f environment.yml; conda "
-            "activate baxter-lab; python start.py".format(platform.system(), platform.machine())
+            "on {} ({}) pip has not all that the lab needs, but conda has: {}".format(
+                platform.system(), platform.machine(), BY_CONDA
+            )
         )
     if "{}.{}".format(*sys.version_info) in VERSIONS:
         return None
@@ -84,8 +100,8 @@ def right_python():
             if python.is_file() and works(python):
                 return str(python)
     raise Stop(
-        "this is Python {}, and the lab needs 3.11, 3.12 or 3.13. {}, then type the same "
-        "again.".format(platform.python_version(), how_to_get_python())
+        "this is Python {}, and the lab needs 3.11, 3.12 or 3.13. {}, then type the same again. "
+        "Where you cannot, {}".format(platform.python_version(), how_to_get_python(), BY_CONDA)
     )
 
 
@@ -128,7 +144,7 @@ def make(python):
         )
     print("2 of 3: fetching about 300 MB", flush=True)
     install(python)
-    print("3 of 3: moving the arm", flush=True)
+    print("3 of 3: moving the arm, for the first time, which takes a while", flush=True)
     tidy(python)
     run(python, "-c", "import labkit as lk; lk.ready()")
     shutil.rmtree(str(CACHE), ignore_errors=True)
@@ -145,7 +161,7 @@ def install(python):
     said, count, warned, end = [], 0, False, threading.Event()
     with LOG.open("w") as log, subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True
-    ) as pip:  # fmt: skip
+    ) as pip, ended_too(pip):  # fmt: skip
         for line in pip.stdout:
             log.write(line)
             said.append(line)
@@ -167,13 +183,26 @@ def install(python):
         raise Stop(why("".join(said)))
 
 
+@contextmanager
+def ended_too(pip):
+    """Whoever stops this program stops pip too."""
+    try:
+        yield
+    except BaseException:
+        pip.kill()
+        raise
+
+
 def count_installed(total, end):
     """Say how many packages lie in the environment, until the end."""
-    before = -1
+    before, quiet = -1, 0
     while not end.wait(2.0):
         found = sum(1 for _ in ENV.glob("lib/python*/site-packages/*.dist-info")) - 1  # but pip
-        if found != before:
+        quiet = 0 if found != before else quiet + 1
+        if quiet == 0:
             print("   {} of {} in place".format(min(found, total), total), flush=True)
+        elif quiet % 15 == 0:
+            print("   still at work", flush=True)
         before = found
 
 

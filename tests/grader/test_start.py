@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import os
 import re
+import subprocess
 import sys
 from subprocess import CalledProcessError
 
@@ -25,6 +27,7 @@ def start(tmp_path, monkeypatch):
     for name in ("HERE", "ENV", "DONE", "CACHE", "LOG"):
         old = getattr(module, name)
         monkeypatch.setattr(module, name, tmp_path / old.relative_to(FILE.parent))
+    monkeypatch.setattr("os.environ", dict(os.environ))  # which main changes
     module.said = []
     monkeypatch.setattr("venv.create", lambda path, with_pip: module.ENV.mkdir())
     monkeypatch.setattr(module, "install", lambda python: module.LOG.touch())
@@ -49,7 +52,8 @@ def test_the_second_start_installs_nothing(start, monkeypatch):
     start.main([])
     assert "jupyterlab" in start.said[-1]
     assert "--KernelManager.transport_encryption=auto" in start.said[-1], "else each kernel warns"
-    assert start.said[-1][-1 - start.is_root()].endswith("/lab/tree/START_HERE.ipynb")
+    assert "--LabApp.default_url=/lab/tree/START_HERE.ipynb" in start.said[-1]
+    assert "--ServerApp.answer_yes=True" in start.said[-1], "else Ctrl-C asks, and goes on"
 
 
 def test_root_may_start_it(start, monkeypatch):
@@ -58,6 +62,25 @@ def test_root_may_start_it(start, monkeypatch):
         monkeypatch.setattr(start, "is_root", lambda root=root: root)
         start.main([])
         assert ("--allow-root" in start.said[-1]) == root
+
+
+def test_it_opens_no_other_notebooks_and_needs_no_home(start, tmp_path):
+    """Workspaces are remembered in the environment; so is the rest where the home is closed."""
+    os.environ["HOME"] = str(tmp_path / "not there")
+    start.main([])
+    assert os.environ["HOME"] == str(start.ENV / "home") and (start.ENV / "home").is_dir()
+    assert os.environ["JUPYTERLAB_WORKSPACES_DIR"] == str(start.ENV / "workspaces")
+
+
+def test_whoever_stops_it_stops_pip(start):
+    """Nothing goes on installing behind the next start's back."""
+    with (
+        subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as pip,
+        pytest.raises(KeyboardInterrupt),
+        start.ended_too(pip),
+    ):
+        raise KeyboardInterrupt
+    assert pip.returncode < 0
 
 
 def test_a_half_made_environment_is_made_anew(start):
@@ -86,7 +109,8 @@ def test_a_python_that_will_not_do_hands_over_to_one_that_will(start, monkeypatc
     """Or says what is needed and how to get it."""
     monkeypatch.setattr(start, "VERSIONS", ("3.99",))
     monkeypatch.setattr(start, "PLACES", (str(tmp_path),))
-    with pytest.raises(start.Stop, match=r"this is Python .*needs 3.11, 3.12 or 3.13"):
+    needs = r"this is Python .*needs 3.11, 3.12 or 3.13.* Where you cannot, install Miniforge"
+    with pytest.raises(start.Stop, match=needs):
         start.main([])
     (tmp_path / "python3.99").symlink_to(sys.executable)
     start.main(["install"])
