@@ -2,7 +2,7 @@
 
 JupyterLab prefers a widget to all else in an output and says "model not found" where its kernel is
 gone.  So the picture is an output of its own before the widget's, and a style sheet shows one of
-the two: the picture until the widget lives.
+the two: the picture until the widget lives, and beside it in a browser that draws no 3-D.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ LIFT = 0.6
 """Power of the picture's brightness, below 1 to lighten what is dark."""
 
 _STYLE = """<style>
-.jp-OutputArea-child:has(.lk-saved):has(+ .jp-OutputArea-child :is(.lk-player, .widget-box)),
+.jp-OutputArea-child:has(.lk-saved):has(+ .jp-OutputArea-child :is(.lk-player, .widget-box))\
+:not(:has(+ .jp-OutputArea-child .lk-stage > .lk-note)),
 .jp-OutputArea-child:has(.lk-saved) + .jp-OutputArea-child:not(:has(:is(.lk-player, .widget-box)))
 { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }
 .lk-saved { margin: 0; } .lk-saved img { max-width: 100%; border-radius: 8px; background: #e9edf2; }

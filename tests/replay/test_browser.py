@@ -16,6 +16,8 @@ from figures.embed import (
 )
 from samples import swing
 
+from labkit.replay.saved import in_its_place
+
 ROOT = Path(__file__).parents[2]
 AXE = (ROOT / "tests/vendor/axe.min.js").read_text()
 POLICY = "default-src 'none'; script-src file:; img-src file: data:; style-src file:"
@@ -209,6 +211,26 @@ def test_without_webgl_words_plots_and_slider_remain(blind_chromium, visit):
     seen.keyboard.press("PageUp")
     assert "t = 1.00 s" in seen.inner_text(".lk-readout")
     assert seen.locator(".lk-line").count() > 7
+
+
+@pytest.mark.parametrize(
+    ("alive", "shown"),
+    [
+        ('<div class="lk-player"><div class="lk-stage"></div></div>', [False, True]),
+        ('<div class="lk-player"><div class="lk-stage"><p class="lk-note">', [True, True]),
+        ('<div class="jupyter-widgets">model not found</div>', [True, False]),
+    ],
+    ids=["alive", "without WebGL", "without a kernel"],
+)
+def test_a_notebook_shows_the_still_the_moving_picture_or_both(chromium, alive, shown):
+    """Beside a widget that draws no 3-D the picture stays."""
+    output = '<div class="jp-OutputArea-child">{}</div>'
+    page = chromium.new_page()
+    still = in_its_place("A circle", b"a picture")["text/html"]
+    page.set_content(output.format(still) + output.format(alive))
+    boxes = [box.bounding_box() for box in page.locator(".jp-OutputArea-child").all()]
+    page.close()
+    assert [box["width"] > 1 for box in boxes] == shown
 
 
 def test_a_phone_loads_on_tap_and_does_not_scroll_sideways(chromium, visit):

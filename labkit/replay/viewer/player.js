@@ -28,7 +28,7 @@ export class Player {
     this.element.append(this.stagebox, this.timebar(), this.sight.element, this.legend, this.readout, this.status, this.plotbox);
     host.append(this.element);
     if (this.stage.works) this.furnish();
-    else this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The picture, the plots and the numbers still follow the time slider."));
+    else this.stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing), so the picture stands still. The plots and the numbers follow the time slider."));
     this.show(json);
   }
 
