@@ -80,7 +80,7 @@ def carry_forward(mean: Any, covariance: Any, age: float, noise: float) -> tuple
 def turn_on(mean: Any, age: float) -> Array:
     r"""Where a thing is ``age`` seconds later, if its velocity keeps on turning as it does now.
 
-    A velocity that turns in the plane of v and a, by :math:`\omega = |v\times a|/|v|^2` each second,
+    A velocity that turns by :math:`\omega = |v\times a|/|v|^2` each second in the plane of v and a
     has :math:`\dot a = -\omega^2 v`, so
 
     .. math:: p' = p + \frac{\sin\omega\tau}{\omega}\,v + \frac{1-\cos\omega\tau}{\omega^2}\,a
