@@ -307,9 +307,9 @@ def trust() -> HTML:
     ax.axvline(3.0, color="#999999")
     for k, (share, x) in enumerate(found.values()):
         if share:
-            ax.plot(x, k, "o", color="C0")
+            ax.plot(x, k, "o", color="C1")
         else:
-            ax.text(0.1, k, "refused", va="center", color="C3")
+            ax.text(0.1, k, "refused", va="center", color="C0")
     ax.set_yticks(range(len(found)), found)
     ax.set(xlabel="mean of $e^TP^{-1}e$ for the position", xlim=(0.0, 6.0))
     ax.invert_yaxis()
