@@ -14,7 +14,7 @@ from IPython.display import HTML
 from myst_nb import glue
 
 import labkit as lk
-from solutions.study import campaign, tasks
+from solutions.study import both_engines, campaign, tasks
 from solutions.study.campaign import BASELINE, FEED_FORWARD, FIVE, TABLES, WAYS
 from solutions.study.claims import IMPEDANCE, THREE, interval
 from solutions.study.grid import pick
@@ -52,6 +52,15 @@ def numbers_told() -> None:
     """Numbers and conclusions of the page."""
     rows = found()["rows"]
     holds(not [row for row in rows if row["failed"]], "every run was finished")
+    twice = json.loads(both_engines.KEPT.read_text())
+    claim(
+        "every verdict is the same, and no error in the tables differs by a thousandth of a "
+        "millimetre",
+        lambda verdicts, runs, far: verdicts[0] == verdicts[1] > 0 < runs and abs(far) < 1e-3,
+        verdicts=[twice["alike"], twice["claims"]],
+        runs=twice["runs"],
+        far=twice["farthest_mm"],
+    )
     real = {way: _on_paths(way, "baxter") for way in WAYS}
     ideal = {way: _on_paths(way, "ideal") for way in WAYS}
     soft, stiff = IMPEDANCE, THREE

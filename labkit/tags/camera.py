@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import cv2
 import numpy as np
@@ -86,7 +86,7 @@ class Camera:
         self.samples = samples
         self.blur = as_number(blur, "blur", least=0.0)
         self.exposure = as_number(exposure, "exposure", least=0.0)
-        self._wide, self._corner = without_distortion(self.intrinsics)
+        self._wide, self._seen_at = without_distortion(self.intrinsics)
         self._random = np.random.default_rng(seed)
         self._hand: Arm | None = None
         self.place(T_wc)
@@ -261,13 +261,10 @@ class Camera:
         drawn = np.zeros(picture.shape[:2], np.uint8)
         for window in windows:
             drawn[window.rows, window.columns] = 1
-        if self._corner is not None:
-            lens = self.intrinsics
-            v, u = np.indices((lens.height, lens.width)).reshape(2, -1)
-            seen = (lens.straightened(np.column_stack([u, v])) - self._corner).astype(np.float32)
-            at = seen.reshape(lens.height, lens.width, 2)
-            nothing: Any = None  # the second map is in the first
-            picture = cv2.remap(picture, at, nothing, cv2.INTER_CUBIC)
+        if self._seen_at is not None:
+            at, nothing = self._seen_at, cast(Any, None)  # the second map is in the first
+            # Linear: OpenCV's cubic kernel (a = -0.75) shifts an edge by up to 0.047 pixels.
+            picture = cv2.remap(picture, at, nothing, cv2.INTER_LINEAR)
             drawn = np.asarray(cv2.remap(drawn, at, nothing, cv2.INTER_NEAREST))
         if self.blur:
             picture = cv2.GaussianBlur(picture, (0, 0), self.blur)

@@ -126,14 +126,18 @@ class Intrinsics:
         return np.asarray((p[:, :2] / p[:, 2:]) * K.diagonal()[:2] + K[:2, 2])
 
 
-def without_distortion(lens: Intrinsics) -> tuple[Intrinsics, Array | None]:
-    """A lens without distortion that sees all that ``lens`` sees, and its first pixel in that."""
+def without_distortion(lens: Intrinsics) -> tuple[Intrinsics, Any]:
+    """A lens without distortion that sees all that ``lens`` sees, and where in its picture.
+
+    Returns:
+        The lens, and for each pixel of ``lens`` the place in the other's picture, shape (height,
+        width, 2), float32; None if there is no distortion.
+    """
     if not any(lens.distortion):
         return lens, None
     v, u = np.indices((lens.height, lens.width))
-    rim = np.ones_like(u, bool)
-    rim[1:-1, 1:-1] = False
-    seen = lens.straightened(np.column_stack([u[rim], v[rim]]))
+    seen = lens.straightened(np.column_stack([u.ravel(), v.ravel()]))
     low, high = np.floor(seen.min(axis=0)), np.ceil(seen.max(axis=0))
     wide, tall = (int(n) for n in high - low + 1)
-    return Intrinsics(wide, tall, lens.fx, lens.fy, lens.cx - low[0], lens.cy - low[1]), low
+    flat = Intrinsics(wide, tall, lens.fx, lens.fy, lens.cx - low[0], lens.cy - low[1])
+    return flat, (seen - low).reshape(*u.shape, 2).astype(np.float32)

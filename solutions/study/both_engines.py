@@ -3,6 +3,7 @@
 Each engine's campaign goes to ``build/ENGINE/campaign.json``.  The two agree if every claim has the
 same verdict, over the tasks and on each of them, and every number that the comparison shows is the
 same to 5 % or to 0.1 mm (for times, to a tick of the clock).  The exit status is 1 if they do not.
+The outcome goes to engines.json beside this file, for the book.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ import numpy as np
 from .claims import TICK
 
 ENGINES = ("pybullet", "mujoco")
+KEPT = Path(__file__).with_name("engines.json")
+"""What the book tells of the last comparison."""
 SHARE, LEAST = 0.05, {"s": TICK}
 """How far a number may differ: relative to the larger, or in its unit (0.1 for all others)."""
 
@@ -45,6 +48,16 @@ def differences(a: Mapping[str, Any], b: Mapping[str, Any]) -> Iterator[str]:
         x, y = (mean.get(cell, np.nan) for mean in means)
         if _apart(x, y, 0.1):
             yield f"{', '.join(cell)}: {x:.4g} and {y:.4g} mm"
+
+
+def agreement(a: Mapping[str, Any], b: Mapping[str, Any]) -> dict[str, float]:
+    """How many claims were judged, how many alike, on how many runs, and the farthest errors."""
+    pairs = list(zip(a["verdicts"], b["verdicts"], strict=True))
+    means = [_means(found["rows"]) for found in (a, b)]
+    alike = sum(x["overall"]["outcome"] == y["overall"]["outcome"] for x, y in pairs)
+    farthest = max(abs(means[0][cell] - means[1][cell]) for cell in means[0])
+    runs = len(a["rows"])
+    return {"claims": len(pairs), "alike": alike, "runs": runs, "farthest_mm": farthest}
 
 
 def _apart(x: float, y: float, least: float) -> bool:
@@ -76,8 +89,10 @@ def main() -> int:
     found = [json.loads(Path(f"build/{name}/campaign.json").read_text()) for name in ENGINES]
     apart = list(differences(*found))
     print(*apart, sep="\n")
-    claims, runs = len(found[0]["verdicts"]), len(found[0]["rows"])
-    print(f"{claims} claims and {runs} runs on each engine: {len(apart)} differences")
+    told = agreement(*found)
+    KEPT.write_text(json.dumps(told) + "\n")
+    print("{claims} claims and {runs} runs on each engine:".format(**told), end=" ")
+    print(f"{len(apart)} differences, errors to {told['farthest_mm']:.1g} mm")
     return bool(apart)
 
 

@@ -6,15 +6,15 @@ camera's axes, orientation as a rotation vector there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from math import pi
 from typing import Any
 
 import numpy as np
 
-from labkit import se3
-from labkit.errors import OutOfRange, ShapeError, UnknownName
+from labkit import Sample, se3
+from labkit.errors import OutOfRange, ShapeError
 from labkit.shapes import Array, as_number, as_numbers, locked
 from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
@@ -24,6 +24,7 @@ from labkit.tags.tag import Tag
 from labkit.world import World
 
 _T_WC = looking_at((3.0, 3.0, 1.0), (4.0, 4.0, 1.0))  # away from the robot, and looking away
+_EXPOSURE = 0.1  # [s], of a picture of a tag that moves
 _SPREAD = 0.5  # how far from the middle of the picture a tag may be, as a share of the picture
 
 
@@ -37,6 +38,9 @@ class Setup:
         tilt: Range of the angle between the tag's normal and the ray on which it is seen, in [rad].
         intrinsics: Lens and sensor.
         noise: Of each colour of each pixel, standard deviation in grey levels.
+        blur: Of a lens out of focus, standard deviation in [px].
+        smear: How far the tag's middle moves in the picture while the shutter is open, in [px].
+        cover: How much of half of the tag's diagonal a hand hides, beginning at a corner.
     """
 
     tag: Tag = field(default_factory=Tag)
@@ -44,6 +48,9 @@ class Setup:
     tilt: tuple[float, float] = (0.0, pi / 3)
     intrinsics: Intrinsics = field(default_factory=Intrinsics)
     noise: float = 0.0
+    blur: float = 0.0
+    smear: float = 0.0
+    cover: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,42 +90,6 @@ class Readings:
         """Truth minus estimate of the pictures with a tag, shape (found, 6): [m], then [rad]."""
         pairs = zip(self.truth[self.found], self.estimate[self.found], strict=True)
         return np.array([se3.pose_error(a, b) for a, b in pairs]).reshape(-1, 6)
-
-
-@dataclass(frozen=True, eq=False)
-class Quality:
-    """A sensor in a few numbers.
-
-    Attributes:
-        found: Share of the pictures in which the tag was found.
-        bias: Mean error, shape (6,): [m], then [rad], camera axes.
-        covariance: Of the error about its mean, shape (6, 6).
-        count: From how many readings.
-    """
-
-    found: float
-    bias: Array
-    covariance: Array
-    count: int
-
-    @property
-    def spread(self) -> Array:
-        """Standard deviation of each coordinate, shape (6,)."""
-        return np.sqrt(np.diag(self.covariance))
-
-
-def quality(readings: Readings) -> Quality:
-    """Bias and spread, which averaging over many readings tells apart: it cures only the spread."""
-    error = readings.error
-    if len(error) < 2:
-        nothing = np.full(6, np.nan)
-        return Quality(float(readings.found.mean()), nothing, np.full((6, 6), np.nan), len(error))
-    return Quality(
-        found=float(readings.found.mean()),
-        bias=locked(error.mean(axis=0)),
-        covariance=locked(np.cov(error.T)),
-        count=len(error),
-    )
 
 
 def random_poses(setup: Setup, count: int, random: np.random.Generator) -> Array:
@@ -167,61 +138,72 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
     n = len(poses)
     estimate, covariance = np.full((n, 4, 4), np.nan), np.full((n, 6, 6), np.nan)
     ratio, pixels, off = np.full(n, np.nan), np.full(n, np.nan), np.full((n, 4, 2), np.nan)
-    sizes = {int(setup.tag.id): setup.tag.size}
+    sizes, random = {int(setup.tag.id): setup.tag.size}, np.random.default_rng(seed)
     with World() as world:
-        camera = Camera(world, _T_WC, setup.intrinsics, noise=setup.noise, seed=seed)
+        camera = Camera(
+            world,
+            _T_WC,
+            setup.intrinsics,
+            noise=setup.noise,
+            blur=setup.blur,
+            exposure=_EXPOSURE if setup.smear else 0.0,
+            seed=seed,
+        )
         board = Board(world, setup.tag, _T_WC @ poses[0])
         for i, T_cm in enumerate(poses):
             board.place(_T_WC @ T_cm)
-            found = detect_tags(camera.tag_image(), camera, sizes, setup.tag.dictionary)
+            if setup.smear:
+                board.move(_sideways(setup, _T_WC @ T_cm, random))
+            corners = setup.intrinsics.project(setup.tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3])
+            picture = _covered(camera.tag_image(), corners, setup.cover, random)
+            found = detect_tags(picture, camera, sizes, setup.tag.dictionary)
             if len(found) != 1:
                 continue
-            corners = setup.tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3]
-            off[i] = setup.intrinsics.project(corners) - found[0].corners
+            off[i] = corners - found[0].corners
             estimate[i], covariance[i] = found[0].T_cm, found[0].covariance
             ratio[i], pixels[i] = found[0].ratio, found[0].error
     columns = (poses, estimate, ratio, pixels, off, covariance)
     return Readings(*map(locked, columns))
 
 
-_TURNED: dict[str, Callable[[Setup, float], Setup]] = {
-    "distance": lambda setup, x: replace(setup, distance=x),
-    "tilt": lambda setup, x: replace(setup, tilt=(x, x)),
-    "resolution": lambda setup, x: replace(setup, intrinsics=setup.intrinsics.resized(x)),
-    "noise": lambda setup, x: replace(setup, noise=x),
-    "size": lambda setup, x: replace(setup, tag=replace(setup.tag, size=x)),
-}
-DIALS = tuple(_TURNED)
-"""What `sweep` can turn."""
+def _sideways(setup: Setup, T_wm: Array, random: np.random.Generator) -> Callable[[float], Sample]:
+    """A tag's motion across the picture, by the smear in the time of the exposure."""
+    angle = random.uniform(0.0, 2.0 * pi)
+    across = _T_WC[:3, :2] @ (np.cos(angle), np.sin(angle))
+    speed = setup.smear * setup.distance / setup.intrinsics.fx / _EXPOSURE
+    v, at = speed * across, T_wm[:3, 3]
+    return lambda t: Sample(at + t * v, v, 0.0 * v)
 
 
-def sweep(
-    dial: str, values: Iterable[float], setup: Setup | None = None, count: int = 40, seed: int = 0
-) -> Mapping[float, Quality]:
-    """The sensor's quality as one thing changes and the rest stays.
+def _covered(picture: Any, corners: Array, cover: float, random: np.random.Generator) -> Any:
+    """The picture with a grey edge over one corner of the tag."""
+    if not cover:
+        return picture
+    middle = corners.mean(axis=0)
+    out = corners[random.integers(4)] - middle
+    half = np.linalg.norm(out)
+    v, u = np.indices(picture.shape[:2])
+    hidden = ((u - middle[0]) * out[0] + (v - middle[1]) * out[1]) / half > (1.0 - cover) * half
+    return np.where(hidden[..., None], np.uint8(90), picture)
+
+
+def consistency(setup: Setup, count: int, seed: int = 0) -> tuple[float, float]:
+    """Whether the errors are as large as the detector says: 3 if its covariance is right.
 
     Args:
-        dial: One of `DIALS`: distance [m]; tilt [rad]; resolution, as a factor on the pixels along
-            each side; noise, in grey levels; size of the tag [m].
-        values: Where to set it.
-        setup: The rest.
-        count: Pictures for each value.
+        setup: The experiment.
+        count: How many pictures.
         seed: Of poses and noise.
 
     Returns:
-        A quality for each value, in order.
-
-    Raises:
-        UnknownName: No such dial.
+        The share of the pictures in which the tag was reported, and the mean of
+        :math:`e^T P^{-1} e` over them, with e the error of the position and P its covariance
+        (Bar-Shalom, Li & Kirubarajan, section 5.4.2); not a number if none was reported.
     """
-    if dial not in DIALS:
-        raise UnknownName("dial", dial, DIALS)
-    results = {}
-    for value in values:
-        turned = _TURNED[dial](setup or Setup(), float(value))
-        poses = random_poses(turned, count, np.random.default_rng(seed))
-        results[float(value)] = quality(read(turned, poses, seed))
-    return results
+    seen = read(setup, random_poses(setup, count, np.random.default_rng(seed)), seed)
+    P, e = seen.covariance[seen.found][:, :3, :3], seen.error[:, :3]
+    nees = np.einsum("ni,ni->n", e, np.linalg.solve(P, e[..., None])[..., 0])
+    return float(seen.found.mean()), float(nees.mean()) if len(nees) else float("nan")
 
 
 def _as_poses(x: Any, name: str) -> Array:

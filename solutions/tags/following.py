@@ -1,14 +1,15 @@
 r"""Following a tag: a reference that never jumps, made from readings that come late.
 
-A Kalman filter of position, velocity and acceleration turns old readings into where the tag will
-be; each reading bends the reference towards that, by the polynomial of fifth order that takes over
-the reference's own position, velocity and acceleration.  Between the two ends of a blend,
-:math:`x = t/T`:
+A Kalman filter of position, velocity and acceleration takes in old readings.  What it believes of
+the tag is carried on, along its turn, to where the tag will be, and each reading bends the
+reference towards that place, by the polynomial of fifth order that takes over the reference's own
+position, velocity and acceleration.  Between the two ends of a blend, :math:`x = t/T`:
 
 .. math:: p(t) = \sum_{k=0}^{5} c_k x^k
 
 Lynch & Park, section 9.3 (polynomials through via points); Bar-Shalom, Li & Kirubarajan,
-section 6.2.2 (continuous white-noise acceleration).
+section 6.2.2 (continuous white-noise acceleration); Li & Jilkov 2003, "Survey of maneuvering target
+tracking, part I", IEEE Trans. Aerospace and Electronic Systems 39(4) (planar turns).
 """
 
 from __future__ import annotations
@@ -74,6 +75,32 @@ def carry_forward(mean: Any, covariance: Any, age: float, noise: float) -> tuple
     ]
     F, Q = np.kron(rows, np.eye(3)), q * np.kron(noises, np.eye(3))
     return F @ mean, F @ covariance @ F.T + Q
+
+
+def turn_on(mean: Any, age: float) -> Array:
+    r"""Where a thing is ``age`` seconds later, if its velocity keeps on turning as it does now.
+
+    A velocity that turns by :math:`\omega = |v\times a|/|v|^2` each second in the plane of v and a
+    has :math:`\dot a = -\omega^2 v`, so
+
+    .. math:: p' = p + \frac{\sin\omega\tau}{\omega}\,v + \frac{1-\cos\omega\tau}{\omega^2}\,a
+
+    and v' and a' are its slopes.  On a circle this is exact; without a turn it is constant
+    acceleration.
+
+    Args:
+        mean: Position [m], velocity [m/s] and acceleration [m/s^2], shape (9,).
+        age: tau, in [s].
+
+    Returns:
+        The mean then, shape (9,).
+    """
+    p, v, a = as_array(mean, (9,), "mean").reshape(3, 3)
+    tau = as_number(age, "age")
+    w = float(np.linalg.norm(np.cross(v, a))) / max(float(v @ v), 1e-12)
+    c, s = np.cos(w * tau), tau * np.sinc(w * tau / np.pi)  # s is sin(w tau) / w
+    bend = 0.5 * (tau * np.sinc(0.5 * w * tau / np.pi)) ** 2  # (1 - cos(w tau)) / w^2
+    return np.concatenate([p + s * v + bend * a, c * v + s * a, c * a - w * w * s * v])
 
 
 def blend(t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
@@ -146,10 +173,7 @@ class TagFollower:
         believed = known is not None and t - known.t <= self.coast
         ending = not self._at_rest and t - self._began > 0.8 * self._lasts
         if known is not None and (readings or (believed and ending)):
-            mean, _ = carry_forward(
-                known.mean, known.covariance, t + self.horizon - known.t, self.noise
-            )
-            p, v, a = mean.reshape(3, 3)
+            p, v, a = turn_on(known.mean, t + self.horizon - known.t).reshape(3, 3)
             self._blend_to(t, lambda late: Sample(p + self.offset + late * v, v, a * (late == 0.0)))
             self._at_rest = False
         elif not (believed or self._at_rest):

@@ -49,7 +49,6 @@ FUNCTION = {
     "labkit.loop": "labkit.loop.PDLoop",
     "labkit.metrics": "labkit.metrics.summary",
     "labkit.tags.detection": "labkit.tags.detection.tag_pose",
-    "solutions.study.sensing": "solutions.study.sensing.quality",
 }
 """One of each module that is withheld."""
 

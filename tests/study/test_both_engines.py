@@ -4,7 +4,7 @@ import copy
 
 import pytest
 
-from solutions.study.both_engines import differences
+from solutions.study.both_engines import agreement, differences
 
 
 def found():
@@ -36,3 +36,11 @@ def test_engines_agree_to_five_per_cent_or_a_tenth_of_a_millimetre(change, count
     other = copy.deepcopy(found())
     change(other)
     assert len(list(differences(found(), other))) == count
+
+
+def test_the_book_is_told_how_far_the_engines_are_apart():
+    other = copy.deepcopy(found())
+    other["rows"][0]["late_max_mm"] += 0.25
+    other["verdicts"][0]["overall"]["outcome"] = "held"
+    told = agreement(found(), other)
+    assert told == {"claims": 1, "alike": 0, "runs": 1, "farthest_mm": pytest.approx(0.25)}
