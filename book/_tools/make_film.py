@@ -94,7 +94,7 @@ def gain(page: Page, book: str) -> Iterator[int]:
 
 def tag(page: Page, book: str) -> Iterator[int]:
     """A recorded run with the tag, by its time slider."""
-    visit(page, f"{book}/chapters/tags.html", ".lk-embed:has(.lk-range)")
+    visit(page, f"{book}/chapters/tags.html", ".lk-embed")
     count = RATE * SCENES["tag"][0]
     for k in range(0, count, STEP):
         page.evaluate(
@@ -148,7 +148,7 @@ def visit(page: Page, address: str, selector: str) -> None:
     page.goto(address)
     page.evaluate(DRESS)
     show(page, selector)
-    if page.locator(selector).first.evaluate("e => e.matches('.lk-embed')"):
+    if page.locator(selector).last.evaluate("e => e.matches('.lk-embed')"):
         page.wait_for_selector(f"{selector}[data-ready]")
     page.wait_for_timeout(1000)
 
