@@ -92,19 +92,6 @@ def gain(page: Page, book: str) -> Iterator[int]:
         yield RATE * SCENES["gain"][0] // 4
 
 
-def tag(page: Page, book: str) -> Iterator[int]:
-    """A recorded run with the tag, by its time slider."""
-    visit(page, f"{book}/chapters/tags.html", ".lk-embed")
-    count = RATE * SCENES["tag"][0]
-    for k in range(0, count, STEP):
-        page.evaluate(
-            "x => { const bar = [...document.querySelectorAll('.lk-range')].at(-1);"
-            " bar.value = +bar.max * x; bar.dispatchEvent(new Event('input')); }",
-            k / count,
-        )
-        yield STEP
-
-
 def stub(page: Page, book: str) -> Iterator[int]:
     """The wrong answer, and below it the check's."""
     visit(page, f"{book}/index.html", '[aria-label="A student\'s answer"]')
@@ -130,7 +117,7 @@ def notebooks(page: Page, book: str) -> Iterator[int]:
 
 
 DRAWN: dict[str, Scene] = {
-    scene.__name__: scene for scene in (pull, gain, tag, stub, feedback, table, notebooks)
+    scene.__name__: scene for scene in (pull, gain, stub, feedback, table, notebooks)
 }
 
 
@@ -148,8 +135,6 @@ def visit(page: Page, address: str, selector: str) -> None:
     page.goto(address)
     page.evaluate(DRESS)
     show(page, selector)
-    if page.locator(selector).last.evaluate("e => e.matches('.lk-embed')"):
-        page.wait_for_selector(f"{selector}[data-ready]")
     page.wait_for_timeout(1000)
 
 

@@ -23,25 +23,20 @@ SCENES: dict[str, tuple[int, str]] = {
         "A gain is changed. Each time the whole run is computed again, and the curve of the run "
         "before stays behind the new one.",
     ),
-    "tag": (
-        8,
-        "The hand follows a tag that a camera sees ten times a second. The see-through arm "
-        "repeats what a report of 2019 did: look, plan a line, run it, look again.",
-    ),
     "stub": (
-        12,
+        16,
         "A student has written the joint velocity controller without feed-forward. The check "
         "says which tests failed, and names the mistake.",
     ),
     "feedback": (
-        7,
+        9,
         "After the deadline one command grades the class, and each student receives a page.",
     ),
     "table": (
-        5,
+        6,
         "In the last notebook the five controllers are compared on four trajectories.",
     ),
-    "notebooks": (6, "Eight notebooks, with their hours and points."),
+    "notebooks": (7, "Eight notebooks, with their hours and points."),
 }
 """How long each scene lasts, in [s], and what is to be seen in it."""
 
