@@ -16,7 +16,7 @@ ASSIGNMENT ?= 01_paths
 SECOND := .venv-313/bin
 ON_SECOND := -m "not slow and not soak and not pybullet"
 
-.PHONY: help demo test test-313 wheels zip quick soak count record lab release grade book book-zip book-pdf vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test test-313 wheels zip quick soak count record lab release grade book book-zip book-pdf film vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -61,6 +61,9 @@ book-zip: .venv/.course build/campaign.json ## the book as one file to hand out
 
 book-pdf: for-tests .venv/.dev browser ## the book to print
 	@$(BIN)/python book/_tools/build_book.py --pdf
+
+film: for-tests .venv/.dev browser ## make the film on the book's first page again, from the built book
+	@$(BIN)/python book/_tools/make_film.py
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@sh .ci/need.sh node:nodejs npm:npm

@@ -25,7 +25,7 @@ AXES = ("x", "y", "z")
 
 
 def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
-    """The tip against its target, and the error: three coordinates above, lengths below.
+    """The tip against its target above, the length of its position error below.
 
     Args:
         log: The run.
@@ -43,14 +43,9 @@ def tracking(log: Log, model: Model | None = None, *, axes: Any = None) -> Any:
     curves(above, log, T_wt[:, :3, 3], T_wd[:, :3, 3], "tip position [m]")
     _legend_beside(above)
     e = metrics.tip_error(log, model)
-    below.plot(log.t, 1e3 * np.linalg.norm(e[:, :3], axis=1), "C3-", label="position [mm]")
-    below.plot(
-        log.t, np.degrees(np.linalg.norm(e[:, 3:], axis=1)), "C4--", label="orientation [deg]"
-    )
-    below.set_ylabel("error")
+    below.plot(log.t, 1e3 * np.linalg.norm(e[:, :3], axis=1), "C3-")
+    below.set_ylabel("tip error [mm]")
     below.set_xlabel("time [s]")
-    _legend_beside(below)
-    above.set_title(f"{log.controller} on the {log.plant.name} arm", loc="left", fontsize="medium")
     return axes
 
 

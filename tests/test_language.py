@@ -11,6 +11,7 @@ TEXTS = (
     "*.md",
     "book/*.md",
     "book/chapters/*.md",
+    "book/deeper/*.md",
     "book/gallery/*.md",
     "book/reference/*.md",
     "book/figures/*.py",

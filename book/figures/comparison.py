@@ -71,7 +71,7 @@ def numbers_told() -> None:
         stiff=[real[w] for w in stiff],
     )
     claim(
-        "more than not looking at all",
+        "more than feed-forward alone, which never looks",
         lambda soft, stiff, plain: min(soft) > plain > max(stiff) > 0.0,
         soft=[real[w] for w in soft],
         stiff=[real[w] for w in stiff],

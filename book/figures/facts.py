@@ -37,7 +37,7 @@ def velocity() -> None:
 def comparison() -> None:
     """Of the comparison."""
     claim("3 1/s and a $K_d$ of 0.6", lambda p, d: (p, d) == (3.0, 0.6), p=KP, d=KD)
-    _is("Eight claims about tracking at 95 % each would decide one of three by luck alone",
+    _is("luck alone would decide at least one claim",
         (8.0, 0.95, 1.0 / 3.0), (CLAIMS, LEVEL, 1.0 - LEVEL**CLAIMS), 0.02)  # fmt: skip
 
 

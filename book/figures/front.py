@@ -62,7 +62,7 @@ def welcome() -> HTML:
     return replay(
         log,
         "Baxter's left arm draws a line and a circle",
-        "A recorded run on the realistic arm, with the error and the motor torques.",
+        "A recorded run on the realistic arm, with the error of the tip.",
         label="joint velocity PD",
     )
 
@@ -89,7 +89,7 @@ def _error(way: str, task: str) -> str:
 
 
 def a_mistake() -> HTML:
-    """A wrong answer of a student, and what the check says to it."""
+    """A wrong answer of a student, without its types, and what the check says to it."""
     wrong = mistakes.no_feedforward
     folder = COURSE.root / "assignments" / "03_velocity_control"
     question = Desk.beside(folder).question("joint_velocity_pd")
@@ -97,12 +97,13 @@ def a_mistake() -> HTML:
     holds(verdict.mistake is not None, "the check knows this mistake")
     code = inspect.getsource(wrong).replace(wrong.__name__, question.name)
     code = code.replace(f'    """{wrong.__doc__}"""\n', "")
+    code = re.sub(r": [\w.]+(?=[,)])|(?<=\)) -> [\w.]+(?=:\n)", "", code, count=5)
     return HTML(_typed(code, "A student's answer") + _typed(tell(question, verdict), "The check's"))
 
 
 def _typed(text: str, label: str) -> str:
     return (
-        f'<div class="highlight" role="group" tabindex="0" aria-label="{label}">'
+        f'<div class="highlight lab-typed" role="group" tabindex="0" aria-label="{label}">'
         f"<pre>{escape(text)}</pre></div>"
     )
 
@@ -125,7 +126,7 @@ def notebooks() -> HTML:
     core, whole, points = (sum(float(row[k]) for row in rows) for k in (2, 3, 5))
     return table(
         ("Notebook", "Students write", "Hours, core", "Hours, all", "Functions",
-         "Points for functions"),
+         "Points"),
         rows,
         f"{len(rows)} notebooks: {core:g} hours for the core and {whole:g} for everything; "
         f"{points:g} points for functions",

@@ -39,7 +39,7 @@ def all_ways(task: str) -> HTML:
     ax.legend(fontsize="small", ncols=2, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     told = "; ".join(f"{way} {_numbers(way, task)[0]:.2g} mm" for way in SHOWN)
     return figure(
-        f"How far the tip is from its target, six ways, on the {task}; the scale is logarithmic.",
+        f"How far the tip is from its target on the {task}, by method; the scale is logarithmic.",
         f"Curves of the error over time. RMS after the first second: {told}.",
     )
 
@@ -54,12 +54,12 @@ def all_numbers(task: str) -> HTML:
         holds(found[BASELINE][0] < 1.0, "the baseline obeys to a millimetre")
         holds(found[BASELINE][-1] > 2.0 * max(found[way][-1] for way in FIVE), "and misses the tag")
     head = [
-        "Way",
+        "Method",
         "RMS [mm]",
         "largest [mm]",
         "at the end [mm]",
         "turn, RMS [°]",
-        "torque, RMS [N m]",
+        "torque beyond gravity, RMS [N m]",
     ]
     head += ["from the tag, RMS [mm]"] if task == "tag" else []
     return table(head, rows, f"The {task}, realistic arm, seed 0; errors after the first second")
@@ -70,11 +70,11 @@ def _told(x: float) -> str:
 
 
 def beside(task: str) -> HTML:
-    """Three ways through one task, in 3-D."""
+    """Three methods on one task, in 3-D."""
     first, *others = ("joint velocity", "joint torque", "workspace impedance")
     return replay(
         run_of(first, task),
-        f"The {task}, three ways",
+        f"The {task}, three methods",
         f"Joint velocity PD; see-through: {' and '.join(others)}.",
         label=first,
         ghosts={way: run_of(way, task) for way in others},
@@ -98,7 +98,7 @@ def film(task: str) -> HTML:
 
 
 def everything(way: str, task: str) -> HTML:
-    """One run in six panels, thinned for the page; scales are the same for all ways."""
+    """One run in six panels, thinned for the page; scales are the same for all methods."""
     log = run_of(way, task)
     thin = slice(None, None, max(1, len(log) // 300))
     _, axes = plt.subplots(6, 1, figsize=(6.2, 10.6), sharex=True)
@@ -128,18 +128,19 @@ def everything(way: str, task: str) -> HTML:
         f"{way.capitalize()} on the {task}: {found}.",
         f"Six panels over {found.duration:.3g} s: position and speed of the tip over its target, "
         "its position error along x, y and z, its orientation error, the error of each joint and "
-        f"the torque of each motor. {found}. The largest joint error is "
+        f"the torque of each motor beyond gravity. {found}. The largest joint error is "
         f"{np.abs(off).max():.2g} degrees, the largest torque {np.abs(torque).max():.3g} N m, the "
         f"last error {np.linalg.norm(e[-1]):.2g} mm.",
     )
     links = " · ".join(_elsewhere(way, task))
     return HTML(
-        f'<p>{way.capitalize()} on {links}; <a href="#all-ways">all ways</a></p>{drawn.data}'
+        f'<p class="lab-one">{way.capitalize()} on {links}; '
+        f'<a href="#all-methods">all methods</a></p>{drawn.data}'
     )
 
 
 def _elsewhere(way: str, task: str) -> Iterator[str]:
-    """The same way on every task."""
+    """The same method on every task."""
     for other in campaign.TASKS:
         link = f'<a href="{other}.html#{_place(way)}">the {other}</a>'
         yield f"<strong>the {other}</strong>" if other == task else link
@@ -159,15 +160,20 @@ def _off(log: lk.Log) -> np.ndarray:
     return 1e3 * np.linalg.norm(metrics.tip_error(log, _model())[:, :3], axis=1)
 
 
+def _beyond_gravity(log: lk.Log) -> np.ndarray:
+    """The motors' torques without what holds the arm's weight, shape (N, 7), in [N m]."""
+    return log.tau - np.array([_model().gravity(q) for q in log.q])
+
+
 def _numbers(way: str, task: str) -> tuple[float, ...]:
     """One row of the table."""
     log = run_of(way, task)
     told = campaign.measured(log, campaign.joints(way, task, 0))
-    names = ("late_rms_mm", "late_max_mm", "end_mm", "late_rms_deg", "effort")
-    found = tuple(told[name] for name in names)
+    late = log.t >= LATE
+    names = ("late_rms_mm", "late_max_mm", "end_mm", "late_rms_deg")
+    found = (*(told[name] for name in names), metrics.rms(_beyond_gravity(log)[late]))
     if task != "tag":
         return found
-    late = log.t >= LATE
     tips = metrics.tip_poses(log, _model())[late, :3, 3]
     return *found, 1e3 * metrics.rms(campaign.chase(way, 0).miss(log.t[late], tips))
 
@@ -187,7 +193,7 @@ def _panels(way: str, task: str) -> list[tuple[str, np.ndarray, np.ndarray | Non
         ("error [mm]", 1e3 * e[:, :3], None),
         ("turn error [°]", np.degrees(e[:, 3:]), None),
         ("joint error [°]", np.degrees(off), None),
-        ("torque [N m]", log.tau, None),
+        ("torque [N m]", _beyond_gravity(log), None),
     ]
 
 

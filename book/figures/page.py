@@ -140,7 +140,7 @@ def framed(inside: str, caption: str, alt: str, words: str = "") -> str:
 
 def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
     """A run as a 3-D replay in the page; a picture of its middle where there is no WebGL."""
-    motion = motion_of(log, title, reference=False, **{"torque": True, **options})
+    motion = motion_of(log, title, reference=False, **options)
     return HTML(motion_html(motion, caption=caption, poster=poster(log)))
 
 
@@ -150,12 +150,17 @@ def poster(log: Log) -> str:
 
 
 def picture(side: str, plant: Plant, q: np.ndarray) -> str:
-    """The arm at rest at q, shape (7,) in [rad], seen from beside the table, as a data address."""
+    """The arm at rest at q, shape (7,) in [rad], seen from beside the table, as a data address.
+
+    White is left clear: behind the arm is the ground that the page has, light or dark.
+    """
     lens = Intrinsics(width=480, height=360, fx=405.0, fy=405.0)
     with World(things=(Table(),)) as world:
         arm = Arm(side, plant, world=world)
         arm.reset(q)
-        return address(Camera(world, looking_at(EYE, AT), lens, samples=1).image())
+        colours = Camera(world, looking_at(EYE, AT), lens, samples=1).image()
+    seen = np.where((colours == 255).all(axis=-1), 0, 255).astype(np.uint8)
+    return _encoded(Image.fromarray(np.dstack([colours, seen])))
 
 
 def still() -> str:
@@ -170,9 +175,13 @@ def still() -> str:
 
 def address(picture: Any) -> str:
     """A picture as a data address, so that it travels in the page."""
+    return _encoded(Image.fromarray(np.asarray(picture)))
+
+
+def _encoded(picture: Image.Image) -> str:
     data = io.BytesIO()
-    Image.fromarray(np.asarray(picture)).save(data, "JPEG", quality=72, optimize=True)
-    return _address("jpeg", data)
+    picture.save(data, "WEBP", quality=72, method=6)
+    return _address("webp", data)
 
 
 def _address(kind: str, data: io.BytesIO) -> str:

@@ -152,7 +152,7 @@ def geometry() -> None:
     shows("Sideways it is 0.083 mm, since $0.1\\cdot1/(2\\cdot600)$ = 0.000083 m",
           (0.083, 0.000083), (1e3 * sideways, 0.1 * at[2] / (2.0 * FOCAL)), 0.01)  # fmt: skip
     by_hand("an unknown tilt makes it 0.118 mm", 0.118, 1e3 * math.sqrt(square[0, 0]))
-    by_hand("the tilt by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
+    by_hand("make the tilt uncertain by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
     by_hand("the covariance says 0.27°", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03)
     for words, value, heights in (
         ("is tilted by 24.6°", 24.6, (48.8, 47.2)),
@@ -333,13 +333,13 @@ def aims() -> HTML:
         ax.semilogx(1e3 * noises, curves[belief], f"C{k}" + ("-", "--", "-.", ":")[k], label=belief)
     stays, straight, bends, turning = (curves[b] for b in BELIEFS)
     claim(
-        "the belief that bends errs less than the straight one",
+        "the belief with acceleration errs less than the one with constant velocity",
         lambda a, b: all(0.0 < x < 0.75 * y for x, y in zip(a, b, strict=True)),
         a=bends[:4],
         b=straight[:4],
     )  # up to 0.1 mm
     claim(
-        "at 3 mm even the belief that turns errs more than the straight one",
+        "at 3 mm even the belief that turns errs more than the one with constant velocity",
         lambda e: e[0] > 1.05 * e[1] > 0.0,
         e=[turning[-1], straight[-1]],
     )

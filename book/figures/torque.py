@@ -169,7 +169,9 @@ def circle_run() -> lk.Log:
 def circle_replay() -> HTML:
     """The same in 3-D."""
     caption = "Computed torque on the circle, realistic arm, 200 Hz."
-    return replay(circle_run(), "A circle by computed torque", caption, label="computed torque")
+    return replay(
+        circle_run(), "A circle by computed torque", caption, label="computed torque", torque=True
+    )
 
 
 def circle_tracking() -> HTML:

@@ -133,7 +133,7 @@ def ticks() -> None:
     large = min(0.5 * (trace - root), 0.5 * (trace + root))
     number("tick_root", large, ".3g")
     claim(
-        "the same number as the largest eigenvalue in the figure",
+        "the eigenvalue that the figure shows",
         lambda by_hand, drawn: math.isclose(-by_hand, drawn, rel_tol=1e-6),
         by_hand=large,
         drawn=radius(I, REPORT_KP, REPORT_KD, h),

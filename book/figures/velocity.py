@@ -105,7 +105,7 @@ def derivative() -> HTML:
         e=error,
     )
     claim(
-        "each step of it makes the hand at rest shake more",
+        "the hand shakes more at rest",
         lambda v: all(b > a for a, b in pairwise(v)) and v[0] > 0.0,
         v=shake,
     )

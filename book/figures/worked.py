@@ -148,6 +148,7 @@ def model() -> None:
     shows("has to lift the elbow too, and feels 6 kg", 6.0, inertia[1, 1], 1e-6)
     shows("three times heavier in one direction", 3.0, inertia[1, 1] / inertia[0, 0], 1e-6)
     _rods(J)
+    _newton()
     _elbow()
 
 
@@ -163,6 +164,22 @@ def _rods(J: np.ndarray) -> None:
     more = two_rods().mass_matrix(POSE) + J.T @ J
     shows("$\\ddot q = (-3.5, 3.5)$ rad/s²", (-3.5, 3.5),
           np.linalg.solve(more, (-9.81 * ROD, 0.0)), 4e-3)  # fmt: skip
+
+
+def _newton() -> None:
+    """Two steps of inverse kinematics of the arm of two rods."""
+    arm, goal, q, left = two_rods(), np.array((0.36, 0.44)), np.array(POSE), []
+    shows("is at $(0.4, 0.4)$ m in the", (0.4, 0.4), arm.pose(q)[[0, 2], 3], 1e-6)
+    for _ in range(2):
+        e = goal - arm.pose(q)[[0, 2], 3]
+        step = np.linalg.solve(arm.tip_jacobian(q)[[0, 2]], e)
+        left.append((1e3 * np.linalg.norm(e), step))
+        q = q + step
+    shows("which is 57 mm away", 57.0, left[0][0], 0.01)
+    shows("$\\Delta q = (0.1, 0)$ rad", (0.1, 0.0), left[0][1], 1e-6)
+    shows("After this step the hand is 2.8 mm from its goal", 2.8, left[1][0], 0.02)
+    last = 1e3 * np.linalg.norm(goal - arm.pose(q)[[0, 2], 3])
+    claim("after another one less than 0.02 mm", lambda last: last < 0.02, last=last)
 
 
 def _elbow() -> None:

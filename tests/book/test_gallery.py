@@ -24,6 +24,6 @@ def test_every_run_leads_to_the_same_way_on_the_other_tasks_and_to_all_ways(book
             place = way.replace(" ", "-")
             links = {a["href"] for a in page.select_one(f"section#{place}").select("p a")}
             others = {f"{other}.html#{place}" for other in TASKS if other != task}
-            assert links == others | {"#all-ways"}
-        names = [a["href"] for a in page.select("section#all-ways table a")]
+            assert links == others | {"#all-methods"}
+        names = [a["href"] for a in page.select("section#all-methods table a")]
         assert names == [f"#{way.replace(' ', '-')}" for way in gallery.SHOWN]
