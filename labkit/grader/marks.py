@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.notebook import question_of
 from .class_list import Student
@@ -85,7 +86,7 @@ class Mark:
         lines: One for each question; none where no mark counts.
         raw: Points before late rules; None where no mark counts.
         penalty: What late rules take.
-        points: What full marks would be.
+        points: What full marks would be; 0 where neither gradebook nor release says so.
         late: How late it came, in words; empty if it came in time.
         person: The student as the roster knows them, or None.
         user: How the platform knows the student from which the work was collected, or None.
@@ -135,6 +136,11 @@ class Mark:
         return "" if self.raw is None else round(max(0.0, self.raw - self.penalty), 4)
 
     @property
+    def full(self) -> float | str:
+        """What full marks would be; an empty cell where nobody knows."""
+        return self.points or ""
+
+    @property
     def cells(self) -> tuple[float | str, float | str, float | str]:
         """Points before late rules, what these take, and what counts; or three empty cells."""
         return ("", "", "") if self.raw is None else (self.raw, self.penalty, self.score)
@@ -180,12 +186,12 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
     by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
     roster = read_roster(course)
     stand = {one.student: one for one in standing(course, assignment, only)}
-    full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
         settle_whys(course, book, assignment)
         settle_lateness(course, book, assignment)
         there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
-        full = max((float(s.max_score) for s in there.values()), default=full)
+        most = (float(s.max_score) for s in there.values())
+        full = max(most) if there else _full_marks(course, assignment)
         listed = {student.id for student in roster.students}
         everybody = stand.keys() | there.keys() | listed
         for student in sorted(everybody if only is None else everybody & {only}):
@@ -200,6 +206,14 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
                 gone = "nothing of theirs is in submitted/; the mark stays as it was"
                 row = replace(row, remark=gone)
             yield _named(row)
+
+
+def _full_marks(course: Course, assignment: str) -> float:
+    """What the release says there is to earn, with what a person gives; 0 without one."""
+    if not (course.bundle / f"{assignment}.json").exists():
+        return 0.0
+    bundle = Bundle.of(course, assignment)
+    return bundle.points + bundle.by_hand
 
 
 def mark_of(result: Result) -> Mark:
