@@ -86,9 +86,7 @@ def _rows(course):
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("fuzz: files")
-@pytest.mark.parametrize(
-    "kind", [k for k in kinds("OBJECTS", "RAISES") if k.name != STOP], ids=str
-)
+@pytest.mark.parametrize("kind", [k for k in kinds("OBJECTS", "RAISES") if k.name != STOP], ids=str)
 def test_report_card(card, kind):
     """Answers from outside are tried like any others, whatever they give back or raise."""
     assert kind not in card, "\n".join(card[kind])
