@@ -11,7 +11,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.notebook import question_of
 from .class_list import Student
@@ -23,7 +22,7 @@ from .platforms import LmsUser
 from .results import Result
 from .roster import read_roster
 from .rules import settle_lateness
-from .standing import grade_again, standing
+from .standing import full_marks, grade_again, standing
 from .submission import is_name, plain_name, students
 from .team_reports import for_teams
 from .whys import settle_whys
@@ -190,13 +189,14 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
         settle_whys(course, book, assignment)
         settle_lateness(course, book, assignment)
         there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
-        most = (float(s.max_score) for s in there.values())
-        full = max(most) if there else _full_marks(course, assignment)
+        full = max((float(s.max_score) for s in there.values()), default=0.0)
         listed = {student.id for student in roster.students}
         everybody = stand.keys() | there.keys() | listed
         for student in sorted(everybody if only is None else everybody & {only}):
             submission, one = there.get(student), stand.get(student)
-            row = Mark(student, points=full, person=roster.get(student))
+            row = Mark(
+                student, points=full or full_marks(course, assignment), person=roster.get(student)
+            )
             row = replace(row, user=by_platform.get(student), remark="nothing was handed in")
             if submission is not None or one is not None:
                 row = _marked(replace(row, remark=""), submission, one, assignment)
@@ -206,14 +206,6 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
                 gone = "nothing of theirs is in submitted/; the mark stays as it was"
                 row = replace(row, remark=gone)
             yield _named(row)
-
-
-def _full_marks(course: Course, assignment: str) -> float:
-    """What the release says there is to earn, with what a person gives; 0 without one."""
-    if not (course.bundle / f"{assignment}.json").exists():
-        return 0.0
-    bundle = Bundle.of(course, assignment)
-    return bundle.points + bundle.by_hand
 
 
 def mark_of(result: Result) -> Mark:
