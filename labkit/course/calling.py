@@ -27,10 +27,33 @@ class Heard:
     text: str = ""
 
 
+class Capped(StringIO):
+    """Text that stops growing.
+
+    Args:
+        most: Characters to keep.
+    """
+
+    def __init__(self, most: int) -> None:
+        super().__init__()
+        self.most, self.size = most, 0
+
+    def write(self, text: str) -> int:
+        """Keep what there is room for; it all counts as written."""
+        left = self.most - self.size
+        if left > 0:
+            self.size += super().write(text[:left])
+        return len(text)
+
+
+MOST_HEARD = 100_000
+"""Characters, and bytes of C's streams, that `heard` keeps."""
+
+
 @contextmanager
 def heard() -> Iterator[Heard]:
     """Catch stdout, stderr and warnings, of Python and of C, while the block runs."""
-    out, result = StringIO(), Heard()
+    out, result = Capped(MOST_HEARD), Heard()
     with (
         tempfile.TemporaryFile() as file,
         diverted(file.fileno()),
@@ -43,7 +66,7 @@ def heard() -> Iterator[Heard]:
             finally:
                 words = [out.getvalue(), *(f"{w.category.__name__}: {w.message}\n" for w in said)]
                 file.seek(0)
-                below = file.read(100_000).decode(errors="replace")
+                below = file.read(MOST_HEARD).decode(errors="replace")
                 result.text = "".join([*words, below])
 
 

@@ -15,17 +15,21 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import LabkitError, UnknownName
+from .calling import heard
 from .layout import Course
 from .margins import least, remembering
 from .marking import mark
 from .problem import Problem
 from .question import Question
+from .reply import Here
 from .verdict import Outcome
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question, its name, or "assignment/name" where two assignments ask it."""
 
 DRAWS = 20
+HANGS = 600.0
+"""Seconds after which one call of an answer is stopped; no limit, a guard against endless ones."""
 LARGEST_PART = 0.6
 """Share of the points that one right part of an answer may earn."""
 
@@ -156,10 +160,12 @@ def _row(
     own = {w.name: w.function for w in problem.wrong}
     wrong = own | _labelled("from outside: ", mistakes)
     right = {"the answer": problem.answer} | _labelled("", [*problem.variants, *variants])
-    verdicts = {
-        label: [mark(question, function) for question in questions]
-        for label, function in (wrong | right).items()
-    }
+    with heard():  # what answers print is not the card's
+        verdicts = {
+            label: [mark(question, function) for question in questions]
+            for label, function in (wrong | right).items()
+        }
+        margin, nearest = least(questions, problem, right, wrong)
     marks = {label: [verdict.earned for verdict in found] for label, found in verdicts.items()}
     failures = []
     limit = rejected_below(questions[0])
@@ -180,7 +186,6 @@ def _row(
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(draws))
-    margin, nearest = least(questions, problem, right, wrong)
     return Row(
         name,
         problem.name,
@@ -197,11 +202,14 @@ def _row(
 
 
 def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
-    """Functions by their names; those of one name are numbered, so that none is left out."""
+    """Functions by their names, asked as a student's are.
+
+    Those of one name are numbered, so that none is left out.
+    """
     names = [f"{whose}{getattr(f, '__name__', type(f).__name__)}" for f in functions]
     before = [names[:k].count(name) for k, name in enumerate(names)]
     labels = [f"{name} ({n + 1})" if n else name for name, n in zip(names, before, strict=True)]
-    return dict(zip(labels, functions, strict=True))
+    return {label: Here(f, (), HANGS) for label, f in zip(labels, functions, strict=True)}
 
 
 def functions_from(file: Path, table: str) -> Functions:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
 from .batch import GradeOptions, grade_aside, still_good
+from .each import Failed, for_student
 from .results import Result, Results
 from .submission import Submission
 
@@ -71,8 +73,11 @@ def changes(
         if isinstance(result, LabkitError):
             yield result
         else:
-            aside.keep(result)
-            yield Change(now.get(result.student), result)
+            kept = for_student(result.student, partial(aside.keep, result))
+            if isinstance(kept, Failed):  # a name that is too long, a full disk
+                yield LabkitError(f"{kept.student}: {kept.why}")
+            else:
+                yield Change(now.get(result.student), result)
 
 
 def _refuse_unreleased(course: Course, assignment: str) -> None:

@@ -34,7 +34,7 @@ def nbgrader(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:
     table: list[list[Any]] = [[*head.split(), "late_submission_penalty", "score", "max_score"]]
     for r in marks:
         table.append(
-            [assignment, r.due, r.when, r.student, r.last, r.first, r.email, *r.cells, r.points]
+            [assignment, r.due, r.when, r.student, r.last, r.first, r.email, *r.cells, r.full]
         )
     return table
 
@@ -45,7 +45,7 @@ def questions(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:
     most = {name: r.questions[name][1] for r in marks for name in r.questions}
     table: list[list[Any]] = [["student", *names, "penalty", "score", "remark"]]
     if marks:
-        table.append(["(full marks)", *(most[name] for name in names), "", marks[0].points, ""])
+        table.append(["(full marks)", *(most[name] for name in names), "", marks[0].full, ""])
     for r in marks:
         each = [r.questions.get(name, ("", ""))[0] for name in names]
         table.append([r.student, *each, *r.cells[1:], r.missing or r.remark])
@@ -55,7 +55,7 @@ def questions(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:
 def canvas(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     """What Canvas's gradebook imports; ``column`` as Canvas calls it, "Paths (4711)"."""
     table: list[list[Any]] = [["Student", "ID", "SIS User ID", "SIS Login ID", "Section", column]]
-    table.append(["    Points Possible", "", "", "", "", marks[0].points if marks else ""])
+    table.append(["    Points Possible", "", "", "", "", marks[0].full if marks else ""])
     for r in marks:
         name = ", ".join(x for x in (r.last, r.first) if x) or r.student
         sis = r.id_number if r.person else ""
@@ -79,7 +79,7 @@ def moodle_worksheet(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     ]
     once = _participants(marks)
     table += [
-        [f"Participant {number}", r.user.name if r.user else "", r.score, r.points, ""]
+        [f"Participant {number}", r.user.name if r.user else "", r.score, r.full, ""]
         for r in marks
         if (number := r.number("moodle")) in once
     ]

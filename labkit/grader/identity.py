@@ -219,7 +219,7 @@ def _free(one: LmsUser, unique: bool, owners: Mapping[str, set[tuple[str, ...]]]
     """The name of a folder that is nobody else's."""
     plain, mine = _plain(one), {one.key, _all_term(one)}
     if one.system == "exchange":
-        mine.add(("folder", plain))  # nbgrader's own collect calls it after the user
+        mine.add(("folder", one.number))  # nbgrader's own collect calls it after the user
     numbered = [f"{plain}-{one.number}"] * (one.system == "moodle")
     names = chain([plain] * unique, numbered, (f"{plain}-{k}" for k in count(2)))
     return next(name for name in names if owners.get(name.casefold(), set()) <= mine)

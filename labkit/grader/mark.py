@@ -68,7 +68,7 @@ class Mark:
         lines: One for each question; none where no mark counts.
         raw: Points before late rules; None where no mark counts.
         penalty: What late rules take.
-        points: What full marks would be.
+        points: What full marks would be; 0 where neither gradebook nor release says so.
         late: How late it came, in words; empty if it came in time.
         person: The student as the roster knows them, or None.
         user: How the platform knows the student from which the work was collected, or None.
@@ -116,6 +116,11 @@ class Mark:
     def score(self) -> float | str:
         """What counts; an empty cell where nothing does."""
         return "" if self.raw is None else round(max(0.0, self.raw - self.penalty), 4)
+
+    @property
+    def full(self) -> float | str:
+        """What full marks would be; an empty cell where nobody knows."""
+        return self.points or ""
 
     @property
     def cells(self) -> tuple[float | str, float | str, float | str]:

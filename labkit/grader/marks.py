@@ -21,7 +21,7 @@ from .mark import Line, Mark
 from .results import Result
 from .roster import read_roster
 from .rules import settle_lateness
-from .standing import grade_again, standing
+from .standing import full_marks, grade_again, standing
 from .submission import plain_name, students
 from .team_reports import for_teams
 from .whys import settle_whys
@@ -44,12 +44,12 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
     by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
     roster = read_roster(course)
     stand = {one.student: one for one in standing(course, assignment, only)}
-    full = max((one.points for one in stand.values() if isinstance(one, Result)), default=0.0)
     with open_gradebook(course) as book:
         settle_whys(course, book, assignment)
         settle_lateness(course, book, assignment)
         there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
-        full = max((float(s.max_score) for s in there.values()), default=full)
+        full = max((float(s.max_score) for s in there.values()), default=0.0)
+        full = full or full_marks(course, assignment)
         listed = {student.id for student in roster.students}
         everybody = stand.keys() | there.keys() | listed
         for student in sorted(everybody if only is None else everybody & {only}):

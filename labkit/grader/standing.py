@@ -6,6 +6,7 @@ import shlex
 from collections.abc import Iterator
 from functools import partial
 
+from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..errors import LabkitError
 from .each import Failed, for_student
@@ -37,6 +38,14 @@ def standing(
             yield Failed(plain_name(name), f"a file in {results.folder} has this name; delete it")
         elif student in {None, name}:
             yield for_student(name, partial(_counts, course, results, name, name in handed_in))
+
+
+def full_marks(course: Course, assignment: str) -> float:
+    """What the release says there is to earn, with what a person gives; 0 without one."""
+    if not (course.bundle / f"{assignment}.json").exists():
+        return 0.0
+    bundle = Bundle.of(course, assignment)
+    return bundle.points + bundle.by_hand
 
 
 def grade_again(assignment: str, student: str) -> str:

@@ -319,6 +319,19 @@ def test_names_of_the_exchange_are_names_of_folders(bare, tmp_path):
     }
 
 
+@pytest.mark.parametrize("who", ["zoe.", "_zoe", "zo'e"])
+def test_a_user_of_nearly_anothers_name_has_another_folder(bare, tmp_path, who):
+    """What nbgrader collected is the user's whose name it has as it stands, not once cleaned."""
+    for owner in ("zoe", "ada"):
+        folder = bare.submitted / owner / NAME
+        folder.mkdir(parents=True)
+        (folder / f"{NAME}.ipynb").write_text(owner)
+    handed_in(tmp_path / "in", who, "forged", "2099-03-05 10:00:00 UTC")
+    handed_in(tmp_path / "in", "ada", "ada again", "2099-03-05 10:00:00 UTC")
+    take(bare, tmp_path / "in", unverified=True)
+    assert counting(bare) == {"zoe": "zoe", "zoe-2": "forged", "ada": "ada again"}
+
+
 def test_what_is_not_a_hand_in_is_named(bare, tmp_path):
     """A link, a file, a folder without time or notebook; others' work is taken all the same."""
     inbound = handed_in(tmp_path / "in", "root", "1").parent

@@ -17,6 +17,21 @@ VARIANTS = {"00_warmup/joint_error": [lambda target, state: -(state.q - target.p
                             lambda target, state: state.q]}
 """
 
+ODD = """
+import os, warnings
+class Odd:
+    def __getattribute__(self, name): raise ZeroDivisionError
+class Mute(Exception):
+    def __str__(self): raise ZeroDivisionError
+def prints(target, state): print("\\x1b[2J" * 10**6); return 0.0
+def writes(target, state): os.write(1, b"\\x1b[2J"); return 0.0
+def warns(target, state): warnings.warn("\\x1b[2J"); return 0.0
+def leaves(target, state): raise GeneratorExit
+def is_mute(target, state): raise Mute
+def is_odd(target, state): return Odd()
+MISTAKES = {"joint_error": [prints, writes, warns, leaves, is_mute, is_odd]}
+"""
+
 
 @pytest.fixture(scope="module")
 def card(tmp_path_factory):
@@ -69,6 +84,16 @@ def test_an_answer_from_outside_spoils_nothing_for_the_others():
         assert all(mark(question, function).earned == 0 for question in questions)
         for answer in (problems[name].answer, *problems[name].variants):
             assert all(mark(q, answer).outcome is Outcome.RIGHT for q in questions)
+
+
+def test_answers_from_outside_print_nothing_and_end_nothing(tmp_path, capfd):
+    """What one writes to a stream is not shown; whatever one raises or gives back is an answer."""
+    file = tmp_path / "answers.py"
+    file.write_text(ODD)
+    rows = make(COURSE, ["00_warmup"], 5, functions_from(file, "MISTAKES"), draws=2).rows
+    row = next(row for row in rows if row.question == "joint_error")
+    assert row.rejected == row.mistakes > 6
+    assert capfd.readouterr() == ("", "")
 
 
 def test_written(card, tmp_path):

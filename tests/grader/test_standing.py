@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import shutil
 
 import pytest
@@ -111,6 +112,20 @@ def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
     assert rows["carl"]["score"] == "0.0"
     assert rows["carl"]["remark"] == "rejected: the file is empty"
     assert rows["ada"]["remark"] == ""
+
+
+def test_full_marks_are_the_releases_where_the_gradebook_is_gone(marked, capsys):
+    """With what a person marks; the results know the machine's part alone.  Else nobody knows."""
+    data = json.loads((marked.bundle / f"{NAME}.json").read_text())
+    machine = sum(question["points"] for question in data["questions"])
+    full = machine + sum(cell.get("points", 0.0) for cell in data["cells"])
+    (marked.root / "gradebook.db").unlink()
+    rows = table(verb(marked, capsys, "export")[1])
+    assert float(rows["(full marks)"]["score"]) == full > machine
+    assert rows["ada"]["score"] == ""
+    (marked.bundle / f"{NAME}.json").unlink()
+    (marked.root / "gradebook.db").unlink()
+    assert table(verb(marked, capsys, "export")[1])["(full marks)"]["score"] == ""
 
 
 def test_only_handed_in_is_no_mark(course, capsys):

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from soak import laws
 from soak.classes import NAME, copied, hand_in_honest, kinds, write_downloads
-from soak.commands import typed
+from soak.commands import Ended, typed
 from soak.examined import EXPORTS, FEEDBACK, GRADE, LABKIT, REGRADE, REPORT, Step
 
 pytestmark = [pytest.mark.soak, pytest.mark.xdist_group("fuzz: course")]
@@ -83,14 +83,18 @@ def test_state(fresh, clean, kind):
 def broken(course, step, kind, clean):
     """The laws that a command breaks in a damaged course."""
     mine = kind.name.startswith("result: ")  # one student's, so the others are done
-    since = time.time()
+    since, before = time.time(), laws.seen(course, Ended((), 0, b"", b""))
     ended = typed(course, *words_of(step))
     yield from laws.said(ended, (0, 1) if mine else (0, 1, 2))
     yield from (f"{path.name}: {says}" for path, says in laws.written(course, since - 0.05))
     if ended.code is None:
         return
     now = laws.seen(course, ended)
-    kept = {key: value for key, value in clean[step].items() if _due(step, key, mine, ended.code)}
+    kept = {
+        key: value
+        for key, value in clean[step].items()
+        if _due(step, key, mine, ended.code) and (key in before or _makes(step, key))
+    }
     yield from laws.changed(kept, now)
     yield from laws.made_up(clean[step], now)
     if step is GRADE and ended.code == 0:
@@ -100,6 +104,12 @@ def broken(course, step, kind, clean):
                 yield from laws.said(again, (2,))
             else:
                 yield from laws.changed(clean[table], laws.seen(course, again))
+
+
+def _makes(step, key):
+    """Whether a step makes something anew; what a damage took away, no other step owes."""
+    makers = {"html": (FEEDBACK,), "ipynb": (GRADE,), "result": (GRADE, REGRADE)}
+    return step in makers.get(key.rpartition(" ")[2], (step,))
 
 
 def _due(step, key, mine, code):

@@ -17,6 +17,8 @@ pytestmark = pytest.mark.slow
 QUESTION = "joint_error"
 FEW = {"texts: lone surrogate", "files: pipe"}
 """The gate's sample of what the student's commands are given."""
+STOP = "KeyboardInterrupt"
+"""Cannot be told from Ctrl-C in a file that the instructor runs; see the test of its own."""
 
 
 @pytest.fixture(scope="module")
@@ -84,10 +86,20 @@ def _rows(course):
 
 @pytest.mark.soak
 @pytest.mark.xdist_group("fuzz: files")
-@pytest.mark.parametrize("kind", kinds("OBJECTS", "RAISES"), ids=str)
+@pytest.mark.parametrize("kind", [k for k in kinds("OBJECTS", "RAISES") if k.name != STOP], ids=str)
 def test_report_card(card, kind):
     """Answers from outside are tried like any others, whatever they give back or raise."""
     assert kind not in card, "\n".join(card[kind])
+
+
+@pytest.mark.soak
+@pytest.mark.xdist_group("fuzz: files")
+def test_an_answer_stops_the_report_card_as_its_author_would(course, tmp_path):
+    """A KeyboardInterrupt is the author's own, by Ctrl-C or in their file: 130, and a word."""
+    path = tmp_path / "answers.py"
+    path.write_text(f"def stops(*args):\n    raise {STOP}\nMISTAKES = {{{QUESTION!r}: [stops]}}")
+    ended = typed(course, "labkit", "report-card", "00_warmup", "--mistakes", str(path))
+    assert not [*laws.said(ended, (130,))]
 
 
 @pytest.mark.xdist_group("fuzz: files")

@@ -8,7 +8,6 @@ from __future__ import annotations
 import asyncio
 import builtins
 import inspect
-import io
 import linecache
 import math
 import os
@@ -21,6 +20,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
 
+from labkit.course.calling import Capped
 from labkit.course.reply import LONGEST, TimeUp, kind, reply, sentence
 from labkit.course.serialize import decode
 from labkit.course.source import plain
@@ -69,7 +69,7 @@ class Notebook:
 
     def run(self, cell: int, source: str, answers: list[str], seconds: float) -> dict[str, Any]:
         """Run one cell, and keep the functions that it is to define."""
-        out = _Capped(min(20_000, self.output))
+        out = Capped(min(20_000, self.output))
         error = raised = ""
         with _streams(out):
             try:
@@ -116,7 +116,7 @@ class Notebook:
         kwargs: dict[str, Any] = {}
         connection.send({"ready": name})
         while "args" in (asked := connection.read()):
-            with _streams(_Capped(0)):
+            with _streams(Capped(0)):
                 try:
                     args = [decode(x) for x in asked["args"]]
                     if asked["kwargs"] is not None:
@@ -187,22 +187,8 @@ def _cpu() -> float:
     return used.ru_utime + used.ru_stime
 
 
-class _Capped(io.StringIO):
-    """Text that stops growing."""
-
-    def __init__(self, most: int) -> None:
-        super().__init__()
-        self.most, self.size = most, 0
-
-    def write(self, text: str) -> int:
-        left = self.most - self.size
-        if left > 0:
-            self.size += super().write(text[:left])
-        return len(text)
-
-
 @contextmanager
-def _streams(out: _Capped) -> Iterator[None]:
+def _streams(out: Capped) -> Iterator[None]:
     """Put Python's own streams into a buffer, and silence warnings, for a block."""
     sys.stdout = sys.stderr = out
     warnings.simplefilter("ignore")
