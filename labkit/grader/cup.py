@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..control import Command, State
 from ..course.baxter_cup import MARKS, CupRun, cup_run
 from ..course.judges import Close
 from ..course.layout import CUP, Course
@@ -24,6 +25,8 @@ from ..course.own_arm import Arms
 from ..course.question import Question
 from ..course.serialize import read_record, record_data
 from ..errors import LabkitError
+from ..run import Controller
+from ..trajectory import AnySample
 from .atomic import write
 from .clean import clean_line
 from .each import Failed, for_student
@@ -173,8 +176,9 @@ def _run(new: Entry, data: bytes, sandbox: Sandbox, limits: Limits, on: Sequence
             with suppress(Disconnected):
                 session.start()
             by_pose = RemoteFunction(_BY_POSE, session)() is True
+            session.close_question()
             for seed in on:
-                runs.append(cup_run(lambda _: RemoteFunction(_LAW, session), seed, by_pose))
+                runs.append(cup_run(lambda _: _controller(session), seed, by_pose))
                 session.close_question()  # the next run begins with a fresh controller
             why = "" if np.isfinite([x.score for x in runs]).all() else "the arm ran away"
         except LabkitError as error:
@@ -183,6 +187,17 @@ def _run(new: Entry, data: bytes, sandbox: Sandbox, limits: Limits, on: Sequence
     scores = tuple(round(x.score, 2) if np.isfinite(x.score) else None for x in runs)
     shown = motion(runs[0].log, f"The cup: {new.handle}") if runs else None
     return replace(new, scores=scores, why=why, motion=fitting(shown) if shown else "")
+
+
+def _controller(session: Session) -> Controller:
+    """The entry's controller, asked in its sandbox."""
+    law = RemoteFunction(_LAW, session)
+
+    def controller(state: State, target: AnySample) -> Command:
+        command: Command = law(state, target)  # `run` refuses what is not one
+        return command
+
+    return controller
 
 
 def _keep(course: Course, all_of_them: Sequence[Entry]) -> None:
