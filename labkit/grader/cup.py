@@ -54,6 +54,8 @@ _ENTER = f"""
 from dataclasses import replace
 from labkit import BAXTER, Model
 from labkit.course import cup
+if not hasattr(cup, "make"):
+    raise NameError("the notebook calls cup(...) nowhere")
 {_LAW.name} = cup.make(Model("left", replace(BAXTER, name="cup")))
 {_BY_POSE.name} = cup.workspace
 """
