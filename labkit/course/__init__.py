@@ -9,6 +9,7 @@ from .baxter_cup import cup
 from .before_handing_in import hand_in
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
+from .failing_case import case
 from .forms import Choose, Curve, Measured, Number, Rank
 from .identification import Identification
 from .judges import AtMost, Close, Gains, Within
@@ -51,6 +52,7 @@ __all__ = [
     "Tuned",
     "Verdict",
     "Within",
+    "case",
     "check",
     "cup",
     "fingerprint",

@@ -39,8 +39,9 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
         print(wrapped(f"The answer was shown, so your first prediction stays: {first!r}."))
         return first
     if said is None:
-        _controls(name, form)
-        return None
+        said = _controls(name, form)
+        if said is None:
+            return None
     if found := form.problem(said):
         print(wrapped(f"{name}: {found}."))
     else:
@@ -85,17 +86,20 @@ def _overlay(form: Curve, said: Any, truth: Any) -> None:
     plotting.show(f"{form.height} over {form.along}. You said {form.words(said)}. It was {came}.")
 
 
-def _controls(name: str, form: Form) -> None:
-    """Controls for the mouse and for keys; running the cell again writes down what they say."""
+def _controls(name: str, form: Form) -> Any:
+    """Controls for the mouse and for keys; running the cell again returns what they say.
+
+    It is also written into the cell, in place of None.
+    """
     notebook = shell()
     if notebook is None:
-        return
+        return None
     chosen = desk().chosen.pop(name, None)
     if chosen is not None:
         text = f'{name} = predict("{name}", {json.dumps(chosen)})'
         notebook.set_next_input(text, replace=True)
-        print("Written down. Run this cell once more to commit to it.")
-        return
+        print(wrapped(f"Committed, and written into this cell: {form.words(chosen)}."))
+        return chosen
     import ipywidgets as widgets
     from IPython.display import display
 
@@ -107,12 +111,13 @@ def _controls(name: str, form: Form) -> None:
         said = values if isinstance(form, Curve) else values[0]
         if not form.problem(said):
             desk().chosen[name] = said
-            note.value = f"{form.words(said)}: run this cell again to write it down."
+            note.value = f"{form.words(said)}: run this cell again to commit to it."
 
     for part in parts:
         part.observe(changed, "value")
     box = widgets.HBox if isinstance(form, Curve) else widgets.VBox
     display(widgets.VBox([box(parts), note]))
+    return None
 
 
 def _inputs(form: Form, widgets: Any) -> list[Any]:

@@ -188,7 +188,10 @@ def check(name: str, function: Callable[..., Any]) -> float:
         print(wrapped(_NOT_RUN.format(name=name)))
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
-    _say(tell(question, verdict, printed, desk().leaning(name, function)), verdict)
+    text = tell(question, verdict, printed, desk().leaning(name, function))
+    if any("numbers>" in test.call for test in verdict.tests):
+        text += f'\nThe numbers: args, kwargs = lk.course.case("{name}")'
+    _say(text, verdict)
     if verdict.mistake is not None and found is not None:
         _show(found)
     return Points(verdict.earned)

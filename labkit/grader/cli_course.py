@@ -12,7 +12,7 @@ from zoneinfo import ZoneInfo
 import click
 
 from ..course.cli import PATH, verb
-from ..course.layout import Course
+from ..course.layout import CUP, Course
 from ..errors import LabkitError
 
 SEED = click.IntRange(min=0)
@@ -41,7 +41,8 @@ def of_assignment(command: Callable[..., int]) -> Callable[..., int]:
     @of_course
     @wraps(command)
     def on_assignment(course: Course, assignment: str, **given: Any) -> int:
-        course.notebook_source(assignment)
+        if assignment != CUP:
+            course.notebook_source(assignment)
         return command(course=course, assignment=assignment, **given)
 
     return on_assignment

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from ..course.cli import verb
-from ..course.layout import DEFENCE, Course
+from ..course.layout import UNRELEASED, Course
 from ..errors import LabkitError
 from .cli import nobody, tell, to_file, write
 from .cli_course import of_course
@@ -74,7 +74,7 @@ def export(
         raise LabkitError(f"--form is of the concept test: --layout {', '.join(QUIZZES)}")
 
     def read(name: str) -> list[Mark]:
-        if name != DEFENCE:
+        if name not in UNRELEASED:
             course.notebook_source(name)
         found = list(marks_of(course, name))
         if all(mark.absent for mark in found):
@@ -83,7 +83,7 @@ def export(
 
     if assignment is None:
         rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
-        names.append(DEFENCE)
+        names += UNRELEASED
         term = {name: marks for name in names if (marks := read(name))}
         if not term:
             raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")

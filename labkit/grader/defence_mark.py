@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import nbformat
 from nbgrader.api import MissingEntry
 
 from ..course.layout import DEFENCE, Course
 from ..errors import LabkitError
-from .atomic import write
-from .autograded_notebook import as_text, as_typed
+from .autograded_notebook import as_typed
 from .defence import ASKED, FULL, Asked
 from .gradebook import open_gradebook
+from .unreleased import enter
 
 LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
 """What the gradebook calls the questions."""
@@ -21,19 +20,9 @@ LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
 
 def await_mark(course: Course, student: str, asked: Sequence[Asked]) -> None:
     """Let a defence wait for its mark, in formgrader too; a mark that was given stays."""
-    notebook = nbformat.v4.new_notebook(cells=[_cell(k, one) for k, one in enumerate(asked)])
-    for folder in (course.source, course.root / "autograded" / student):
-        write(folder / DEFENCE / f"{DEFENCE}.ipynb", as_text(notebook))
+    texts = {name: _text(k, one) for k, (name, one) in enumerate(zip(LINES, asked, strict=False))}
     with open_gradebook(course) as book:
-        book.update_or_create_assignment(DEFENCE)
-        book.update_or_create_notebook(DEFENCE, DEFENCE)
-        for name in LINES:
-            about = {"cell_type": "markdown"}
-            book.update_or_create_source_cell(name, DEFENCE, DEFENCE, **about)
-            book.update_or_create_task_cell(name, DEFENCE, DEFENCE, max_score=FULL, **about)
-        book.update_or_create_student(student)
-        submission = book.update_or_create_submission(DEFENCE, student)
-        for grade in _grades(submission):
+        for grade in enter(course, book, DEFENCE, student, texts, FULL):
             grade.needs_manual_grade = grade.manual_score is None
         book.db.commit()
 
@@ -66,19 +55,8 @@ def _grades(submission: Any) -> list[Any]:
     return [grade for notebook in submission.notebooks for grade in notebook.grades]
 
 
-def _cell(number: int, one: Asked) -> Any:
+def _text(number: int, one: Asked) -> str:
     """A question as formgrader shows it."""
     head = f"**{number + 1} · {one.of.question.name}**, line {one.at}: {one.edit.says}"
     change = f"handed in: {one.edit.was.strip()}\nnow:       {one.edit.now.strip()}"
-    parts = (head, as_typed(change, "text"), as_typed("\n".join(one.lines), "python"))
-    cell = nbformat.v4.new_markdown_cell("\n\n".join(parts), id=f"defence-{number + 1}")
-    cell.metadata.nbgrader = {
-        "grade_id": LINES[number],
-        "points": FULL,
-        "grade": True,
-        "solution": False,
-        "task": True,
-        "locked": False,
-        "schema_version": 3,
-    }
-    return cell
+    return "\n\n".join((head, as_typed(change, "text"), as_typed("\n".join(one.lines), "python")))

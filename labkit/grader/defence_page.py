@@ -21,11 +21,13 @@ RUBRIC = (
     "explains the picture by the line: which term, which sign, which frame",
 )
 """A point for each."""
+WIDTH, ROOM = 95, 400.0
+"""Characters in a line of code in print; the height that is left for all lines, in [pt] of type."""
 
 
 def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
     """Write the page of a student, and return its file."""
-    style = file("feedback.css") + file("defence.css")
+    style = file("feedback.css") + file("defence.css") + _print_size(asked)
     replays = any(one.run and one.run["motion"] for one in asked)
     code = scripts() if replays else ()
     page = render(
@@ -48,6 +50,12 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
     path = course.build / "defence" / f"{student}.html"
     write(path, page)
     return path
+
+
+def _print_size(asked: Sequence[Asked]) -> str:
+    """The size of code in print with which all three functions fit one side of A4."""
+    lines = sum(1 + len(line) // WIDTH for one in asked for line in one.lines)
+    return f"@media print {{ .code {{ font-size: {min(8.0, ROOM / lines):.2f}pt }} }}"
 
 
 def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:

@@ -95,6 +95,9 @@ def _participants(marks: Sequence[Mark]) -> set[str]:
 def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -> list[list[Any]]:
     """All assignments side by side, and what they come to, in percent.
 
+    What has no full marks, such as the cup, is a bonus: it adds its points, times its weight, to
+    the percentage.
+
     Args:
         marks: By assignment, the same students in each or not.
         weights: Of each assignment in the whole.
@@ -113,7 +116,13 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
             if isinstance(score, float) and full[name]
         ]
         whole = sum(weights[name] for name in marks if full[name])
-        percent = round(100 * sum(shares) / whole, 2) if whole and "" not in scores else ""
+        count = [score for name, score in zip(marks, scores, strict=True) if full[name]]
+        bonus = sum(
+            weights[name] * score
+            for name, score in zip(marks, scores, strict=True)
+            if isinstance(score, float) and not full[name]
+        )
+        percent = round(100 * sum(shares) / whole + bonus, 2) if whole and "" not in count else ""
         ids = (student, who.first, who.last, who.email, who.id_number)
         table.append([*ids, *scores, percent])
     return table

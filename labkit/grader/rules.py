@@ -21,7 +21,7 @@ import msgspec
 from nbgrader.plugins import LateSubmissionPlugin
 from traitlets.utils.importstring import import_item
 
-from ..course.layout import DEFENCE, Course
+from ..course.layout import UNRELEASED, Course
 from ..errors import LabkitError
 from .nbgrader_api import nbgrader_api
 
@@ -134,7 +134,7 @@ def read_rules(course: Course) -> Rules:
         raise LabkitError(f"{path}: {error}; correct that line") from None
     unknown = {*rules.assignments, *(x.assignment for x in rules.extensions)} - {
         "",
-        DEFENCE,
+        *UNRELEASED,
         *course.names(),
     }
     if unknown:

@@ -61,7 +61,7 @@ def numbers(question: Question, tried: Tried) -> Numbers | None:
 def _run(question: Question, ran: Ran) -> Run:
     loop = ran.case.loop if isinstance(ran.case, Tuned) else ran.case
     says = ran.case.shown(question.name)
-    motion = _motion(ran.log, f"Your run: {ran.test}")
+    shown = motion(ran.log, f"Your run: {ran.test}")
     measures = ran.case.measured(ran.log) if ran.complete else {}
     return {
         "test": ran.test,
@@ -70,12 +70,12 @@ def _run(question: Question, ran: Ran) -> Run:
         "since": loop.settle,
         "measures": {key: _short(x) for key, x in measures.items()},
         "limits": {key: _short(x) for key, x in ran.case.expected.items()},
-        "words": "" if motion is None else motion.description,
-        "motion": "" if motion is None else _fitting(motion),
+        "words": "" if shown is None else shown.description,
+        "motion": "" if shown is None else fitting(shown),
     }
 
 
-def _motion(log: Log, title: str) -> Motion | None:
+def motion(log: Log, title: str) -> Motion | None:
     """What the viewer shows of a run, as far as its numbers are numbers."""
     log = _finite(log)
     return motion_of(log, title, label="your arm") if len(log) > 1 else None
@@ -94,7 +94,7 @@ def _finite(log: Log) -> Log:
     return Log(**{f.name: cut(getattr(log, f.name)) for f in fields(log)})
 
 
-def _fitting(motion: Motion) -> str:
+def fitting(motion: Motion) -> str:
     """The motion as the viewer reads it, as fine as fits."""
     short = FEWEST / (motion.t[-1] - motion.t[0])
     texts = (motion.to_json(max(rate, short)) for rate in RATES)

@@ -416,9 +416,7 @@ for claim, (a, b) in claims.items():
 # %% [markdown]
 # Two rows for each claim, because there are two questions. *On this line, is it worse?* Five seeds are five
 # looks at one line, and they can settle that. *Is it worse at tracking?* Then the tasks are the units, each
-# represented by its mean, and there are three or four of them, no matter how many seeds each had. If you pool
-# them to fifteen or twenty pairs, you count several looks at one line as several lines, and the interval
-# becomes several times too narrow.
+# represented by its mean, and there are three or four of them, no matter how many seeds each had.
 #
 # And five claims are five chances to be wrong: at 95 % each, about one in four such lists holds a verdict
 # that is due to chance alone. Use $1 - 0.05/5$ instead of 0.95 for each interval, and 95 % holds for the five
@@ -449,7 +447,8 @@ def half_width(differences):
 
 apart = np.subtract(late("baseline"), late("joint velocity"))
 pooled, by_task = half_width(apart), half_width(apart.reshape(4, 5).mean(axis=1))
-print(f"± {pooled:.2f} mm from 20 differences, ± {by_task:.2f} mm from the means of 4 tasks")
+if twenty_pairs is not None:
+    print(f"± {pooled:.2f} mm from 20 differences, ± {by_task:.2f} mm from the means of 4 tasks")
 predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled > 1.4 * by_task else "a")
 
 # %% [markdown] why="why_so_narrow"

@@ -209,7 +209,8 @@ lk.plotting.show(
 # %%
 Jv = tip_jacobian(q0)[:3]
 felt_at_tip = 1.0 / np.diag(Jv @ np.linalg.inv(M(q0)) @ Jv.T)
-print("a tap at the tip meets", ", ".join(f"{x:.1f} kg along {a}" for a, x in zip("xyz", felt_at_tip)))
+if heaviest_direction is not None:
+    print("a tap at the tip meets", ", ".join(f"{x:.1f} kg along {a}" for a, x in zip("xyz", felt_at_tip)))
 predict("heaviest_direction", truth="".join("xyz"[k] for k in np.argsort(-felt_at_tip)))
 
 # %% [markdown]
@@ -238,8 +239,6 @@ def gravity(masses, com_jacobians):
     return answer(masses, com_jacobians)
     ### END SOLUTION
 
-
-# %% predict="base_joint"
 
 # %% [markdown]
 # The best test is to try it: command your torque and nothing else, and the arm should float where it is. The
@@ -292,9 +291,12 @@ lk.plotting.show(
     + ", ".join(f"{1e3 * drop:.1f} mm with {name}" for name, drop in drops.items())
     + "."
 )
-print("your g at the ready pose [N m]:", ", ".join(f"{x:.1f}" for x in g(q0)))
+
+# %% predict="base_joint"
 
 # %%
+if base_joint is not None:
+    print("your g at the ready pose [N m]:", ", ".join(f"{x:.1f}" for x in g(q0)))
 s0, elbow_torque = abs(g(q0)[0]), abs(g(q0)[3])
 predict("base_joint", truth="c" if s0 < 0.05 * elbow_torque else "a" if s0 > elbow_torque else "b")
 

@@ -148,6 +148,9 @@ predict("exemplar_two", truth=([1, 2, 3, 4, 5, 6], [3, 3, 3, 3, 2, 3]))
 
 # %% [markdown]
 # ## Your report
+#
+# A figure and numbers of your own arm are what makes it a report. Where section 2 or section 3 earns 0, no other
+# section earns more than 1.
 
 # %%
 HANDLE = "demo"  # in a course: your login

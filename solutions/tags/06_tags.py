@@ -192,7 +192,8 @@ def depth_spread(distance, pictures=12):
 
 
 near, far = depth_spread(0.6), depth_spread(1.2)
-print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f} mm at 1.2 m")
+if twice_as_far is not None:
+    print(f"the depth spreads by {1e3 * near:.2f} mm at 0.6 m and by {1e3 * far:.2f} mm at 1.2 m")
 predict("twice_as_far", truth=round(float(far / near), 1))
 
 # %% [markdown]
@@ -342,7 +343,8 @@ def carry_forward(mean, covariance, age, accel_noise):
 turn = 2.0 * np.pi / 6.0 * 2.0  # how far the tag goes round in two seconds, in [rad]
 old_place = abs(np.exp(1j * turn) - 1.0)  # in radii, the circle as complex numbers
 straight_on = abs(np.exp(1j * turn) - (1.0 + 1j * turn))
-print(f"error in radii: {old_place:.2f} with the old place, {straight_on:.2f} with the prediction")
+if round_and_round is not None:
+    print(f"error in radii: {old_place:.2f} with the old place, {straight_on:.2f} with the prediction")
 ratio = straight_on / old_place
 predict("round_and_round", truth="c" if ratio > 1.0 else "b" if ratio > 0.3 else "a")
 

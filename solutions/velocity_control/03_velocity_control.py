@@ -174,11 +174,14 @@ for kd, style in ((0.0, "-"), (1.0, "--"), (3.0, "-.")):
 plt.xlabel("time [s]")
 plt.ylabel("error of s0 [rad]")
 plt.legend(frameon=False)
-lk.plotting.show(
-    "Error of one joint with kp = 3 and more and more D. What is left after 1.5 s: "
-    + ", ".join(f"{100 * share:.0f} % at kd = {kd:g}" for kd, share in shares.items())
-    + ". Dotted: exp(-r t) with your rate."
-)
+if with_more_d is None:
+    plt.close()  # the figure waits for your prediction
+else:
+    lk.plotting.show(
+        "Error of one joint with kp = 3 and more and more D. What is left after 1.5 s: "
+        + ", ".join(f"{100 * share:.0f} % at kd = {kd:g}" for kd, share in shares.items())
+        + ". Dotted: exp(-r t) with your rate."
+    )
 
 # %%
 predict("with_more_d", truth=(log.t, e))
@@ -263,11 +266,14 @@ plt.ylim(1e-2, 1e2)
 plt.xlabel("elbow e1 [rad]")
 plt.ylabel("fastest joint [rad/s]")
 plt.legend(frameon=False)
-lk.plotting.show(
-    "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
-    f"straight at {straight:.2f} rad. The most, in rad/s: "
-    + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items()) + "."
-)
+if worst_elbow is None:
+    plt.close()  # the figure waits for your prediction
+else:
+    lk.plotting.show(
+        "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
+        f"straight at {straight:.2f} rad. The most, in rad/s: "
+        + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items()) + "."
+    )
 
 # %%
 predict("worst_elbow", truth=round(float(angles[np.argmax(undamped)]), 2))

@@ -1,0 +1,154 @@
+"""The cup's board and final: honest, cheating and endless entries, three a day, and the bonus."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import date
+
+import numpy as np
+import pytest
+from handmade import hand_in
+
+from labkit import Sample, State
+from labkit.__main__ import main
+from labkit.course.baxter_cup import MARKS, PUBLIC_SEEDS
+from labkit.course.layout import CUP
+from labkit.grader import cup
+from labkit.grader.cup import A_DAY, SEEDS, Entry, entries, latest, play, seeds
+from labkit.grader.cup_table import as_text, give_bonus, page
+from labkit.grader.export import of_term
+from labkit.grader.marks import marks_of
+
+HONEST = """
+import labkit as lk
+from labkit.course import cup
+
+def cup_controller(model):
+    calls = []
+    def controller(state, target):
+        calls.append(state)
+        return lk.JointVelocity(target.velocity + 3.0 * (target.position - state.q))
+    return controller
+
+runs = cup(cup_controller)
+"""
+COUNTS = HONEST.replace("target.velocity + 3.0", "len(calls) + 0.0")
+READS_SEEDS = """
+import pathlib
+import labkit as lk
+from labkit.course import cup
+
+def look(model):
+    found = list(pathlib.Path("COURSE").rglob("*"))
+    from labkit.grader import cup as cups
+    from labkit.course.layout import Course
+    secret = cups.seeds(Course(pathlib.Path("COURSE")), False)
+    return lambda state, target: lk.JointVelocity(secret[0] + len(found) + 0.0 * state.q)
+
+cup(look)
+"""
+ENDLESS = """
+from labkit.course import cup
+
+def endless(model):
+    def controller(state, target):
+        while True:
+            pass
+    return controller
+
+cup(endless)
+"""
+TODAY, TOMORROW = date(2026, 11, 22), date(2026, 11, 23)
+
+
+def enter(course, student, *cells):
+    cells = [
+        {"cell_type": "code", "id": f"c{k}", "metadata": {}, "source": source, "outputs": [],
+         "execution_count": None}
+        for k, source in enumerate(cells)
+    ]  # fmt: skip
+    hand_in(course, CUP, student, {"cells": cells, "metadata": {}, "nbformat": 4,
+                                   "nbformat_minor": 5})  # fmt: skip
+
+
+def begin_term(course, seed):
+    course.term.parent.mkdir(exist_ok=True)
+    course.term.write_text(f'{{"seed": {seed}}}')
+
+
+@pytest.fixture
+def instant(monkeypatch):
+    """Runs of one command, whose score is its largest speed."""
+
+    def run(make, seed, workspace):
+        still = np.zeros(7)
+        command = make(None)(State(0.0, still, still), Sample(still, still, still))
+        return cup.CupRun(seed, float(np.abs(command.value).max()), None)
+
+    monkeypatch.setattr(cup, "cup_run", run)
+    monkeypatch.setattr(cup, "motion", lambda *_: None)
+
+
+@pytest.mark.slow
+def test_an_entry_is_run_on_the_term_s_seeds_in_the_sandbox(course, monkeypatch):
+    """What the sandbox answers scores what the same law scores here; its replay is on the page."""
+    monkeypatch.setattr(cup, "SEEDS", 1)
+    enter(course, "ada", HONEST)
+    (entry,) = play(course, TODAY, final=False)
+    names = {}
+    exec(HONEST.replace("runs =", "#"), names)
+    (seed,) = seeds(course, final=False)
+    assert entry.why == ""
+    assert entry.scores == (round(cup.cup_run(names["cup_controller"], seed).score, 2),)
+    shown = page(course, latest(course, final=False), final=False)
+    assert ">ada</th>" in shown and 'type="application/json"' in shown
+
+
+def test_no_entry_can_read_the_seeds_or_hold_up_the_others(course, instant, capsys):
+    """A search for the secret, an endless loop and a notebook without an entry have no score."""
+    begin_term(course, 5)
+    reads = READS_SEEDS.replace("COURSE", str(course.root))
+    for student, source in [("ada", HONEST), ("bob", ENDLESS), ("cy", reads), ("di", "x = 1")]:
+        enter(course, student, source)
+    assert main(["cup", "--course", str(course.root)]) == 0
+    found = {x.student: x for x in entries(course)}
+    assert found["ada"].scores == (0.0,) * SEEDS and found["ada"].why == ""
+    for student, why in [("bob", "TimeoutError"), ("cy", "labkit"), ("di", "nowhere")]:
+        assert why in found[student].why and found[student].beaten == 0
+    assert "inf mm  cy; " in capsys.readouterr().out
+
+
+def test_a_handle_has_three_runs_a_day_and_each_begins_anew(course, instant):
+    """A notebook is run once; the fourth of a day waits for the next; other handles do not."""
+    for k in range(A_DAY + 1):
+        enter(course, "ada", COUNTS + f"# {k}")
+        (entry,) = play(course, TODAY, final=False)
+        assert isinstance(entry, Entry) is (k < A_DAY)
+        if k < A_DAY:
+            assert entry.scores == (1.0,) * SEEDS
+            assert list(play(course, TODAY, final=False)) == []
+    assert f"ada had {A_DAY} runs today" in str(entry)
+    enter(course, "bob", HONEST)
+    assert [x.student for x in play(course, TODAY, final=False)] == ["ada", "bob"]
+    assert [x.student for x in play(course, TOMORROW, final=False)] == ["ada"]
+
+
+def test_the_final_has_other_seeds_and_its_marks_beaten_are_extra_credit(course, instant):
+    """Board, final and public seeds differ, as terms do; the bonus reaches the term's table."""
+    before = {*seeds(course, final=False), *seeds(course, final=True)}
+    begin_term(course, 5)
+    term = {*seeds(course, final=False), *seeds(course, final=True)}
+    assert len(before | term | set(PUBLIC_SEEDS)) == 4 * SEEDS + len(PUBLIC_SEEDS)
+    enter(course, "ada", HONEST)
+    (entry,) = play(course, TODAY, final=True)
+    assert latest(course, final=False) == [] and latest(course, final=True) == [entry]
+    slow = replace(entry, student="bob", handle="bob", scores=(50.0,) * SEEDS)
+    give_bonus(course, [entry, slow])
+    give_bonus(course, [entry, slow])
+    assert entry.beaten == len(MARKS)
+    bonus = list(marks_of(course, CUP))
+    assert {x.student: (x.score, x.points) for x in bonus} == {"ada": (4.0, 0.0), "bob": (2.0, 0.0)}
+    table = of_term({CUP: bonus, "01_paths": [replace(x, points=10.0, raw=5.0) for x in bonus]},
+                    {CUP: 0.5, "01_paths": 1.0})  # fmt: skip
+    assert [row[-1] for row in table[3:]] == [52.0, 51.0]
+    assert "mark: joint torque" in "\n".join(as_text([slow]))
