@@ -117,6 +117,7 @@ export class LiveArm {
     picture.stage.rig.around([...seen, picture.frames[`${this.data.side}_e1`]?.p ?? picture.tip.p]);
     picture.stage.rig.use("Motion");
     picture.stage.drawn = () => { this.host.dataset.ready = "1"; this.frames++; };
+    this.sight.alone.click();
     if (this.link) picture.grab((picked, event) => this.grip(picked, event));
   }
 

@@ -8,6 +8,8 @@ import { Stage } from "./stage.js";
 import { place, thing } from "./things.js";
 import { apply, subtract, transpose } from "./so3.js";
 
+const NEAR = 0.035; // metres from the tip within which a pointer means the tip
+
 export class Picture {
   /** A picture inside `host`; `this.works` is false without WebGL, and then nothing else may be asked. */
   constructor(host, label) {
@@ -105,7 +107,8 @@ export class Picture {
   /**
    * What a pointer points at: {thing, at}, or {link, local, at}, where `link` is the joint's number
    * that the link turns with, `local` the point in the link's frame, `at` the point in the base; or
-   * null.  The tip is a link of its own, with the number n.
+   * null.  The tip is a link of its own, with the number n; who points near it means the tip, also
+   * between its fingers, and whatever of target, band and wall is drawn in front of it.
    */
   pick(event) {
     const caster = this.stage.ray(event);
@@ -113,6 +116,8 @@ export class Picture {
     const solid = [...Object.values(this.things).map((t) => t.mark), ...names.map((n) => this.body.groups[n])];
     const hit = caster.intersectObjects(solid.filter((part) => part.visible), true)
       .find(({ object }) => object.userData.thing !== undefined || linkOf(object, this.body, names) >= 0);
+    const near = Math.hypot(...subtract(this.dragged(event, this.tip.p), this.tip.p)) < NEAR;
+    if (near && (!hit || hit.object.userData.thing !== undefined)) return this.atTip();
     if (!hit) return null;
     const at = hit.point.toArray();
     if (hit.object.userData.thing !== undefined) return { thing: hit.object.userData.thing, at };

@@ -11,7 +11,7 @@ export function check(label, value, onchange) {
 }
 
 /**
- * The bar under a picture: {element, magnifier}.
+ * The bar under a picture: {element, magnifier, alone}, the last the box that hides the rest of the robot.
  * @param magnify  called with 1, 10 or 50; without it there is no such choice
  */
 export function sight(picture, { magnify } = {}) {
@@ -36,7 +36,7 @@ export function sight(picture, { magnify } = {}) {
   const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
     h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, h("span", { class: "lk-gap" }), moves,
     h("span", { class: "lk-gap" }), boxes, magnifier);
-  return { element, magnifier };
+  return { element, magnifier, alone: boxes[1].querySelector("input") };
 }
 
 /** Where the close-up looks from: beside the hand, as the picture's own camera is turned. */
