@@ -17,11 +17,13 @@ from typing import Any
 import numpy as np
 
 from ..arm import Arm
+from ..control import JointTorque
 from ..driven import Simulated
 from ..hand import Hand
 from ..log import Log
 from ..run import loop
 from .dials import Dial, Dialled
+from .pull import Pull
 from .surroundings import Surroundings
 from .watch import PATIENCE, Watch, sentence
 
@@ -64,7 +66,7 @@ class Session(Simulated):
         self.arm, self._dials, self._show = arm, dials, show
         self._law = Dialled(laws, dials)
         self.around = Surroundings(arm, target)
-        self._hand = Hand(arm)
+        self._hand, self._pull = Hand(arm), Pull()
         self._usual, self._q0 = arm.plant, np.array(arm.truth().q)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self._thread = threading.Thread()
@@ -142,6 +144,7 @@ class Session(Simulated):
 
     def begin(self) -> float:
         """A run begins."""
+        self._pull.begin()
         self._watch.begins(self._law.name)
         return 0.0
 
@@ -253,7 +256,21 @@ class Session(Simulated):
     # What the page draws
 
     def _picture(self) -> None:
+        self._judge()
         self._show(self.numbers())
+
+    def _judge(self) -> None:
+        """Say what is wrong with a law that pulls elsewhere while nobody holds the arm."""
+        if self.state != "running":
+            return
+        T_wd, asked, arm = self.around.wanted(), self._law.asked, self.arm
+        if T_wd is None or self._hand.at is not None or not isinstance(asked, JointTorque):
+            self._pull.interrupt()
+            return
+        q, way = arm.truth().q, T_wd[:3, 3] - arm.tip()[0]
+        weight = 0.0 * q if self.plant.gravity_compensation else arm.model.gravity(q)
+        said = self._pull.look(arm.model, q, asked.value, weight, way)
+        self.note = f"{self._law.name} {said}" if said else ""
 
     def numbers(self) -> dict[str, Any]:
         """The session as the page draws it."""

@@ -91,8 +91,8 @@ while time.monotonic() - began < 3.0:
     sum(range(1000))
 """
 TIP = """() => {
-    const { picture } = LIVE, box = picture.stage.canvas.getBoundingClientRect();
-    const p = picture.stage.camera.position.clone().set(...picture.tip.p).project(picture.stage.camera);
+    const { stage, tip } = LIVE.picture, box = stage.canvas.getBoundingClientRect();
+    const p = stage.camera.position.clone().set(...tip.p).project(stage.camera);
     return [box.x + (p.x + 1) * box.width / 2, box.y + (1 - p.y) * box.height / 2];
 }""".replace("LIVE", LIVE)
 RECORD = """() => {

@@ -77,14 +77,30 @@ export class Picture {
     return made;
   }
 
+  /** The tip's velocity [m/s] as an arrow, half a second long, while `this.quick` asks for it. */
+  velocity(v) {
+    const shown = this.quick ? v : [0, 0, 0];
+    this.arrow("velocity", this.tip.p, shown.map((x) => 0.5 * x), `${Math.hypot(...shown).toFixed(2)} m/s`, 0x1a7f4b);
+  }
+
+  /** What the camera among the things sees, for `stage.inset`: faces, tags and robot, no marks. */
+  seen() {
+    const { position, quaternion, field, ratio } = this.given.camera;
+    const turn = new THREE.Quaternion(...quaternion), way = (v) => new THREE.Vector3(...v).applyQuaternion(turn).toArray();
+    const marks = Object.entries(this.things).filter(([name]) => !["face", "tag"].includes(this.given[name].kind)).map(([, t]) => t.mark);
+    return { eye: position, at: way([0, 0, 1]).map((x, k) => x + position[k]), up: way([0, -1, 0]), field, ratio,
+      hidden: [...marks, ...Object.values(this.arrows).map((a) => a.mark)] };
+  }
+
   /**
    * Draw what stands around the arm: {name: {kind, position, quaternion, size, colour, to}}, with
    * the kinds of things.js.  What is left out goes; what only moved is moved.
    */
   furnish(given) {
+    this.given = given;
     for (const name of Object.keys(this.things)) if (!given[name]) this.drop(name);
     for (const [name, data] of Object.entries(given)) {
-      const key = JSON.stringify([data.kind, data.size, data.colour]);
+      const key = JSON.stringify([data.kind, data.size, data.colour, data.field]);
       if (this.things[name]?.key !== key) {
         this.drop(name);
         const mark = thing(data);

@@ -88,13 +88,15 @@ export class Stage {
     this.labels = this.labels.filter((other) => other !== label);
   }
 
-  /** A second, smaller picture of the same scene from another place; `from()` gives {eye, at}. */
+  /**
+   * A second, smaller picture of the same scene from another place; `from()` gives {eye, at}, and for
+   * a camera {up, field, ratio, hidden}: its upright, angle of view, width over height, and what it does not see.
+   */
   inset(from) {
     this.small = h("canvas", { class: "lk-inset", "aria-hidden": "true" });
     this.canvas.after(this.small);
     this.closely = from;
     this.near = new THREE.PerspectiveCamera(FIELD, 1, 0.02, 10);
-    this.near.up.set(0, 0, 1);
   }
 
   /** Ask for a frame; many calls make one. */
@@ -126,20 +128,27 @@ export class Stage {
 
   /** Draw the inset, with the upper left corner of the one context. */
   closeUp(fine) {
+    const { eye, at, up = [0, 0, 1], field = FIELD, ratio = 1, hidden = [] } = this.closely();
     const side = Math.min(renderer.domElement.width, renderer.domElement.height, Math.round(this.small.clientWidth * fine));
     if (!side) return;
-    if (this.small.width !== side) Object.assign(this.small, { width: side, height: side });
-    const { eye, at } = this.closely();
+    const tall = Math.round(side / ratio);
+    if (this.small.width !== side || this.small.height !== tall) Object.assign(this.small, { width: side, height: tall });
+    this.small.style.aspectRatio = String(ratio);
+    Object.assign(this.near, { fov: field, aspect: ratio });
+    this.near.updateProjectionMatrix();
+    this.near.up.set(...up);
     this.near.position.set(...eye);
     this.near.lookAt(...at);
-    const top = renderer.domElement.height - side;
-    renderer.setViewport(0, top, side, side);
-    renderer.setScissor(0, top, side, side);
+    const top = renderer.domElement.height - tall, away = hidden.filter((part) => part.visible);
+    renderer.setViewport(0, top, side, tall);
+    renderer.setScissor(0, top, side, tall);
     renderer.setScissorTest(true);
+    away.forEach((part) => { part.visible = false; });
     renderer.render(this.scene, this.near);
+    away.forEach((part) => { part.visible = true; });
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, renderer.domElement.width, renderer.domElement.height);
-    this.small.getContext("2d").drawImage(renderer.domElement, 0, 0, side, side, 0, 0, side, side);
+    this.small.getContext("2d").drawImage(renderer.domElement, 0, 0, side, tall, 0, 0, side, tall);
   }
 
   /** The line of sight through a pointer's place in the page: a Raycaster. */
