@@ -16,8 +16,8 @@ from ..errors import LabkitError
 PATIENCE = 1.0
 """A law that has not returned after this long, in [s], is ended."""
 
-SLOW = 0.5
-"""A law is judged by its calls of this long in all, in [s]."""
+SLOW, CALLS = 1.0, 40
+"""A law is judged by calls that took this long in all, in [s], and are at least so many."""
 
 _LOOK = 0.05  # between two looks, in [s]
 
@@ -53,8 +53,9 @@ class Watch:
         self._within = False
 
     def check_pace(self) -> None:
-        """Raise `TooSlow` if half of its calls, half a second of them, take more than a period."""
-        if sum(self._times) > SLOW and median(self._times) > self._period:
+        """Raise `TooSlow` if half of its calls take longer than a period."""
+        times = self._times
+        if len(times) >= CALLS and sum(times) > SLOW and median(times) > self._period:
             took = 1e3 * median(self._times)
             self._times.clear()
             raise TooSlow(

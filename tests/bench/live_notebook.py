@@ -18,7 +18,8 @@ import nbformat
 
 ROOT = Path(__file__).parents[2]
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-SECONDS, DRAGS = 5.0, 9
+SECONDS, DRAGS = 5.0, 5
+PULL = 5.0  # of a force that is seen, in [N]
 LIVE = "document.querySelector('.lk-live').parentElement.labkit"
 
 ARM = """
@@ -141,7 +142,7 @@ def notebook(*cells):
             answers(port, server, Path(place, "log"))
             with sync_playwright() as playwright:
                 browser = playwright.chromium.launch(executable_path=program(), args=FLAGS)
-                page = browser.new_page(viewport={"width": 1280, "height": 1000})
+                page = browser.new_page(viewport={"width": 1280, "height": 1200})
                 page.set_default_timeout(45_000)
                 page.goto(f"http://127.0.0.1:{port}/lab/tree/live.ipynb?token={token}")
                 page.wait_for_selector(".jp-Notebook .jp-CodeCell")
@@ -150,6 +151,7 @@ def notebook(*cells):
                 )
                 execute(page, "notebook:run-all-cells")
                 page.wait_for_selector("[data-ready] .lk-live canvas")
+                page.locator(".lk-live .lk-stage").scroll_into_view_if_needed()
                 page.evaluate(RECORD)
                 page.locator(".lk-live .lk-play").click()
                 page.wait_for_function(f"{LIVE}.state === 'running' && {LIVE}.frame.t > 0.5")
@@ -204,13 +206,13 @@ def a_second(rows, column):
 def latency(page):
     """Milliseconds from the mouse's first move to the first picture with a force."""
     x, y = press(page)
-    page.wait_for_timeout(150)
+    page.wait_for_function(f"{LIVE}.seen.length && {LIVE}.seen.at(-1)[2] < 1")
     page.evaluate(f"{LIVE}.moved = null; {LIVE}.seen = []")
     page.mouse.move(x + 50, y)
-    page.wait_for_function(f"{LIVE}.seen.some(([,, force]) => force > 0.5)")
+    page.wait_for_function(f"{LIVE}.seen.some(([,, force]) => force > {PULL})")
     page.mouse.up()
-    first = next(row for row in seen(page) if row[2] > 0.5)
-    page.wait_for_timeout(600)
+    first = next(row for row in seen(page) if row[2] > PULL)
+    page.wait_for_timeout(1500)
     return first[0] - page.evaluate(f"{LIVE}.moved")
 
 
@@ -260,7 +262,8 @@ def feel(folder):
             page.wait_for_timeout(1500)
             page.screenshot(path=Path(folder) / f"{law}.png")
             page.mouse.up()
-            page.wait_for_timeout(1000)
+            page.wait_for_timeout(2500)
+            page.screenshot(path=Path(folder) / f"{law}, let go.png")
             told = page.evaluate(f"[{LIVE}.state, {LIVE}.readout.textContent]")
             print(law, *told, note.inner_text() if note.is_visible() else "", sep=" | ", flush=True)
 

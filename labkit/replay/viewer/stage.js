@@ -4,13 +4,18 @@ import * as THREE from "three";
 import { FIELD, Rig } from "./rig.js";
 import { h } from "./dom.js";
 
+const HURRY = 0.55; // of the size, while a picture moves that the processor has to draw
+const CALM = 400; // ms without another picture, after which it is drawn in full
+
 let renderer; // undefined: not tried, null: this browser has no WebGL
+let card; // whether there is a graphics card
 const stages = new Set();
 
 function context() {
   if (renderer !== undefined) return renderer;
   const canvas = document.createElement("canvas");
-  const gl = canvas.getContext("webgl2", { antialias: hasCard(), powerPreference: "low-power" });
+  card = hasCard();
+  const gl = canvas.getContext("webgl2", { antialias: card, powerPreference: "low-power" });
   if (!gl) return (renderer = null);
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => stages.forEach((s) => s.draw()));
@@ -108,7 +113,11 @@ export class Stage {
   paint() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
-    const fine = Math.min(2, devicePixelRatio);
+    const now = performance.now(), hurried = !card && now - this.last < CALM;
+    this.last = now;
+    clearTimeout(this.calm);
+    if (hurried) this.calm = setTimeout(() => this.draw(), CALM);
+    const fine = card ? Math.min(2, devicePixelRatio) : hurried ? HURRY : 1;
     const [w, t] = [Math.round(width * fine), Math.round(height * fine)];
     if (this.canvas.width !== w || this.canvas.height !== t) Object.assign(this.canvas, { width: w, height: t });
     const style = getComputedStyle(this.canvas);
@@ -180,6 +189,7 @@ export class Stage {
 
   dispose() {
     cancelAnimationFrame(this.waiting);
+    clearTimeout(this.calm);
     this.watch?.forEach((w) => w.disconnect());
     stages.delete(this);
   }
