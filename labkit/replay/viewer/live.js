@@ -183,20 +183,12 @@ export class LiveArm {
     const size = force ? Math.hypot(...force) : 0;
     if (force) this.taken = performance.now();
     picture.arrow("force", at ?? picture.tip.p, (force ?? [0, 0, 0]).map((x) => NEWTON * x), `${size.toFixed(1)} N`);
-    picture.velocity(this.moving());
+    picture.moved(this.frame.t);
     const from = things.target?.position ?? picture.tip.p;
     const off = picture.tip.p.map((x, k) => this.times * (x - from[k]));
     picture.arrow("error", from, this.times > 1 ? off : [0, 0, 0], `error × ${this.times}`, 0xb3001b);
     const way = this.held?.to ? this.held.to.map((x, k) => x - (at ?? picture.tip.p)[k]) : [0, 0, 0];
     picture.arrow("pointer", at ?? picture.tip.p, way, "", 0x57606a);
-  }
-
-  /** The tip's velocity since the picture before, in [m/s]; a stopped arm keeps its arrow. */
-  moving() {
-    const { t } = this.frame, { p } = this.picture.tip, [before, from] = this.was ?? [t, p];
-    if (t !== before) this.v = t > before && t < before + 0.5 ? p.map((x, k) => (x - from[k]) / (t - before)) : [0, 0, 0];
-    this.was = [t, p];
-    return this.v ?? [0, 0, 0];
   }
 
   curve() {

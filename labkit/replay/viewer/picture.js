@@ -83,6 +83,14 @@ export class Picture {
     this.arrow("velocity", this.tip.p, shown.map((x) => 0.5 * x), `${Math.hypot(...shown).toFixed(2)} m/s`, 0x1a7f4b);
   }
 
+  /** The same, from where the tip was at the time [s] before; a stopped arm keeps its arrow. */
+  moved(t) {
+    const { p } = this.tip, [before, from] = this.was ?? [t, p];
+    if (t !== before) this.v = t > before && t < before + 0.5 ? p.map((x, k) => (x - from[k]) / (t - before)) : null;
+    this.was = [t, p];
+    this.velocity(this.v ?? [0, 0, 0]);
+  }
+
   /** What the camera among the things sees, for `stage.inset`: faces, tags and robot, no marks. */
   seen() {
     const { position, quaternion, field, ratio } = this.given.camera;

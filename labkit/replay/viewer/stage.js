@@ -117,9 +117,10 @@ export class Stage {
     this.last = now;
     clearTimeout(this.calm);
     if (hurried) this.calm = setTimeout(() => this.draw(), CALM);
-    const fine = card ? Math.min(2, devicePixelRatio) : hurried ? HURRY : 1;
-    const [w, t] = [Math.round(width * fine), Math.round(height * fine)];
-    if (this.canvas.width !== w || this.canvas.height !== t) Object.assign(this.canvas, { width: w, height: t });
+    const fine = card ? Math.min(2, devicePixelRatio) : 1, drawn = hurried ? HURRY : fine;
+    const [w, t] = [Math.round(width * drawn), Math.round(height * drawn)];
+    const [W, T] = [Math.round(width * fine), Math.round(height * fine)];
+    if (this.canvas.width !== W || this.canvas.height !== T) Object.assign(this.canvas, { width: W, height: T });
     const style = getComputedStyle(this.canvas);
     const colour = (name) => new THREE.Color(style.getPropertyValue(name).trim() || "#888");
     this.floor.material.color = colour("--lk-grid");
@@ -129,8 +130,8 @@ export class Stage {
     if (size.x !== w || size.y !== t) renderer.setSize(w, t, false);
     this.rig.frame(width / height);
     renderer.render(this.scene, this.camera);
-    this.paper.drawImage(renderer.domElement, 0, 0);
-    if (this.small && !this.small.hidden) this.closeUp(fine);
+    this.paper.drawImage(renderer.domElement, 0, 0, w, t, 0, 0, W, T);
+    if (this.small && !this.small.hidden) this.closeUp(drawn);
     this.settle(width, height);
     this.drawn?.();
   }
