@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
+from typing import Any
 
 import numpy as np
 
+from ..arm import Arm
+from ..control import JointTorque
 from ..model import Model
 from ..shapes import Array
 
@@ -30,38 +33,37 @@ _RIGHT, _CLEAR = 0.7, 0.85  # cosines
 class Pull:
     """The direction of a law's pull, look after look."""
 
-    def __init__(self) -> None:
-        """Nothing was seen yet."""
-        self._looks: deque[Array] = deque(maxlen=LOOKS)
-        self._said = ""
-
-    def interrupt(self) -> None:
-        """Somebody else pulls too; what was said stays."""
-        self._looks.clear()
+    def __init__(self, arm: Arm) -> None:
+        """Nothing was seen yet of what pulls ``arm``."""
+        self._arm = arm
+        self.begin()
 
     def begin(self) -> None:
         """Another law, or another start."""
-        self._looks.clear()
+        self._looks: deque[list[float]] = deque(maxlen=LOOKS)
         self._said = ""
 
-    def look(self, model: Model, q: Array, torque: Array, weight: Array, way: Array) -> str:
+    def look(self, asked: Any, T_wd: Array | None, alone: bool) -> str:
         """What is wrong with the law, once that is clear; else nothing.
 
         Args:
-            model: The arm's equations.
-            q: Joint angles, shape (n,) in [rad].
-            torque: What the law asks for, shape (n,) in [N m].
-            weight: What it has to carry, shape (n,) in [N m]; zeros if the arm carries itself.
-            way: From the tip to its target, world axes, shape (3,) in [m].
+            asked: The law's latest command; only torques have a pull.
+            T_wd: Where the tip should be, shape (4, 4), if that is known.
+            alone: Whether no hand pulls beside the law.
         """
+        if T_wd is None or not alone or not isinstance(asked, JointTorque):
+            self._looks.clear()
+            return self._said
+        arm, q, tau = self._arm, self._arm.truth().q, asked.value
+        way = T_wd[:3, 3] - arm.tip()[0]
         if np.linalg.norm(way) < FAR:
             self.begin()
             return ""
-        felt = tip_force(model, q, torque - weight)
-        in_tool = model.pose(q)[:3, :3].T @ way
-        self._looks.append(np.array([_cosine(felt, way), _cosine(felt, -way),
-                                     _cosine(felt, in_tool),
-                                     _cosine(tip_force(model, q, torque), way)]))  # fmt: skip
+        g = arm.model.gravity(q)
+        felt = tip_force(arm.model, q, tau if arm.plant.gravity_compensation else tau - g)
+        in_tool = arm.model.pose(q)[:3, :3].T @ way
+        ways = [(felt, way), (felt, -way), (felt, in_tool), (tip_force(arm.model, q, tau), way)]
+        self._looks.append([_cosine(force, along) for force, along in ways])
         likely = np.mean(self._looks, axis=0)
         best = int(likely[1:].argmax()) + 1
         if len(self._looks) == LOOKS and likely[0] < _RIGHT and likely[best] > _CLEAR:

@@ -10,6 +10,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from queue import Empty, SimpleQueue
 from typing import Any
@@ -17,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from ..arm import Arm
-from ..control import JointTorque
 from ..driven import Simulated
 from ..hand import Hand
 from ..log import Log
@@ -64,9 +64,8 @@ class Session(Simulated):
         """A session that has not begun; ``show`` receives each picture, in numbers."""
         super().__init__(arm, rate)
         self.arm, self._dials, self._show = arm, dials, show
-        self._law = Dialled(laws, dials)
-        self.around = Surroundings(arm, target)
-        self._hand, self._pull = Hand(arm), Pull()
+        self._law, self.around = Dialled(laws, dials), Surroundings(arm, target)
+        self._hand, self._pull = Hand(arm), Pull(arm)
         self._usual, self._q0 = arm.plant, np.array(arm.truth().q)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self._thread = threading.Thread()
@@ -83,9 +82,7 @@ class Session(Simulated):
     def tell(self, message: dict[str, Any]) -> None:
         """Take a message from the page; the thread reads it before its next tick."""
         self._heard = time.monotonic()
-        if message["kind"] == "hand":
-            message = {**message, "heard": self._heard}
-        self._inbox.put(message)
+        self._inbox.put({**message, "heard": self._heard})
         if message["kind"] in ("go", "step") and not self._thread.is_alive():
             self._thread = threading.Thread(target=self._main, name="labkit live", daemon=True)
             self._thread.start()
@@ -114,9 +111,7 @@ class Session(Simulated):
             change()
         self._changes.clear()
         self._obey(wait=self.state != "running")
-        if self._changes:
-            return
-        if self.state != "running":
+        if self._changes or self.state != "running":
             return
         self._over = self._again = False
         self.plant = self.arm.plant
@@ -190,13 +185,11 @@ class Session(Simulated):
 
     def _obey(self, wait: bool = False) -> None:
         """Do what the page asked for; with `wait`, wait for something."""
-        try:
+        with suppress(Empty):
             while True:
                 message = self._inbox.get(wait, ABSENT if wait else None)
                 getattr(self, f"_on_{message['kind']}", lambda message: None)(message)
                 wait = False
-        except Empty:
-            return
 
     def _on_go(self, message: dict[str, Any]) -> None:
         self.state, self.note = "running", ""
@@ -256,21 +249,10 @@ class Session(Simulated):
     # What the page draws
 
     def _picture(self) -> None:
-        self._judge()
+        if self.state == "running":
+            said = self._pull.look(self._law.asked, self.around.wanted(), self._hand.at is None)
+            self.note = f"{self._law.name} {said}" if said else ""
         self._show(self.numbers())
-
-    def _judge(self) -> None:
-        """Say what is wrong with a law that pulls elsewhere while nobody holds the arm."""
-        if self.state != "running":
-            return
-        T_wd, asked, arm = self.around.wanted(), self._law.asked, self.arm
-        if T_wd is None or self._hand.at is not None or not isinstance(asked, JointTorque):
-            self._pull.interrupt()
-            return
-        q, way = arm.truth().q, T_wd[:3, 3] - arm.tip()[0]
-        weight = 0.0 * q if self.plant.gravity_compensation else arm.model.gravity(q)
-        said = self._pull.look(arm.model, q, asked.value, weight, way)
-        self.note = f"{self._law.name} {said}" if said else ""
 
     def numbers(self) -> dict[str, Any]:
         """The session as the page draws it."""
