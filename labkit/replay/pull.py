@@ -16,7 +16,7 @@ FAR = 0.05
 """A law that keeps its tip nearer to the target than this, in [m], is not judged."""
 
 LOOKS = 10
-"""So many looks in a row, of which there are 30 a second, are judged together."""
+"""This number of looks in a row, of which there are 30 a second, is judged together."""
 
 WEAK = 2.0
 """A pull smaller than this, in [N], has no direction."""

@@ -17,7 +17,7 @@ PATIENCE = 1.0
 """A law that has not returned after this long, in [s], is ended."""
 
 SLOW, CALLS = 1.0, 40
-"""A law is judged by calls that took this long in all, in [s], and are at least so many."""
+"""A law is judged by calls that took this long in all, in [s], and at least by this number."""
 
 _LOOK = 0.05  # between two looks, in [s]
 
