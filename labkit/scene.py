@@ -10,6 +10,7 @@ contact is as stiff as the two stiffnesses in series and as damped as both dampi
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -106,13 +107,13 @@ class Wall(_Slab):
         object.__setattr__(self, "normal", locked(self.normal / length))
         _check_slab(self)
 
-    @property
+    @cached_property
     def T_wf(self) -> Array:
         """Pose of the face in the world, its z axis along the normal, shape (4, 4)."""
         z = self.normal
         x = np.cross(np.eye(3)[1 if abs(z[1]) < 0.9 else 2], z)
         x /= np.linalg.norm(x)
-        return se3.pose(np.column_stack([x, np.cross(z, x), z]), self.point)
+        return locked(se3.pose(np.column_stack([x, np.cross(z, x), z]), self.point))
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,10 +144,10 @@ class Table(_Slab):
         lock_vectors(self, 2, "centre")
         _check_slab(self)
 
-    @property
+    @cached_property
     def T_wf(self) -> Array:
         """Pose of the upper face in the world, shape (4, 4)."""
-        return se3.pose(np.eye(3), np.array([*self.centre, self.height]))
+        return locked(se3.pose(np.eye(3), np.array([*self.centre, self.height])))
 
 
 @dataclass(frozen=True, eq=False)

@@ -38,7 +38,7 @@ FACES = {
     "E1": 1200, "W0": 1420, "W1": 1280, "W2": 1050, "electric_gripper_base": 680,
     "extended_narrow": 220, "paddle_tip": 90, "half_round_tip": 120,
 }  # fmt: skip
-FINER = 3.5
+FINER = 1.5
 SPECK = 5e-4  # m^2, connected bodies smaller than this (screws, clips) are left out
 MARKERS = ("collision_", "hand_accelerometer", "hand_camera", "hand_range")  # no visible body
 ARM = ("s0", "s1", "e0", "e1", "w0", "w1", "w2")

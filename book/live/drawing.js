@@ -52,6 +52,7 @@ export class Drawing extends Form {
     picture.pose("left", this.session.arm.q);
     if (this.other) this.ghost.pose(this.other.arm.q);
     this.furnish(now);
+    picture.moved(now.t);
     for (const name of ["hand", "push", "wall"]) {
       const force = now.forces.find((f) => f.name === name);
       picture.arrow(name, force?.at ?? now.p, force ? force.force.map((x) => NEWTON * x) : [0, 0, 0], force ? `${force.size.toFixed(1)} N` : "");

@@ -5,17 +5,13 @@ import { placeOn } from "./session.js";
 
 const PULL = { stiffness: 250, damping: 8 }; // N/m and N s/m of the spring to the pointer
 const REACH = 0.2; // how far it stretches at most, in [m]
-const NEAR = 0.035; // in [m]
 const PUSH = 1; // how long a push by button lasts, in [s] of the arm's time
 
 export const AXES = { "+x": [1, 0, 0], "−x": [-1, 0, 0], "+y": [0, 1, 0], "−y": [0, -1, 0], "+z": [0, 0, 1], "−z": [0, 0, -1] };
 
 /** Let pointers take hold of the arm, or of `things` {name: {move(point), end()}}; calls `touched` as they do. */
 export function hold(picture, sessions, things, touched) {
-  picture.grab((found, event) => {
-    // Target, spring and wall meet at the tip: who points near it means the hand, whatever is drawn in front of it.
-    const { p } = picture.tip, near = length(subtract(picture.dragged(event, p), p)) < NEAR;
-    const picked = near && found.thing !== undefined ? picture.atTip() : found;
+  picture.grab((picked) => {
     if (picked.thing) {
       const thing = things[picked.thing];
       return thing && { move: (event) => thing.move(picture.dragged(event, picked.at)), end: () => thing.end?.() };

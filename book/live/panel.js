@@ -44,9 +44,9 @@ export class Panel extends Drawing {
     this.picture = new viewer.Picture(stagebox, "Baxter, live");
     if (this.picture.works) {
       this.draw3d(robot);
-      const { element } = viewer.sight(this.picture);
+      const { element, alone } = viewer.sight(this.picture);
       stagebox.after(element);
-      element.querySelectorAll("input[type=checkbox]")[1].click(); // the arm alone
+      alone.click();
     }
     else stagebox.append(h("p", { class: "lk-note" }, "This browser draws no 3-D (WebGL is missing). The arm is simulated all the same: push it by the buttons; numbers and curve follow."));
     this.showGains();

@@ -102,7 +102,10 @@ class Dialled:
     Attributes:
         name: Which law.
         values: Where the dials stand.
+        asked: What the law returned last.
     """
+
+    asked: Any = None
 
     def __init__(self, laws: Mapping[str, Callable[..., Any]], dials: Mapping[str, Dial]) -> None:
         """Begin with the first law and the dials at their start."""
@@ -123,4 +126,5 @@ class Dialled:
     def __call__(self, state: Any, target: Any) -> Any:
         """The law's command."""
         dials = {d: self.values[d] for d in self._takes[self.name]}
-        return self._laws[self.name](state, target, **dials)
+        self.asked = self._laws[self.name](state, target, **dials)
+        return self.asked

@@ -28,7 +28,7 @@ def recorded_html(data: Mapping[str, Any], description: str, caption: str) -> st
 
 @cache
 def viewer_scripts() -> tuple[str, ...]:
-    """The viewer and the robot as scripts to put into a page that must be one file, 1.7 MB."""
+    """The viewer and the robot as scripts to put into a page that must be one file, 1.4 MB."""
     return tuple((VIEWER / name).read_text(encoding="utf-8") for name in ("viewer.js", "robot.js"))
 
 

@@ -10,6 +10,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from queue import Empty, SimpleQueue
 from typing import Any
@@ -22,6 +23,7 @@ from ..hand import Hand
 from ..log import Log
 from ..run import loop
 from .dials import Dial, Dialled
+from .pull import Pull
 from .surroundings import Surroundings
 from .watch import PATIENCE, Watch, sentence
 
@@ -62,9 +64,8 @@ class Session(Simulated):
         """A session that has not begun; ``show`` receives each picture, in numbers."""
         super().__init__(arm, rate)
         self.arm, self._dials, self._show = arm, dials, show
-        self._law = Dialled(laws, dials)
-        self.around = Surroundings(arm, target)
-        self._hand = Hand(arm)
+        self._law, self.around = Dialled(laws, dials), Surroundings(arm, target)
+        self._hand, self._pull = Hand(arm), Pull(arm)
         self._usual, self._q0 = arm.plant, np.array(arm.truth().q)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self._thread = threading.Thread()
@@ -81,9 +82,7 @@ class Session(Simulated):
     def tell(self, message: dict[str, Any]) -> None:
         """Take a message from the page; the thread reads it before its next tick."""
         self._heard = time.monotonic()
-        if message["kind"] == "hand":
-            message = {**message, "heard": self._heard}
-        self._inbox.put(message)
+        self._inbox.put({**message, "heard": self._heard})
         if message["kind"] in ("go", "step") and not self._thread.is_alive():
             self._thread = threading.Thread(target=self._main, name="labkit live", daemon=True)
             self._thread.start()
@@ -112,9 +111,7 @@ class Session(Simulated):
             change()
         self._changes.clear()
         self._obey(wait=self.state != "running")
-        if self._changes:
-            return
-        if self.state != "running":
+        if self._changes or self.state != "running":
             return
         self._over = self._again = False
         self.plant = self.arm.plant
@@ -142,6 +139,7 @@ class Session(Simulated):
 
     def begin(self) -> float:
         """A run begins."""
+        self._pull.begin()
         self._watch.begins(self._law.name)
         return 0.0
 
@@ -187,13 +185,11 @@ class Session(Simulated):
 
     def _obey(self, wait: bool = False) -> None:
         """Do what the page asked for; with `wait`, wait for something."""
-        try:
+        with suppress(Empty):
             while True:
                 message = self._inbox.get(wait, ABSENT if wait else None)
                 getattr(self, f"_on_{message['kind']}", lambda message: None)(message)
                 wait = False
-        except Empty:
-            return
 
     def _on_go(self, message: dict[str, Any]) -> None:
         self.state, self.note = "running", ""
@@ -253,6 +249,9 @@ class Session(Simulated):
     # What the page draws
 
     def _picture(self) -> None:
+        if self.state == "running":
+            said = self._pull.look(self._law.asked, self.around.wanted(), self._hand.at is None)
+            self.note = f"{self._law.name} {said}" if said else ""
         self._show(self.numbers())
 
     def numbers(self) -> dict[str, Any]:

@@ -89,6 +89,12 @@ class Surroundings:
                 }  # fmt: skip
             elif isinstance(thing, Spring):
                 found[f"thing {i}"] = {"kind": "band", "position": thing.anchor.tolist()}
+        if camera := getattr(getattr(self._target, "lookups", None), "camera", None):
+            lens = camera.intrinsics
+            found["camera"] = _placed("camera", camera.T_wc) | {
+                "field": float(np.degrees(2.0 * np.arctan(lens.height / 2.0 / lens.fy))),
+                "ratio": lens.width / lens.height,
+            }
         shown: list[Any] = self._arm.world.shown
         for i, board in enumerate(shown):
             if hasattr(board, "T_wm"):
@@ -108,7 +114,7 @@ class Surroundings:
             T = np.array(board.T_wm)
             T[:3, 3] = position
             board.place(T)
-        else:
+        elif kind == "thing":
             self._goals[int(number)] = position
 
     def approach(self, seconds: float) -> None:

@@ -16,6 +16,9 @@ from ..errors import LabkitError
 PATIENCE = 1.0
 """A law that has not returned after this long, in [s], is ended."""
 
+SLOW, CALLS = 1.0, 40
+"""A law is judged by calls that took this long in all, in [s], and at least by this number."""
+
 _LOOK = 0.05  # between two looks, in [s]
 
 
@@ -39,6 +42,8 @@ class Watch:
     def begins(self, name: str) -> None:
         """From here on the law of this name computes."""
         self._calls += 1
+        if name != self._name:
+            self._times.clear()
         self._name, self._since, self._within = name, time.perf_counter(), True
 
     def ends(self) -> None:
@@ -48,8 +53,9 @@ class Watch:
         self._within = False
 
     def check_pace(self) -> None:
-        """Raise `TooSlow` if half of the calls of a second take longer than a period."""
-        if len(self._times) == self._times.maxlen and median(self._times) > self._period:
+        """Raise `TooSlow` if half of its calls take longer than a period."""
+        times = self._times
+        if len(times) >= CALLS and sum(times) > SLOW and median(times) > self._period:
             took = 1e3 * median(self._times)
             self._times.clear()
             raise TooSlow(

@@ -76,7 +76,7 @@ def _widget_class() -> type[Any]:
             self.picture = lambda: motion_still(motion)
 
         def save(self, path: Any) -> None:
-            """Write a page that plays anywhere, without network and kernel, 1.7 MB.
+            """Write a page that plays anywhere, without network and kernel, 1.4 MB.
 
             Args:
                 path: Where to; its name should end in ".html".

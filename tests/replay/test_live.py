@@ -279,3 +279,45 @@ def test_what_is_given_wrongly_is_a_sentence():
             lk.live(arm, 3.0, hold)
         with pytest.raises(TypeMismatch, match="expected a simulated"):
             lk.live("left", springy, hold)
+
+
+STIFF = np.array([300.0] * 3 + [20.0] * 3)
+DAMP = np.array([60.0] * 3 + [2.0] * 3)
+
+
+def impedance(state, target, sign=1.0, gravity=1.0, tool=False):
+    model = MODELS[threading.get_ident()]
+    T, J = model.pose(state.q), model.tip_jacobian(state.q)
+    e = lk.se3.pose_error(target.pose, T)
+    e = np.r_[T[:3, :3].T @ e[:3], T[:3, :3].T @ e[3:]] if tool else e
+    tau = J.T @ (sign * STIFF * e - DAMP * (J @ state.dq))
+    return lk.JointTorque(tau + gravity * model.gravity(state.q))
+
+
+@pytest.mark.parametrize(
+    ("mistake", "words"),
+    [
+        ({"sign": -1.0}, "law pulls the arm away from its target; check the sign of the error"),
+        ({"tool": True}, "law pulls along the error as the tool's axes have it"),
+        ({"gravity": 0.0}, "law pulls towards its target, but .* does it add gravity"),
+    ],
+)
+def test_a_law_that_pulls_elsewhere_is_told_so_when_the_hand_lets_go(live, mistake, words):
+    """Wrong sign, tool axes, no gravity: pulled aside and let go, the note names the mistake."""
+    session, frames = live({"law": lambda s, t: impedance(s, t, **mistake)})
+    session.tell({"kind": "go"})
+    pulled = until(frames, lambda f: f["error"] > 0.03, tell=lambda: push(session, [0, 25.0, 0]))
+    session.tell({"kind": "hand", "link": 7, "local": [0, 0, 0]})
+    told = until(frames, lambda f: f["t"] > pulled["t"] and f["note"])
+    assert re.search(words, told["note"]), told["note"]
+    assert told["state"] == "running"
+
+
+def test_a_right_law_is_not_suspected(live):
+    """A soft law that a band holds 6 cm from its target gets no note."""
+    band = lk.Spring(T_READY[:3, 3] + [0.0, 0.3, 0.0], 100.0)
+    session, frames = live({"law": impedance}, things=[band])
+    session.tell({"kind": "go"})
+    until(frames, lambda f: f["t"] > 2.0)
+    assert frames[-1]["error"] > 0.05
+    assert {f["note"] for f in frames} == {""}

@@ -24,7 +24,7 @@ function parts(robot) {
       new THREE.MeshStandardMaterial({
         color: new THREE.Color().setRGB(...rgb, THREE.SRGBColorSpace),
         roughness: name === "grey" ? 0.4 : 0.55, metalness: name === "grey" ? 0.4 : 0.05,
-        side: THREE.DoubleSide })])),
+      })])),
   };
   return shared;
 }

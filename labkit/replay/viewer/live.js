@@ -20,7 +20,9 @@ export class LiveArm {
     this.readout = h("p", { class: "lk-readout" });
     this.status = h("p", { class: "lk-hidden", role: "status" });
     this.picture = new Picture(this.stagebox, `${data.title}. Drag the arm or a thing to pull at it, elsewhere to turn the view`);
-    this.sight = sight(this.picture);
+    this.times = 1; // the error is drawn this many times as large
+    this.sight = sight(this.picture, { camera: !!data.first.things.camera,
+      magnify: (k) => { this.times = k; this.draw(this.frame); } });
     this.plot = new Plot({ title: "Distance from the target [mm]", xName: "time [s]", zero: true, least: 1, ...this.curve() });
     this.element.append(this.stagebox, this.note, this.buttons(), this.sight.element, this.hand(), this.dials(), this.readout, this.status,
       h("div", { class: "lk-plots" }, this.plot.element));
@@ -117,13 +119,15 @@ export class LiveArm {
     picture.stage.rig.around([...seen, picture.frames[`${this.data.side}_e1`]?.p ?? picture.tip.p]);
     picture.stage.rig.use("Motion");
     picture.stage.drawn = () => { this.host.dataset.ready = "1"; this.frames++; };
+    this.sight.alone.click();
     if (this.link) picture.grab((picked, event) => this.grip(picked, event));
   }
 
   /** A pointer takes hold of a link or a thing. */
   grip(picked, event) {
     const { picture } = this;
-    let at = picked.at;
+    if (picked.thing === "camera") return null; // it stands where its readings are made
+    const { at } = picked;
     if (picked.thing !== undefined) {
       const { position } = this.things[picked.thing];
       const from = picture.dragged(event, at);
@@ -144,7 +148,7 @@ export class LiveArm {
 
   /** A picture in numbers came from the kernel. */
   show(frame) {
-    const before = this.state;
+    const before = this.state, told = this.frame?.note;
     if (frame.kept > this.frame?.kept) this.speak("Kept as view.log.", 0);
     if (frame.state === "running" && performance.now() - (this.here ?? -1e9) > 1e4) { // somebody looks on
       this.here = performance.now();
@@ -162,7 +166,7 @@ export class LiveArm {
     const stale = this.held && frame.state === "running" && !frame.force && this.old();
     this.say(frame.note || (stale ? "The kernel is busy with another cell: what you pull arrives later, and until then there is no force." : ""),
       frame.state === "stopped");
-    if (before !== frame.state) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);
+    if (before !== frame.state || frame.note && frame.note !== told) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);
     this.plotted ??= setTimeout(() => { this.plotted = null; const c = this.curve(); this.plot.set(c.series, c.x); this.plot.time(c.x.at(-1)); }, 200);
   }
 
@@ -179,6 +183,10 @@ export class LiveArm {
     const size = force ? Math.hypot(...force) : 0;
     if (force) this.taken = performance.now();
     picture.arrow("force", at ?? picture.tip.p, (force ?? [0, 0, 0]).map((x) => NEWTON * x), `${size.toFixed(1)} N`);
+    picture.moved(this.frame.t);
+    const from = things.target?.position ?? picture.tip.p;
+    const off = picture.tip.p.map((x, k) => this.times * (x - from[k]));
+    picture.arrow("error", from, this.times > 1 ? off : [0, 0, 0], `error × ${this.times}`, 0xb3001b);
     const way = this.held?.to ? this.held.to.map((x, k) => x - (at ?? picture.tip.p)[k]) : [0, 0, 0];
     picture.arrow("pointer", at ?? picture.tip.p, way, "", 0x57606a);
   }

@@ -8,6 +8,8 @@ import { Stage } from "./stage.js";
 import { place, thing } from "./things.js";
 import { apply, subtract, transpose } from "./so3.js";
 
+const NEAR = 0.035; // metres from the tip within which a pointer means the tip
+
 export class Picture {
   /** A picture inside `host`; `this.works` is false without WebGL, and then nothing else may be asked. */
   constructor(host, label) {
@@ -75,14 +77,38 @@ export class Picture {
     return made;
   }
 
+  /** The tip's velocity [m/s] as an arrow, half a second long, while `this.quick` asks for it. */
+  velocity(v) {
+    const shown = this.quick ? v : [0, 0, 0];
+    this.arrow("velocity", this.tip.p, shown.map((x) => 0.5 * x), `${Math.hypot(...shown).toFixed(2)} m/s`, 0x1a7f4b);
+  }
+
+  /** The same, from where the tip was at the time [s] before; a stopped arm keeps its arrow. */
+  moved(t) {
+    const { p } = this.tip, [before, from] = this.was ?? [t, p];
+    if (t !== before) this.v = t > before && t < before + 0.5 ? p.map((x, k) => (x - from[k]) / (t - before)) : null;
+    this.was = [t, p];
+    this.velocity(this.v ?? [0, 0, 0]);
+  }
+
+  /** What the camera among the things sees, for `stage.inset`: faces, tags and robot, no marks. */
+  seen() {
+    const { position, quaternion, field, ratio } = this.given.camera;
+    const turn = new THREE.Quaternion(...quaternion), way = (v) => new THREE.Vector3(...v).applyQuaternion(turn).toArray();
+    const marks = Object.entries(this.things).filter(([name]) => !["face", "tag"].includes(this.given[name].kind)).map(([, t]) => t.mark);
+    return { eye: position, at: way([0, 0, 1]).map((x, k) => x + position[k]), up: way([0, -1, 0]), field, ratio,
+      hidden: [...marks, ...Object.values(this.arrows).map((a) => a.mark)] };
+  }
+
   /**
    * Draw what stands around the arm: {name: {kind, position, quaternion, size, colour, to}}, with
    * the kinds of things.js.  What is left out goes; what only moved is moved.
    */
   furnish(given) {
+    this.given = given;
     for (const name of Object.keys(this.things)) if (!given[name]) this.drop(name);
     for (const [name, data] of Object.entries(given)) {
-      const key = JSON.stringify([data.kind, data.size, data.colour]);
+      const key = JSON.stringify([data.kind, data.size, data.colour, data.field]);
       if (this.things[name]?.key !== key) {
         this.drop(name);
         const mark = thing(data);
@@ -105,7 +131,8 @@ export class Picture {
   /**
    * What a pointer points at: {thing, at}, or {link, local, at}, where `link` is the joint's number
    * that the link turns with, `local` the point in the link's frame, `at` the point in the base; or
-   * null.  The tip is a link of its own, with the number n.
+   * null.  The tip is a link of its own, with the number n; who points near it means the tip, also
+   * between its fingers, and whatever of target, band and wall is drawn in front of it.
    */
   pick(event) {
     const caster = this.stage.ray(event);
@@ -113,6 +140,8 @@ export class Picture {
     const solid = [...Object.values(this.things).map((t) => t.mark), ...names.map((n) => this.body.groups[n])];
     const hit = caster.intersectObjects(solid.filter((part) => part.visible), true)
       .find(({ object }) => object.userData.thing !== undefined || linkOf(object, this.body, names) >= 0);
+    const near = Math.hypot(...subtract(this.dragged(event, this.tip.p), this.tip.p)) < NEAR;
+    if (near && (!hit || hit.object.userData.thing !== undefined)) return this.atTip();
     if (!hit) return null;
     const at = hit.point.toArray();
     if (hit.object.userData.thing !== undefined) return { thing: hit.object.userData.thing, at };

@@ -195,6 +195,9 @@ export class Player {
       const from = here(motion.target), to = here(this.trace);
       this.picture.arrow("error", from, to.map((x, k) => x - from[k]), this.times > 1 ? `error × ${this.times}` : "", 0xb3001b);
     }
+    const [early, late] = [-0.5, 0.5].map((k) => Math.min(motion.end, Math.max(motion.start, this.time + k * motion.period)));
+    const before = at(motion, this.tips, early);
+    this.picture.velocity(at(motion, this.tips, late).map((x, k) => (x - before[k]) / (late - early)));
     if (motion.force) {
       const f = here(motion.force), size = Math.hypot(...f);
       this.picture.arrow("force", this.picture.tip.p, f.map((x) => NEWTON * x), size > 0.05 ? `${size.toFixed(1)} N` : "");

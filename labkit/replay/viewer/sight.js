@@ -11,10 +11,11 @@ export function check(label, value, onchange) {
 }
 
 /**
- * The bar under a picture: {element, magnifier}.
+ * The bar under a picture: {element, magnifier, alone}, the last the box that hides the rest of the robot.
  * @param magnify  called with 1, 10 or 50; without it there is no such choice
+ * @param camera  whether a camera is among the things, whose picture can be shown
  */
-export function sight(picture, { magnify } = {}) {
+export function sight(picture, { magnify, camera } = {}) {
   const { stage } = picture;
   const views = Object.keys(VIEWS).map((name) => h("button", { type: "button", onclick: () => stage.rig?.use(name) }, name));
   const moves = [
@@ -24,10 +25,19 @@ export function sight(picture, { magnify } = {}) {
   ].map(([sign, name, act]) => h("button", {
     type: "button", class: "lk-icon", "aria-label": name, title: name, onclick: () => act(stage.rig) }, sign));
   const boxes = [check("Close-up", false, (on) => {
-    if (!stage.small) stage.inset(() => closely(picture));
-    stage.small.hidden = !on;
+    inset(on && closely);
+  }), check("Arm alone", false, (on) => picture.alone(on)),
+  check("Velocity", false, (on) => { picture.quick = on; picture.velocity([0, 0, 0]); })];
+  if (camera) boxes.push(check("Camera's picture", false, (on) => inset(on && (() => picture.seen()))));
+  const [near, , , lens] = boxes.map((box) => box.querySelector("input"));
+  const inset = (from) => { // one inset: the close-up or the camera's picture
+    if (!stage.small) stage.inset();
+    Object.assign(stage, { closely: () => from(picture) });
+    stage.small.hidden = !from;
+    near.checked = from === closely;
+    if (lens) lens.checked = !!from && !near.checked;
     stage.draw();
-  }), check("Arm alone", false, (on) => picture.alone(on))];
+  };
   const sizes = ["× 1", "× 10", "× 50"];
   const magnifier = choice({ label: "Error", values: sizes, value: sizes[0],
     onchange: (shown) => magnify?.(+shown.slice(2)) }).element;
@@ -36,7 +46,7 @@ export function sight(picture, { magnify } = {}) {
   const element = h("div", { class: "lk-bar lk-views", role: "group", "aria-label": "View" },
     h("span", { class: "lk-word", "aria-hidden": "true" }, "View"), views, h("span", { class: "lk-gap" }), moves,
     h("span", { class: "lk-gap" }), boxes, magnifier);
-  return { element, magnifier };
+  return { element, magnifier, alone: boxes[1].querySelector("input") };
 }
 
 /** Where the close-up looks from: beside the hand, as the picture's own camera is turned. */

@@ -4,13 +4,18 @@ import * as THREE from "three";
 import { FIELD, Rig } from "./rig.js";
 import { h } from "./dom.js";
 
+const HURRY = 0.55; // of the size, while a picture moves that the processor has to draw
+const CALM = 400; // ms without another picture, after which it is drawn in full
+
 let renderer; // undefined: not tried, null: this browser has no WebGL
+let card; // whether there is a graphics card
 const stages = new Set();
 
 function context() {
   if (renderer !== undefined) return renderer;
   const canvas = document.createElement("canvas");
-  const gl = canvas.getContext("webgl2", { antialias: hasCard(), powerPreference: "low-power" });
+  card = hasCard();
+  const gl = canvas.getContext("webgl2", { antialias: card, powerPreference: "low-power" });
   if (!gl) return (renderer = null);
   canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
   canvas.addEventListener("webglcontextrestored", () => stages.forEach((s) => s.draw()));
@@ -88,13 +93,15 @@ export class Stage {
     this.labels = this.labels.filter((other) => other !== label);
   }
 
-  /** A second, smaller picture of the same scene from another place; `from()` gives {eye, at}. */
+  /**
+   * A second, smaller picture of the same scene from another place; `from()` gives {eye, at}, and for
+   * a camera {up, field, ratio, hidden}: its upright, angle of view, width over height, and what it does not see.
+   */
   inset(from) {
     this.small = h("canvas", { class: "lk-inset", "aria-hidden": "true" });
     this.canvas.after(this.small);
     this.closely = from;
     this.near = new THREE.PerspectiveCamera(FIELD, 1, 0.02, 10);
-    this.near.up.set(0, 0, 1);
   }
 
   /** Ask for a frame; many calls make one. */
@@ -106,9 +113,14 @@ export class Stage {
   paint() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
-    const fine = Math.min(2, devicePixelRatio);
-    const [w, t] = [Math.round(width * fine), Math.round(height * fine)];
-    if (this.canvas.width !== w || this.canvas.height !== t) Object.assign(this.canvas, { width: w, height: t });
+    const now = performance.now(), hurried = !card && now - this.last < CALM;
+    this.last = now;
+    clearTimeout(this.calm);
+    if (hurried) this.calm = setTimeout(() => this.draw(), CALM);
+    const fine = card ? Math.min(2, devicePixelRatio) : 1, drawn = hurried ? HURRY : fine;
+    const [w, t] = [Math.round(width * drawn), Math.round(height * drawn)];
+    const [W, T] = [Math.round(width * fine), Math.round(height * fine)];
+    if (this.canvas.width !== W || this.canvas.height !== T) Object.assign(this.canvas, { width: W, height: T });
     const style = getComputedStyle(this.canvas);
     const colour = (name) => new THREE.Color(style.getPropertyValue(name).trim() || "#888");
     this.floor.material.color = colour("--lk-grid");
@@ -118,28 +130,35 @@ export class Stage {
     if (size.x !== w || size.y !== t) renderer.setSize(w, t, false);
     this.rig.frame(width / height);
     renderer.render(this.scene, this.camera);
-    this.paper.drawImage(renderer.domElement, 0, 0);
-    if (this.small && !this.small.hidden) this.closeUp(fine);
+    this.paper.drawImage(renderer.domElement, 0, 0, w, t, 0, 0, W, T);
+    if (this.small && !this.small.hidden) this.closeUp(drawn);
     this.settle(width, height);
     this.drawn?.();
   }
 
   /** Draw the inset, with the upper left corner of the one context. */
   closeUp(fine) {
+    const { eye, at, up = [0, 0, 1], field = FIELD, ratio = 1, hidden = [] } = this.closely();
     const side = Math.min(renderer.domElement.width, renderer.domElement.height, Math.round(this.small.clientWidth * fine));
     if (!side) return;
-    if (this.small.width !== side) Object.assign(this.small, { width: side, height: side });
-    const { eye, at } = this.closely();
+    const tall = Math.round(side / ratio);
+    if (this.small.width !== side || this.small.height !== tall) Object.assign(this.small, { width: side, height: tall });
+    this.small.style.aspectRatio = String(ratio);
+    Object.assign(this.near, { fov: field, aspect: ratio });
+    this.near.updateProjectionMatrix();
+    this.near.up.set(...up);
     this.near.position.set(...eye);
     this.near.lookAt(...at);
-    const top = renderer.domElement.height - side;
-    renderer.setViewport(0, top, side, side);
-    renderer.setScissor(0, top, side, side);
+    const top = renderer.domElement.height - tall, away = hidden.filter((part) => part.visible);
+    renderer.setViewport(0, top, side, tall);
+    renderer.setScissor(0, top, side, tall);
     renderer.setScissorTest(true);
+    away.forEach((part) => { part.visible = false; });
     renderer.render(this.scene, this.near);
+    away.forEach((part) => { part.visible = true; });
     renderer.setScissorTest(false);
     renderer.setViewport(0, 0, renderer.domElement.width, renderer.domElement.height);
-    this.small.getContext("2d").drawImage(renderer.domElement, 0, 0, side, side, 0, 0, side, side);
+    this.small.getContext("2d").drawImage(renderer.domElement, 0, 0, side, tall, 0, 0, side, tall);
   }
 
   /** The line of sight through a pointer's place in the page: a Raycaster. */
@@ -171,6 +190,7 @@ export class Stage {
 
   dispose() {
     cancelAnimationFrame(this.waiting);
+    clearTimeout(this.calm);
     this.watch?.forEach((w) => w.disconnect());
     stages.delete(this);
   }

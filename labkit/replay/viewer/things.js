@@ -31,9 +31,9 @@ const KINDS = {
   },
   tag: ({ size = 0.12 }) => board(size),
   /** A camera: its box and the edges of what it sees. */
-  camera: ({ size = [0.16, 0.12, 0.2] }) => {
-    const group = new THREE.Group();
-    const [x, y, z] = size;
+  camera: ({ field = 50, ratio = 4 / 3 }) => {
+    const group = new THREE.Group(), z = 0.2;
+    const y = z * Math.tan(field * Math.PI / 360), x = ratio * y;
     const box = new THREE.Mesh(new THREE.BoxGeometry(0.05, 0.04, 0.05), look([0.15, 0.15, 0.17]));
     box.position.z = -0.025;
     const corners = [[-x, -y, z], [x, -y, z], [x, y, z], [-x, y, z]];

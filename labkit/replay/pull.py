@@ -1,0 +1,81 @@
+"""Where a live law pulls the tip while nobody else does, and what a wrong direction says of it."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+
+from ..arm import Arm
+from ..control import JointTorque
+from ..model import Model
+from ..shapes import Array
+
+FAR = 0.05
+"""A law that keeps its tip nearer to the target than this, in [m], is not judged."""
+
+LOOKS = 10
+"""This number of looks in a row, of which there are 30 a second, is judged together."""
+
+WEAK = 2.0
+"""A pull smaller than this, in [N], has no direction."""
+
+_SAYS = {
+    1: "pulls the arm away from its target; check the sign of the error",
+    2: "pulls along the error as the tool's axes have it; are the error and the Jacobian in the "
+    "same axes?",
+    3: "pulls towards its target, but the arm's weight pulls it elsewhere; does it add gravity?",
+}
+_RIGHT, _CLEAR = 0.7, 0.85  # cosines
+
+
+class Pull:
+    """The direction of a law's pull, look after look."""
+
+    def __init__(self, arm: Arm) -> None:
+        """Nothing was seen yet of what pulls ``arm``."""
+        self._arm = arm
+        self.begin()
+
+    def begin(self) -> None:
+        """Another law, or another start."""
+        self._looks: deque[list[float]] = deque(maxlen=LOOKS)
+        self._said = ""
+
+    def look(self, asked: Any, T_wd: Array | None, alone: bool) -> str:
+        """What is wrong with the law, once that is clear; else nothing.
+
+        Args:
+            asked: The law's latest command; only torques have a pull.
+            T_wd: Where the tip should be, shape (4, 4), if that is known.
+            alone: Whether no hand pulls beside the law.
+        """
+        if T_wd is None or not alone or not isinstance(asked, JointTorque):
+            self._looks.clear()
+            return self._said
+        arm, q, tau = self._arm, self._arm.truth().q, asked.value
+        way = T_wd[:3, 3] - arm.tip()[0]
+        if np.linalg.norm(way) < FAR:
+            self.begin()
+            return ""
+        g = arm.model.gravity(q)
+        felt = tip_force(arm.model, q, tau if arm.plant.gravity_compensation else tau - g)
+        in_tool = arm.model.pose(q)[:3, :3].T @ way
+        ways = [(felt, way), (felt, -way), (felt, in_tool), (tip_force(arm.model, q, tau), way)]
+        self._looks.append([_cosine(force, along) for force, along in ways])
+        likely = np.mean(self._looks, axis=0)
+        best = int(likely[1:].argmax()) + 1
+        if len(self._looks) == LOOKS and likely[0] < _RIGHT and likely[best] > _CLEAR:
+            self._said = self._said or _SAYS[best]
+        return self._said
+
+
+def tip_force(model: Model, q: Array, torque: Array) -> Array:
+    """The force at the tip that joint torques amount to, world axes, shape (3,) in [N]."""
+    return np.asarray(np.linalg.lstsq(model.tip_jacobian(q).T, torque, rcond=1e-3)[0][:3])
+
+
+def _cosine(force: Array, way: Array) -> float:
+    size = float(np.linalg.norm(force))
+    return 0.0 if size < WEAK else float(force @ way) / (size * float(np.linalg.norm(way)))
