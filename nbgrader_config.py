@@ -17,7 +17,7 @@ c.CourseDirectory.feedback_directory = "feedback"
 c.ClearSolutions.code_stub = {
     "python": "# Your code goes here, in place of the next line\nraise NotImplementedError"
 }
-c.ClearSolutions.text_stub = "*Your text goes here, in place of this line.*"
+c.ClearSolutions.text_stub = "*Double-click here and write your text in place of this line.*"
 c.Execute.timeout = 120
 
 # What students wrote is shown to teachers without anything in it that runs.

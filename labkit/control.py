@@ -38,6 +38,7 @@ class State(_State):
     """
 
     __slots__ = ()
+    __array_ufunc__ = None  # numpy would take it for an array
 
     def __new__(cls, t: float, q: Array, dq: Array, tau_ext: Array | None = None) -> State:
         """A state; the arrays are taken as they are."""

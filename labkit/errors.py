@@ -43,7 +43,7 @@ def _hint(expected: tuple[int, ...], actual: tuple[int, ...]) -> str:
         return f"; a single number is not enough, give all {n}"
     if len(actual) == 1:
         return f"; give {n} numbers, not {actual[0]}"
-    return "; a matrix came where a vector belongs (was a * meant to be a @?)"
+    return "; a matrix came where a vector belongs"
 
 
 class TypeMismatch(LabkitError, TypeError):

@@ -33,6 +33,8 @@ class Sample(NamedTuple):
     velocity: Array
     acceleration: Array
 
+    __array_ufunc__ = None  # numpy would take it for a matrix of three rows
+
 
 class PoseSample(NamedTuple):
     """A curve of tip poses at one place: its value and two derivatives, in world axes.
@@ -46,6 +48,8 @@ class PoseSample(NamedTuple):
     pose: Array
     twist: Array
     dtwist: Array
+
+    __array_ufunc__ = None
 
 
 AnySample = Sample | PoseSample

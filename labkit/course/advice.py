@@ -43,8 +43,8 @@ def remedy(error: BaseException) -> str:
     text = str(error)
     if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
         return f"it has {', '.join(error.obj._fields)}"
-    if isinstance(error, TypeError) and re.search("'(State|Sample|PoseSample)'", text):
-        return "compute with the arrays in it, such as target.position or state.q"
+    if isinstance(error, TypeError) and (kinds := re.search("'(State|Sample|PoseSample)'", text)):
+        return f"a {kinds[1]} is not an array; did you mean {_ARRAYS[kinds[1]]}?"
     if "read-only" in text:
         return (
             "the arrays that you are given cannot be changed; make a new array, or change x.copy()"
@@ -57,6 +57,8 @@ def remedy(error: BaseException) -> str:
     return next((way_out for words, way_out in _WAYS_OUT.items() if words in text), "")
 
 
+_ARRAYS = {"State": "state.q", "Sample": "target.position", "PoseSample": "target.pose"}
+"""What is mostly meant where one of these is used as an array."""
 _WAYS_OUT = {
     "does not have enough dimensions": "@ needs arrays on both sides; for a number write *",
     "operands could not be broadcast": "+, - and * go element by element, so sizes must be equal; "

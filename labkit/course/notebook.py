@@ -258,7 +258,7 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
 
 WORDS, WHY_POINTS = (25, 80), 2.0
 """The fewest and the most words of a why, and its points."""
-PLACEHOLDER = "*Your text goes here, in place of this line.*"
+PLACEHOLDER = "*Double-click here and write your text in place of this line.*"
 """What the cell of a why says at first; nbgrader's settings say the same."""
 
 

@@ -38,7 +38,10 @@ class Prediction:
         options = form.options.items() if isinstance(form, Choose | Rank) else ()
         head = f"**Predict first: `{self.name}`** · 1 point for committing, right or wrong"
         lines = [head, "", self.asks, "", *(f"- ({letter}) {text}" for letter, text in options)]
-        how = f"Write {form.how}, in place of `None`; or use the controls and run the cell again."
+        how = (
+            f"Write {form.how}, in place of `None`; or run the cell, choose with the mouse, and "
+            "run the same cell again."
+        )
         return "\n".join([*lines, "", how])
 
     def cell(self) -> str:

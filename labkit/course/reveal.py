@@ -39,14 +39,25 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
         print(wrapped(f"The answer was shown, so your first prediction stays: {first!r}."))
         return first
     if said is None:
-        said = _controls(name, form)
+        said = place.chosen.pop(name, None)
         if said is None:
+            _controls(name, form)
             return None
+        _write_down(name, said)
     if found := form.problem(said):
         print(wrapped(f"{name}: {found}."))
     else:
         place.committed[name] = said
+        print(wrapped(f"You are committed to: {form.words(said)}."))
     return said
+
+
+def _write_down(name: str, said: Any) -> None:
+    """Put what was chosen into the text of the cell that runs, where a grader reads it."""
+    notebook = shell()
+    if notebook is not None:
+        text = f'{name} = predict("{name}", {json.dumps(said)})'
+        notebook.set_next_input(text, replace=True)
 
 
 def _reveal(name: str, form: Form, truth: Any) -> None:
@@ -86,24 +97,15 @@ def _overlay(form: Curve, said: Any, truth: Any) -> None:
     plotting.show(f"{form.height} over {form.along}. You said {form.words(said)}. It was {came}.")
 
 
-def _controls(name: str, form: Form) -> Any:
-    """Controls for the mouse and for keys; running the cell again returns what they say.
-
-    It is also written into the cell, in place of None.
-    """
-    notebook = shell()
-    if notebook is None:
-        return None
-    chosen = desk().chosen.pop(name, None)
-    if chosen is not None:
-        text = f'{name} = predict("{name}", {json.dumps(chosen)})'
-        notebook.set_next_input(text, replace=True)
-        print(wrapped(f"Committed, and written into this cell: {form.words(chosen)}."))
-        return chosen
+def _controls(name: str, form: Form) -> None:
+    """Controls for the mouse and for keys; running the cell again commits to what they say."""
+    if shell() is None:
+        return
     import ipywidgets as widgets
     from IPython.display import display
 
-    note = widgets.Label("Choose, then run this cell again.")
+    again = "click into the cell above this line and press Shift+Enter once more to commit."
+    note = widgets.Label(f"Choose; then {again}")
     parts = _inputs(form, widgets)
 
     def changed(_: Any) -> None:
@@ -111,13 +113,12 @@ def _controls(name: str, form: Form) -> Any:
         said = values if isinstance(form, Curve) else values[0]
         if not form.problem(said):
             desk().chosen[name] = said
-            note.value = f"{form.words(said)}: run this cell again to commit to it."
+            note.value = f"{form.words(said)}: not committed yet; {again}"
 
     for part in parts:
         part.observe(changed, "value")
     box = widgets.HBox if isinstance(form, Curve) else widgets.VBox
     display(widgets.VBox([box(parts), note]))
-    return None
 
 
 def _inputs(form: Form, widgets: Any) -> list[Any]:

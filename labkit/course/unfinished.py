@@ -36,9 +36,17 @@ def watch(shell: Any) -> set[str]:
         names = defined_in(result.info.raw_cell or "")
         unfinished.difference_update(names)
         if not result.success:
+            _say_quotes(result.info.raw_cell or "", result.error_in_exec)
             same = {name for name in names if shell.user_ns.get(name) is before.get(name)}
             unfinished.update(same)
 
     shell.events.register("pre_run_cell", begins)
     shell.events.register("post_run_cell", ends)
     return unfinished
+
+
+def _say_quotes(source: str, error: BaseException | None) -> None:
+    """After ``predict("name", c)``, what is missing."""
+    name = error.name if isinstance(error, NameError) else None
+    if name and re.search(rf"""\bpredict\(\s*["']\w+["'],\s*{name}\s*\)""", source):
+        print(f"A prediction in letters is written in quotes: {name!r}")

@@ -12,7 +12,7 @@
 # | **You need** | numpy; what a standard deviation is; complex numbers |
 # | **Given** | recorded runs of every controller, a loop's parts, an interval's recipe |
 # | **You write** | the error of a run, a loop on paper, gains with a margin, differences over seeds, verdicts |
-# | **Time** | core about 3 hours, all about 4 · 24 points |
+# | **Time** | core about 3 hours, all about 4 hours; 24 points |
 #
 # Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
 # says so. The functions, your predictions and the text at the end are marked; play with everything else as

@@ -10,7 +10,7 @@
 # | **You need** | Newton's law for one mass on a spring; matrices and their inverses |
 # | **Given** | the arm's model, an arm that can be pushed, a wall and a spring to meet |
 # | **You write** | one mass, the inertia at the tip, two impedance laws, a stiffness read from data |
-# | **Time** | core about 3.5 hours, all about 5 · 29 points |
+# | **Time** | core about 3.5 hours, all about 5 hours; 29 points |
 #
 # The team whose report this lab grew out of wrote two impedance controllers, found them "a bit off", and
 # saw no use in them. They never pushed the arm. Here you will.

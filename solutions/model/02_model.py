@@ -16,7 +16,7 @@
 # | **You need** | numpy; vectors, the cross product, derivatives in several variables; notebook 00 or its conventions: 1-D arrays, twists as (v, w), `T_ab` |
 # | **Given** | the simulated arm; where its joints and bodies are at any angles (`model.links`) |
 # | **You write** | the Jacobian, the mass matrix, gravity, the Coriolis matrix, the power balance |
-# | **Time** | core about 2.5 hours, all about 4 · 24 points |
+# | **Time** | core about 2.5 hours, all about 4 hours; 24 points |
 #
 # Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
 # After each stub a check tells you in words what it found. The functions, your predictions and the text at

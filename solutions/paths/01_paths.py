@@ -10,7 +10,7 @@
 # | **You need** | numpy; the derivative of a product and of a function of a function |
 # | **Given** | the simulated arm, a controller that follows (you write your own in notebook 03), figures |
 # | **You write** | two time scalings, a circle, the composition of path and schedule, segments in a row |
-# | **Time** | core about 3 hours, all about 4 · 24 points |
+# | **Time** | core about 3 hours, all about 4 hours; 24 points |
 #
 # A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling* is the
 # schedule `s(t)`. Together they are a *trajectory*. Because the two are separate, any path can be used with

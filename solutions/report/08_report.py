@@ -9,7 +9,7 @@
 # | **You need** | your arm and its numbers (notebooks 03 and 05), your laws, the interval of notebook 07 |
 # | **Given** | a rubric of six rows, two exemplars |
 # | **You write** | a claim, a prediction, a figure, an interval, a failure, threats, who did what |
-# | **Time** | about 4 hours for each member of a team of three · 20 points |
+# | **Time** | about 4 hours for each member of a team of three; 20 points |
 #
 # Before you begin, each of you marks the two exemplars below with the rubric, alone and in a copy of this notebook,
 # in ten minutes. Our marks appear once you have committed to yours. After the deadline each of you reads two other

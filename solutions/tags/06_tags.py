@@ -11,7 +11,7 @@
 # | **You need** | numpy; matrices as poses (00), trajectories (01), or the two boxes below |
 # | **Given** | the camera, the detector of corners, a filter's update step, an arm that follows a reference |
 # | **You write** | a tag's corners, its pose from a picture, a sensor's quality, a blend, a prediction |
-# | **Time** | core about 3 hours, all about 4 · 24 points |
+# | **Time** | core about 3 hours, all about 4 hours; 24 points |
 #
 # > **Box: poses.** $T_{ab}$ turns coordinates in frame b into frame a: $p_a = T_{ab}\,p_b$. Camera: c, with
 # > z forward, x right, y down in the picture. Tag: m, with z out of the paper. World: w. Tip of the arm: t.

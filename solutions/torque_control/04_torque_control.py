@@ -10,7 +10,7 @@
 # | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0; what an eigenvalue is |
 # | **Given** | the arm's model: M, C and g (notebook 02 builds them, here you only use them) |
 # | **You write** | two torque laws, gains from frequency and damping, a sampled joint, the factor of gravity, gains that serve |
-# | **Time** | core about 4 hours, all about 5 · 29 points |
+# | **Time** | core about 4 hours, all about 5 hours; 29 points |
 #
 # Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
 # says so. After each stub a check tells you in words what it found. The functions, your predictions, the

@@ -11,7 +11,7 @@
 # | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, orientations are compared by a product, twists are (v, w) |
 # | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and with friction, lag and noise like Baxter's (`lk.BAXTER`); trajectories; the model with its Jacobian |
 # | **You write** | two controllers, a damped inverse, motion that the tip does not feel |
-# | **Time** | core about 3 hours, all about 4 · 27 points |
+# | **Time** | core about 3 hours, all about 4 hours; 27 points |
 #
 # Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
 # After each stub a check tells you in words what it found. The functions, your predictions, the numbers to

@@ -11,7 +11,7 @@
 # | **You need** | Python with numpy; matrices and their products |
 # | **Given** | the simulated arm, figures, the logarithm of a rotation |
 # | **You write** | a joint error, a point from frame to frame, an inverse, an orientation error |
-# | **Time** | core about 1.5 hours, all about 2 · 14 points |
+# | **Time** | core about 1.5 hours, all about 2 hours; 14 points |
 #
 # How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not. If
 # your part is missing, a stand-in replaces it and says so. After each stub a check tells you in words what it

@@ -254,13 +254,13 @@ ORIENTATION_ERROR = Problem(
             weight=0.0,
         ),
         Trial(
-            "gripper down, 5 degrees of roll",
+            "gripper down, 5 degrees of roll; then turned about the vertical, -5 degrees",
             (call(DOWN, DOWN @ _turned(5.0, 0)), call(SIDE, SIDE @ _turned(-5.0, 0))),
             hidden.rolls,
             "rolls at other yaws",
         ),
         Trial(
-            "gripper down, 5 degrees of pitch",
+            "gripper down and turned about the vertical, 5 degrees of pitch",
             (call(SIDE, SIDE @ _turned(5.0, 1)),),
             hidden.pitches,
             "pitches at other yaws",

@@ -19,7 +19,7 @@ def writes():
     ("does", "remedy"),
     [
         (lambda: STATE.position, "it has t, q, dq, tau_ext"),
-        (lambda: STATE - STATE, "compute with the arrays in it"),
+        (lambda: STATE - STATE, "a State is not an array; did you mean state.q?"),
         (writes, "make a new array"),
         (lambda: np.eye(4) @ np.zeros(3), "left of the @ are 4 columns, right of it 3 rows"),
         (lambda: 2.0 @ np.zeros(3), "for a number write *"),

@@ -7,7 +7,7 @@ import nbformat
 from labkit.course.notebook import source_notebook
 
 WHY, REPORT = "why_reach", "report"
-BLANK = "*Your text goes here, in place of this line.*"
+BLANK = "*Double-click here and write your text in place of this line.*"
 SCHEME = "=== BEGIN MARK SCHEME ===\n2 points for the reason\n=== END MARK SCHEME ==="
 
 

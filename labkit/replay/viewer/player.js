@@ -137,7 +137,7 @@ export class Player {
       s.style.borderTopColor = colour;
       return s;
     };
-    const rows = [["lk-solid", "var(--lk-trace)", `tip of ${motion.label}${this.times > 1 ? `, its error drawn ${this.times} times as large` : ""}`]];
+    const rows = [["lk-solid", "var(--lk-trace)", `tip, ${motion.label}${this.times > 1 ? `, its error drawn ${this.times} times as large` : ""}`]];
     if (motion.path) rows.push(["lk-dashed", "var(--lk-path)", "desired path"]);
     Object.keys(motion.ghosts).forEach((name, k) => rows.push(["lk-dotted", hex(k), `${name} (see-through arm)`]));
     if (motion.target) rows.push([null, null, "target: frame with x, y, z marked by one, two, three rings"]);
