@@ -159,12 +159,15 @@ def look(path: Path) -> HandIn:
                     f"{about(cell).get('points', 0):g} points it needs at least {WORDS[0]}"
                 )
     wrong = [name for name, v in verdicts.items() if v and not v.right]
-    for says, which in (
-        ("not yet right: {}; what is right counts all the same", set(wrong) - set(predictions)),
-        ("not predicted yet: {}; right or wrong, a prediction counts", set(predictions) & set(wrong)),
+    for says, foretold in (
+        ("not yet right: {}; what is right counts all the same", False),
+        (
+            "not predicted yet: {}; right or wrong, a prediction counts",
+            set(predictions) & set(wrong),
+        ),
     ):
-        if which:
-            notes.append(says.format(", ".join(name for name in wrong if name in which)))
+        if which := [name for name in wrong if (name in predictions) == foretold]:
+            notes.append(says.format(", ".join(which)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
 
 
@@ -187,7 +190,9 @@ def hand_in(name: str) -> None:
     lines = [
         *str(found).splitlines(),
         f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
-        _last_word(path.name, found, max(datetime.now(UTC) - saved, timedelta()), _unsaved(found, sources)),
+        _last_word(
+            path.name, found, max(datetime.now(UTC) - saved, timedelta()), _unsaved(found, sources)
+        ),
     ]
     print("\n".join(map(wrapped, lines)))
 
