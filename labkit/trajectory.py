@@ -33,8 +33,6 @@ class Sample(NamedTuple):
     velocity: Array
     acceleration: Array
 
-    __array_ufunc__ = None  # numpy would take it for a matrix of three rows
-
 
 class PoseSample(NamedTuple):
     """A curve of tip poses at one place: its value and two derivatives, in world axes.
@@ -49,8 +47,9 @@ class PoseSample(NamedTuple):
     twist: Array
     dtwist: Array
 
-    __array_ufunc__ = None
 
+# Else numpy would take a sample for a matrix of three rows in ``target - q``.
+Sample.__array_ufunc__ = PoseSample.__array_ufunc__ = None  # type: ignore[attr-defined]
 
 AnySample = Sample | PoseSample
 

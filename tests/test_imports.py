@@ -77,7 +77,7 @@ ORDER = [
     {"course.marking"},
     {"course.student", "course.problem"},
     {"course.before_handing_in", "course.layout", "course.solved", "course.refusals"},
-    {"course.merge", "course.reveal"},
+    {"course.merge", "course.receipt", "course.reveal"},
     {"course.bundle", "course.margins"},
     {"course.release", "course.report_card"},
     {"course.cli"},

@@ -6,7 +6,6 @@ A notebook uses `check`, `hint` and `use`; graders use `mark` on the same questi
 from __future__ import annotations
 
 from .baxter_cup import cup
-from .before_handing_in import hand_in
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
 from .failing_case import case
@@ -17,6 +16,7 @@ from .marking import fingerprint, mark
 from .own_arm import my_arm, my_bug
 from .predictions import Prediction
 from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
+from .receipt import hand_in
 from .reply import Failed
 from .reveal import predict
 from .serialize import question_data, read_question

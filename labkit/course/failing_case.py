@@ -24,13 +24,13 @@ def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
         LabkitError: The last check stopped at no call of the function.
     """
     question = desk().question(name)
-    function, verdict = desk().seen.get(name, (None, None))
-    stopped = {test.name: test.call for test in verdict.tests if test.call} if verdict else {}
+    last = desk().seen.get(name)
+    stopped = {test.name: test.call for test in last[1].tests if test.call} if last else {}
     for test in question.tests:
         for one in test.cases:
-            if isinstance(one, Call) and one.shown(name) == stopped.get(test.name):
+            if last and isinstance(one, Call) and one.shown(name) == stopped.get(test.name):
                 with suppress(LabkitError, ArithmeticError, TypeError, ValueError):
-                    if question.judge(one.ask(function), one.expected) is None:
+                    if question.judge(one.ask(last[0]), one.expected) is None:
                         continue  # another call that looks alike
                 return one.args, dict(one.kwargs)
     raise LabkitError(f"the last check of {name} stopped at no call of it; run its check first")

@@ -38,10 +38,8 @@ class Prediction:
         options = form.options.items() if isinstance(form, Choose | Rank) else ()
         head = f"**Predict first: `{self.name}`** · 1 point for committing, right or wrong"
         lines = [head, "", self.asks, "", *(f"- ({letter}) {text}" for letter, text in options)]
-        how = (
-            f"Write {form.how}, in place of `None`; or run the cell, choose with the mouse, and "
-            "run the same cell again."
-        )
+        mouse = "run the cell, choose with the mouse, and run the same cell again"
+        how = f"Write {form.how}, in place of `None`; or {mouse}."
         return "\n".join([*lines, "", how])
 
     def cell(self) -> str:

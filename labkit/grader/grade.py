@@ -12,11 +12,11 @@ from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
 
-from ..course.before_handing_in import receipt
 from ..course.bundle import Bundle
 from ..course.marking import Tried, all_alike, mark, not_counted, try_public
 from ..course.messages import uses
 from ..course.question import Question
+from ..course.receipt import receipt
 from ..course.serialize import read_record, record_data
 from ..course.verdict import Kind, Outcome, Verdict
 from ..course.withheld import withheld_tools

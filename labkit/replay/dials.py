@@ -29,12 +29,14 @@ class Dial:
         low: Its least.
         high: Its most.
         value: Where it starts.
+        unit: Of it.
     """
 
     name: str
     low: float
     high: float
     value: float
+    unit: str = ""
 
     @property
     def of_plant(self) -> bool:
@@ -45,7 +47,7 @@ class Dial:
         """As the page reads it."""
         return {
             "name": self.name, "min": self.low, "max": self.high, "value": self.value,
-            "unit": _UNITS.get(self.name, ""),
+            "unit": self.unit,
         }  # fmt: skip
 
 
@@ -55,7 +57,7 @@ def read_dials(
     """The dials by name.
 
     Args:
-        given: For each a range (low, high) or (low, high, start).
+        given: For each a range (low, high) or (low, high, start), and perhaps a unit after it.
         plant: What they start from.
         laws: What reads those that are not the plant's.
 
@@ -67,8 +69,9 @@ def read_dials(
     dials = {}
     for name, span in given.items():
         try:
-            low, high, *start = (as_number(x, name) for x in span)
-        except (TypeError, ValueError):
+            *numbers, unit = span if isinstance(span[-1], str) else (*span, _UNITS.get(name, ""))
+            low, high, *start = (as_number(x, name) for x in numbers)
+        except (TypeError, ValueError, LookupError):
             raise TypeMismatch(
                 f"the dial {name} is {shown(span)}; give its range, {name}=(low, high) or "
                 f"{name}=(low, high, start)"
@@ -84,7 +87,7 @@ def read_dials(
         value = start[0] if start else min(max(usual, low), high)
         if not low <= value <= high or low >= high:
             raise OutOfRange(f"the dial {name} starts at {value:g}, outside {low:g} to {high:g}")
-        dials[name] = Dial(name, low, high, value)
+        dials[name] = Dial(name, low, high, value, unit)
     return dials
 
 

@@ -44,8 +44,9 @@ def live(
             and so can walls, tables, bands and tags.
         rate: How often the controller is asked, in [Hz].
         title: The heading.
-        **dials: For each a range (low, high) or (low, high, start).  A number of `Plant`, such as
-            payload, stiction or state_delay, turns the arm itself.
+        **dials: For each a range (low, high) or (low, high, start), and perhaps a unit, such as
+            (50.0, 1500.0, 300.0, "N/m").  A number of `Plant`, such as payload, stiction or
+            state_delay, turns the arm itself.
 
     Returns:
         A view to put last in a cell; ``view.log`` is the run that was kept last, ``view.logs`` are

@@ -17,7 +17,9 @@
 #
 # Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
 # says so. After each stub a check tells you in words what it found. The functions, your predictions, the
-# numbers to find out and the text at the end are marked; play with everything else as you like.
+# numbers to find out and the text at the end are marked; play with everything else as you like. To run all
+# cells takes about half a minute on an idle computer, and minutes on a busy one; the cell that is at work shows
+# `[*]`.
 
 # %% setup=true
 from dataclasses import replace
@@ -647,7 +649,7 @@ lk.live(
     {"impedance": by_hand, "position mode": stiff},
     lk.Hold(T_ready, 1.0),
     title="Your impedance",
-    stiffness=(50.0, 1500.0, 300.0),
+    stiffness=(50.0, 1500.0, 300.0, "N/m"),
     payload=(0.0, 1.0),
     stiction=(0.0, 2.0),
 )

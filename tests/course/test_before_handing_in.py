@@ -2,6 +2,8 @@
 
 import json
 import shutil
+from dataclasses import replace
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,7 @@ import pytest
 from labkit import LabkitError
 from labkit.course.before_handing_in import look
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
+from labkit.course.receipt import _last_word, receipt
 from labkit.course.verdict import Outcome, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
@@ -247,3 +250,23 @@ def test_a_notebook_without_its_questions_is_a_sentence(folder):
         file.unlink() if text is None else file.write_text(text)
         with pytest.raises(LabkitError, match=rf"there is {says} checks\.json in .*whole folder"):
             look(folder / "01_paths.ipynb")
+
+
+def test_an_empty_cell_leaves_the_receipt_as_it_is():
+    """Shift+Enter in the last cell appends an empty cell, and the next autosave keeps it."""
+    assert receipt(["a", "b"]) == receipt(["a", "b", "", " \n"]) != receipt(["a", "b", "c"])
+
+
+def test_the_last_word_says_whether_to_hand_in(folder):
+    """A file saved just now is handed in; one that lacks what ran last is saved first."""
+    found = look(folder / "01_paths.ipynb")
+    clean = replace(found, notes=())
+    says = [
+        _last_word("f", clean, timedelta(seconds=5), []),
+        _last_word("f", found, timedelta(seconds=5), []),
+        _last_word("f", clean, timedelta(minutes=5), []),
+        _last_word("f", clean, timedelta(seconds=5), ["circle"]),
+    ]
+    assert says[0] == "f was saved 5 s ago and is complete: hand it in now."
+    assert "[note]" in says[1] and "if you have changed nothing" in says[2]
+    assert "does not hold the circle that you ran last" in says[3]

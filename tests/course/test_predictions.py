@@ -64,3 +64,18 @@ def test_the_first_prediction_stays(place):
     predict("x", "b")
     predict("x", truth="a")
     assert predict("x", "a") == "b"
+
+
+def test_one_run_after_the_mouse_commits_and_writes_it_down(place, monkeypatch, capsys):
+    """What was chosen is the cell's answer, stands in its text and is said to be committed."""
+    written = []
+
+    class Shell:
+        def set_next_input(self, text, replace):
+            written.append((text, replace))
+
+    monkeypatch.setattr("labkit.course.reveal.shell", Shell)
+    place.chosen["x"] = "b"
+    assert predict("x", None) == "b" == place.committed["x"]
+    assert written == [('x = predict("x", "b")', True)]
+    assert "You are committed to: (b) down." in capsys.readouterr().out

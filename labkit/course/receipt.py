@@ -1,0 +1,83 @@
+"""The last cell of a notebook: what a look at the saved file finds, and a receipt for it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Collection, Iterable
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+from .before_handing_in import HandIn, look
+from .messages import wrapped
+from .notebook import read_cells
+from .student import shell
+from .unfinished import defined_in
+
+JUST_NOW = timedelta(minutes=1)
+"""After less time a saved file is taken for what is in the notebook."""
+
+
+def hand_in(name: str) -> None:
+    """Say what a look at the saved file finds, and print a receipt.
+
+    With a receipt and the file students can prove which work was done by then.  The feedback page
+    has the receipt of the file that was marked.
+
+    Args:
+        name: Of the notebook in the working directory, without ``.ipynb``.
+
+    Raises:
+        LabkitError: The file is missing or is not a notebook.
+    """
+    path = Path.cwd() / f"{name}.ipynb"
+    found = look(path)
+    sources = [cell["source"] for cell in read_cells(path)]
+    saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
+    lines = [
+        *str(found).splitlines(),
+        f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
+        _last_word(
+            path.name, found, max(datetime.now(UTC) - saved, timedelta()), _unsaved(found, sources)
+        ),
+    ]
+    print("\n".join(map(wrapped, lines)))
+
+
+def _unsaved(found: HandIn, sources: Iterable[str]) -> list[str]:
+    """Answers that ran in this notebook with a text that its saved file does not hold.
+
+    Predictions are left out, for one that was chosen with the mouse is written after its cell ran.
+    """
+    notebook = shell()
+    ran = notebook.history_manager.input_hist_raw if notebook is not None else ()
+    last = {name: source for source in ran for name in defined_in(source)}
+    saved = set(map(str.strip, sources))
+    tasks = found.verdicts.keys() - set(found.predictions)
+    return sorted(name for name in tasks if last.get(name, "").strip() not in {"", *saved})
+
+
+def _last_word(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) -> str:
+    """Whether to hand in the file now, and if not, what to do first."""
+    recent = age < JUST_NOW
+    ago = f"{age.total_seconds():.0f} s" if recent else f"{age.total_seconds() / 60:.0f} min"
+    says = f"{file} was saved {ago} ago"
+    again = "save it and run this cell again"
+    if unsaved:
+        return f"{says}, and does not hold the {', '.join(unsaved)} that you ran last: {again}."
+    if found.problems:
+        return f"{says}: correct what is marked with [fix], {again}."
+    if not recent:
+        return f"{says}. Hand it in if you have changed nothing since then; if you have, {again}."
+    if found.notes:
+        return f"{says}: hand it in now as it is, or see to what is marked with [note] first."
+    return f"{says} and is complete: hand it in now."
+
+
+def receipt(sources: Iterable[str]) -> str:
+    """A short name for what is written in a notebook's cells, in order.
+
+    Outputs and empty cells do not count: to run the cell that prints the receipt changes the
+    outputs, and Shift+Enter in the last cell appends an empty one.
+    """
+    text = "\0".join(filter(str.strip, sources)).encode(errors="surrogatepass")
+    return hashlib.sha256(text).hexdigest()[:16]
