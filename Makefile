@@ -70,7 +70,7 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@PYTHON="$(CURDIR)/$(BIN)/python" sh book/_tools/vendor.sh
 
 campaign: .venv/.course ## every controller on every task: build/campaign.json
-	@$(BIN)/python -m solutions.study.campaign
+	@$(BIN)/python -m solutions.study
 
 campaign-engines: .venv/.course ## the campaign on both engines, and where they differ
 	@$(BIN)/python -m solutions.study.both_engines
@@ -79,7 +79,7 @@ record: .venv/.course ## make all recorded data again, and say which verdicts ch
 	@$(BIN)/python -m solutions.study.record
 
 build/campaign.json: # the book to hand out has the films
-	@$(BIN)/python -m solutions.study.campaign
+	@$(BIN)/python -m solutions.study
 
 count: ## how large labkit is: lines of code and statements of each storey
 	@python3 tests/count.py

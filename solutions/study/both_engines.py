@@ -83,7 +83,7 @@ def main() -> int:
     parser.add_argument("--compare", action="store_true", help="run nothing, compare what is there")
     options = parser.parse_args()
     for engine in () if options.compare else ENGINES:
-        command = [sys.executable, "-m", "solutions.study.campaign", "--no-pictures"]
+        command = [sys.executable, "-m", "solutions.study", "--no-pictures"]
         command += ["--seeds", str(options.seeds), "--out", f"build/{engine}"]
         subprocess.run(command, env=os.environ | {"LABKIT_ENGINE": engine}, check=True)
     found = [json.loads(Path(f"build/{name}/campaign.json").read_text()) for name in ENGINES]

@@ -31,7 +31,7 @@ MAKERS = (
     ("solutions.study.baseline",),
     ("solutions.study.maps",),
     ("solutions.study.trials",),
-    ("solutions.study.campaign", "--seeds", "5", "--no-pictures", "--keep"),
+    ("solutions.study", "--seeds", "5", "--no-pictures", "--keep"),
     ("solutions.study.assumptions",),
     ("solutions.study.report_gains",),
 )

@@ -44,7 +44,7 @@ def test_a_dask_cluster_that_is_not_there_is_a_sentence():
     """At an address that is none; from the command line too, which then ends with 2."""
     with pytest.raises(lk.LabkitError, match="no Dask scheduler at nonsense"):
         work_through(report.numbers, SMALL, dask="nonsense")
-    command = [sys.executable, "-m", "solutions.study.campaign", "--dask", "nonsense"]
+    command = [sys.executable, "-m", "solutions.study", "--dask", "nonsense"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert done.stderr.startswith("no Dask scheduler at nonsense: ")

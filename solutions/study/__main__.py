@@ -1,0 +1,97 @@
+"""Run the campaign: every controller on every task, with its tables, figures and films."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from pathlib import Path
+
+from labkit import Model
+from labkit.errors import LabkitError
+
+from . import pictures
+from .campaign import (
+    BASELINE,
+    FEED_FORWARD,
+    claims,
+    converge,
+    derivative,
+    gain_grid,
+    grid,
+    noise_grid,
+    numbers,
+    tables,
+)
+from .claims import verdicts
+from .gains import known
+from .grid import Job, Meter, Row, work_through
+from .recording import save_campaign
+
+
+def _without(row: Row, key: str) -> Row:
+    return {name: value for name, value in row.items() if name != key}
+
+
+def main() -> None:
+    """Run the campaign and write build/campaign.json and build/campaign/."""
+    parser = argparse.ArgumentParser(prog="python -m solutions.study", description=__doc__)
+    parser.add_argument("--seeds", type=int, default=3, help="how many seeds (3)")
+    parser.add_argument("--jobs", type=int, default=None, help="processes (one for each core)")
+    parser.add_argument("--dask", metavar="ADDRESS", default=None, help="a Dask scheduler instead")
+    parser.add_argument("--out", type=Path, default=Path("build"), help="folder (build)")
+    parser.add_argument("--no-pictures", action="store_true", help="numbers alone")
+    parser.add_argument("--keep", action="store_true", help="keep the rows for notebook 07")
+    ways = [*known(Model("left")), FEED_FORWARD, BASELINE]
+    help_on_ways = "only this, and only print it; more than once for more: " + ", ".join(ways)
+    parser.add_argument("--way", action="append", choices=ways, metavar="WAY", help=help_on_ways)
+    options = parser.parse_args()
+    where = {"jobs": options.jobs, "dask": options.dask}
+    began = time.monotonic()
+
+    def done(job: Job, grid: list[Row], what: str) -> list[Row]:
+        return work_through(job, grid, progress=Meter(what), **where)
+
+    if options.way:
+        print(tables(done(numbers, grid(options.seeds, options.way), "runs")))
+        return
+    rows = done(numbers, grid(options.seeds), "runs")
+    seconds = time.monotonic() - began
+    gains = done(converge, gain_grid(options.seeds), "gains")
+    noise = done(derivative, noise_grid(options.seeds), "noise")
+    judged = verdicts(rows, gains, noise) if options.seeds > 1 else []
+    folder = options.out / "campaign"
+    folder.mkdir(parents=True, exist_ok=True)
+    text = tables(rows) + claims(judged)
+    (folder / "tables.md").write_text(text)
+    drawn, shot = [], []
+    if not options.no_pictures:  # on this machine, for they write files
+        where["dask"] = None
+        drawn = done(pictures.draw, pictures.grid(folder), "figures")
+        shot = done(pictures.shoot, pictures.film_grid(folder), "films")
+    found = {
+        "seeds": options.seeds,
+        "seconds": round(seconds, 1),
+        "rows": rows,
+        "gains": gains,
+        "noise": noise,
+        "verdicts": [v.told() for v in judged],
+        "figures": [_without(row, "folder") for row in drawn],
+        "films": [_without(row, "folder") for row in shot],
+    }
+    path = options.out / "campaign.json"
+    path.write_text(json.dumps(found, indent=1, allow_nan=False) + "\n")
+    if options.keep:
+        save_campaign(rows)
+    print(text)
+    made = f"{path}, {folder}/tables.md, {len(drawn)} figures, {len(shot)} films"
+    print(f"{len(rows)} runs in {seconds:.0f} s; {made}")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except LabkitError as error:
+        print(error, file=sys.stderr)
+        sys.exit(2)
