@@ -33,7 +33,9 @@ class Sample(NamedTuple):
     velocity: Array
     acceleration: Array
 
-    __array_ufunc__ = None  # numpy would take it for a matrix of three rows
+    def __array_ufunc__(self, ufunc: Any, *_: Any, **__: Any) -> Any:
+        """Arithmetic, for which numpy would take this tuple for an array."""
+        raise TypeMismatch(f"{ufunc.__name__} takes arrays, not a 'Sample'")
 
 
 class PoseSample(NamedTuple):
@@ -49,7 +51,9 @@ class PoseSample(NamedTuple):
     twist: Array
     dtwist: Array
 
-    __array_ufunc__ = None
+    def __array_ufunc__(self, ufunc: Any, *_: Any, **__: Any) -> Any:
+        """Arithmetic, for which numpy would take this tuple for an array."""
+        raise TypeMismatch(f"{ufunc.__name__} takes arrays, not a 'PoseSample'")
 
 
 AnySample = Sample | PoseSample
