@@ -18,7 +18,7 @@ from typing import Any
 
 from ..sim import chosen
 from .forms import COMMITTED
-from .gaps import first_error, undefined
+from .gaps import bring_back, first_error, undefined
 from .messages import head, wrapped
 from .notebook import (
     PLACEHOLDER,
@@ -248,7 +248,7 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
             f"the cell of {question} begins with %%{magic}, which keeps what it defines to itself; "
             "take that line away"
             if magic
-            else _bring_back(question, name, any(cell["cell_type"] != "code" for cell in homes))
+            else bring_back(question, name, any(cell["cell_type"] != "code" for cell in homes))
         )
     for each in (question, check_id(question)):
         if not ids[each]:
@@ -258,18 +258,6 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
                 f"the cell of {each} is there {ids[each]} times; keep one, for the last one counts"
             )
     return problems, notes
-
-
-def _bring_back(question: str, name: str, is_text: bool) -> str:
-    """How to get back the cell of a question."""
-    if is_text:
-        return f"the cell of {question} is not code any more; click on it, press Esc and then Y"
-    return (
-        f"no cell defines {question}. To bring its cell back, lay a fresh copy of the notebook in "
-        "a folder `fresh` beside this file, and run in a new cell: "
-        f"!labkit merge {name}.ipynb fresh/{name}.ipynb --to again.ipynb (again.ipynb then holds "
-        f"all your work; call it {name}.ipynb)"
-    )
 
 
 def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:
