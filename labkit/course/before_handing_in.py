@@ -197,7 +197,7 @@ def hand_in(name: str) -> None:
     print("\n".join(map(wrapped, lines)))
 
 
-def _unsaved(found: HandIn, sources: Collection[str]) -> list[str]:
+def _unsaved(found: HandIn, sources: Iterable[str]) -> list[str]:
     """Answers that ran in this notebook with a text that its saved file does not hold.
 
     Predictions are left out, for one that was chosen with the mouse is written after its cell ran.
@@ -205,24 +205,22 @@ def _unsaved(found: HandIn, sources: Collection[str]) -> list[str]:
     notebook = shell()
     ran = notebook.history_manager.input_hist_raw if notebook is not None else ()
     last = {name: source for source in ran for name in defined_in(source)}
+    saved = set(map(str.strip, sources))
     tasks = found.verdicts.keys() - set(found.predictions)
-    return sorted(
-        name for name in tasks if last.get(name, "").strip() not in {"", *map(str.strip, sources)}
-    )
+    return sorted(name for name in tasks if last.get(name, "").strip() not in {"", *saved})
 
 
 def _last_word(file: str, found: HandIn, age: timedelta, unsaved: Collection[str]) -> str:
     """Whether to hand in the file now, and if not, what to do first."""
-    ago = (
-        f"{age.total_seconds():.0f} s" if age < JUST_NOW else f"{age.total_seconds() / 60:.0f} min"
-    )
+    recent = age < JUST_NOW
+    ago = f"{age.total_seconds():.0f} s" if recent else f"{age.total_seconds() / 60:.0f} min"
     says = f"{file} was saved {ago} ago"
     again = "save it and run this cell again"
     if unsaved:
         return f"{says}, and does not hold the {', '.join(unsaved)} that you ran last: {again}."
     if found.problems:
         return f"{says}: correct what is marked with [fix], {again}."
-    if age >= JUST_NOW:
+    if not recent:
         return f"{says}. Hand it in if you have changed nothing since then; if you have, {again}."
     if found.notes:
         return f"{says}: hand it in now as it is, or see to what is marked with [note] first."
