@@ -18,14 +18,13 @@ from typing import Any
 
 from ..sim import chosen
 from .forms import COMMITTED
-from .gaps import bring_back, first_error, undefined
+from .gaps import bring_back, changed_since, first_error, undefined
 from .messages import head, wrapped
 from .notebook import (
     PLACEHOLDER,
     WORDS,
     about,
     check_id,
-    checks,
     defines,
     grade_id,
     kind,
@@ -137,7 +136,7 @@ def look(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    stale = [name for name in verdicts if _changed_since(cells, name)]
+    stale = [name for name in verdicts if changed_since(cells, name)]
     if stale:
         notes.append(
             f"changed since it was checked: {', '.join(stale)}; the verdicts below are old, run "
@@ -258,14 +257,6 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
                 f"the cell of {each} is there {ids[each]} times; keep one, for the last one counts"
             )
     return problems, notes
-
-
-def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:
-    """Whether the cell that defines an answer was run after its check, or not at all."""
-    defined = [cell.get("execution_count") for cell in cells if defines(cell, question)]
-    checked = [cell.get("execution_count") for cell in cells if checks(cell, question)]
-    ran = [count for count in checked if isinstance(count, int)]
-    return bool(ran) and any(not isinstance(count, int) or count > max(ran) for count in defined)
 
 
 def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdict | None:
