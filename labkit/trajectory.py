@@ -33,6 +33,10 @@ class Sample(NamedTuple):
     velocity: Array
     acceleration: Array
 
+    def __array_ufunc__(self, ufunc: Any, *_: Any, **__: Any) -> Any:
+        """Arithmetic, for which numpy would take this tuple for an array."""
+        raise TypeMismatch(f"{ufunc.__name__} takes arrays, not a 'Sample'")
+
 
 class PoseSample(NamedTuple):
     """A curve of tip poses at one place: its value and two derivatives, in world axes.
@@ -47,9 +51,10 @@ class PoseSample(NamedTuple):
     twist: Array
     dtwist: Array
 
+    def __array_ufunc__(self, ufunc: Any, *_: Any, **__: Any) -> Any:
+        """Arithmetic, for which numpy would take this tuple for an array."""
+        raise TypeMismatch(f"{ufunc.__name__} takes arrays, not a 'PoseSample'")
 
-# Else numpy would take a sample for a matrix of three rows in ``target - q``.
-Sample.__array_ufunc__ = PoseSample.__array_ufunc__ = None  # type: ignore[attr-defined]
 
 AnySample = Sample | PoseSample
 

@@ -43,7 +43,7 @@ def test_an_error_is_also_the_builtin_one_that_is_usual(error, builtin):
         ((7,), (1, 7), ".ravel()"),
         ((7,), (6,), "give 7 numbers, not 6"),
         ((7,), (), "give all 7"),
-        ((7,), (7, 7), "meant to be a @"),
+        ((7,), (7, 7), "a matrix came where a vector belongs"),
         ((3, 4), (4, 3), "the transpose would fit"),
     ],
 )

@@ -44,7 +44,7 @@ def remedy(error: BaseException) -> str:
     if isinstance(error, AttributeError) and isinstance(error.obj, State | Sample | PoseSample):
         return f"it has {', '.join(error.obj._fields)}"
     if isinstance(error, TypeError) and (kinds := re.search("'(State|Sample|PoseSample)'", text)):
-        return f"a {kinds[1]} is not an array; did you mean {_ARRAYS[kinds[1]]}?"
+        return f"did you mean {_ARRAYS[kinds[1]]}?"
     if "read-only" in text:
         return (
             "the arrays that you are given cannot be changed; make a new array, or change x.copy()"

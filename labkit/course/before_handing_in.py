@@ -15,14 +15,13 @@ from typing import Any
 
 from ..sim import chosen
 from .forms import COMMITTED
-from .gaps import first_error, undefined
+from .gaps import bring_back, changed_since, first_error, undefined
 from .messages import head
 from .notebook import (
     PLACEHOLDER,
     WORDS,
     about,
     check_id,
-    checks,
     defines,
     grade_id,
     kind,
@@ -131,7 +130,7 @@ def look(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    stale = [name for name in verdicts if _changed_since(cells, name)]
+    stale = [name for name in verdicts if changed_since(cells, name)]
     if stale:
         notes.append(
             f"changed since it was checked: {', '.join(stale)}; the verdicts below are old, run "
@@ -173,7 +172,7 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
             f"the cell of {question} begins with %%{magic}, which keeps what it defines to itself; "
             "take that line away"
             if magic
-            else _bring_back(question, name, any(cell["cell_type"] != "code" for cell in homes))
+            else bring_back(question, name, any(cell["cell_type"] != "code" for cell in homes))
         )
     for each in (question, check_id(question)):
         if not ids[each]:
@@ -183,26 +182,6 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
                 f"the cell of {each} is there {ids[each]} times; keep one, for the last one counts"
             )
     return problems, notes
-
-
-def _bring_back(question: str, name: str, is_text: bool) -> str:
-    """How to get back the cell of a question."""
-    if is_text:
-        return f"the cell of {question} is not code any more; click on it, press Esc and then Y"
-    return (
-        f"no cell defines {question}. To bring its cell back, lay a fresh copy of the notebook in "
-        "a folder `fresh` beside this file, and run in a new cell: "
-        f"!labkit merge {name}.ipynb fresh/{name}.ipynb --to again.ipynb (again.ipynb then holds "
-        f"all your work; call it {name}.ipynb)"
-    )
-
-
-def _changed_since(cells: list[dict[str, Any]], question: str) -> bool:
-    """Whether the cell that defines an answer was run after its check, or not at all."""
-    defined = [cell.get("execution_count") for cell in cells if defines(cell, question)]
-    checked = [cell.get("execution_count") for cell in cells if checks(cell, question)]
-    ran = [count for count in checked if isinstance(count, int)]
-    return bool(ran) and any(not isinstance(count, int) or count > max(ran) for count in defined)
 
 
 def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdict | None:

@@ -7,6 +7,7 @@ import textwrap
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
+from .notebook import checks, defines
 from .source import look
 from .unfinished import defined_in
 
@@ -61,3 +62,23 @@ def _shown(text: str, most: int) -> str:
     """The text in one line of at most `most` printable characters."""
     text = "".join(x if x.isprintable() else " " for x in text)
     return textwrap.shorten(text, most, placeholder=" ...")
+
+
+def bring_back(question: str, name: str, is_text: bool) -> str:
+    """How to get back the cell of a question."""
+    if is_text:
+        return f"the cell of {question} is not code any more; click on it, press Esc and then Y"
+    return (
+        f"no cell defines {question}. To bring its cell back, lay a fresh copy of the notebook in "
+        "a folder `fresh` beside this file, and run in a new cell: "
+        f"!labkit merge {name}.ipynb fresh/{name}.ipynb --to again.ipynb (again.ipynb then holds "
+        f"all your work; call it {name}.ipynb)"
+    )
+
+
+def changed_since(cells: list[dict[str, Any]], question: str) -> bool:
+    """Whether the cell that defines an answer was run after its check, or not at all."""
+    defined = [cell.get("execution_count") for cell in cells if defines(cell, question)]
+    checked = [cell.get("execution_count") for cell in cells if checks(cell, question)]
+    ran = [count for count in checked if isinstance(count, int)]
+    return bool(ran) and any(not isinstance(count, int) or count > max(ran) for count in defined)

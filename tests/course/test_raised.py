@@ -7,6 +7,7 @@ import labkit as lk
 from labkit.course.advice import told
 
 STATE = lk.State(0.0, np.zeros(7), np.zeros(7))
+SAMPLE = lk.Sample(*np.zeros((3, 7)))
 FIXED = np.zeros(3)
 FIXED.setflags(write=False)
 
@@ -19,7 +20,8 @@ def writes():
     ("does", "remedy"),
     [
         (lambda: STATE.position, "it has t, q, dq, tau_ext"),
-        (lambda: STATE - STATE, "a State is not an array; did you mean state.q?"),
+        (lambda: STATE - STATE, "did you mean state.q?"),
+        (lambda: SAMPLE - np.zeros(7), "not a 'Sample'; did you mean target.position?"),
         (writes, "make a new array"),
         (lambda: np.eye(4) @ np.zeros(3), "left of the @ are 4 columns, right of it 3 rows"),
         (lambda: 2.0 @ np.zeros(3), "for a number write *"),
