@@ -200,7 +200,7 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
 @click.option("--to", type=PATH, metavar="FILE", help="Also write the table as a page.")
 @of_course
 def cup(course: Course, final: bool, to: Path | None) -> int:
-    """Run what was handed in for the Baxter Cup, and print the table.
+    """Run the entries of the Baxter Cup and print the table.
 
     Each new notebook in submitted/*/10_cup is run in the sandbox, at most three of a handle in a
     day. With --final the last one of each is run on other seeds, and the marks it beats count.

@@ -20,7 +20,7 @@ LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
 
 def await_mark(course: Course, student: str, asked: Sequence[Asked]) -> None:
     """Let a defence wait for its mark, in formgrader too; a mark that was given stays."""
-    texts = {name: _text(k, one) for k, (name, one) in enumerate(zip(LINES, asked, strict=False))}
+    texts = dict.fromkeys(LINES, "") | {LINES[k]: _text(k, one) for k, one in enumerate(asked)}
     with open_gradebook(course) as book:
         for grade in enter(course, book, DEFENCE, student, texts, FULL):
             grade.needs_manual_grade = grade.manual_score is None

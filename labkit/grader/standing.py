@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from ..course.bundle import Bundle
-from ..course.layout import Course
+from ..course.layout import CUP, DEFENCE, Course
 from ..errors import LabkitError
 from .each import Failed, for_student
 from .results import Result, Results, digest
@@ -29,6 +29,8 @@ def standing(
         In order of name, the result; or why none counts and what to type: the submission is not
         graded, another one was handed in since, or the result file is damaged.
     """
+    if assignment in {CUP, DEFENCE}:
+        return  # marked by verbs of their own, and without a result
     results = Results(course, assignment)
     handed_in = set(students(course, assignment))
     if student is None:
