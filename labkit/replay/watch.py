@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import sys
 import threading
 import time
 import traceback
@@ -18,6 +19,9 @@ PATIENCE = 1.0
 
 SLOW, CALLS = 1.0, 40
 """A law is judged by calls that took this long in all, in [s], and at least by this number."""
+
+TURN = 5e-4
+"""Python's threads change this often, in [s], while an arm is live; other cells let it go on."""
 
 _LOOK = 0.05  # between two looks, in [s]
 
@@ -72,7 +76,8 @@ class Watch:
 
         Looks are counted, not seconds: where another cell holds Python's lock, this waits too.
         """
-        looks, call = 0, -1
+        looks, call, usual = 0, -1, sys.getswitchinterval()
+        sys.setswitchinterval(TURN)
         while thread.is_alive():
             time.sleep(_LOOK)
             looks = looks + 1 if self._within and self._calls == call else 0
@@ -82,6 +87,7 @@ class Watch:
                 ctypes.pythonapi.PyThreadState_SetAsyncExc(
                     ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
                 )
+        sys.setswitchinterval(usual)
 
 
 def sentence(error: BaseException, name: str) -> str:
