@@ -28,7 +28,7 @@ def test_a_command_is_a_locked_copy_of_what_was_given(kind):
     [
         (np.zeros((7, 1)), ShapeError, "ravel"),
         (np.zeros((1, 7)), ShapeError, "ravel"),
-        (np.zeros((7, 7)), ShapeError, "meant to be a @"),
+        (np.zeros((7, 7)), ShapeError, "a matrix came where a vector belongs"),
         (0.0, TypeMismatch, "a number for each joint"),
         (None, TypeMismatch, "None"),
         ("stop", TypeMismatch, "stop"),

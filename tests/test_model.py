@@ -101,7 +101,7 @@ BAD = [
     (np.zeros((7, 1)), ShapeError, "q has shape.*ravel"),
     (np.zeros((1, 7)), ShapeError, "q has shape.*ravel"),
     (np.zeros(6), ShapeError, "give 7 numbers, not 6"),
-    (np.eye(7), ShapeError, "meant to be a @"),
+    (np.eye(7), ShapeError, "a matrix came where a vector belongs"),
     ("neutral", LabkitError, "q is 'neutral'"),
     (None, LabkitError, "q is None"),
     (np.full(7, np.nan), NotFinite, "q holds nan at index 0"),

@@ -258,7 +258,10 @@ CONTROLLERS = {
         lambda s, x: lk.JointPosition(np.zeros((7, 1))),
         r"controller failed at t = 0\.100 s.*JointPosition has shape \(7, 1\), expected \(7,\).*ra",
     ),
-    "matrix": (lambda s, x: lk.JointPosition(s.q * np.eye(7)), "meant to be a @"),
+    "matrix": (
+        lambda s, x: lk.JointPosition(s.q * np.eye(7)),
+        "a matrix came where a vector belongs",
+    ),
     "six": (lambda s, x: lk.JointPosition(np.zeros(6)), "give 7 numbers, not 6"),
     "nan": (lambda s, x: lk.JointPosition(s.q / 0.0 * 0.0), "JointPosition holds nan at index 0"),
     "limit": (

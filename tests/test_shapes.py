@@ -33,7 +33,7 @@ def test_nothing_is_broadcast_reshaped_or_squeezed(have, want):
         (np.zeros(6), ShapeError, "give 7 numbers, not 6"),
         ([0.0] * 8, ShapeError, "give 7 numbers, not 8"),
         (3.0, ShapeError, "give all 7"),
-        (np.zeros((7, 7)), ShapeError, "meant to be a @"),
+        (np.zeros((7, 7)), ShapeError, "a matrix came where a vector belongs"),
         (np.zeros((7, 1)).view(np.matrix), ShapeError, r"\(7, 1\)"),
         ("home", TypeMismatch, r"'home' \(str\), expected 7 real numbers"),
         (None, TypeMismatch, r"None \(NoneType\)"),

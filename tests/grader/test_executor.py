@@ -171,7 +171,7 @@ def test_a_folder_with_the_notebooks_name_has_a_result(course, here, task):
     """What cannot be read is rejected in a result, so that it is not tried for ever."""
     folder = Submission.of(course, NAME, "eve").folder
     (folder / f"{NAME}.ipynb").mkdir(parents=True)
-    eve = Task(course, Submission.of(course, NAME, "eve"), task.bundle, True, QUICK)
+    eve = Task(course, Submission.of(course, NAME, "eve"), task.bundle_hash, True, QUICK)
     assert "is not a file" in here(eve).rejected
 
 
@@ -278,7 +278,7 @@ def test_a_submission_that_is_to_be_isolated_is(monkeypatch, task):
 
     monkeypatch.setattr(worker, "Sandbox", Fake)
     for isolated in (False, True, True, False):
-        one = Task(task.course, task.submission, task.bundle, isolated, QUICK)
+        one = Task(task.course, task.submission, task.bundle_hash, isolated, QUICK)
         worker._sandbox(one, Bundle.of(task.course, NAME))
     close_sandbox()
     assert made == [False, "closed", True, "closed", False, "closed"]
