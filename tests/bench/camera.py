@@ -7,6 +7,7 @@ import numpy as np
 
 import labkit as lk
 from labkit import se3
+from labkit.tags import Board
 from labkit.tags.camera import BACKGROUND
 
 EYE, AT = (1.5, 0.3, 0.7), (0.85, 0.3, -0.26)
@@ -31,7 +32,7 @@ def measure():
     world = lk.World(things=[lk.Table()])
     with lk.Arm("left", world=world, q0=lk.robot("left").ready):
         T_wm = se3.pose(se3.rotation(np.array([0.0, 0.0, 0.3])), np.array([0.8, 0.25, -0.2]))
-        lk.Board(world, lk.Tag(), T_wm)
+        Board(world, lk.Tag(), T_wm)
         camera = lk.Camera(world, lk.looking_at(EYE, AT))
         frame = camera.image()
         covered = float((frame != BACKGROUND).any(axis=2).mean())
