@@ -136,8 +136,10 @@ def _chapter(page: str, pages: set[str]) -> Tag:
     for choice in article.select(".lab-choice input"):
         choice.replace_with(_made('<span class="lab-box" aria-hidden="true"></span>'))
     for more in article.select("figcaption details"):
-        told = more.select_one("p")
-        more.replace_with(_made(f'<p class="lab-words">{told.decode_contents()}</p>'))
+        told = more.select_one("p, ol")
+        assert told, page
+        told["class"] = "lab-words"
+        more.replace_with(told.extract())
     for more in article.select("details"):
         more["open"] = ""
     for box in article.select("[tabindex]"):
