@@ -9,6 +9,7 @@ from scipy import stats
 
 import labkit as lk
 from labkit import recordings
+from solutions.study import __main__ as command_line
 from solutions.study import campaign as report
 from solutions.study import pictures
 from solutions.study.claims import Outcome, interval, judge, verdicts
@@ -214,14 +215,14 @@ def noisy(cell):
 
 def test_the_campaign_writes_its_numbers_and_tables(tmp_path, monkeypatch, capsys):
     """One seed of the line alone, without pictures."""
-    monkeypatch.setattr(report, "grid", lambda seeds: SMALL[::2])
-    monkeypatch.setattr(report, "gain_grid", lambda seeds: [])
-    monkeypatch.setattr(report, "noise_grid", lambda seeds: [])
-    monkeypatch.setattr(report, "verdicts", lambda *rows: [])
+    monkeypatch.setattr(command_line, "grid", lambda seeds: SMALL[::2])
+    monkeypatch.setattr(command_line, "gain_grid", lambda seeds: [])
+    monkeypatch.setattr(command_line, "noise_grid", lambda seeds: [])
+    monkeypatch.setattr(command_line, "verdicts", lambda *rows: [])
     monkeypatch.setattr(
         "sys.argv", ["campaign", "--jobs", "1", "--out", str(tmp_path), "--no-pictures"]
     )
-    report.main()
+    command_line.main()
     assert (tmp_path / "campaign.json").exists()
     assert "| joint velocity |" in (tmp_path / "campaign/tables.md").read_text()
     assert "2 runs in" in capsys.readouterr().out
@@ -233,7 +234,7 @@ def test_a_controller_alone_is_printed_and_not_written(tmp_path, monkeypatch, ca
     monkeypatch.setattr(report, "TASKS", ("line",))
     words = ["--way", "augmented PD", "--seeds", "1", "--jobs", "1", "--out", str(tmp_path)]
     monkeypatch.setattr("sys.argv", ["campaign", *words])
-    report.main()
+    command_line.main()
     assert "| augmented PD |" in capsys.readouterr().out
     assert not list(tmp_path.iterdir())
 
