@@ -296,7 +296,7 @@ def trust() -> HTML:
     afar = found["at 2 m"][1]
     near = [x for name, (_, x) in found.items() if name not in (*refused, "at 2 m")]
     claim(
-        "between 1.5 and 5 wherever the tag is near enough",
+        "between 1.5 and 5 in these pictures of a near tag",
         lambda x: min(x) > 1.5 and max(x) < 5.0,
         x=near,
     )
