@@ -5,10 +5,10 @@ A flat square seen from afar looks the same tilted one way or the other, so ther
 choose from (Collins & Bartoli 2014, "Infinitesimal plane-based pose estimation", IPPE); the ratio
 of their errors says how safe the choice is.
 
-The covariance is that of least squares, :math:`\sigma^2 (J^T J)^{-1}`, with J the derivative of the
-corners' pixels with respect to a small motion of the tag, and sigma from the edges of this very
-picture.  A tag whose edges are not seen well, or whose corners are not those of a square as well as
-sigma says, is not reported: half hidden, it would be found in the wrong place.
+The covariance is that of least squares, :math:`J^+ C J^{+T}`, with J the derivative of the corners'
+pixels with respect to a small motion of the tag, and C the corners' covariance from the edges of
+this very picture.  A tag whose edges are not seen well, or whose corners are not those of a square
+as well as C says, is not reported: half hidden, it would be found in the wrong place.
 """
 
 from __future__ import annotations
@@ -204,14 +204,15 @@ def reprojection_error(T_cm: Any, corners: Any, camera: Camera | Intrinsics, siz
     return float(np.sqrt(np.mean(np.sum(off**2, axis=1))))
 
 
-def pose_covariance(T_cm: Any, camera: Camera | Intrinsics, size: float, noise: float) -> Array:
+def pose_covariance(T_cm: Any, camera: Camera | Intrinsics, size: float, noise: Any) -> Array:
     """What an error of the corners means for the pose.
 
     Args:
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
         camera: The camera, or its intrinsics.
         size: Side of the black square, in [m].
-        noise: Standard deviation of a corner's coordinate, in [px].
+        noise: Standard deviation of each of the corners' coordinates, in [px], as if they erred
+            apart; or their covariance, x and y in turn, shape (8, 8) in [px^2].
 
     Returns:
         Shape (6, 6), as `Detection.covariance`.
@@ -221,7 +222,9 @@ def pose_covariance(T_cm: Any, camera: Camera | Intrinsics, size: float, noise: 
     turn, place = np.zeros(3), np.array(T[:3, 3])  # small turns of what is turned already
     bent = np.array(lens.distortion)
     J = cv2.projectPoints(arms, turn, place, lens.matrix, bent)[1][:, [3, 4, 5, 0, 1, 2]]
-    return locked(np.array(as_number(noise, "noise", above=0.0) ** 2 * np.linalg.inv(J.T @ J)))
+    C = noise if np.ndim(noise) else as_number(noise, "noise", above=0.0) ** 2 * np.eye(8)
+    back = np.linalg.pinv(J)
+    return locked(np.array(back @ as_array(C, (8, 8), "noise") @ back.T))
 
 
 def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Detection:
@@ -234,12 +237,12 @@ def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Dete
     return Detection(
         id=id,
         corners=locked(lens.bent(corners) if any(lens.distortion) else corners),
-        noise=outline.noise,
+        noise=float(np.sqrt(outline.covariance.diagonal().mean())),
         T_cm=best,
         other_T_cm=other,
         error=error,
         ratio=other_error / max(first_error, 1e-9),
-        covariance=pose_covariance(best, flat, size, outline.noise),
+        covariance=pose_covariance(best, flat, size, outline.covariance),
     )
 
 

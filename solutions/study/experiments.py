@@ -124,7 +124,8 @@ def wall(
 def the_wall(gap: float = 0.05, stiffness: float = 5_000.0) -> Wall:
     """The wall of the experiment, facing the ready arm's tip."""
     p = Model().pose(Model().robot.ready)[:3, 3]
-    return Wall(p + (gap + TIP_RADIUS) * np.eye(3)[0], (-1.0, 0.0, 0.0), stiffness=stiffness)
+    point = p + (gap + TIP_RADIUS) * np.eye(3)[0]
+    return Wall(point, (-1.0, 0.0, 0.0), size=(0.3, 0.3), stiffness=stiffness)
 
 
 def predicted_wall_force(face: Wall, K: float, beyond: float) -> float:

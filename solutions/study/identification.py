@@ -86,26 +86,30 @@ def excite(plant: Plant = BAXTER, seed: int = 0) -> Log:
         return run(arm, swing, law.controller, rate=law.rate, duration=swing.duration)
 
 
-def fit(log: Log, model: Model) -> Friction:
+def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
     """Fit the friction, from the reports and the commands of the arm and from nothing else.
 
     Args:
         log: A run in torque mode of an arm that carries its own weight.
         model: Of the arm; it must have the arm's rotors.
+        smooth: Whether to smooth the commands before one is taken for each report.  Between two
+            reports the commands climb with the target, and the last one counts that as friction.
     """
     t, at = np.unique(log.measured.t.round(6), return_index=True)
     step = float(np.median(np.diff(t)))
     even = np.arange(t[0], t[-1], step)
     q = np.column_stack([np.interp(even, t, x) for x in log.measured.q[at].T])
     dq, ddq = (savgol_filter(q, 21, 3, deriv=k, delta=step, axis=0) for k in (1, 2))
-    command = np.column_stack([np.interp(even, log.t, x) for x in log.command.T])
+    wide = 2 * round(10 * step / float(np.median(np.diff(log.t)))) + 1  # as 21 of the reports
+    sent = savgol_filter(log.command, wide, 3, axis=0) if smooth else log.command
+    command = np.column_stack([np.interp(even, log.t, x) for x in sent.T])
     moved = np.array(
         [
             model.inverse_dynamics(*row) - model.gravity(row[0])
             for row in zip(q, dq, ddq, strict=True)
         ]
     )
-    rest = savgol_filter(command, 21, 3, axis=0) - moved
+    rest = command - moved
     found, speeds, torques = [], [], []
     for speed, torque in zip(dq.T, rest.T, strict=True):
         use = np.abs(speed) > MOVING

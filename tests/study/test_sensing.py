@@ -41,15 +41,18 @@ LENS = Intrinsics(distortion=(-0.2, 0.05, 0.001, -0.001, 0.0))
     [
         {"noise": 5.0},
         {"noise": 2.0, "blur": 1.0},
+        {"noise": 2.0, "intrinsics": LENS},
         {"noise": 5.0, "intrinsics": LENS},
+        {"noise": 2.0, "smear": 3.0},
+        {"noise": 2.0, "distance": 2.0},
         {"cover": 0.1},
     ],
-    ids=["noise", "blur", "a lens that distorts", "a corner covered"],
+    ids=["noise", "blur", "a lens that distorts", "and more noise", "a smear", "2 m", "a corner"],
 )
 def test_the_errors_are_as_large_as_the_detector_says(dials):
     """The mean of e' P^-1 e over a position's three components is between 1.5 and 5."""
     reported, nees = consistency(Setup(tilt=(0.26, 1.05), **dials), 40, seed=5)
-    assert reported > 0.8
+    assert reported > 0.7
     assert 1.5 < nees < 5.0
 
 
