@@ -27,6 +27,11 @@ c.HTMLExporter.filters = {
     "clean_html": "labkit.grader.markup.clean",
 }
 
+# Nor does a name of theirs give commands to the terminal.
+c.Application.logging_config = {
+    "formatters": {"console": {"class": "labkit.grader.plain_log.PlainFormatter"}}
+}
+
 # When work is due and what late work loses stands in course.toml; name a class of your own instead,
 # in a file that lies here, if its rules are not enough.
 c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"

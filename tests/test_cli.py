@@ -23,6 +23,11 @@ def test_help_shows_examples(capsys):
     assert "release" in out
 
 
+def test_instructors_have_at_most_fourteen_verbs():
+    """Fourteen verbs run a term; whatever is written for others is a layout of `export`."""
+    assert len(set(VERBS) - {"submit-check", "merge"}) <= 14
+
+
 @pytest.mark.parametrize("words", [[], ["dance"], ["release", "--seed", "many"]])
 def test_wrong_words_end_with_code_two(words, capsys):
     """Words that make no sense end with a usage line and exit code 2."""
@@ -67,6 +72,8 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["merge", WARMUP, PATHS, "--to", "x.ipynb"], "releases of the same assignment?"),
         (["term", "list", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
+        (["export", "01_paths", "--layout", "cup", "--course", ROOT], "export --layout cup"),
+        (["export", "--final", "--course", ROOT], "type: labkit export --layout cup"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
     ],
 )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from ..course.layout import Course
 from ..errors import LabkitError
 from .autograded_notebook import in_release_form, release_source, with_verdicts
 from .batch import GradeOptions, grade_aside
+from .each import for_student
 from .lock import exclusive_run
 from .results import Result, Results
 from .submission import Submission, is_name
@@ -71,11 +73,11 @@ def _check(course: Course, assignment: str, student: str) -> None:
     """Refuse a submission of which nbgrader must not copy anything."""
     folder = Submission.of(course, assignment, student).folder
     if not is_name(student):
-        raise LabkitError(f"{student!a} is not allowed as a name; rename the folder in submitted/")
+        raise LabkitError(f"the name {student!a} is not allowed; rename the folder in submitted/")
     if folder.is_symlink() or folder.parent.is_symlink():
-        raise LabkitError(f"{folder} is a link; put the student's own files there")
+        raise LabkitError(f"the folder {folder} is a link; put the student's own files there")
     if _foreign(folder):
-        raise LabkitError(f"{_foreign(folder)[0]} is a link or a special file; remove it")
+        raise LabkitError(f"there is a link or a special file, {_foreign(folder)[0]}; remove it")
 
 
 _known: dict[tuple[str, str], Result] = {}
@@ -94,7 +96,9 @@ def _grade(about: dict[str, Any]) -> Result:
             (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
             if isinstance(graded, LabkitError):
                 raise graded
-            results.keep(graded)
+            kept = for_student(graded.student, partial(results.keep, graded))
+            if isinstance(kept, LabkitError):
+                raise kept
         result = graded
         _known[key] = result
     return result

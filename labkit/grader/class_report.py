@@ -155,7 +155,8 @@ def _believed(
             counts = Counter(form.words(x) for x in said if not form.problem(x))
             told = [f"{n} x {_as_text(words)}" for words, n in counts.most_common() if n >= fewest]
             rest = len(sources) - sum(n for n in counts.values() if n >= fewest)
-            yield question.name, "; ".join([*told, *[f"{rest} another or none"] * bool(rest)])
+            others = f"{rest} others, fewer than {fewest} of them alike, or nothing"
+            yield question.name, "; ".join([*told, *[others] * bool(rest)])
 
 
 def _committed(source: str) -> Any:

@@ -1,16 +1,17 @@
-"""The command that writes tables of marks, and what other platforms take from a course."""
+"""The command that writes tables of marks, what other platforms take, and the cup's board."""
 
 from __future__ import annotations
 
 import sys
 from dataclasses import replace
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
 
 from ..course.cli import verb
-from ..course.layout import UNRELEASED, Course
+from ..course.layout import CUP, UNRELEASED, Course
 from ..errors import LabkitError
 from .cli import nobody, tell, to_file, write
 from .cli_course import of_course
@@ -32,13 +33,17 @@ Form = Literal["a", "b"]
 @of_course
 @click.option(
     "--layout",
-    type=click.Choice([*TABLES, *QUIZZES, "gradescope"]),
+    type=click.Choice([*TABLES, *QUIZZES, "gradescope", "cup"]),
     default="questions",
     help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
     "paper, moodle-quiz, canvas-quiz: the concept test instead of marks; gradescope: the zip with "
-    "which Gradescope grades ASSIGNMENT itself.",
+    "which Gradescope grades ASSIGNMENT itself; cup: the board of the Baxter Cup, after the new "
+    "entries were run in the sandbox, at most three of a handle in a day.",
 )
 @click.option("--form", type=click.Choice(["a", "b"]), help="Which form of the concept test.")
+@click.option(
+    "--final", is_flag=True, help="Cup: run on the seeds of the final, and give the bonus for it."
+)
 @click.option(
     "--column", metavar="NAME", help="The platform's name of the assignment: 'Paths (4711)'."
 )
@@ -53,14 +58,15 @@ def export(
     assignment: str | None,
     layout: str,
     form: Form | None,
+    final: bool,
     column: str | None,
     absent_zero: bool,
     to: Path | None,
 ) -> int:
-    """Write a table of marks, or the concept test.
+    """Write marks, the concept test, or the board of the cup.
 
-    The table is of an assignment or, without ASSIGNMENT, of the term: every assignment that was
-    graded, and the total with the weights of course.toml.
+    The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
+    was graded, and the total with the weights of course.toml.
     """
     from .export import LAYOUTS, as_csv, of_term, remarks
     from .marks import marks_of
@@ -72,6 +78,10 @@ def export(
         return _concept_test(course, layout, form, assignment, to)
     if form:
         raise LabkitError(f"--form is of the concept test: --layout {', '.join(QUIZZES)}")
+    if layout == "cup" and assignment is None:
+        return _board(course, final, to)
+    if final or layout == "cup":
+        raise LabkitError("for the cup's board type: labkit export --layout cup [--final]")
 
     def read(name: str) -> list[Mark]:
         if name not in UNRELEASED:
@@ -123,6 +133,28 @@ def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
         why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
         failures.add("not known to Gradescope", [Failed(x.id, why) for x in unknown])
         print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
+    return failures.code
+
+
+def _board(course: Course, final: bool, to: Path | None) -> int:
+    """Run the new entries of the cup and print the board; write it as a page too."""
+    from .cup import latest, play
+    from .cup_table import as_text, give_bonus, page
+    from .submission import misnamed
+    from .term import public_warning, seed_of
+
+    with Failures() as failures:
+        failures.add("not run", misnamed(course, CUP))
+        played = play(course, datetime.now(UTC).date(), final)
+        for entry in failures.sift(played, "not run"):
+            print(f"run: {entry.handle}", flush=True)
+        found = latest(course, final)
+        tell(as_text(found), sys.stdout)
+        if to is not None:
+            write(page(course, found, final), to)
+        if final:
+            give_bonus(course, found)
+        tell(filter(None, [public_warning(seed_of(course))]), sys.stderr)
     return failures.code
 
 

@@ -6,16 +6,13 @@ import json
 import os
 import sys
 from collections.abc import Iterator
-from datetime import UTC, datetime
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from ..course.cli import PATH, verb
+from ..course.cli import verb
 from ..course.layout import Course
 from ..errors import LabkitError
-from .atomic import write
 from .cli import one_student, tell
 from .cli_course import of_assignment, of_course
 from .each import Failures
@@ -193,38 +190,6 @@ def defence(course: Course, student: str, mark: list[int] | None) -> int:
     return 0
 
 
-@verb("--to cup.html")
-@click.option(
-    "--final", is_flag=True, help="Run on the seeds of the final, and give the bonus for it."
-)
-@click.option("--to", type=PATH, metavar="FILE", help="Also write the table as a page.")
-@of_course
-def cup(course: Course, final: bool, to: Path | None) -> int:
-    """Run the entries of the Baxter Cup and print the table.
-
-    Each new notebook in submitted/*/10_cup is run in the sandbox, at most three of a handle in a
-    day. With --final the last one of each is run on other seeds, and the marks it beats count.
-    """
-    from .cup import latest, play
-    from .cup_table import as_text, give_bonus, page
-    from .term import public_warning, seed_of
-
-    with Failures() as failures:
-        played = play(course, datetime.now(UTC).date(), final)
-        for entry in failures.sift(played, "not run"):
-            print(f"run: {entry.handle}", flush=True)
-        found = latest(course, final)
-        tell(as_text(found), sys.stdout)
-        if to is not None:
-            write(to, page(course, found, final))
-            print(f"written: {to}")
-        if final:
-            give_bonus(course, found)
-        if warning := public_warning(seed_of(course)):
-            print(warning, file=sys.stderr)
-    return failures.code
-
-
 def _handed_in(
     course: Course, assignment: str, student: str | None, failures: Failures
 ) -> list[str]:
@@ -243,4 +208,4 @@ def _handed_in(
     return who
 
 
-COMMANDS = (grade, explain, defence, cup)
+COMMANDS = (grade, explain, defence)

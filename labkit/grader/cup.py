@@ -34,12 +34,14 @@ from .grade import parse
 from .results import digest
 from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits, slowness
+from .sandbox.mounts import NoIsolation
 from .sandbox.protocol import Disconnected
 from .sandbox.session import RemoteFunction, Session, Step
 from .seen import fitting, motion
 from .submission import Submission, students
 from .term import seed_of
 from .whys import rank
+from .worker import in_sandbox
 
 FOLDER = "cup"
 """In ``results/``, where each student has a file of entries."""
@@ -121,23 +123,23 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failed]:
     had = Counter(x.handle for x in entries(course) if x.day == str(today) and not x.final)
     handles = Arms.of(course.root).handles
     limits = LIMITS.scaled(slowness())
-    with Sandbox(("labkit", "numpy"), [course.root]) as sandbox:
-        for student in students(course, CUP):
-            data, _, why = Submission.of(course, CUP, student).read(limits.notebook)
-            handle = handles.get(student, student)
-            new = Entry(student, handle, digest(data), str(today), final, why=why)
-            past = of_student(course, student)
-            if any((x.notebook, x.final) == (new.notebook, final) for x in past):
-                continue
-            if not final and had[handle] >= A_DAY:
-                yield Failed(student, f"{handle} had {A_DAY} runs today; type the same tomorrow")
-                continue
-            step = partial(_run, new, data, sandbox, limits, seeds(course, final))
-            done = new if why else for_student(student, step)
-            if not isinstance(done, Failed):
-                had[handle] += 1
-                _keep(course, [*(replace(x, motion="") for x in past), done])
-            yield done
+    for student in students(course, CUP):
+        data, _, why = Submission.of(course, CUP, student).read(limits.notebook)
+        handle = handles.get(student, student)
+        new = Entry(student, handle, digest(data), str(today), final, why=why)
+        past = of_student(course, student)
+        if any((x.notebook, x.final) == (new.notebook, final) for x in past):
+            continue
+        if not final and had[handle] >= A_DAY:
+            yield Failed(student, f"{handle} had {A_DAY} runs today; type the same tomorrow")
+            continue
+        run = partial(_run, new, data, limits, seeds(course, final))
+        step = partial(in_sandbox, run, course, ("labkit", "numpy"))
+        done = new if why else for_student(student, step, (NoIsolation,))
+        if not isinstance(done, Failed):
+            had[handle] += 1
+            _keep(course, [*(replace(x, motion="") for x in past), done])
+        yield done
 
 
 def entries(course: Course) -> Iterator[Entry]:
@@ -165,7 +167,7 @@ def latest(course: Course, final: bool) -> list[Entry]:
     return sorted(last.values(), key=lambda x: (x.score, x.handle))
 
 
-def _run(new: Entry, data: bytes, sandbox: Sandbox, limits: Limits, on: Sequence[int]) -> Entry:
+def _run(new: Entry, data: bytes, limits: Limits, on: Sequence[int], sandbox: Sandbox) -> Entry:
     """The entry with what came of it on some seeds."""
     cells = parse(data, sandbox, limits)
     if isinstance(cells, str):
@@ -183,6 +185,8 @@ def _run(new: Entry, data: bytes, sandbox: Sandbox, limits: Limits, on: Sequence
                 runs.append(cup_run(lambda _: _controller(session), seed, by_pose))
                 session.close_question()  # the next run begins with a fresh controller
             why = "" if np.isfinite([x.score for x in runs]).all() else "the arm ran away"
+        except NoIsolation:
+            raise
         except LabkitError as error:
             cell = next((x["error"] for x in session.failed()), "")
             why = clean_line(cell or str(error))

@@ -15,7 +15,7 @@ from itertools import islice
 from ..course.bundle import Bundle
 from ..course.layout import Course
 from ..course.marking import Tried, recognise, try_public
-from ..course.question import Loop, Question, Tuned
+from ..course.question import Call, Loop, Question, Tuned
 from ..course.verdict import Misconception, Outcome
 from ..errors import LabkitError
 from . import seen
@@ -32,6 +32,7 @@ from .standing import standing
 from .submission import Submission
 from .term import seed_of
 from .whys import rank
+from .worker import in_sandbox
 
 ASKED = 3
 """Questions of one defence."""
@@ -94,6 +95,13 @@ class Asked:
     numbers: Numbers | None
     known: Misconception | None
 
+    @property
+    def given(self) -> str:
+        """What the law is given in its run besides state and target, such as "(kp=40.0)"."""
+        tests = [t for t in self.of.question.tests if self.run and t.name == self.run["test"]]
+        loops = [case for test in tests for case in test.cases if isinstance(case, Loop)]
+        return Call((), loops[0].kwargs).shown("") if loops and loops[0].kwargs else ""
+
 
 def draw(course: Course, student: str) -> tuple[Asked, ...]:
     """The questions of a student's defence.
@@ -113,11 +121,12 @@ def draw(course: Course, student: str) -> tuple[Asked, ...]:
     if len(answers) >= ASKED:
         modules = {name: None for one in answers for name in imports(one.bundle.data["cells"])}
         limits = Limits().scaled(slowness())
-        with Sandbox(tuple(modules), [course.root]) as sandbox:
-            drawn = (
-                _ask(course, student, one, sandbox, limits) for one in sorted(answers, key=order)
-            )
-            asked = tuple(islice((one for one in drawn if one), ASKED))
+
+        def drawn(sandbox: Sandbox) -> tuple[Asked, ...]:
+            found = (_ask(course, student, x, sandbox, limits) for x in sorted(answers, key=order))
+            return tuple(islice(filter(None, found), ASKED))
+
+        asked = in_sandbox(drawn, course, tuple(modules))
     if len(asked) < ASKED:
         why = "".join(f"; {sentence}" for sentence in missing)
         raise LabkitError(

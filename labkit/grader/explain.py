@@ -27,6 +27,7 @@ from .results import Result
 from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits, slowness
 from .submission import Submission
+from .worker import in_sandbox
 
 _ALONE = "all cases are laid open here, so this page is for teachers and not for students"
 
@@ -140,8 +141,11 @@ def _again(course: Course, student: str, bundle: Bundle, question: str) -> Resul
         raise LabkitError(why)
     mine = [q for q in bundle.data["questions"] if q["name"] == question]
     one = _LaidOpen({**bundle.data, "questions": mine})
-    with Sandbox(imports(bundle.data["cells"]), [course.root]) as sandbox:
+
+    def again(sandbox: Sandbox) -> Result:
         return grade(data, student, one, sandbox, limits.scaled(slowness()), note)
+
+    return in_sandbox(again, course, imports(bundle.data["cells"]))
 
 
 def _bundle(course: Course, question: str, assignment: str | None) -> Bundle:

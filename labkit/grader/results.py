@@ -252,7 +252,7 @@ class Results:
             old = self.folder / "old" / f"{result.student}-{key}.json"
             old.parent.mkdir(parents=True, exist_ok=True)
             if path.is_file():
-                shutil.copyfile(path, old)
+                shutil.copy2(path, old)  # with the time at which it was written
             else:  # somebody's folder, which must make room
                 path.rename(old)
         write(path, result.text())

@@ -6,8 +6,10 @@ import atexit
 import signal
 import threading
 import warnings
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, lru_cache
+from typing import TypeVar
 
 from ..course.bundle import Bundle
 from ..course.layout import Course
@@ -21,8 +23,9 @@ from .sandbox.limits import Limits, slowness
 from .sandbox.mounts import Isolation, NoIsolation
 from .submission import Submission
 
+T = TypeVar("T")
 TRIES = 2
-"""How often a worker tries a submission whose sandbox is lost.
+"""How often something is tried whose sandbox is lost.
 
 The worker may die as well, and `executor.TRIES` gives the submission to another one, so it is tried
 four times at most.
@@ -50,7 +53,7 @@ class Task:
 
 _busy = threading.Lock()
 _sandboxes: dict[tuple[Course, bool], Sandbox] = {}
-"""This worker's sandbox, if it has one."""
+"""This process's sandbox, if it has one."""
 
 
 def grade_submission(task: Task) -> Result:
@@ -86,36 +89,56 @@ def _grade(task: Task, limits: Limits) -> Result:
     bundle = _bundle(task.course, task.submission.assignment, task.bundle_hash)
     student = task.submission.student
     data, note, why = task.submission.read(limits.notebook)
+
+    def once(sandbox: Sandbox) -> Result:
+        if why:
+            return rejection(why, student, bundle, sandbox.level)
+        return grade(data, student, bundle, sandbox, limits, note)
+
+    return in_sandbox(once, task.course, imports(bundle.data["cells"]), isolated=task.isolated)
+
+
+def in_sandbox(
+    do: Callable[[Sandbox], T], course: Course, loads: Sequence[str], *, isolated: bool = True
+) -> T:
+    """Do something in the sandbox that this process keeps; once more, in a new one, if it is lost.
+
+    Args:
+        do: What to do.
+        course: What the sandbox hides; for another course there is another sandbox.
+        loads: Modules to be loaded once for all.
+        isolated: Whether code is kept apart there.
+
+    Raises:
+        NoIsolation: There is no sandbox on this machine.
+        LabkitError: It was lost each time.
+    """
     lost = ""
     for _ in range(TRIES):
         try:
-            sandbox = _sandbox(task, bundle)
-            if why:
-                return rejection(why, student, bundle, sandbox.level)
-            return grade(data, student, bundle, sandbox, limits, note)
+            return do(_sandbox(course, loads, isolated))
         except SandboxLost as error:
             lost = str(error)
             close_sandbox()
     raise LabkitError(
-        f"its sandbox was lost {TRIES} times ({lost}); is there enough memory? Grade again, "
+        f"its sandbox was lost {TRIES} times ({lost}); is there enough memory? Try again, "
         "or look at the submission yourself"
     )
 
 
-def _sandbox(task: Task, bundle: Bundle) -> Sandbox:
+def _sandbox(course: Course, loads: Sequence[str], isolated: bool) -> Sandbox:
     """The sandbox there is, or a new one if it is to hide another course."""
-    key = task.course, task.isolated
+    key = course, isolated
     if key not in _sandboxes:
         close_sandbox()
-        loads = imports(bundle.data["cells"])
-        how = Isolation.BUBBLEWRAP if task.isolated else Isolation.NONE
-        _sandboxes[key] = Sandbox(loads, [task.course.root], how)
+        how = Isolation.BUBBLEWRAP if isolated else Isolation.NONE
+        _sandboxes[key] = Sandbox(loads, [course.root], how)
     return _sandboxes[key]
 
 
 @atexit.register
 def close_sandbox() -> None:
-    """End this worker's sandbox."""
+    """End this process's sandbox."""
     while _sandboxes:
         _sandboxes.popitem()[1].close()
 

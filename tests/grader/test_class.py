@@ -6,6 +6,7 @@ import copy
 import errno
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from plain_nbgrader import grade_with_nbgrader, pack_hidden
 from processes import below, child, wait_until_gone
 
 from labkit.__main__ import main
+from labkit.course.layout import Course
 from labkit.grader import gradebook
 from labkit.grader.batch import (
     GradedSubmission,
@@ -60,6 +62,22 @@ def part(course):
     return course
 
 
+@pytest.fixture(scope="module")
+def _graded(released, tmp_path_factory):
+    """The same, graded by two workers and never written to again."""
+    root = tmp_path_factory.mktemp("graded") / "course"
+    course = Course(shutil.copytree(released.root, root, symlinks=True))
+    make_class(course, NAME, seed=3, count=PART)
+    assert len(grade_all(course, jobs=2)) == PART
+    return course
+
+
+@pytest.fixture
+def graded(_graded, tmp_path):
+    """A copy of it, to write to."""
+    return Course(shutil.copytree(_graded.root, tmp_path / "graded", symlinks=True))
+
+
 @pytest.mark.slow
 def test_synthetic_class_gets_what_it_deserves(course):
     """Forty submissions of every kind earn, question by question, what they deserve."""
@@ -82,33 +100,31 @@ def test_class_is_drawn_from_its_seed(course):
 
 
 @pytest.mark.slow
-def test_serial_parallel_and_dask_agree(part):
+def test_serial_parallel_and_dask_agree(graded):
     """Verdicts and scores are equal with one worker, with two, in shards, and through Dask."""
     from distributed import LocalCluster
 
-    grade_all(part)
-    serial = verdicts(part)
-    assert len(serial) == PART
-    grade_all(part, jobs=2, again=True)
-    assert verdicts(part) == serial
-    for result in Path(Results(part, NAME).folder).glob("*.json"):
+    parallel = verdicts(graded)
+    assert len(parallel) == PART
+    grade_all(graded, again=True)
+    assert verdicts(graded) == parallel
+    for result in Path(Results(graded, NAME).folder).glob("*.json"):
         result.unlink()
     for k in (1, 2, 3):
-        grade_all(part, shard=(k, 3))
-    assert verdicts(part) == serial
+        grade_all(graded, shard=(k, 3))
+    assert verdicts(graded) == parallel
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
-        grade_all(part, dask=cluster.scheduler_address, again=True)
-    assert verdicts(part) == serial
+        grade_all(graded, dask=cluster.scheduler_address, again=True)
+    assert verdicts(graded) == parallel
 
 
-def test_resume(part):
+def test_resume(graded):
     """What is graded and has not changed is not graded again; what has changed is."""
-    grade_all(part, jobs=2)
-    assert {one.says for one in grade_all(part)} == {"as before"}
-    who = students(part, NAME)[0]
-    path = part.submitted / who / NAME
+    assert {one.says for one in grade_all(graded)} == {"as before"}
+    who = students(graded, NAME)[0]
+    path = graded.submitted / who / NAME
     next(path.iterdir()).write_bytes(b"{")
-    assert sum(one.says != "as before" for one in grade_all(part)) == 1
+    assert sum(one.says != "as before" for one in grade_all(graded)) == 1
 
 
 def test_killed_worker(part):
@@ -151,7 +167,8 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
         [*words, "--course", str(course.root)], env=environment, stdout=subprocess.PIPE, text=True
     ) as run:
         if processes == 7:  # it is at the second submission
-            hand_in(course, NAME, "bob", add(copy.deepcopy(solved), "while True: pass"))
+            endless = add(add(copy.deepcopy(solved), "while True: pass"), "while True: pass")
+            hand_in(course, NAME, "bob", endless)
             assert "ada: 22 of 22" in run.stdout.readline()
         everything = below(run.pid, at_least=processes)
         run.send_signal(getattr(signal, name))
@@ -168,15 +185,14 @@ def test_a_run_that_is_stopped_leaves_nothing_running_and_loses_nothing(
         assert min(s.score for s in book.assignment_submissions(NAME)) >= FULL
 
 
-def test_results_outlive_a_crash_while_writing(part):
+def test_results_outlive_a_crash_while_writing(graded):
     """A half-written result is no result, and is made again; what could be read of it is kept."""
-    grade_all(part, jobs=2)
-    results = Results(part, NAME)
-    who = students(part, NAME)[0]
+    results = Results(graded, NAME)
+    who = students(graded, NAME)[0]
     text = results.path(who).read_text()
     results.path(who).write_text(text[: len(text) // 2])
     assert results.get(who) is None
-    grade_all(part)
+    grade_all(graded)
     assert results.get(who) is not None
     assert text[: len(text) // 2] in [x.read_text() for x in (results.folder / "old").iterdir()]
 
@@ -194,9 +210,9 @@ def test_same_scores_as_nbgrader_on_honest_work(course):
             assert score == about["score"], about["kind"]
 
 
-def test_loud_when_many_fail(part):
+def test_loud_when_many_fail(graded):
     """A test that more than 30 % fail is named."""
-    results = [one.result for one in grade_all(part, jobs=2)]
+    results = list(Results(graded, NAME))
     said = list(common_failures(results * 2))
     assert said
     assert all("fail the test" in sentence for sentence in said)
@@ -213,18 +229,18 @@ def test_shards_are_a_partition():
             assert sum(in_shard(f"s{k}", (i, n)) for i in range(1, n + 1)) == 1
 
 
-def test_manual_grades_and_comments_survive(part):
+def test_manual_grades_and_comments_survive(graded):
     """Grading again changes automatic scores only, and says where a hand was at work."""
-    done = [one.result for one in grade_all(part, jobs=2)]
-    record(part, NAME, done)
+    done = list(Results(graded, NAME))
+    record(graded, NAME, done)
     who = max(done, key=lambda r: r.score)
-    with open_gradebook(part) as book:
+    with open_gradebook(graded) as book:
         grade = book.find_grade("circle-check", NAME, NAME, who.student)
         grade.manual_score, grade.extra_credit = 1.5, 0.5
         book.find_comment("circle", NAME, NAME, who.student).manual_comment = "see me"
         book.db.commit()
-    record(part, NAME, done)
-    with open_gradebook(part) as book:
+    record(graded, NAME, done)
+    with open_gradebook(graded) as book:
         grade = book.find_grade("circle-check", NAME, NAME, who.student)
         assert (grade.manual_score, grade.auto_score, grade.extra_credit) == (1.5, 4.0, 0.5)
         assert book.find_comment("circle", NAME, NAME, who.student).manual_comment == "see me"
@@ -254,10 +270,10 @@ def test_an_interrupt_is_a_line(part, capsys, monkeypatch):
     assert capsys.readouterr().err == "labkit grade: stopped\n"
 
 
-def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
+def test_scores_are_written_whole_or_not_at_all(graded, monkeypatch):
     """A disk that is full in the middle ends it; each score is the new one or that of before."""
-    done = [one.result for one in grade_all(part, jobs=2)]
-    record(part, NAME, [replace(result, questions=()) for result in done])
+    done = list(Results(graded, NAME))
+    record(graded, NAME, [replace(result, questions=()) for result in done])
     rooms = iter([True, True, False])
 
     def write(*args):
@@ -266,8 +282,8 @@ def test_scores_are_written_whole_or_not_at_all(part, monkeypatch):
 
     monkeypatch.setattr(gradebook, "write", write)
     with pytest.raises(OSError, match="No space left"):
-        record(part, NAME, done)
-    with open_gradebook(part) as book:
+        record(graded, NAME, done)
+    with open_gradebook(graded) as book:
         scores = {s.student.id: s.score for s in book.assignment_submissions(NAME)}
     assert scores == {r.student: r.score if k < 2 else 0.0 for k, r in enumerate(done)}
 
@@ -283,22 +299,22 @@ def test_the_gradebook_has_one_writer(part):
     assert not second.is_alive()
 
 
-def test_late_rules_and_timestamps(part):
+def test_late_rules_and_timestamps(graded):
     """Times come from the collector's file; an unreadable one is said, and costs nothing."""
-    done = sorted((one.result for one in grade_all(part, jobs=2)), key=lambda r: -r.score)
+    done = sorted(Results(graded, NAME), key=lambda r: -r.score)
     late, odd = done[0].student, done[1].student
-    (part.submitted / late / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
-    (part.submitted / odd / NAME / "timestamp.txt").write_text("yesterday or so")
-    with (part.root / "nbgrader_config.py").open("a") as file:
+    (graded.submitted / late / NAME / "timestamp.txt").write_text("2030-01-01 10:00:00 UTC")
+    (graded.submitted / odd / NAME / "timestamp.txt").write_text("yesterday or so")
+    with (graded.root / "nbgrader_config.py").open("a") as file:
         file.write('c.LateSubmissionPlugin.penalty_method = "zero"\n')
-    with open_gradebook(part) as book:
+    with open_gradebook(graded) as book:
         book.update_or_create_assignment(NAME, duedate="2029-01-01 10:00:00 UTC")
-    notes = record(part, NAME, done)
+    notes = record(graded, NAME, done)
     assert [note for note in notes if odd in note and "is not a time" in note]
-    with open_gradebook(part) as book:
+    with open_gradebook(graded) as book:
         assert book.find_submission(NAME, late).timestamp.year == 2030
         assert book.find_submission(NAME, odd).timestamp is None
-    marks = {row.student: (row.raw, row.score) for row in marks_of(part, NAME)}
+    marks = {row.student: (row.raw, row.score) for row in marks_of(graded, NAME)}
     assert marks[late] == (FULL, 0.0)
     assert all(raw == score for student, (raw, score) in marks.items() if student != late)
 

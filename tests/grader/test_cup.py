@@ -18,6 +18,8 @@ from labkit.grader.cup import A_DAY, SEEDS, Entry, entries, latest, play, seeds
 from labkit.grader.cup_table import as_text, give_bonus, page
 from labkit.grader.export import of_term
 from labkit.grader.marks import marks_of
+from labkit.grader.sandbox.launch import SandboxLost
+from labkit.grader.worker import TRIES
 
 HONEST = """
 import labkit as lk
@@ -110,12 +112,43 @@ def test_no_entry_can_read_the_seeds_or_hold_up_the_others(course, instant, caps
     reads = READS_SEEDS.replace("COURSE", str(course.root))
     for student, source in [("ada", HONEST), ("bob", ENDLESS), ("cy", reads), ("di", "x = 1")]:
         enter(course, student, source)
-    assert main(["cup", "--course", str(course.root)]) == 0
+    assert main(["export", "--layout", "cup", "--course", str(course.root)]) == 0
     found = {x.student: x for x in entries(course)}
     assert found["ada"].scores == (0.0,) * SEEDS and found["ada"].why == ""
     for student, why in [("bob", "TimeoutError"), ("cy", "labkit"), ("di", "nowhere")]:
         assert why in found[student].why and found[student].beaten == 0
     assert "inf mm  cy; " in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("times", [TRIES - 1, TRIES])
+def test_an_entry_whose_sandbox_is_lost_is_run_again_or_named(
+    course, instant, monkeypatch, capsys, times
+):
+    """It has no score that it did not earn; the others are run, and the next time it is, too."""
+    run, lost = cup._run, [SandboxLost("the kernel")] * times
+
+    def losing(new, *rest):
+        if new.student == "bob" and lost:
+            raise lost.pop()
+        return run(new, *rest)
+
+    monkeypatch.setattr(cup, "_run", losing)
+    for student in ("ada", "bob", "cy"):
+        enter(course, student, HONEST)
+    named = times == TRIES
+    assert main(["export", "--layout", "cup", "--course", str(course.root)]) == named
+    assert ("not run: bob: its sandbox was lost" in capsys.readouterr().err) == named
+    assert {x.student for x in entries(course)} == {"ada", "cy"} | (set() if named else {"bob"})
+    assert main(["export", "--layout", "cup", "--course", str(course.root)]) == 0
+    assert {x.scores for x in entries(course)} == {(0.0,) * SEEDS}
+    assert {x.student for x in entries(course)} == {"ada", "bob", "cy"}
+
+
+def test_an_entry_in_a_folder_with_an_unfit_name_is_named(course, capsys):
+    """Nobody who entered is passed over: exit 1, in plain letters."""
+    enter(course, "\x1b[2J", HONEST)
+    assert main(["export", "--layout", "cup", "--course", str(course.root)]) == 1
+    assert "not run: '\\x1b[2J': a folder in submitted/ has this name" in capsys.readouterr().err
 
 
 def test_a_handle_has_three_runs_a_day_and_each_begins_anew(course, instant):
@@ -133,17 +166,23 @@ def test_a_handle_has_three_runs_a_day_and_each_begins_anew(course, instant):
     assert [x.student for x in play(course, TOMORROW, final=False)] == ["ada"]
 
 
-def test_the_final_has_other_seeds_and_its_marks_beaten_are_extra_credit(course, instant):
+def test_the_final_has_other_seeds_and_its_marks_beaten_are_extra_credit(
+    course, instant, tmp_path, capsys
+):
     """Board, final and public seeds differ, as terms do; the bonus reaches the term's table."""
     before = {*seeds(course, final=False), *seeds(course, final=True)}
     begin_term(course, 5)
     term = {*seeds(course, final=False), *seeds(course, final=True)}
     assert len(before | term | set(PUBLIC_SEEDS)) == 4 * SEEDS + len(PUBLIC_SEEDS)
     enter(course, "ada", HONEST)
-    (entry,) = play(course, TODAY, final=True)
-    assert latest(course, final=False) == [] and latest(course, final=True) == [entry]
+    board = ["export", "--layout", "cup", "--course", str(course.root)]
+    assert main([*board, "--final", "--to", str(tmp_path / "final.html")]) == 0
+    assert f"written: {tmp_path / 'final.html'}" in capsys.readouterr().out
+    (entry,) = latest(course, final=True)
+    assert latest(course, final=False) == [] and {x.student for x in marks_of(course, CUP)} == {
+        "ada"
+    }
     slow = replace(entry, student="bob", handle="bob", scores=(50.0,) * SEEDS)
-    give_bonus(course, [entry, slow])
     give_bonus(course, [entry, slow])
     assert entry.beaten == len(MARKS)
     bonus = list(marks_of(course, CUP))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from dataclasses import replace
+from types import SimpleNamespace
 
 import nbformat
 import numpy as np
@@ -16,7 +17,8 @@ import labkit as lk
 from labkit.__main__ import main
 from labkit.course.layout import DEFENCE
 from labkit.course.marking import try_public
-from labkit.grader.defence import ASKED, draw
+from labkit.course.question import Loop
+from labkit.grader.defence import ASKED, Asked, draw
 from labkit.grader.defence_mark import await_mark, give_mark
 from labkit.grader.defence_page import write_page
 from labkit.grader.gradebook import record
@@ -82,6 +84,14 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
     assert (shown["student"], shown["score"], shown["needs_manual_grade"]) == ("ada", 6.0, False)
     written = course.root / "autograded/ada" / DEFENCE / f"{DEFENCE}.ipynb"
     nbformat.validate(nbformat.read(written, as_version=4))
+
+
+def test_the_front_says_what_the_law_is_given():
+    """The gains of the run, and whether the arm carries itself: without them nobody can answer."""
+    loop = Loop(None, {"kp": 40.0, "arm_compensates": False})
+    question = SimpleNamespace(tests=[SimpleNamespace(name="circle", cases=[loop])])
+    asked = Asked(SimpleNamespace(question=question), None, (), 1, {"test": "circle"}, *[None] * 3)
+    assert asked.given == "(kp=40.0, arm_compensates=False)"
 
 
 def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):

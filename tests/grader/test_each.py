@@ -214,6 +214,24 @@ def test_no_name_of_a_folder_reaches_a_terminal(marked, capsys, monkeypatch):
         assert not [x for x in out + err if not (x.isprintable() or x == "\n")], words
 
 
+def test_no_verb_touches_what_was_handed_in(marked, capsys):
+    """Whatever is done with a class, each file of each student's is as it came, none is gone."""
+    attempt = marked.root / "attempts" / "ada" / NAME / "1-x" / f"{NAME}.ipynb"
+    attempt.parent.mkdir(parents=True)
+    attempt.write_bytes(b"an earlier one")
+    (marked.submitted / "bob" / NAME / "notes.txt").write_text("beside it")
+
+    def files():
+        tops = (marked.submitted, marked.root / "attempts")
+        return {path: path.read_bytes() for top in tops for path in top.rglob("*.*")}
+
+    before = files()
+    assert len(before) == len(CLASS) + 2
+    for words in (["grade"], ["feedback"], ["export"], ["class-report", "--names"], ["release"]):
+        verb(marked, capsys, *words)
+        assert files() == before, words
+
+
 def test_nobody_who_handed_in_is_passed_over(course, capsys):
     """A folder that is a link, even one that leads nowhere, is a submission and is named."""
     (course.submitted / "ada").mkdir(parents=True)

@@ -278,7 +278,6 @@ def test_a_submission_that_is_to_be_isolated_is(monkeypatch, task):
 
     monkeypatch.setattr(worker, "Sandbox", Fake)
     for isolated in (False, True, True, False):
-        one = Task(task.course, task.submission, task.bundle_hash, isolated, QUICK)
-        worker._sandbox(one, Bundle.of(task.course, NAME))
+        worker.in_sandbox(id, task.course, (), isolated=isolated)
     close_sandbox()
     assert made == [False, "closed", True, "closed", False, "closed"]

@@ -10,8 +10,9 @@ from courses import copied
 
 from labkit.__main__ import main
 from labkit.course import read_question
+from labkit.course.brief import brief
 from labkit.course.layout import Course
-from labkit.course.notebook import brief, source_notebook
+from labkit.course.notebook import source_notebook
 from labkit.course.problem import _none
 from labkit.course.refusals import refusals, stand_ins
 from labkit.course.solved import inlined, solution_notebook

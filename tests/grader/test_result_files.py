@@ -145,6 +145,18 @@ def test_what_is_no_file_is_none(marked):
     assert [x for x in (results.folder / "old").iterdir() if x.is_dir()]
 
 
+def test_a_damaged_result_is_kept_as_it_was(marked):
+    """To the byte and to the second: a person may still read in it what it was, and since when."""
+    results = Results(marked, NAME)
+    one, path = results.get("ada"), results.path("ada")
+    path.write_bytes(b"\xff half")
+    os.utime(path, (1_000_000, 1_000_000))
+    results.keep(one)
+    (old,) = (results.folder / "old").iterdir()
+    assert (old.read_bytes(), old.stat().st_mtime) == (b"\xff half", 1_000_000)
+    assert results.get("ada") == one
+
+
 ANY = st.text(alphabet=st.characters(exclude_categories=()), max_size=20)  # lone surrogates too
 
 

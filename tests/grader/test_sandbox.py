@@ -12,7 +12,9 @@ import pytest
 from handmade import ROOT
 
 from labkit.grader.doctor import DOCKER, elsewhere, examine
-from labkit.grader.sandbox.launch import FIRST_UID, Sandbox
+from labkit.grader.sandbox.launch import FIRST_UID, Sandbox, SandboxLost
+from labkit.grader.sandbox.limits import Limits
+from labkit.grader.sandbox.mounts import NoIsolation
 
 SANDBOX = ROOT / "labkit" / "grader" / "sandbox"
 DOCKERS_OWN = (
@@ -50,6 +52,17 @@ def test_no_two_sandboxes_share_a_user():
             assert min(one.uid, other.uid) >= FIRST_UID
         else:
             assert one.uid == other.uid == 0
+
+
+def test_what_can_no_longer_be_confined_is_a_sandbox_lost():
+    """Where it never could, the machine lacks something; later it is no student's fault either."""
+    impossible = Limits(files=-1)
+    with Sandbox() as sandbox:
+        with pytest.raises(NoIsolation, match="could not be confined"):
+            sandbox.spawn("student", impossible)
+        sandbox.spawn("student", Limits()).close()
+        with pytest.raises(SandboxLost, match="could not be confined"):
+            sandbox.spawn("student", impossible)
 
 
 def test_containers_state_the_same_options():

@@ -107,6 +107,13 @@ def test_the_limits_of_a_reply_have_a_margin():
     assert VALUES > 100 * 80
 
 
+def test_what_a_submission_may_take_is_stated():
+    """On a free machine a minute in all, its parsing included, and 15 s for an endless question."""
+    limits = Limits()
+    assert limits.parse + limits.wall <= 60.0
+    assert limits.question + limits.grace <= 15.0
+
+
 def test_a_polynomial_has_few_coefficients():
     """What is evaluated is short; a longer one is refused with the limit."""
     Ratio((1.0,) * MOST_COEFFICIENTS, (1.0,))

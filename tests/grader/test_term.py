@@ -184,7 +184,7 @@ def test_class_report(term, capsys):
     said = sum("twice_the_time" in r.text() and "predict(" in q.source for r in results
                for q in r.questions if q.verdict.name == "twice_the_time")  # fmt: skip
     (believed,) = re.findall(r"^- `twice_the_time`: (.*)$", told, re.MULTILINE)
-    assert said > 0 and sum(map(int, re.findall(r"(\d+) (?:x|another)", believed))) == len(
+    assert said > 0 and sum(map(int, re.findall(r"(\d+) (?:x|others)", believed))) == len(
         [r for r in results if not r.rejected]
     )
     named = report(NAME, [mark_of(replace(r, rejected="x")) for r in results], problems, str)

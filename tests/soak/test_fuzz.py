@@ -76,7 +76,7 @@ def everywhere(request, tmp_path_factory):
     name = request.param
     asked = [x["kind"] for x in chosen(request, test_numbers) if x["everywhere"] == name]
     folder = tmp_path_factory.mktemp(name)
-    return Examined(release_into(folder / "course", name).root, folder, OTHERS, name).of(asked)
+    return Examined(release_into(folder / "released", name).root, folder, OTHERS, name).of(asked)
 
 
 NUMBERS = [kind for kind in kinds("NUMBERS") if kind.name in EXTREMES]

@@ -90,6 +90,7 @@ class Sandbox:
         command, variables = mounts.command(isolation, hidden)
         self.isolation = isolation
         self.uid, self._claim = _user()
+        self._confines = False
         counted = isolation is Isolation.BUBBLEWRAP
         self.group = Group.make(f"{os.getpid()}-{next(_numbers)}", SANDBOX) if counted else None
         self._log = os.memfd_create("labkit-sandbox-log")
@@ -164,8 +165,8 @@ class Sandbox:
             more: What else its forkserver needs to know.
 
         Raises:
-            NoIsolation: It could not be confined.
-            SandboxLost: Nothing could be started.
+            NoIsolation: It could not be confined, nor could any before it.
+            SandboxLost: Nothing could be started, or confined any more: no fault of the student's.
         """
         forkserver = self._forkservers[role]
         ours, theirs = socket.socketpair()
@@ -184,7 +185,9 @@ class Sandbox:
             raise SandboxLost(f"nothing could be started: {error}") from None
         if "confined" not in reply:
             process.close()
-            raise NoIsolation(f"a sandboxed process could not be confined: {reply}")
+            kind = SandboxLost if self._confines else NoIsolation
+            raise kind(f"a sandboxed process could not be confined: {reply}")
+        self._confines = True
         return process
 
     def close(self) -> None:

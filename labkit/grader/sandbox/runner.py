@@ -23,7 +23,7 @@ from typing import Any
 from labkit.course.calling import Capped
 from labkit.course.reply import LONGEST, TimeUp, kind, reply, sentence
 from labkit.course.serialize import decode
-from labkit.course.source import plain
+from labkit.course.source import look, plain
 from labkit.course.withheld import withhold
 
 from . import stubs
@@ -62,6 +62,7 @@ class Notebook:
         self.names.update(__builtins__=__builtins__, In=[""], Out={})
         self.functions: dict[str, Any] = {}
         self.limits, self.output = limits, limits["output"]
+        self.unmade: set[str] = set()  # names of cells that wanted the student's own arm
         self.alone = os.getpid() == 1 or os.getuid() == uid  # -1 is then its own processes
         shell = getattr(builtins, "get_ipython", None)
         if shell is not None:
@@ -78,12 +79,24 @@ class Notebook:
             except TimeUp:
                 raised, error = "TimeUp", f"it was stopped after {seconds:g} s"
             except BaseException as why:
-                raised, error = kind(why), _sentence(why)
+                if not self._wants_own_arm(why, source):
+                    raised, error = kind(why), _sentence(why)
         for name in answers:
             if name in self.names:
                 self.functions[name] = self.names[name]
         self.output -= out.size
         return {"ran": cell, "kind": raised, "error": error, "output": out.getvalue()}
+
+    def _wants_own_arm(self, why: BaseException, source: str) -> bool:
+        """Whether a cell stopped for want of the student's own arm, or of what it would have made.
+
+        It is not their fault, and nothing is said of it.
+        """
+        wants = isinstance(why, stubs.NoOwnArm)
+        wants |= isinstance(why, NameError) and why.name in self.unmade
+        if wants:
+            self.unmade.update(look(source)["binds"])
+        return wants
 
     def _execute(self, name: str, source: str) -> None:
         text = plain(source)
