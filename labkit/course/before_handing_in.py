@@ -6,21 +6,22 @@ It reads the file and runs nothing.
 from __future__ import annotations
 
 import platform
+import re
 from collections import Counter
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import version
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from ..sim import chosen
+from .brief import WORDS
 from .forms import COMMITTED
 from .gaps import bring_back, changed_since, first_error, undefined
 from .messages import head
 from .notebook import (
     PLACEHOLDER,
-    WORDS,
-    about,
     check_id,
     defines,
     grade_id,
@@ -72,7 +73,7 @@ class HandIn:
         ]
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)
-        end = f"{len(right & tasks)} of {len(tasks)} tasks were right"
+        end = f"{len(right & tasks)} of {len(tasks)} tasks were right, as far as can be tried here"
         if self.predictions:
             committed = len(right & set(self.predictions))
             end += f", and {committed} of {len(self.predictions)} predictions committed"
@@ -143,14 +144,14 @@ def look(path: Path) -> HandIn:
             "run them, save the file and run this again (they run in any case when it is marked)"
         )
     texts = {}
-    for cell in cells:
+    for above, cell in pairwise(cells):
         if kind(cell) == "why" and grade_id(cell):
             words = texts[grade_id(cell)] = len(cell["source"].replace(PLACEHOLDER, "").split())
             if words < WORDS[0]:
-                notes.append(
-                    f"{grade_id(cell)} has {words} words; for its "
-                    f"{about(cell).get('points', 0):g} points it needs at least {WORDS[0]}"
-                )
+                notes.append(f"{grade_id(cell)} has {words} words; it needs at least {WORDS[0]}")
+            most = re.search(r"(\d+) words", above["source"])
+            if most and words > int(most[1]):
+                notes.append(f"{grade_id(cell)} has {words} words; it may have at most {most[1]}")
     wrong = [name for name, v in verdicts.items() if v and not v.right]
     for says, foretold in (
         ("not yet right: {}; what is right counts all the same", False),

@@ -15,6 +15,9 @@ from .verdict import Difference, Kind
 COMMITTED = "committed before the arm answers"
 """The one test of a prediction."""
 
+OWN_ARM = "it is true of your own arm"
+"""The test of a number that a student found out; only who marks it knows the arm."""
+
 
 def letters(said: Any) -> str:
     """What was written, in small letters and without spaces around it; "" if it is not a text."""
@@ -115,12 +118,12 @@ class Number(_Form):
     @property
     def how(self) -> str:
         """How to write it down."""
-        return f"a number from {self.least:g} to {self.most:g}, in {self.unit}"
+        return f"a number from {self.least:g} to {self.most:g} ({self.unit})"
 
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction; "" if nothing is."""
         if isinstance(said, bool) or not isinstance(said, int | float):
-            return f"it is {said!r}; write one number, in {self.unit}"
+            return f"it is {said!r}; write one number ({self.unit})"
         if not self.least <= said <= self.most:
             return f"it is {said:g} {self.unit}; write {self.how}"
         return ""
@@ -152,7 +155,8 @@ class Curve(_Form):
     def how(self) -> str:
         """How to write it down."""
         places = ", ".join(f"{x:g}" for x in self.at)
-        return f"a list of its {len(self.at)} heights at {places} ({self.along}), in {self.height}"
+        what = f"the {self.height} where the {self.along} is {places}"
+        return f"a list of {len(self.at)} numbers: {what}"
 
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction; "" if nothing is."""

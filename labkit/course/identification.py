@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from .bugs import Found, Telling
-from .forms import Measured
+from .forms import OWN_ARM, Measured
 from .own_arm import OwnArm
 from .question import Call, Question, Test
 
@@ -42,7 +42,7 @@ class Identification:
         tests = (
             Test(self.form, (Call(()),), 0.0),
             Test(
-                "it is true of your own arm",
+                OWN_ARM,
                 (Call((), expected=self._expected(), hidden=True),),
                 also="whether it is true of your own arm",
             ),
@@ -66,7 +66,7 @@ class Identification:
         points = f"{self.points:g} point{'' if self.points == 1 else 's'}"
         where = "core" if self.core else "extension"
         hint = f'- Stuck? `hint("{self.name}", 1)`.' if self.hints else ""
-        form = f"- Write down {self.form}, as plain numbers; your program is not run again."
+        form = f"- Write {self.form}. Type values, not a calculation: the cell is not run again."
         head = f"**Find out: `{self.name}`** · {points} · {where}"
         return "\n".join([head, "", self.asks, "", form, *filter(None, [hint])])
 

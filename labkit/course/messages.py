@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
 from collections.abc import Iterable, Iterator
 
 from ..control import COMMANDS
 from ..errors import ControllerError
-from .forms import COMMITTED
+from .factors import likely_cause
+from .forms import COMMITTED, OWN_ARM
 from .question import Loop, Question, Test, Tuned, in_brief
 from .verdict import Difference, Kind, Outcome, TestResult, Value, Verdict
 from .withheld import spoken
@@ -39,9 +39,18 @@ def head(verdict: Verdict) -> str:
     says = "committed" if committed else HEADS[verdict.outcome]
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
+    elif _waits(verdict):
+        return f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is \
+true of your own arm."
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
         return f"{verdict.name}: {says} on all cases here; {points} if the teacher's cases agree."
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
+
+
+def _waits(verdict: Verdict) -> bool:
+    """Whether nothing can be said before it is marked: only there is the student's arm known."""
+    right = verdict.outcome is Outcome.RIGHT and not verdict.complete
+    return right and any(test.name == OWN_ARM for test in verdict.tests)
 
 
 def uses(withheld: Iterable[str]) -> str:
@@ -71,7 +80,7 @@ def tell(
     if verdict.outcome is Outcome.NOT_ATTEMPTED:
         lines.append(f"  To do: {question.asks}")
     elif verdict.outcome is Outcome.RIGHT:
-        lines += [] if verdict.complete else _unseen(question)
+        lines += [] if verdict.complete or _waits(verdict) else _unseen(question)
     elif verdict.outcome is Outcome.NOT_COUNTED:
         lines.append("  You may use it elsewhere in the notebook; here, write it yourself.")
     else:
@@ -127,16 +136,6 @@ _MEASURES = {
     "worst_mm": ("the worst error", " mm"),
 }
 """Measures of a run in words, with their units."""
-_FACTORS = {
-    -1.0: "the same with the other sign",
-    math.degrees(1.0): "these look like degrees; use radians",
-    math.radians(1.0): "these look like degrees taken for radians",
-    1e3: "a thousand times too large: millimetres for metres?",
-    1e-3: "a thousand times too small",
-    2.0: "twice what is expected",
-    0.5: "half of what is expected",
-}
-"""The likely cause if all numbers are wrong by the same factor."""
 
 
 def line(test: TestResult) -> str:
@@ -170,7 +169,7 @@ def _words(d: Difference) -> tuple[str, str, str, str]:
             index = ", ".join(f"{k:g}" for k in d.at)
             at = f"at index {f'({index})' if len(d.at) > 1 else index} " if d.at else ""
             also = ", or any that moves the tip alike" if d.several else ""
-            return f"{of}{at}", _brief(d.expected) + also, _brief(d.found), _guess(d)
+            return f"{of}{at}", _brief(d.expected) + also, _brief(d.found), likely_cause(d)
         case Kind.RESPONSE:
             return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
         case Kind.MEASURE:
@@ -206,17 +205,6 @@ def _instead(d: Difference) -> str:
     if d.expected not in _COMMANDS:
         return what
     return f"{what}; return lk.{d.expected}(...) with one number for each joint"
-
-
-def _guess(d: Difference) -> str:
-    """The likely cause of a factor; a single number may be twice or half of another by chance."""
-    if d.times is None:
-        return ""
-    single = isinstance(d.expected, float) and not d.at
-    for factor, means in _FACTORS.items():
-        if math.isclose(d.times, factor, rel_tol=1e-6) and not (single and factor in (2.0, 0.5)):
-            return means
-    return ""
 
 
 def _brief(x: Value) -> str:

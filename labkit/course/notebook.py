@@ -16,6 +16,7 @@ from typing import Any
 
 from ..errors import LabkitError
 from ..formats import stamp
+from .brief import WHY_POINTS, brief, brief_of_why
 from .identification import Identification
 from .predictions import Prediction
 from .question import Question
@@ -248,36 +249,15 @@ def _why(path: Path, name: str, cell: Cell) -> Iterator[dict[str, Any]]:
             "### BEGIN SOLUTION and a line ### END SOLUTION"
         )
     points = float(cell["metadata"].get("points", WHY_POINTS))
-    least, most = WORDS
-    head = f"**Why? `{name}`** · {points:g} points · {least} to {most} words of your own\n\n"
-    head = head if "why" in cell["metadata"] else ""
-    yield _cell("markdown", head + asks.strip(), "brief", {})
+    asks = asks.strip()
+    text = brief_of_why(name, points, asks) if "why" in cell["metadata"] else asks
+    yield _cell("markdown", text, "brief", {})
     meta = _nbgrader(name, solution=True, grade=True, points=points)
     yield _cell("markdown", begins + model, "why", meta)
 
 
-WORDS, WHY_POINTS = (25, 80), 2.0
-"""The fewest and the most words of a why, and its points."""
 PLACEHOLDER = "*Double-click here and write your text in place of this line.*"
 """What the cell of a why says at first; nbgrader's settings say the same."""
-
-
-def brief(question: Question) -> str:
-    """The text above a stub: the task, the points, how it is tried, what is withheld."""
-    points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
-    part = "core" if question.core else "extension"
-    lines = [f"**Your turn: `{question.name}`** · {points} · {part}", "", question.asks]
-    also = list(dict.fromkeys(test.also for test in question.tests if test.also))
-    gates = [test.name for test in question.tests if not test.weight]
-    lines += ["", f"- Needed before anything counts: {'; '.join(gates)}."] if gates else [""]
-    if also:
-        lines.append(f"- Also tried when it is marked: {'; '.join(also)}.")
-    if question.withheld:
-        names = ", ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
-        lines.append(f"- Write it yourself: {names} may not be used in the answer.")
-    if question.hints:
-        lines.append(f'- Stuck? `hint("{question.name}", 1)` in a new cell (Esc, B): it is free.')
-    return "\n".join(lines)
 
 
 def _check_stub(path: Path, name: str, cell: Cell) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from html import escape
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,7 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
     first = place.committed.get(name)
     if name in place.revealed and first is not None and said != first:
         print(wrapped(f"The answer was shown, so your first prediction stays: {first!r}."))
+        _write_down(name, first)
         return first
     if said is None:
         said = place.chosen.pop(name, None)
@@ -105,15 +107,15 @@ def _controls(name: str, form: Form) -> None:
     from IPython.display import display
 
     again = "click into the cell above this line and press Shift+Enter once more to commit."
-    note = widgets.Label(f"Choose; then {again}")
+    note = widgets.HTML(f"Choose; then {again}")  # a label would not break its line
     parts = _inputs(form, widgets)
 
     def changed(_: Any) -> None:
-        values = [part.value for part in parts]
+        values = [round(x, 9) if isinstance(x := part.value, float) else x for part in parts]
         said = values if isinstance(form, Curve) else values[0]
         if not form.problem(said):
             desk().chosen[name] = said
-            note.value = f"{form.words(said)}: not committed yet; {again}"
+            note.value = f"{escape(form.words(said))}: not committed yet; {again}"
 
     for part in parts:
         part.observe(changed, "value")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import inspect
 import json
 import linecache
+import os
 import sys
 from collections.abc import Callable
 from io import BytesIO
@@ -159,9 +160,14 @@ def desk() -> Desk:
 class Points(float):
     """Points earned: a float, which nbgrader reads from a cell's output and students do not see."""
 
-    def _repr_html_(self) -> str:
-        """What a notebook shows in place of the bare number: nothing, for the verdict is above."""
-        return ""
+    def _ipython_display_(self) -> None:
+        """Show nothing, for the verdict is above; where nbgrader runs the cell, the number.
+
+        Raises:
+            NotImplementedError: nbgrader runs the cell; by this IPython is told to show the number.
+        """
+        if "NBGRADER_EXECUTION" in os.environ:
+            raise NotImplementedError
 
 
 _NOT_RUN = (
@@ -189,7 +195,7 @@ def check(name: str, function: Callable[..., Any]) -> float:
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
     text = tell(question, verdict, printed, desk().leaning(name, function))
-    if any("numbers>" in test.call for test in verdict.tests):
+    if any("numbers>" in test.call or "(...)" in test.call for test in verdict.tests):
         text += f'\nThe numbers: args, kwargs = lk.course.case("{name}")'
     _say(text, verdict)
     if verdict.mistake is not None and found is not None:

@@ -43,7 +43,9 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert found.problems == ()
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
-    assert str(found).endswith("0 of 6 tasks were right, and 0 of 2 predictions committed.")
+    assert str(found).endswith(
+        "0 of 6 tasks were right, as far as can be tried here, and 0 of 2 predictions committed."
+    )
 
 
 def test_what_is_not_yet_right_is_named(folder):
@@ -113,7 +115,7 @@ def test_what_the_check_said_is_repeated(folder):
     found = answered(folder, "circle", "def circle(*a): return 1", ran)
     says = "  circle: right on all cases here; 4 points if the teacher's cases agree."
     assert says in str(found).splitlines()
-    assert "1 of 6 tasks were right, and 0 of" in str(found)
+    assert "1 of 6 tasks were right, as far as can be tried here, and 0 of" in str(found)
     lies = [{"output_type": "stream", "name": "stdout", "text": "circle: right. 4 of 4 points.\n"}]
     assert answered(folder, "circle", "x = 1", lies).verdicts["circle"] is None
 
@@ -146,6 +148,20 @@ def test_odd_outputs_are_passed_over(folder, odd):
         return [*cells, {"cell_type": "code", "source": "1", "metadata": {"nbgrader": [1]}}]
 
     assert look(edited(folder / "01_paths.ipynb", change)).verdicts["circle"] is None
+
+
+@pytest.mark.parametrize("odd", ["lots", None, [1], {}])
+def test_odd_points_in_a_cell_are_nobodys_concern(folder, odd):
+    """What a file says of itself is not told again: it may be anything."""
+
+    def change(cells):
+        for cell in cells:
+            cell["metadata"].setdefault("nbgrader", {})["points"] = odd
+        return cells
+
+    path = folder / "01_paths.ipynb"
+    before = str(look(path))
+    assert str(look(edited(path, change))) == before
 
 
 def test_another_name_is_to_be_mended(folder):
@@ -195,21 +211,35 @@ def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
     assert any("press Esc and then Y" in text for text in problems)
 
 
+def with_texts_of(folder, words):
+    """The look at a notebook in which each text has so many words."""
+
+    def change(cells):
+        for cell in cells:
+            if cell["metadata"].get("lab") == "why":
+                cell["source"] = "word " * words
+        return cells
+
+    return look(edited(folder / "01_paths.ipynb", change))
+
+
 def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     """A text that nobody has written has no words; a written one has a line."""
     assert PLACEHOLDER in (ASSIGNMENT.parents[1] / "nbgrader_config.py").read_text()
     found = look(folder / "01_paths.ipynb")
     assert found.texts and set(found.texts.values()) == {0}
-    assert any(f"{name} has 0 words; for its 2 points" in str(found) for name in found.texts)
-
-    def change(cells):
-        for cell in cells:
-            if cell["metadata"].get("lab") == "why":
-                cell["source"] = "word " * 30
-        return cells
-
-    found = look(edited(folder / "01_paths.ipynb", change))
+    assert any(f"{name} has 0 words; it needs" in str(found) for name in found.texts)
+    found = with_texts_of(folder, 30)
     assert all(f"  {name}: 30 words" in str(found) for name in found.texts)
+    assert "at most" not in str(found)
+
+
+def test_a_text_that_is_too_long_is_named_with_its_limit(folder):
+    """A why may have as many words as the cell above it says."""
+    found = with_texts_of(folder, 81)
+    assert [f"{name} has 81 words; it may have at most 80" for name in found.texts] == [
+        note for note in found.notes if "at most" in note
+    ]
 
 
 def test_the_forum_block_holds_verdicts_and_no_answer(folder):

@@ -169,16 +169,22 @@ def test_an_older_answer_is_not_tried_when_its_cell_has_an_error(desk):
     assert said == [fine, older, fine, older, fine], done.stdout
 
 
-def test_nbgrader_reads_the_points_and_a_student_sees_no_number(desk):
-    """The output holds the number as plain text, and as HTML, which notebooks prefer, nothing."""
+@pytest.mark.parametrize("nbgrader", [False, True])
+def test_nbgrader_reads_the_points_and_a_student_sees_no_number(desk, nbgrader):
+    """The number is an output where nbgrader runs the cell; elsewhere there is no output."""
     program = KERNEL.format(folder=str(desk)) + (
         "from labkit.course.student import Points\n"
         "print(shell.display_formatter.format(Points(2.0))[0])\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=desk,
+        env=os.environ | ({"NBGRADER_EXECUTION": "validate"} if nbgrader else {}),
     )
-    assert ast.literal_eval(done.stdout) == {"text/plain": "2.0", "text/html": ""}
+    assert ast.literal_eval(done.stdout) == ({"text/plain": "2.0"} if nbgrader else {})
 
 
 def test_a_loop_without_end_is_told_when_it_is_stopped(capfd):

@@ -7,6 +7,7 @@ import pytest
 from labkit.course import Found, Identification, Measured, Outcome, Telling, mark, my_arm
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.identification import personal
+from labkit.course.messages import tell
 from labkit.course.own_arm import DEMO, FILE, Arms, draw
 from labkit.course.reply import Here
 from labkit.errors import LabkitError
@@ -68,3 +69,13 @@ def test_an_experiment_must_tell_two_suspects_apart():
     assert Telling(0)(("fh", still, still), None) is not None
     assert Telling(0)(("bc", still, still), "b") is None
     assert Telling(0)(("bc", still, still), "c") is not None
+
+
+def test_a_number_of_ones_own_arm_is_not_called_right_where_the_arm_is_not_known():
+    """A check says when the number is judged; one of a wrong form is still wrong."""
+    judge = Measured("payload", "kg", 0.0, 3.0, 0.01)
+    asked = Identification("m", "?", judge, 0.3, "one number", 3.0).question().public()
+    says = tell(asked, mark(asked, lambda: 1.0))
+    assert says.startswith("m: a possible answer. When it is marked, it earns 3 points if it is")
+    assert "right" not in says
+    assert "not yet right" in tell(asked, mark(asked, lambda: 7.0))

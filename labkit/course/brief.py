@@ -1,0 +1,39 @@
+"""Briefs: the text above a place in which students write, a function or a why."""
+
+from __future__ import annotations
+
+from .question import Question
+
+WORDS, WHY_POINTS = (25, 80), 2.0
+"""The fewest and the most words of a why, and its points."""
+RUBRIC = (
+    "- 2 points: the right cause, and how it leads to what you saw. 1 point: the right cause, but "
+    "a step is missing or wrong. 0 points: another cause, or what you saw told once more."
+)
+"""How a person marks a why."""
+
+
+def brief_of_why(name: str, points: float, asks: str) -> str:
+    """The text above a why, with what a person marks it by."""
+    least, most = WORDS
+    head = f"**Why? `{name}`** · {points:g} points · {least} to {most} words of your own"
+    return f"{head}\n\n{asks}\n\n{RUBRIC}"
+
+
+def brief(question: Question) -> str:
+    """The text above a stub: the task, the points, how it is tried, what is withheld."""
+    points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
+    part = "core" if question.core else "extension"
+    lines = [f"**Your turn: `{question.name}`** · {points} · {part}", "", question.asks]
+    also = list(dict.fromkeys(test.also for test in question.tests if test.also))
+    gates = [test.name for test in question.tests if not test.weight]
+    must = f"- To earn any points your function must pass: {'; '.join(gates)}."
+    lines += ["", must] if gates else [""]
+    if also:
+        lines.append(f"- Hidden cases when it is marked: {'; '.join(also)}.")
+    if question.withheld:
+        names = " or ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
+        lines.append(f"- Write it yourself: the answer may not use {names}.")
+    if question.hints:
+        lines.append(f'- Stuck? `hint("{question.name}", 1)` in a new cell (Esc, B): it is free.')
+    return "\n".join(lines)
