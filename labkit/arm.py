@@ -134,6 +134,10 @@ class Arm:
             raise ControllerError(f"{shown(command)} is not a command; give one of {names}")
         if command.value.shape != self.robot.zeros.shape:
             raise ShapeError(type(command).__name__, self.robot.zeros.shape, command.value.shape)
+        self.follow(command)
+
+    def follow(self, command: Command) -> None:
+        """As `apply`, for a command whose type and shape were checked."""
         if type(command) is JointPosition:
             self.model.within_limits(command.value, "JointPosition")
         self._motors.follow(command)
@@ -267,7 +271,7 @@ class Arm:
             self._hold()
         if self._reports.every and self._reports.due(self.world.steps):
             self._report()
-        q, dq = self._read()
+        q, dq = self._known or self._read()
         drive = self._motors.drive(self._reports.read(q), dq)
         motors = drive.tau
         if self._springs is not None:

@@ -73,7 +73,7 @@ class Simulated:
         self._arm, self.robot, self.plant = arm, arm.robot, arm.plant
         self._steps = whole_steps(as_number(rate, "rate", above=0.0), arm.world.dt, "rate")
         self.period = self._steps * arm.world.dt
-        self.apply, self.observe, self.recover = arm.apply, arm.observe, arm.recover
+        self.apply, self.observe, self.recover = arm.follow, arm.observe, arm.recover
         self.lost_ticks = arm.lost_ticks
 
     def begin(self) -> float:

@@ -170,7 +170,8 @@ def dials(
     words = f"Dials: {span}"
     display(in_its_place(f"{words}; run the cell to turn them."), raw=True)
     _display(ipywidgets.VBox([*sliders.values(), caption]), words)
-    figure = display(**drawn(), display_id=True)
+    first = drawn()
+    figure = display(first.pop("obj"), display_id=True, **first)
     for slider in sliders.values():
         slider.observe(lambda change: figure.update(**drawn()), "value")
     return sliders

@@ -134,7 +134,7 @@ class World:
 
     def check_owner(self) -> None:
         """Raise `Closed` if another thread moves this world."""
-        if self.owner not in (None, threading.get_ident()):
+        if self.owner is not None and self.owner != threading.get_ident():
             raise Closed(
                 "this arm is live in a cell of this notebook; make a new Arm, or press Stop there"
             )

@@ -15,7 +15,7 @@ def shown(monkeypatch):
         def update(self, obj, **about):
             things.append(about if "metadata" in about else obj)
 
-    def display(obj, **about):
+    def display(obj, /, **about):  # as IPython's, which shows nothing given by name
         things.append(about if "metadata" in about else obj)
         return Picture()
 

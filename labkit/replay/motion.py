@@ -24,6 +24,7 @@ STEPS = {  # how fine each channel is kept
     "path": 1e-4,  # m
     "error": 1e-5,  # m
     "tau": 1e-2,  # N m
+    "force": 1e-2,  # N
 }
 
 
@@ -44,7 +45,9 @@ class Motion:
         path: Points of the desired path, shape (K, 3), in [m].
         error: How far the tip was from its target, shape (N,), in [m].
         tau: Joint torques, shape (N, n), in [N m].
+        force: What pushes or pulls at the tip, shape (N, 3), in [N], in the robot's base.
         ghosts: Other arms' angles by name, each of shape (N, n), in [rad].
+        things: What stands around the arm, by name, as `surroundings.drawn_thing` has it.
     """
 
     robot: Any
@@ -59,7 +62,9 @@ class Motion:
     path: Array | None = None
     error: Array | None = None
     tau: Array | None = None
+    force: Array | None = None
     ghosts: Mapping[str, Array] = field(default_factory=dict)
+    things: Mapping[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         robot: Robot = as_robot(self.robot)
@@ -77,6 +82,7 @@ class Motion:
             "path": (0 if self.path is None else len(self.path), 3),
             "error": (n,),
             "tau": (n, robot.n),
+            "force": (n, 3),
         }
         for name, shape in shapes.items():
             value = getattr(self, name)
@@ -111,6 +117,7 @@ class Motion:
             "path": self.path,
             "error": even(self.error),
             "tau": even(self.tau),
+            "force": even(self.force),
         }
         packed = {k: pack(v, STEPS[k]) for k, v in channels.items() if v is not None}
         ghosts = {k: pack(resampled(q, self.t, times), STEPS["q"]) for k, q in self.ghosts.items()}
@@ -125,6 +132,7 @@ class Motion:
             "period": round(float(times[1] - times[0]), 9),
             **packed,
             "ghosts": ghosts,
+            **({"things": dict(self.things)} if self.things else {}),
         }
 
     def to_json(self, rate: float = 25.0) -> str:
@@ -142,6 +150,10 @@ class Motion:
             words += f"; tip error {_mm(rms)} RMS, {_mm(np.abs(self.error).max())} at most"
         if self.ghosts:
             words += f"; compared with {_listed(list(self.ghosts))}, drawn as see-through arms"
+        if self.things:
+            words += f"; beside it {_listed(list(self.things))}"
+        if self.force is not None:
+            words += f"; up to {np.linalg.norm(self.force, axis=1).max():.0f} N act on the tip"
         return words + "."
 
     @cached_property

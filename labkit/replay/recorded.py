@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from .. import metrics
 from ..log import Log
 from ..trajectory import PoseSample
 from .motion import Motion, resampled
+from .surroundings import drawn_thing
 
 
 def motion_of(
@@ -20,6 +22,8 @@ def motion_of(
     ghosts: Mapping[str, Log] | None = None,
     reference: bool = True,
     torque: bool = False,
+    force: bool = False,
+    things: Iterable[Any] = (),
 ) -> Motion:
     """A run as the viewer shows it.
 
@@ -31,6 +35,8 @@ def motion_of(
         reference: Draw the arm that follows perfectly as a ghost too, where the target is one of
             joint angles.
         torque: Keep the torques, which take the most room.
+        force: Draw the force on the tip, as the arm's torque sensors told it.
+        things: What stood around the arm: the `Wall`, `Table` and `Spring` of its world.
 
     Returns:
         The motion, the position error of the tip included.
@@ -50,5 +56,11 @@ def motion_of(
         path=T_wd[:: max(1, len(log) // 120), :3, 3],
         error=np.linalg.norm(metrics.tip_error(log)[:, :3], axis=1),
         tau=log.tau if torque else None,
+        force=metrics.felt_wrench(log)[:, :3] if force else None,
         ghosts=arms,
+        things={
+            f"{type(x).__name__.lower()} {k}": data
+            for k, x in enumerate(things, start=1)
+            if (data := drawn_thing(x))
+        },
     )

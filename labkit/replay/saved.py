@@ -11,6 +11,7 @@ import base64
 from collections.abc import Callable
 from html import escape
 from io import BytesIO
+from itertools import chain, repeat
 from typing import Any
 
 import numpy as np
@@ -74,7 +75,7 @@ def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
     Args:
         robot: Which arm; only Baxter's have a body to show.
         q: Joint angles, shape (n,) in [rad].
-        *paths: Points of lines, each of shape (K, 3) in [m], red first, then black.
+        *paths: Points of lines, each of shape (K, 3) in [m]: red, black, then grey ones.
         around: Further points that must be in sight, shape (K, 3) in [m].
     """
     from PIL import Image, ImageDraw
@@ -85,7 +86,7 @@ def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
     width, height = 640, 400
     picture = np.full((height, width, 3), 255, dtype=np.uint8)
     with Arm(robot, q0=np.clip(q, robot.lower, robot.upper)) as arm:
-        points = np.vstack([arm.tip()[0], *paths, *([] if around is None else [around])])
+        points = np.vstack([arm.tip()[0], *paths[:2], *([] if around is None else [around])])
         at = 0.5 * (points.min(0) + points.max(0))
         radius = 0.5 * float(np.linalg.norm(np.ptp(points, axis=0))) + 0.12
         away = radius / np.sin(np.radians(17.5)) * _direction(robot)
@@ -98,8 +99,12 @@ def still(robot: Robot, q: Any, *paths: Array, around: Any = None) -> bytes:
     ground = (picture == 255).all(axis=2)
     light = 255.0 * (picture / 255.0) ** LIFT  # a black gripper shows its shape
     whole = Image.fromarray(np.dstack([light, np.where(ground, 0.0, 255.0)]).astype(np.uint8))
-    for points, colour in zip(paths, ("#b3001b", "#1f2328"), strict=False):
-        pixels = lens.project(points @ T_cw[:3, :3].T + T_cw[:3, 3])
+    colours = chain(("#b3001b", "#1f2328"), repeat("#57606a"))
+    for points, colour in reversed(list(zip(paths, colours, strict=False))):
+        seen = points @ T_cw[:3, :3].T + T_cw[:3, 3]
+        if (seen[:, 2] <= 0.0).any():  # a large wall that reaches behind the camera
+            continue
+        pixels = lens.project(seen)
         ImageDraw.Draw(whole).line(list(map(tuple, pixels.tolist())), colour, 3)
     file = BytesIO()
     whole.save(file, "PNG", optimize=True)

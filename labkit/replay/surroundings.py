@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -83,12 +84,8 @@ class Surroundings:
         if T_wd is not None:
             found[TARGET] = _placed("target", T_wd)
         for i, thing in enumerate(self._arm.world.things):
-            if isinstance(thing, Wall | Table):
-                found[f"thing {i}"] = _placed("face", thing.T_wf) | {
-                    "size": list(map(float, thing.size)), "colour": list(map(float, thing.colour)),
-                }  # fmt: skip
-            elif isinstance(thing, Spring):
-                found[f"thing {i}"] = {"kind": "band", "position": thing.anchor.tolist()}
+            if data := drawn_thing(thing):
+                found[f"thing {i}"] = data
         if camera := getattr(getattr(self._target, "lookups", None), "camera", None):
             lens = camera.intrinsics
             found["camera"] = _placed("camera", camera.T_wc) | {
@@ -129,6 +126,27 @@ class Surroundings:
             else:
                 goal = _middle(old) + way * (FASTEST * seconds / far)
             world.exchange(old, _moved(old, goal))
+
+
+def drawn_thing(thing: Any) -> dict[str, Any]:
+    """A wall, a table or a band in plain numbers; nothing of what cannot be seen."""
+    if isinstance(thing, Wall | Table):
+        size, colour = (list(map(float, x)) for x in (thing.size, thing.colour))
+        return _placed("face", thing.T_wf) | {"size": size, "colour": colour}
+    if isinstance(thing, Spring):
+        return {"kind": "band", "position": thing.anchor.tolist()}
+    return {}
+
+
+def outline(drawn: Mapping[str, Any], tips: Array) -> Array:
+    """The rim of a face, or a band from its anchor to the middle one of the tips, shape (K, 3)."""
+    if drawn["kind"] == "band":
+        return np.array([drawn["position"], tips[len(tips) // 2]])
+    from scipy.spatial.transform import Rotation
+
+    corners = np.array([[1, 1], [-1, 1], [-1, -1], [1, -1], [1, 1]]) * drawn["size"] / 2.0
+    turned = Rotation.from_quat(drawn["quaternion"]).apply(np.pad(corners, ((0, 0), (0, 1))))
+    return np.asarray(turned + drawn["position"])
 
 
 def _middle(thing: Any) -> Array:

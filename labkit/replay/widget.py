@@ -11,10 +11,14 @@ from typing import Any
 import numpy as np
 
 from ..errors import TypeMismatch
-from ..shapes import shown
+from ..shapes import Array, shown
 from .figure import VIEWER, figure_html, viewer_scripts
 from .motion import Motion
 from .saved import Saved, still
+from .surroundings import outline
+
+BOARD = 0.12
+"""Side of the square that stands for a tag's board, as `marks.js` draws it, in [m]."""
 
 
 def show(motion: Motion) -> Any:
@@ -87,14 +91,24 @@ def _widget_class() -> type[Any]:
 
 
 def motion_still(motion: Motion) -> bytes:
-    """The first view of a motion: the arm half way, the tip's path and the desired one."""
-    q = motion.q[len(motion.q) // 2]
+    """The first view of a motion: the arm half way, all paths, what the arm meets: a PNG file."""
     from ..model import Model
 
-    model = Model(motion.robot)
+    model, half = Model(motion.robot), len(motion.q) // 2
     few = slice(None, None, max(1, len(motion.q) // 60))
-    tips = np.array([model.pose(row)[:3, 3] for row in motion.q[few]])
-    return still(motion.robot, q, tips, *(p for p in (motion.path,) if p is not None))
+
+    def tips_of(q: Array) -> Array:
+        return np.array([model.pose(row)[:3, 3] for row in q[few]])
+
+    tips = tips_of(motion.q)
+    path = tips if motion.path is None else motion.path
+    met, board = [outline(x, tips) for x in motion.things.values()], None
+    if motion.board_position is not None and motion.board_rotation is not None:
+        square = np.array([[1, 1, 0], [-1, 1, 0], [-1, -1, 0], [1, -1, 0], [1, 1, 0]]) * BOARD / 2.0
+        board = square @ motion.board_rotation[half].T + motion.board_position[half]
+        met.append(board)
+    others = map(tips_of, motion.ghosts.values())
+    return still(motion.robot, motion.q[half], tips, path, *others, *met, around=board)
 
 
 def save(data: str, words: str, path: Any) -> None:
@@ -102,8 +116,9 @@ def save(data: str, words: str, path: Any) -> None:
     title = escape(str(json.loads(data)["title"]))
     scripts = "".join(f"<script>{text}</script>\n" for text in viewer_scripts())
     start = (
-        'for (const f of document.querySelectorAll(".lk-embed")) labkitViewer.mount(f, '
-        "JSON.parse(f.querySelector('[type=\"application/json\"]').textContent));"
+        'for (const f of document.querySelectorAll(".lk-embed")) { f.dataset.mounted = "1"; '
+        "labkitViewer.mount(f, "
+        "JSON.parse(f.querySelector('[type=\"application/json\"]').textContent)); }"
     )
     Path(path).write_text(
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'

@@ -2,6 +2,7 @@
 
 import base64
 import json
+from dataclasses import replace
 from html.parser import HTMLParser
 from io import BytesIO
 
@@ -19,8 +20,10 @@ from figures.embed import (
 from PIL import Image
 from samples import swing
 
+import labkit as lk
 from labkit.errors import OutOfRange, TypeMismatch, UnknownName
-from labkit.replay import show
+from labkit.replay import motion_of, show
+from labkit.replay.motion import unpack
 
 
 class Reader(HTMLParser):
@@ -138,3 +141,28 @@ def test_a_saved_run_is_one_file_with_all_that_plays_it(tmp_path):
     assert not [a for _, a in page.elements if "src" in a or "href" in a]
     assert "globalThis.labkitRobot" in text
     assert motion.title in text
+
+
+def test_what_was_met_is_drawn_named_and_felt():
+    """A wall, a table and a spring go with the motion and into its picture; so does the force."""
+    arm = lk.Arm("left", world=lk.World(things=[lk.Table(), lk.Spring([0.6, 0.4, 0.3], 100.0)]))
+    there = lk.Hold(arm.model.pose(arm.state().q), 0.1)
+    wall = lk.Wall(there(0.0).pose[:3, 3] + [0.1, 0.0, 0.0], [-1.0, 0.0, 0.0], size=(0.2, 0.2))
+    things = [wall, *arm.world.things]
+    log = lk.run(arm, there, lambda state, target: lk.JointTorque(np.zeros(7)), 200.0, 0.1)
+    motion = motion_of(log, "Met", force=True, things=things)
+    assert list(motion.things) == ["wall 1", "table 2", "spring 3"]
+    assert "beside it wall 1, table 2 and spring 3" in motion.alt
+    data = motion.data()
+    assert data["things"]["wall 1"]["position"] == pytest.approx(wall.point, abs=1e-4)
+    assert unpack(data["force"]).shape[1] == 3
+    pictures = [Image.open(BytesIO(show(x).picture())) for x in (motion, motion_of(log, "Alone"))]
+    drawn = [(np.array(p)[:, :, :3] == [87, 96, 106]).all(axis=2).sum() for p in pictures]
+    assert drawn[0] > 100 > drawn[1]
+
+
+def test_a_wall_that_reaches_behind_the_eye_is_left_out_of_the_picture():
+    """However large the things are, there is a picture."""
+    wall = {"kind": "face", "position": [0.7, 0.4, 0.0], "quaternion": [0, 0.7071, 0, 0.7071],
+            "size": [50.0, 50.0], "colour": [0.5, 0.5, 0.5, 1.0]}  # fmt: skip
+    assert show(replace(swing(1.0), things={"wall 1": wall})).picture()[1:4] == b"PNG"

@@ -141,6 +141,7 @@ export class Player {
     if (motion.path) rows.push(["lk-dashed", "var(--lk-path)", "desired path"]);
     Object.keys(motion.ghosts).forEach((name, k) => rows.push(["lk-dotted", hex(k), `${name} (see-through arm)`]));
     if (motion.target) rows.push([null, null, "target: frame with x, y, z marked by one, two, three rings"]);
+    if (motion.force) rows.push(["lk-solid", "#c77700", "force on the tip"]);
     this.legend.replaceChildren(...rows.map(([dash, colour, text]) => h("li", {}, dash && swatch(dash, colour), text)));
   }
 
@@ -198,10 +199,8 @@ export class Player {
     const [early, late] = [-0.5, 0.5].map((k) => Math.min(motion.end, Math.max(motion.start, this.time + k * motion.period)));
     const before = at(motion, this.tips, early);
     this.picture.velocity(at(motion, this.tips, late).map((x, k) => (x - before[k]) / (late - early)));
-    if (motion.force) {
-      const f = here(motion.force), size = Math.hypot(...f);
-      this.picture.arrow("force", this.picture.tip.p, f.map((x) => NEWTON * x), size > 0.05 ? `${size.toFixed(1)} N` : "");
-    }
+    const f = motion.force ? here(motion.force) : [0, 0, 0], size = Math.hypot(...f);
+    this.picture.arrow("force", this.picture.tip.p, f.map((x) => NEWTON * x), size > 0.05 ? `${size.toFixed(1)} N` : "");
   }
 
   /** The current numbers as a sentence. */
