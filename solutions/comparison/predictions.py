@@ -6,15 +6,15 @@ PREDICTIONS = (
     Prediction(
         "another_seed",
         "Raise Kp from 34 to 90. With seed 1 the error grows from 0.91 mm to 1.18 mm, by a third. With "
-        "seed 0, another start and another noise, it becomes how many times what it was?",
+        "seed 0, another start and another noise: by what factor does it change?",
         Number("times", 0.1, 1000.0),
         truth=8.1,
     ),
     Prediction(
         "twenty_pairs",
         "Four tasks with five seeds each are 20 differences between two controllers. You want to "
-        "speak about tasks in general. Beside the interval from the 4 means of the tasks, the "
-        "interval from the 20 differences is",
+        "speak about tasks in general. Compared with the 95 % interval from the means of the 4 tasks, "
+        "the one from the 20 differences is",
         Choose({"a": "about as wide", "b": "much narrower", "c": "much wider"}),
         truth="b",
     ),

@@ -334,11 +334,12 @@ CHOOSE_GAINS = Problem(
     name="choose_gains",
     points=4,
     outcomes=("evidence",),
-    asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 tries: `runner(Kp, Kd, seed)` "
+    asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 runs: `runner(Kp, Kd, seed)` "
     "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
     f"where you could not try them, and so is {hidden.RESERVE:g} times your Kp, your margin: at most "
-    f"{hidden.UNSEEN_LIMIT:g} mm on the worst seed there. And you are asked twice: the second arm is "
-    "about a quarter as quick as the first, so other gains are right for it.",
+    f"{hidden.UNSEEN_LIMIT:g} mm on the worst seed there. Your function is called twice, with "
+    "20 runs for each call: the second arm is about a quarter as quick as the first, so other gains are "
+    "right for it.",
     answer=answers.choose_gains,
     trials=(
         Trial(

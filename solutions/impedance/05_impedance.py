@@ -9,15 +9,18 @@
 # |---|---|
 # | **You need** | Newton's law for one mass on a spring; matrices and their inverses |
 # | **Given** | the arm's model, an arm that can be pushed, a wall and a spring to meet |
-# | **You write** | one mass, the inertia at the tip, two impedance laws, a stiffness read from data |
+# | **You write** | one mass, the inertia at the tip, two impedance laws, a stiffness read from data; what your own arm carries, and where its wall is |
 # | **Time** | core about 3.5 hours, all about 5 hours; 29 points |
+#
+# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
+# too, but no later question depends on them.
 #
 # The team whose report this lab grew out of wrote two impedance controllers, found them "a bit off", and
 # saw no use in them. They never pushed the arm. Here you will.
 #
 # Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
 # says so. After each stub a check tells you in words what it found. The functions, your predictions, the
-# numbers to find out and the text at the end are marked; play with everything else as you like. To run all
+# numbers to find out and the text at the end are marked; play with everything else as you like. Running all
 # cells takes about half a minute on an idle computer, and minutes on a busy one; the cell that is at work shows
 # `[*]`.
 
@@ -168,8 +171,7 @@ for axis, name in enumerate("xyz"):
     print(f"      {name}        {felt[axis]:5.2f} kg   {5.0 * log.t[-1] / speed:5.2f} kg")
 
 # %% [markdown]
-# Pushed sideways, the tip feels like one bag of sugar; pushed up or down, like six of them. And all this in
-# one pose.
+# Pushed sideways, the tip feels like 1 kg; pushed up or down, like 6 kg. And all this in one pose.
 #
 # ## Springs at the tip
 #
@@ -185,8 +187,8 @@ for axis, name in enumerate("xyz"):
 # slope of an energy, and a hand that is led round can gain work. Combine the joints' equation of motion with this one, and see what the motors have to
 # do. Keep two things in mind:
 #
-# - The tip's acceleration is $J\ddot q + \dot J\dot q$. The second part comes by itself when the joints
-#   turn evenly; the motors only have to bring up the rest.
+# - The tip's acceleration is $J\ddot q + \dot J\dot q$. The term $\dot J\dot q$ is there even when $\ddot q = 0$, so
+#   the motors have to produce only the remaining acceleration, $\ddot x - \dot J\dot q$.
 # - A force $F$ at the tip takes the joint torques $J^T F$. No inverse, no pseudo-inverse.
 #
 # There are seven joints and six springs, so nothing holds or damps the elbow. Here friction brakes the elbow.
@@ -300,6 +302,7 @@ lk.replay.show(
         "A push of 10 N",
         label="impedance",
         ghosts={"position mode": pushed["position mode"]},
+        force=True,
     )
 )
 
@@ -319,11 +322,11 @@ from labkit.scene import TIP_RADIUS, contact_stiffness
 
 gap, beyond = 0.05, 0.03
 tip = T_ready[:3, 3]
-wall = lk.Wall(tip + [gap + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
+wall = lk.Wall(tip + [gap + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0), size=(0.3, 0.3))
 
 
 def forwards(way, duration=2.0):
-    """The tip goes a way along x or y and stays there; a target of poses."""
+    """The tip goes a distance along x or y and stays there; a target of poses."""
     path = lk.PosePath(lk.Line(tip, tip + way), T_ready[:3, :3])
     there = lk.se3.pose(T_ready[:3, :3], tip + way)
     return lk.Chain([lk.Trajectory(path, lk.Quintic(duration)), lk.Hold(there, 1.0)])
@@ -361,7 +364,12 @@ rammed = meet(stiff, into_the_wall, wall)
 # %%
 met = meet(compliant(K), into_the_wall, wall)
 predict("wall_force", truth=round(float(pressed(met)[-20:].mean()), 1))
-print(f"The position mode presses with {np.max(pressed(rammed)):.0f} N.")
+if wall_force is not None:
+    print(f"The position mode presses with {np.max(pressed(rammed)):.0f} N.")
+into = lk.replay.motion_of(
+    met, "Into the wall", label="impedance", ghosts={"position mode": rammed}, force=True, things=[wall]
+)
+lk.replay.show(into) if wall_force is not None else None
 
 # %% [markdown]
 # ## A spring
@@ -504,13 +512,14 @@ lk.plotting.show(
 # springs are at the tip, you decide. That is the purpose of workspace impedance.
 
 # %% [markdown]
-# ## Your own arm: what does it carry, and what stands before it?
+# ## Your own arm: what does it carry, and what is in front of it?
 #
-# Your arm (notebook 03) carries something, and there is a wall somewhere in front of it. Find out both with
-# experiments of your own; the cell below is only a beginning. Move the tip as gently as you can.
+# Your own arm carries something, and there is a wall somewhere in front of it. (Open the arm with the name that your
+# instructor gave you, as in notebook 03; `"demo"` is a public arm to practise on.) Find out both with experiments of
+# your own; the cell below is only a beginning. Move slowly: a fast tip bounces off the wall and blurs the reading.
 
 # %%
-HANDLE = "demo"  # in a course: your login
+HANDLE = "demo"  # in a course: the name that your instructor gave you
 mine = lk.my_arm(HANDLE)
 holding = np.diag(mine.model.mass_matrix(ready))
 holding = lk.control.springs(50.0 * holding, 14.0 * holding)
@@ -618,8 +627,8 @@ predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.2
 
 # %% [markdown] why="why_as_far"
 # What did you see: how far away was the tip that behaves like 20 kg, after a tenth of a second and after two
-# seconds? Say which of inertia, damping and stiffness decides at which moment, and why a wall meets only one
-# of them.
+# seconds? Say which of inertia, damping and stiffness decides at which moment, and which of the three
+# alone sets the force with which the tip rests against a wall.
 #
 # ### BEGIN SOLUTION
 # After 0.1 s the heavy tip had hardly moved; after two seconds it was as far away as the light one. At
@@ -658,9 +667,9 @@ lk.live(
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
-# above each stub says what kind of cases.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("05_impedance")

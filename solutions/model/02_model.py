@@ -18,6 +18,9 @@
 # | **You write** | the Jacobian, the mass matrix, gravity, the Coriolis matrix, the power balance |
 # | **Time** | core about 2.5 hours, all about 4 hours; 24 points |
 #
+# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
+# too, but no later question depends on them.
+#
 # Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
 # After each stub a check tells you in words what it found. The functions, your predictions and the text at
 # the end are marked; play with everything else as you like.
@@ -49,9 +52,9 @@ for name, link in zip(names, model.links(q0)):
 # %% [markdown]
 # ## The Jacobian: what one joint does to the tip
 #
-# Freeze all joints but one. Everything beyond it turns about its axis $z_k$ like a door on its hinge. A point
-# of the door at the vector $r$ from the hinge moves with $z_k \times r$, and the door itself turns with
-# $z_k$. The motions of all joints simply add up,
+# Freeze all joints but one. Everything beyond this joint $k$ turns about the joint's axis $z_k$, like a door on its
+# hinge. At unit speed, a point of the door at the vector $r$ from the hinge moves with the velocity $z_k \times r$,
+# and the door itself turns with the angular velocity $z_k$. The motions of all joints simply add up,
 #
 # $$ \begin{pmatrix} \dot p \\ \omega \end{pmatrix} = J(q)\,\dot q, $$
 #
@@ -136,7 +139,8 @@ lk.replay.show(lk.replay.motion_of(log, "A circle, to try the Jacobian on"))
 # The kinetic energy of a body is that of its centre of mass plus that of its rotation,
 # $\tfrac12 m |v|^2 + \tfrac12 \omega^T I \omega$. Both $v$ and $\omega$ are linear in the joint speeds,
 # through the Jacobian of that body's centre of mass. Summed over the bodies, the kinetic energy is a
-# quadratic form, and $M$ is its matrix (Murray, Li and Sastry, section 4.3):
+# quadratic form, and $M$ is its matrix (Murray, Li and Sastry, *A Mathematical Introduction to Robotic
+# Manipulation*, section 4.3):
 #
 # $$ T = \tfrac12\,\dot q^T M(q)\,\dot q . $$
 #
@@ -347,7 +351,7 @@ def coriolis(mass_matrix, q, dq):
 
 # %% [markdown]
 # How would you know that it is right? One famous test is that $\dot M - 2C$ must be skew: then $C\dot q$
-# takes exactly the energy that the changing $M$ stores, and no energy is made or lost. Now try the test on
+# does exactly the work that the changing $M$ takes up, and no energy is made or lost. Now try the test on
 # $C = \dot M / 2$, a bold guess. It passes, because $\dot M - 2C$ is then zero, and zero is skew. So you need
 # a second test, of the torque itself: Lagrange's equation gives $C\dot q = \dot M \dot q - \nabla T$. A
 # matrix that fails the second test is wrong. A matrix that fails only the first gives the right torque, but
@@ -488,9 +492,9 @@ lk.plotting.show(
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
-# above each stub says what kind of cases.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("02_model")

@@ -6,8 +6,8 @@ PREDICTIONS = (
     Prediction(
         "heaviest_direction",
         "You tap the resting arm's tip along x (forwards), y (sideways) and z (upwards). In which "
-        "direction does the tip feel heaviest? The arm is in its ready pose, motors off, weight "
-        "carried.",
+        "direction does the tip feel heaviest? The arm rests in its ready pose; its weight is "
+        "compensated, and its motors do nothing else.",
         Rank({"x": "forwards", "y": "sideways", "z": "upwards"}, "the heaviest"),
         truth="zyx",
     ),

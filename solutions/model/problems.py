@@ -303,9 +303,9 @@ POWER_BALANCE = Problem(
     points=3,
     core=False,
     outcomes=("model",),
-    asks="Give, at each tick of a run, the growth of the arm's whole energy less the power of its "
-    "motors, in W and of shape (N,): what is left came from elsewhere. `np.gradient(x, log.t)` takes "
-    "slopes.",
+    asks="Give, at each tick of a run, the rate of change of the arm's total energy minus the power of its "
+    "motors, in W and of shape (N,). The remainder is power from other sources. `np.gradient(x, log.t)` "
+    "takes slopes.",
     answer=answers.power_balance,
     judge=Close(rtol=0.0, atol=1.5),
     trials=(

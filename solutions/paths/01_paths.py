@@ -9,8 +9,11 @@
 # |---|---|
 # | **You need** | numpy; the derivative of a product and of a function of a function |
 # | **Given** | the simulated arm, a controller that follows (you write your own in notebook 03), figures |
-# | **You write** | two time scalings, a circle, the composition of path and schedule, segments in a row |
+# | **You write** | two time scalings, a circle, a trajectory from a path and a schedule, a search for the active segment, a counterexample |
 # | **Time** | core about 3 hours, all about 4 hours; 24 points |
+#
+# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
+# too, but no later question depends on them.
 #
 # A *path* is geometry: a curve with a parameter `s` from 0 to 1, and no time in it. A *time scaling* is the
 # schedule `s(t)`. Together they are a *trajectory*. Because the two are separate, any path can be used with
@@ -119,11 +122,11 @@ if peak_acceleration is not None:
 
 # %% question="trapezoid"
 def trapezoid(t, distance, v_max, a_max):
-    """Trapezoidal time scaling of a way of given length.
+    """Trapezoidal time scaling of a path of given length.
 
     Args:
         t: Time since the start, in [s]; any real number.
-        distance: Length of the way, in [m], greater than 0.
+        distance: Length of the path, in [m], greater than 0.
         v_max: Top speed, in [m/s].
         a_max: Top acceleration, in [m/s^2].
 
@@ -148,7 +151,7 @@ my_trapezoid = use("trapezoid", trapezoid, given_trapezoid)
 
 
 def within_limits(distance, v_max=0.2, a_max=0.4):
-    """Your schedule for a way of this length."""
+    """Your schedule for a path of this length."""
     duration = lk.Trapezoid(distance, v_max, a_max).duration
     return Schedule(my_trapezoid, duration, distance, v_max, a_max)
 
@@ -156,7 +159,7 @@ def within_limits(distance, v_max=0.2, a_max=0.4):
 long, short = within_limits(0.30), within_limits(0.05)
 lk.plotting.scaling(("0.30 m: a trapezoid", long), ("0.05 m: a triangle", short))
 lk.plotting.show(
-    f"Two ways within the same limits: 0.30 m takes {long.duration:.2f} s and cruises, 0.05 m takes "
+    f"Two distances within the same limits: 0.30 m takes {long.duration:.2f} s and cruises, 0.05 m takes "
     f"{short.duration:.2f} s and never reaches the top speed."
 )
 
@@ -173,8 +176,8 @@ lk.Line([0.6, 0.3, 0.1], [0.8, 0.1, 0.1])(0.5)
 # %% [markdown]
 # A circle takes a little more. It is level, begins and ends at a start point and goes round the vertical axis
 # through a centre. In the report the centre was an AR tag on the table, below the gripper. The report's
-# equations measured the radius in space, from the gripper down to the tag, and forgot the angle of the start
-# in one of two places. Write the circle correctly.
+# equations measured the radius in space, from the gripper down to the tag, and left the angle of the start out of
+# the velocity, though not out of the position. Write the circle correctly.
 
 # %% question="circle"
 def circle(s, start, centre):
@@ -310,8 +313,8 @@ predict("twice_the_time", truth=largest_acceleration(12.0) / largest_acceleratio
 # ## Several segments
 #
 # A square is four lines in a row, each with its own schedule. A function must say which line is active, and
-# since when. That sounds too easy to go wrong, but a program that accepts the index -1, as Python does,
-# begins with the last line.
+# since when. It is easy to get this wrong: before the start a careless search gives the index -1, which in
+# Python means the last element, and the arm begins with the last line.
 
 # %% question="segment_at"
 def segment_at(durations, t):
@@ -439,9 +442,9 @@ def witness(theta, duration):
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
-# above each stub says what kind of cases.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("01_paths")

@@ -94,7 +94,7 @@ TRAPEZOID = Problem(
     name="trapezoid",
     points=4,
     outcomes=("motion",),
-    asks="Give `(s, ds, dds)` at time `t` for a way of `distance` metres, as quick as `v_max` in m/s "
+    asks="Give `(s, ds, dds)` at time `t` for a path of `distance` metres, as quick as `v_max` in m/s "
     "and `a_max` in m/s² allow: speed up, cruise, brake.",
     answer=answers.trapezoid,
     judge=SCALING,
@@ -284,7 +284,7 @@ COMPOSE = Problem(
     name="compose",
     points=4,
     outcomes=("motion",),
-    asks="Put a path `path(s)` on a schedule `scaling(t)`: give the `lk.Sample` of position, velocity "
+    asks="Combine a path `path(s)` with a schedule `scaling(t)`: give the `lk.Sample` of position, velocity "
     "and acceleration at time `t`, now with respect to time.",
     answer=answers.compose,
     judge=Close(rtol=1e-6, atol=1e-9, parts=("position", "velocity", "acceleration")),
@@ -371,9 +371,9 @@ SEGMENT_AT = Problem(
     points=3,
     core=False,
     outcomes=("motion",),
-    asks="Segments of the given `durations` follow one another. Give `(index, local_time)`: which one "
-    "is on at time `t`, counted from 0, and how long since it began. At a joint the later one is on; "
-    "before the start it is the first one, after the end the last.",
+    asks="Segments of the given `durations` follow one another. Give `(index, local_time)`: which "
+    "segment is active at time `t`, counted from 0, and how long ago it began. At the instant where two "
+    "segments meet, the later one is active; before the start it is the first, after the end the last.",
     answer=answers.segment_at,
     judge=Close(rtol=1e-9, atol=1e-9, parts=("index", "local_time")),
     trials=(
@@ -381,7 +381,7 @@ SEGMENT_AT = Problem(
             "inside a segment",
             (call(TOUR, 1.5), call(TOUR, 3.25)),
             hidden.segment_inside,
-            "other tours",
+            "paths with other segments",
             weight=0.0,
         ),
         Trial(
@@ -394,7 +394,7 @@ SEGMENT_AT = Problem(
             "the joints",
             (call(TOUR, 1.0), call(TOUR, 3.0)),
             hidden.segment_joints,
-            "joints of other tours",
+            "the instants at which segments of other paths meet",
         ),
         Trial(
             "a whole tour",
@@ -452,8 +452,8 @@ WITNESS = Problem(
     core=False,
     outcomes=("motion",),
     asks="The report's equation 8 for the angle of a circle adds the start angle `theta` in the first "
-    "half of the motion and once more in the second. Give a time at which the motion it prints "
-    "cannot be made by any arm.",
+    "half of the motion and once more in the second. Give one time at which the angle by this equation "
+    "does what the joints of no arm can do; any such time counts.",
     answer=answers.witness,
     expected=lambda theta, duration: [[0.499 * duration, 0.501 * duration]],
     judge=Within(),

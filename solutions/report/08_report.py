@@ -1,8 +1,7 @@
 # %% [markdown]
 # # 08 · The report
 #
-# The lab that this one grew out of was a written report. Here it is again: a team, an arm that nobody else
-# has, four pages. The mark does not depend on whether the arm obeys, but on whether a reader can believe you.
+# This lab grew out of a written report, and now you write one: a team, an arm that nobody else has, four pages. The mark does not depend on whether the arm obeys, but on whether a reader can believe you.
 #
 # | | |
 # |---|---|
@@ -11,9 +10,14 @@
 # | **You write** | a claim, a prediction, a figure, an interval, a failure, threats, who did what |
 # | **Time** | about 4 hours for each member of a team of three; 20 points |
 #
+# Each of the six sections earns up to 3 points, one for each level of its row in the rubric. Committing to the levels of
+# the two exemplars earns 1 point each.
+#
 # Before you begin, each of you marks the two exemplars below with the rubric, alone and in a copy of this notebook,
-# in ten minutes. Our marks appear once you have committed to yours. After the deadline each of you reads two other
-# teams' reports, without names, and marks them with the same rubric.
+# in ten minutes. The rows of the rubric are in the six sections at the end of this notebook; read them first. Our marks
+# appear once you have committed to yours. In the notebook that the team hands in, enter the levels of one of you. If
+# your course has a peer review, each of you reads two other teams' reports after the deadline, without names, and
+# marks them with the same rubric.
 
 # %% setup=true
 import labkit as lk
@@ -88,7 +92,7 @@ lk.plotting.show("A curve that falls from 50 to 1 within 400 ticks. The axes hav
 # Ours, row by row; look where you differ by more than one level, and read that row of the rubric again.
 
 # %%
-predict("exemplar_one", truth=([1, 2, 3, 4, 5, 6], [1, 1, 0, 0, 0, 1]))
+predict("exemplar_one", truth=([1, 2, 3, 4, 5, 6], [1, 1, 1, 0, 1, 1]))
 
 # %% [markdown]
 # ### Exemplar two
@@ -131,7 +135,7 @@ lk.plotting.show(
 # to either side. The next suspect was that 2 s are too short. After 3 s the middle had moved by 0.02 mm; so it was not.
 #
 # **Threats**, the largest first. (1) Friction is not alike in both directions in all joints: each joint stops by itself, so the
-# middle need not be where the load alone would hold the hand; this may be all of the 3.5 mm that are missing. (2) The
+# middle need not be where the load alone would hold the hand; this may be all of the 3.6 mm that are missing. (2) The
 # load: 0.25 kg would explain the result, four of our intervals away. (3) The pose: stretched out, J is larger, and
 # the same load sags by more. (4) Noise: 0.2 mm.
 #
@@ -149,11 +153,17 @@ predict("exemplar_two", truth=([1, 2, 3, 4, 5, 6], [3, 3, 3, 3, 2, 3]))
 # %% [markdown]
 # ## Your report
 #
-# A figure and numbers of your own arm are what makes it a report. Where section 2 or section 3 earns 0, no other
-# section earns more than 1.
+# A report needs a figure and numbers from your own arm. Where section 2 or section 3 earns 0, no other
+# section earns more than 1; where both earn 0, no section earns anything. Each section says how many words it may
+# have; whatever goes beyond that number is not read. The text of a section goes into its cell, and your runs and your figure
+# into code cells that you add below the cell of section 2.
+#
+# An interval needs runs that differ. Here the seed draws the noise of the sensors and the late ticks alone: a law that
+# does not look at the state does the same for every seed, and then you must vary something else, such as the pose or
+# the start, and say what.
 
 # %%
-HANDLE = "demo"  # in a course: your login
+HANDLE = "demo"  # in a course: the name that your instructor gave you
 mine = lk.my_arm(HANDLE)
 
 # %% [markdown] task="claim_and_prediction" points=3
@@ -176,7 +186,7 @@ mine = lk.my_arm(HANDLE)
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | no figure, or nobody could repeat it | a figure without units, or settings are missing | axes, units, settings; the prediction is drawn in the figure | as before, and the figure shows at one glance whether the claim holds |
+# | no figure, or nobody could repeat it | a figure without units, or settings are missing | axes, units, settings; the prediction is drawn in the figure | as before, and even without the text a reader can tell the runs from the prediction, and whether they agree |
 #
 # ### BEGIN SOLUTION
 # Five seeds, lk.Hold at the ready pose for 3 s, rate 200 Hz; the figure shows the sag over time and our 14 mm as a dashed line.
@@ -189,7 +199,7 @@ mine = lk.my_arm(HANDLE)
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | a number alone | an interval of the wrong thing, such as of ticks of one run | a right interval over independent runs, with its unit | as before, and it says what the interval does not cover |
+# | a number alone | an interval of the wrong thing, such as of ticks of one run | a right interval over independent runs, with its unit | as before, and one thing is named that the interval does not cover |
 #
 # ### BEGIN SOLUTION
 # 13.6 ± 0.4 mm (95 %, five seeds). The seeds draw noise; they do not draw another pose.
@@ -212,12 +222,12 @@ mine = lk.my_arm(HANDLE)
 # %% [markdown] task="threats" points=3
 # ## 5. Threats
 #
-# Up to 120 words. What could make the claim false although your runs agree with it? Rank the threats by how
-# much they would matter.
+# Up to 120 words. What could make your verdict on the claim wrong, whether your runs agreed with it or not? The
+# largest threat comes first.
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | none | general ones that fit any report | two that concern this arm and this run | as before, with the size of each, measured or estimated |
+# | none | general ones that fit any report | two that concern this arm and this run | as before, the largest first, and every threat has its size, measured or estimated |
 #
 # ### BEGIN SOLUTION
 # The armature is assumed (0.05 to 0.1 kg m²): at most 0.5 mm. The pose: stretched, the same load would sag by 25 mm.
@@ -230,7 +240,7 @@ mine = lk.my_arm(HANDLE)
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | cannot be followed | can be followed with an effort | clear and in order; shares are stated | as before, and not a sentence too many |
+# | cannot be followed | can be followed with an effort | clear and in order; a share for each member | as before, no section is too long, and none says a thing twice |
 #
 # ### BEGIN SOLUTION
 # A. identified the payload, B. wrote the law and the figure, C. found the failure and wrote sections 3 to 5.
@@ -240,8 +250,8 @@ mine = lk.my_arm(HANDLE)
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. One member hands in for the team.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. One member hands in the file for the team, without renaming it, in the way your course asks.
 
 # %% setup=true
 lk.hand_in("08_report")

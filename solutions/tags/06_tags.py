@@ -13,8 +13,12 @@
 # | **You write** | a tag's corners, its pose from a picture, a sensor's quality, a blend, a prediction |
 # | **Time** | core about 3 hours, all about 4 hours; 24 points |
 #
-# > **Box: poses.** $T_{ab}$ turns coordinates in frame b into frame a: $p_a = T_{ab}\,p_b$. Camera: c, with
-# > z forward, x right, y down in the picture. Tag: m, with z out of the paper. World: w. Tip of the arm: t.
+# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
+# too, but no later question depends on them.
+#
+# > **Box: poses.** $T_{ab}$ converts coordinates in frame b to frame a: $p_a = T_{ab}\,p_b$. We write c for the
+# > camera's frame (z forward, x right, y down in the picture), m for the tag's (z out of the paper), w for the world
+# > and t for the tip of the arm.
 #
 # > **Box: samples.** A reference is a function of time that gives `lk.Sample(position, velocity,
 # > acceleration)`, three arrays.
@@ -41,7 +45,8 @@ from labkit.tags.board import Board
 # %% [markdown]
 # ## A picture
 #
-# An arm, a board with an AprilTag of 10 cm, and a camera beside it.
+# An arm, a board with an AprilTag of 10 cm, and a camera beside it. (The report's tag was an AR tag. An AprilTag is
+# another kind of printed square; for this notebook the difference does not matter.)
 
 # %%
 world = lk.World()
@@ -303,7 +308,7 @@ show_reference(blended(times), "Blends of 1 s, a look every 0.5 s")
 # %% [markdown]
 # ## The age of a picture
 #
-# The step is gone. Where the tag jumps, the reference is faster than before, because it covers 10 cm in about
+# The step in the speed is gone. Where the tag jumps, the reference is faster than before, because it covers 10 cm in about
 # a second. But it does so smoothly, and an arm can follow that.
 #
 # In that figure the reference knew the tag's speed and saw it without delay. A real reading is late: by the
@@ -351,7 +356,7 @@ predict("round_and_round", truth="c" if ratio > 1.0 else "b" if ratio > 0.3 else
 # %% [markdown]
 # ## Everything together, on the arm
 #
-# The board goes round on a circle of 15 cm at 0.1 m/s. The camera takes ten pictures a second; each reading
+# The board goes round on a circle with a radius of 15 cm at 0.1 m/s. The camera takes ten pictures a second; each reading
 # is 100 ms old when it arrives. Between the readings your `carry_forward` says where the tag is, your `blend`
 # bends the reference towards it, and the arm follows the reference in position mode. The filter's update is
 # given.
@@ -439,7 +444,7 @@ right.set_xlabel("time [s]")
 right.set_ylabel("following error [mm]")
 late = error[len(error) // 2 :]
 lk.plotting.show(
-    "The tip follows the tag: its way from above, and how far it is off. In the second half of the run the "
+    "The tip follows the tag: its path from above, and how far it is off. In the second half of the run the "
     f"following error is {np.sqrt(np.mean(late**2)):.1f} mm RMS, {late.max():.1f} mm at most."
 )
 
@@ -485,9 +490,9 @@ lk.live(arm, by_camera, lk.TagTarget(stream, Follower()), rate=100.0, title="You
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
-# above each stub says what kind of cases.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("06_tags")

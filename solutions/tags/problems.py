@@ -306,7 +306,7 @@ BLEND = Problem(
     name="blend",
     points=5,
     outcomes=("motion",),
-    asks="Lead a reference over to a goal by a polynomial of fifth order: at `t` = 0 it has the "
+    asks="Join a moving reference to a moving goal by a polynomial of fifth order: at `t` = 0 it has the "
     "reference's position, velocity and acceleration, at `t` = `duration` the goal's. After that it goes "
     "on with the goal's velocity, without acceleration. Give an `lk.Sample`.",
     answer=following.blend,

@@ -9,8 +9,11 @@
 # |---|---|
 # | **You need** | matrices; a damped spring, ë + kd ė + kp e = 0; what an eigenvalue is |
 # | **Given** | the arm's model: M, C and g (notebook 02 builds them, here you only use them) |
-# | **You write** | two torque laws, gains from frequency and damping, a sampled joint, the factor of gravity, gains that serve |
+# | **You write** | two torque laws, gains from frequency and damping, a sampled joint, the factor of gravity, gains for a real arm; what is wrong in three runs, and an experiment that shows it |
 # | **Time** | core about 4 hours, all about 5 hours; 29 points |
+#
+# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
+# too, but no later question depends on them.
 #
 # Every cell below runs from the start, solved or not. If your part is missing, a stand-in replaces it and
 # says so. After each stub a check tells you in words what it found. The functions, your predictions, the
@@ -56,7 +59,7 @@ print("torque limit, [N m]", "  ".join(f"{x:6.0f}" for x in model.robot.effort))
 #
 # ## Who carries the weight?
 #
-# On the textbook's arm, your torques do. Baxter carries itself: a separate channel adds $g(q)$ to every
+# On an ideal arm, as in a textbook, your torques must carry the weight. Baxter carries itself: a separate channel adds $g(q)$ to every
 # command, in every mode, all the time. The simulated arm has a switch for this in its *plant*. Release both
 # arms, with no torque at all, and see.
 
@@ -209,7 +212,7 @@ lk.replay.show(carried) if gravity_twice is not None else None
 
 # %% question="computed_torque"
 def computed_torque(state, target, model, *, kp, kd, arm_compensates):
-    """Computed torque: every joint's error dies out as that of a damped spring.
+    """Computed torque: the error of every joint decays like that of a damped spring.
 
     Args:
         state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
@@ -370,7 +373,7 @@ def sampled_joint(inertia, kp, kd, dt):
 # this joint has 0.001 kg m², the inertia of a little disc, because the motor's rotor is left out. Behind its
 # gears the rotor turns many times faster than the joint, so to the joint it feels far heavier than it is
 # (people call this the *armature*). Nobody has published its value; here we assume 0.05 kg m². Which of the
-# two joints can the team have used?
+# two inertias must the team's joint have had?
 
 # %%
 def never_sampled(inertia, kp, kd, dt):
@@ -424,7 +427,8 @@ for armature in (0.0, 0.05):
 # %% [markdown]
 # ## Find the bug
 #
-# Here are three runs of computed torque, which only you have. In each run the law is right at first; then,
+# Here are three runs of computed torque on your own arm, which nobody else has: put the name that your instructor gave
+# you in place of `"demo"` (notebook 03 introduces this arm; `"demo"` is a public one). In each run the law is right at first; then,
 # while the arm moves, a version with one mistake replaces it. You know how the right law behaves, because you
 # have written it. The suspects:
 #
@@ -440,7 +444,7 @@ for armature in (0.0, 0.05):
 # | h | the joints' own speed is damped, not the error of the speed |
 
 # %%
-HANDLE = "demo"  # in a course: your login
+HANDLE = "demo"  # in a course: the name that your instructor gave you
 _, axes = plt.subplots(1, 3, figsize=(9, 3), sharex=True, layout="constrained")
 for number, ax in enumerate(axes, start=1):
     log = lk.my_bug(number, HANDLE)
@@ -567,11 +571,11 @@ for factor in (-0.03, 0.0, 0.01, 0.03, 0.075, 0.3, 1.0):
     print(f"{factor:6.3f}   {lk.metrics.summary(log).rms_mm:6.1f} mm")
 
 # %% [markdown]
-# From -0.03 to 0.03 little changes, because friction of a newton metre hides a newton metre more or less at
-# the shoulder. Nobody plotted a torque against a model, so wrong and right looked alike. The one factor whose
+# From -0.03 to 0.03 little changes, because about 1 N m of friction hides an error of about 1 N m at the
+# shoulder. Nobody plotted a torque against a model, so wrong and right looked alike. The one factor whose
 # effect nobody could overlook, the model's own factor 1, looked worst of all.
 #
-# ## Gains that serve
+# ## Gains for a real arm
 #
 # Now choose gains for a real arm. This one publishes its state 100 times a second, up to 14 ms late, with
 # noise; it has friction; and there may be a load in its gripper. It carries its own weight, but not that of
@@ -603,7 +607,7 @@ dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0,
 
 # %% [markdown]
 # The shoulder needs higher gains, but the wrist cannot bear them. Your gains may differ from joint to joint,
-# and the model can tell you how. What remains is one frequency, and you have to find it. If the frequency is
+# and the model can tell you how. Then one number remains to be chosen, a frequency. If the frequency is
 # too low, friction and load win; if it is too high, the arm reacts to an old state.
 #
 # The law is the simplest there is, `lk.control.springs(kp, kd)`: springs and dampers, no model. Only the
@@ -612,7 +616,7 @@ dials = lk.plotting.dials(same_gains_everywhere, kp=(0.0, 200.0, 50.0), kd=(0.0,
 
 # %% question="choose_gains"
 def choose_gains(model):
-    """Springs and dampers that serve on any tour, at any speed, with up to 1 kg in the gripper.
+    """Springs and dampers for any path, at any speed, with up to 1 kg in the gripper.
 
     Args:
         model: lk.Model of a Baxter arm, left or right, with an empty gripper.
@@ -722,9 +726,9 @@ lk.live(
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
-# above each stub says what kind of cases.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("04_torque_control")

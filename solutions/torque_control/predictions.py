@@ -43,10 +43,12 @@ PREDICTIONS = (
     ),
     Identification(
         "experiment",
-        "An experiment for the first run: its cause, the next suspect, and a start and a move that "
-        "tell the two apart. `start` is by how much each joint begins beside its target, `move` where "
-        "it goes and comes back from, both in rad, seven numbers each. The machine runs both laws; "
-        "they must differ by five times the noise.",
+        "Design an experiment that separates the cause of your first run from the suspect that you find "
+        "next most likely. Give two letters, the cause first; `start`, how far from its target each joint "
+        "begins; and `move`, how far from the ready pose each joint goes, in 1.2 s, before it comes back in "
+        "the same time. Both are seven numbers in rad. The check runs the two wrong laws on your experiment. "
+        "You earn the points if the joint angles of these two runs differ (RMS) by at least five times as "
+        "much as those of two runs of the right law that differ only in their noise.",
         Telling(0),
         truth=("cb", [0.0] * 7, [0.3, 0.2, 0.0, -0.3, 0.2, 0.2, 0.4]),
         form='suspects, start and move, such as ("ad", [0, 0, 0, 0, 0, 0, 0], [0.3, 0, 0, 0, 0, 0, 0])',

@@ -241,8 +241,8 @@ COMPUTED_TORQUE = Problem(
     name="computed_torque",
     points=4,
     outcomes=("control",),
-    asks="Give the `lk.JointTorque` of computed torque: the acceleration that would let the error die "
-    "out as that of a damped spring, put through the arm's equation of motion. The weight is added "
+    asks="Give the `lk.JointTorque` of computed torque: the acceleration with which the error "
+    "would decay like a damped spring, put through the arm's equation of motion. The weight is added "
     "only if the arm does not carry it itself.",
     answer=answers.computed_torque,
     judge=TORQUE,
@@ -383,7 +383,7 @@ GAINS_FOR = Problem(
     points=2,
     core=False,
     outcomes=("control",),
-    asks="The error shall obey ë + kd ė + kp e = 0. Give `(kp, kd)` for a "
+    asks="The error should obey ë + kd ė + kp e = 0. Give `(kp, kd)` for a "
     "natural `frequency` in Hz, that of the swing without damping, and a `damping_ratio`. Both may be "
     "numbers or arrays.",
     answer=answers.gains_for,
@@ -717,7 +717,7 @@ CHOOSE_GAINS = Problem(
     outcomes=("control",),
     asks="Choose `(kp, kd)` in N m/rad and N m s/rad, each a number or seven, for springs and dampers at "
     "the joints of the `lk.BAXTER` arm (`lk.control.springs`, 200 Hz). They must serve on a slow line, "
-    "on quicker tours, and with up to a kilogram in the gripper that the model does not know of; and an "
+    "on quicker paths, and with up to a kilogram in the gripper that the model does not know of; and an "
     "arm that is let go beside its target must come to rest there.",
     answer=answers.choose_gains,
     expected=lambda model: None,
@@ -739,7 +739,7 @@ CHOOSE_GAINS = Problem(
                 ),
             ),
             hidden.quick_tours,
-            "other tours and speeds, both arms",
+            "other paths and speeds, both arms",
         ),
         Trial(
             "back to a place from 0.1 rad off, at rest after 0.8 s",

@@ -8,10 +8,13 @@
 #
 # | | |
 # |---|---|
-# | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, orientations are compared by a product, twists are (v, w) |
+# | **You need** | numpy; notebook 00 or its conventions: the error is target minus actual, the error of an orientation is a rotation, R_wd R_wtᵀ, and not a difference; twists are (v, w) |
 # | **Given** | the simulated arm, as the textbook has it (`lk.IDEAL`) and with friction, lag and noise like Baxter's (`lk.BAXTER`); trajectories; the model with its Jacobian |
-# | **You write** | two controllers, a damped inverse, motion that the tip does not feel |
+# | **You write** | two controllers, the rate at which an error decays, a damped inverse, joint motion that leaves the tip at rest; the lag of your own arm |
 # | **Time** | core about 3 hours, all about 4 hours; 27 points |
+#
+# Questions marked *core* are for everybody. Those marked *extension* take the rest of the time: they earn points
+# too, but no later question depends on them.
 #
 # Every cell runs from the start, solved or not. If your part is missing, a stand-in replaces it and says so.
 # After each stub a check tells you in words what it found. The functions, your predictions, the numbers to
@@ -33,8 +36,8 @@ import numpy as np
 # A target that says how fast it moves makes half of the work easy: turn the joints at just that speed. This
 # is *feed-forward*. If the arm were perfect and its start exact, you would need nothing else. But no arm is
 # perfect, and feed-forward alone leaves every small error as it is. So add *feedback*, which pulls the arm
-# towards its target, in proportion to the error (P) and to the rate of the error (D). Which error is that,
-# which rate, and what are the units of the two gains? Write the law down on paper first.
+# towards its target, in proportion to the error (P) and to the rate of the error (D). What are the
+# units of the two gains?
 #
 # Because feed-forward does so well on its own, it hides feedback that is broken, even one with the
 # wrong sign. So the check starts off the path, and with a target that stands still (Lynch and Park,
@@ -124,7 +127,7 @@ dials = lk.plotting.dials(try_gains, kp=(0.0, 40.0, 5.0), kd=(0.0, 3.0, 0.0))
 
 # %% question="decay_rate"
 def decay_rate(kp, kd):
-    """How quickly the error of a joint dies away that moves at the speed commanded.
+    """The rate at which the error of a joint decays that moves at exactly the commanded speed.
 
     Args:
         kp: Gain on the error of the angle, in [1/s].
@@ -146,7 +149,7 @@ def decay_rate(kp, kd):
 # Compare with an arm whose motors take 50 ms to follow a command. (With motors that obey at once, the loop
 # would feed on itself: the speed measured now *is* the last command, so with kd above 1 the commands would
 # grow from tick to tick. The report's authors ended with a kd of 0.0001.) kd is useful with a moving target,
-# because it makes the error smaller that the motors' lag causes; here the target rests. The thick lines are
+# because it reduces the error that the motors' lag causes; here the target rests. The thick lines are
 # the arm, the thin dotted ones your rate.
 
 # %%
@@ -403,12 +406,13 @@ lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", refer
 # ## An arm of your own
 #
 # From here on you have your own arm. It is a Baxter, but its motors, the friction of its joints, its payload
-# and the wall before it are particular to this arm: no two teams have the same one. Your course gives you a
-# handle, a name that opens your arm; `"demo"` is a public arm to practise on. The check compares the numbers
+# and the wall in front of it are particular to this arm. Each team has an arm that nobody else has, and so has each
+# student without a team. Open it with the name that your instructor gave you: put the name in place of `"demo"`,
+# which is a public arm to practise on. The check compares the numbers
 # that you find with the true numbers of your arm, and the report of notebook 08 is about this arm.
 
 # %%
-HANDLE = "demo"  # in a course: your login
+HANDLE = "demo"  # in a course: the name that your instructor gave you
 mine = lk.my_arm(HANDLE)
 
 
@@ -433,8 +437,8 @@ lk.plotting.show(f"A step of the commanded speed, and how joint s0 of the arm {H
 # %% [markdown]
 # ## Baxter, at last
 #
-# Now the arm with friction, lag and noise like Baxter's: 100 states a second for 200 commands, noise on the
-# speeds, motors that lag, a late command now and then. Some of its numbers are published and others assumed;
+# Now the arm has friction, lag and noise like Baxter's. It publishes 100 states a second while you command 200
+# times; the speeds are noisy, the motors lag, and now and then a command is late. Some of its numbers are published and others assumed;
 # `labkit.plant.EVIDENCE` says which. Three controllers draw the same circle, from the same start a little off
 # the path.
 
@@ -476,7 +480,7 @@ lk.replay.show(
 )
 
 # %% [markdown]
-# If your own controllers are in place, you see this: feed-forward draws a fine circle beside the right one.
+# If your own controllers are in place, you see this: feed-forward draws a good circle, but in the wrong place.
 # Feedback removes the error of the start within a second, and with it nearly all of the error. What is left
 # is a few millimetres, largest where the tip is fastest: the motors lag, and the state is some milliseconds
 # old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
@@ -495,8 +499,8 @@ lk.replay.show(
 # %% [markdown]
 # Now the same in real time, and you can push. Press *Start*, drag the arm off its circle and let go: how long
 # does it take to come back, and with which kp? Velocity mode is stiff. However hard you pull, the motors give
-# all they have to keep the speed. Now make the state older (*state_delay*) until the arm begins to swing: at
-# which kp?
+# all they have to keep the speed. Now choose a kp and raise *state_delay* until the arm begins to swing.
+# Repeat this with half the kp: how much more delay can the arm bear?
 
 # %%
 def circling(state, target, kp):
@@ -512,9 +516,9 @@ lk.live(
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
-# above each stub says what kind of cases.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("03_velocity_control")

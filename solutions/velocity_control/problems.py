@@ -68,7 +68,7 @@ JOINT_VELOCITY_PD = Problem(
                 ),
             ),
             hidden.joint_runs,
-            "other starts and ways",
+            "other starts and paths",
         ),
     ),
     hints=(

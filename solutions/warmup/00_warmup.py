@@ -4,7 +4,7 @@
 # Three things go wrong in a first robot program, and none of them raises an error: an array has the wrong
 # shape and numpy stretches it, a vector is in the wrong axes, or two orientations are subtracted as if they
 # were numbers. Here you meet all three, on a simulated arm that shows you at once. You write only a few short
-# functions, and every later notebook uses them.
+# functions; every later notebook uses the ideas in them.
 #
 # | | |
 # |---|---|
@@ -15,7 +15,10 @@
 #
 # How it works: run the cells from the top (Shift+Enter). Every cell runs from the start, solved or not. If
 # your part is missing, a stand-in replaces it and says so. After each stub a check tells you in words what it
-# found. The functions, your predictions and the text at the end are marked; play with everything else as you
+# found. Above the stub you read which tests your function must pass to earn any points at all, and on which
+# hidden cases the grader tries it. All questions of this notebook are *core*: everybody should answer them. The
+# half hour on top is for the experiments and the text at the end. Later notebooks also have *extensions*, which
+# take more time and earn more points. The functions, your predictions and the text at the end are marked; play with everything else as you
 # like.
 
 # %% setup=true
@@ -33,7 +36,7 @@ import numpy as np
 #
 # Seven joints, seven numbers: in labkit a vector has the shape `(7,)`, with one index only. A column of shape
 # `(7, 1)` holds the same numbers, and numpy will happily combine the two, not into seven numbers but into a
-# table of all forty-nine combinations. Here it does so with three:
+# table of all forty-nine combinations. Here are three numbers instead of seven:
 
 # %%
 wanted = np.array([[0.1], [0.2], [0.3]])  # a column, (3, 1)
@@ -97,8 +100,8 @@ def joint_error(target, state):
 # `k` in 1/s. The error then shrinks like $e^{-kt}$, because the speed of a joint *is* the rate at which its
 # error falls: $\dot e = -\dot q = -k\,e$.
 #
-# Send the arm to other angles, at most half a radian away. The dashed line is this prediction for the first
-# joint. (While your function is missing, a stand-in reports no error, and the arm does not move.)
+# The next cell sends the arm to other angles, at most half a radian away. The dashed line is $e^{-kt}$ for the
+# first joint. (While your function is missing, a stand-in reports no error, and the arm does not move.)
 
 # %%
 def stays(target, state):
@@ -150,7 +153,8 @@ lk.replay.show(lk.replay.motion_of(log, "Towards a place in joint space"))
 # and the neighbouring letters must be equal. If you read the subscripts, you avoid most mistakes (Murray, Li
 # and Sastry, *A Mathematical Introduction to Robotic Manipulation*, section 2.3).
 #
-# The model gives the pose of the gripper's tip in the world, $T_{wt}$. With the gripper pointing down
+# The model gives the pose of the gripper's tip in the world, $T_{wt}$. (Where a text or a label says *tool*, it means
+# this tip; the *hand* is the body that carries the gripper.) With the gripper pointing down
 # the tip's z axis, the third column, points down too:
 
 # %%
@@ -221,7 +225,8 @@ print("in the world:      ", cup_world.round(3))
 # %% [markdown]
 # ## How far is the hand turned?
 #
-# Now comes the mistake that fooled the report's authors, and other teams of their year. The hand should point
+# Now comes a mistake that misled several teams, among them the students who wrote the report of 2019 from which
+# this lab grew. The hand should point
 # straight down, but it is tilted by a few degrees. What is the error?
 #
 # It is tempting to write both orientations as roll, pitch and yaw and to subtract. But these three angles are
@@ -272,8 +277,8 @@ predict("same_components", truth={"xyz": "a", "x": "b", "z": "c"}.get(same, "d")
 #
 # The hand starts 12 degrees off, and a controller turns it at a speed proportional to the error. The
 # Jacobian, which notebook 02 explains, converts this to joint speeds. There are three runs that differ only
-# in the error: yours, the difference of roll, pitch and yaw, and your turn given in the tool's axes by
-# mistake.
+# in the error that the controller uses: (1) your error; (2) the difference of roll, pitch and yaw; (3) your error,
+# but by mistake in the tool's axes.
 
 # %% predict="farthest_off"
 
@@ -370,9 +375,9 @@ lk.replay.show(turning) if farthest_off else None
 # ## Hand in
 #
 # Run everything once more from the top (*Kernel, Restart Kernel and Run All Cells*) and save the file. Then
-# run the last cell again, because it looks at the saved file. It says what is missing and prints a receipt;
-# keep it. Hand in the file without renaming it. The teacher runs your functions on further cases; the text
-# above each stub says what kind of cases.
+# run only the last cell once more, because it looks at the saved file. It says what is missing and prints a
+# receipt; keep it. Hand in the file without renaming it, in the way your course asks. The grader runs your
+# functions on further cases; the text above each stub says what kind of cases.
 
 # %% setup=true
 lk.hand_in("00_warmup")

@@ -1,5 +1,6 @@
 """What the checks give: to answers, stubs, known mistakes and other right answers."""
 
+from functools import cache
 from itertools import combinations
 from pathlib import Path
 
@@ -15,7 +16,26 @@ NAMES = [name for name in COURSE.names() if COURSE.problems(name)]
 PROBLEMS = [problem for name in NAMES for problem in COURSE.problems(name)]
 POINTS = dict.fromkeys(NAMES, 20) | {"00_warmup": 10}
 
-each = pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.name)
+each = pytest.mark.parametrize(
+    "problem",
+    [
+        pytest.param(p, id=p.name, marks=pytest.mark.xdist_group(f"marks {p.name}"))
+        for p in PROBLEMS
+    ],
+)
+"""One worker has all tests of a problem, which share what they marked."""
+
+
+@cache
+def question_of(problem, draw):
+    """The question with one draw of its hidden cases."""
+    return problem.question(draw)
+
+
+@cache
+def verdict_of(problem, draw, answer):
+    """What an answer gets; arms move for minutes in it, so no answer is marked twice."""
+    return mark(question_of(problem, draw), answer)
 
 
 def stub(*args, **kwargs):
@@ -25,7 +45,7 @@ def stub(*args, **kwargs):
 @each
 def test_the_answer_gets_full_marks(problem):
     """The reference is right, hidden cases included."""
-    verdict = mark(problem.question(1), problem.answer)
+    verdict = verdict_of(problem, 1, problem.answer)
     assert verdict.outcome is Outcome.RIGHT, verdict.tests
     assert verdict.earned == problem.points
 
@@ -33,7 +53,7 @@ def test_the_answer_gets_full_marks(problem):
 @each
 def test_the_stub_gets_nothing(problem):
     """A stub counts as not attempted, and a function that gives only zeros earns nothing."""
-    question = problem.question(1)
+    question = question_of(problem, 1)
     assert mark(question, stub).outcome is Outcome.NOT_ATTEMPTED
     assert mark(question, stub).earned == 0.0
     for nothing in (lambda *a, **k: None, lambda *a, **k: 0.0):
@@ -43,7 +63,7 @@ def test_the_stub_gets_nothing(problem):
 @each
 def test_zeros_of_the_right_shape_earn_nothing(problem):
     """A gate stands before the points: the answer's shape, filled with zeros, does not pass it."""
-    question = problem.question(1)
+    question = question_of(problem, 1)
     assert mark(question, lambda *a, **k: zeros_like(problem.answer(*a, **k))).earned == 0.0
 
 
@@ -51,10 +71,10 @@ def test_zeros_of_the_right_shape_earn_nothing(problem):
 def test_known_mistakes_are_rejected_and_named(problem):
     """Each earns less than half, or its largest right part, and is called by its name."""
     assert problem.wrong
-    question = problem.question(1)
+    most = rejected_below(question_of(problem, 1))
     for wrong in problem.wrong:
-        verdict = mark(question, wrong.function)
-        assert verdict.earned < rejected_below(question), wrong.name
+        verdict = verdict_of(problem, 1, wrong.function)
+        assert verdict.earned < most, wrong.name
         assert verdict.mistake is not None, wrong.name
         assert verdict.mistake.name == wrong.name
 
@@ -62,7 +82,7 @@ def test_known_mistakes_are_rejected_and_named(problem):
 @each
 def test_fingerprints_differ(problem):
     """No two mistakes answer the public calls alike, and none as the reference does."""
-    question = problem.question(1)
+    question = question_of(problem, 1)
     assert recognise(question, list(fingerprint(question, problem.answer))) is None
     for a, b in combinations(problem.wrong, 2):
         known = [m for m in question.mistakes if m.name == a.name]
@@ -74,7 +94,7 @@ def test_fingerprints_differ(problem):
 def test_right_answers_written_otherwise_are_accepted(problem):
     """A list, a class, another formula: what is right earns full marks."""
     for variant in problem.variants:
-        verdict = mark(problem.question(1), variant)
+        verdict = verdict_of(problem, 1, variant)
         assert verdict.outcome is Outcome.RIGHT, (variant, verdict.tests)
 
 
@@ -85,15 +105,10 @@ def test_seeds_agree(problem):
 
     Twenty draws of calls; two where the arm has to run, whose twenty the report card makes.
     """
-    cases = [case for test in problem.question(0).tests for case in test.cases]
+    cases = [case for test in question_of(problem, 0).tests for case in test.cases]
     draws = 20 if all(isinstance(case, Call | Choice) for case in cases) else 2
-    marks = {
-        tuple(
-            mark(question, f).earned
-            for f in (problem.answer, *(w.function for w in problem.wrong), *problem.variants)
-        )
-        for question in map(problem.question, range(draws))
-    }
+    functions = (problem.answer, *(w.function for w in problem.wrong), *problem.variants)
+    marks = {tuple(verdict_of(problem, draw, f).earned for f in functions) for draw in range(draws)}
     assert len(marks) == 1
 
 
