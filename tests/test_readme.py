@@ -8,6 +8,11 @@ from pathlib import Path
 
 import pytest
 
+import labkit
+from labkit.course.marking import mark
+from labkit.course.messages import tell
+from labkit.course.student import Desk
+
 ROOT = Path(__file__).resolve().parents[1]
 README = (ROOT / "README.md").read_text()
 PAGES = [
@@ -31,6 +36,19 @@ def test_the_example_runs_and_tracks(capsys):
     exec(code, names)
     assert "RMS" in capsys.readouterr().out
     assert names["lk"].metrics.summary(names["log"]).max_mm < 30.0
+
+
+def test_the_message_shown_is_what_the_check_says():
+    """The student's answer gets the message that stands below it, line by line, in its order."""
+    (shown,) = re.findall(r"```text\n(.*?)```", README, re.DOTALL)
+    code, said = shown.split("\n\n")
+    names = {"lk": labkit}
+    exec(code, names)
+    desk = Desk.beside(ROOT / "assignments/03_velocity_control")
+    question = desk.question("joint_velocity_pd")
+    told = iter(tell(question, mark(question, names[question.name])).splitlines())
+    for line in said.splitlines():
+        assert line in told, line
 
 
 def test_every_verb_exists():

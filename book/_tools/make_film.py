@@ -11,6 +11,7 @@ import argparse
 import io
 import sys
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,13 @@ DRESS = """() => {
         { left: `${e.clientX}px`, top: `${e.clientY}px` }), true);
 }"""
 """Hide the bars of the page and draw the mouse, which no photograph shows."""
+STILLS = {
+    "stub": '[aria-label="A student\'s answer"]',
+    "feedback": "img[src*=feedback]",
+    "table": "#what-is-compared",
+    "notebooks": "#the-notebooks",
+}
+"""What the scenes without motion show of the first page: an answer, a page of feedback, tables."""
 
 Scene = Callable[[Page, str], Iterator[int]]
 """Arranges the page for one picture after the other; yields for how many frames each stays."""
@@ -92,32 +100,16 @@ def gain(page: Page, book: str) -> Iterator[int]:
         yield RATE * SCENES["gain"][0] // 4
 
 
-def stub(page: Page, book: str) -> Iterator[int]:
-    """The wrong answer, and below it the check's."""
-    visit(page, f"{book}/index.html", '[aria-label="A student\'s answer"]')
-    yield RATE * SCENES["stub"][0]
-
-
-def feedback(page: Page, book: str) -> Iterator[int]:
-    """A feedback page."""
-    visit(page, f"{book}/index.html", "img[src*=feedback]")
-    yield RATE * SCENES["feedback"][0]
-
-
-def table(page: Page, book: str) -> Iterator[int]:
-    """The errors of all methods."""
-    visit(page, f"{book}/index.html", "#what-is-compared")
-    yield RATE * SCENES["table"][0]
-
-
-def notebooks(page: Page, book: str) -> Iterator[int]:
-    """The table of the notebooks."""
-    visit(page, f"{book}/index.html", "#the-notebooks")
-    yield RATE * SCENES["notebooks"][0]
+def still(page: Page, book: str, name: str) -> Iterator[int]:
+    """A part of the first page, for the whole scene."""
+    visit(page, f"{book}/index.html", STILLS[name])
+    yield RATE * SCENES[name][0]
 
 
 DRAWN: dict[str, Scene] = {
-    scene.__name__: scene for scene in (pull, gain, stub, feedback, table, notebooks)
+    "pull": pull,
+    "gain": gain,
+    **{name: partial(still, name=name) for name in STILLS},
 }
 
 

@@ -114,7 +114,7 @@ def freedom() -> None:
     _, sigma, axes = np.linalg.svd(J)
     n = axes[6] / axes[6][2]
     shows("For 1 rad/s of e0", 1.0, n[2])
-    numbers({"free_s0": -n[0], "free_w0": -n[4], "free_w2": n[6]}, ".2g")
+    numbers({"free_s0": n[0], "free_w0": n[4], "free_w2": n[6]}, ".2f")
     claim(
         "s1, e1 and w1 do not take part",
         lambda n: max(map(abs, (n[1], n[3], n[5]))) < 1e-6 and min(abs(n[0]), abs(n[4])) > 0.5,
@@ -123,7 +123,7 @@ def freedom() -> None:
     numbers({f"row_{joint}": J[5, k] for k, joint in ((0, "s0"), (2, "e0"), (4, "w0"), (6, "w2"))},
             ".2f")  # fmt: skip
     claim(
-        "Multiply each by its speed, and the sum is zero",
+        "Multiply the two numbers of each row and add the four products: the sum is zero",
         lambda row, speed: (
             abs(sum(a * b for a, b in zip(row, speed, strict=True))) < 1e-9
             and row[0] > 0.9
@@ -133,7 +133,7 @@ def freedom() -> None:
         speed=[float(n[k]) for k in (0, 2, 4, 6)],
     )
     claim(
-        "no joint motion is more than 5 times as long as the twist",
+        "the norm of the joint speeds is at most 5 times the norm of the wanted twist",
         lambda x: math.isclose(x[0], 5.0) and math.isclose(x[1], 0.5) and math.isclose(x[2], 0.1),
         x=[1.0 / (2.0 * math.sqrt(0.01)), *(0.01 / (sigma**2 + 0.01) for sigma in (0.1, 0.3))],
     )
@@ -175,8 +175,9 @@ def lens_by_hand() -> None:
         d = image_servoing.approach("image", depth=0.25 * share).distance
         rate[share] = float(-math.log(d[60] / d[20]) / (40 * image_servoing.DT))
     numbers({"rate_half": rate[0.5], "rate_true": rate[1.0], "rate_double": rate[2.0]}, ".2g")
+    shows("The law asks for $\\lambda = 2$ 1/s", 2.0, image_servoing.GAIN)
     claim(
-        "It arrives in all three cases",
+        "The camera arrives in all three cases",
         lambda r: 1.0 < r[0] < r[1] < r[2] < 4.0,
         r=list(rate.values()),
     )

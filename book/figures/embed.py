@@ -138,9 +138,27 @@ def explorer_html(
     }
     names = ", ".join(d.label for d in explorer.dials)
     alt = f"{explorer.title}: {len(explorer.runs)} recorded runs to choose from by {names}."
-    facts = " ".join(explorer.facts[k] for k in sorted(explorer.facts)[:3])
-    return figure_html(
-        compact(data), caption or explorer.title, alt, f"{alt} {facts}", poster, root
+    words = f"{alt} {_described(explorer)}"
+    return figure_html(compact(data), caption or explorer.title, alt, words, poster, root)
+
+
+def _described(explorer: Explorer) -> str:
+    """The facts of the point where it opens, and of one dial's other end after another."""
+    opening = [0 if d.value is None else list(d.values).index(d.value) for d in explorer.dials]
+    points = {f"It opens with {_said(explorer.dials, opening)}": tuple(opening)}
+    for k, d in enumerate(explorer.dials):
+        far = [*opening[:k], len(d.values) - 1, *opening[k + 1 :]]
+        if far != opening:
+            points[f"With {_said([d], far[k:])} instead"] = tuple(far)
+    return " ".join(f"{w}: {explorer.facts[p]}" for w, p in points.items() if p in explorer.facts)
+
+
+def _said(dials: Sequence[Dial], at: Sequence[int]) -> str:
+    """Where dials stand, in words."""
+    pairs = ((d, d.values[k]) for d, k in zip(dials, at, strict=False))
+    return ", ".join(
+        x if isinstance(x, str) else f"{d.label} {x:g}{' ' * bool(d.unit)}{d.unit}"
+        for d, x in pairs
     )
 
 

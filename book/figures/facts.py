@@ -26,25 +26,30 @@ def velocity() -> None:
     _is("Its state arrives 4 ms late", 0.004, lk.BAXTER.state_delay)
     _is("is about 11.5 ms", 0.0115, 0.004 + 0.5 / 100.0 + 0.5 / 200.0)
     step, pays = speed_gains.TRIED[1] - speed_gains.TRIED[0], speed_gains.PAYS
-    _is("until a step of 0.15 takes away less than 2 % of the error; that ends at 0.6",
+    _is("in steps of 0.15 until a step took away less than 2 % of the error; that gave 0.6",
         (0.15, 0.02, 0.6),
         (step, pays, KD))  # fmt: skip
-    _is("If a radian counts as 0.26 m, as in the [impedance](impedance.md) of 300 N/m and "
-        "20 N m/rad",
-        (0.26, 300.0, 20.0), (WorkspaceVelocityPD.lever, TIP_SPRING[0], TIP_SPRING[3]))  # fmt: skip
+    lever = math.sqrt(TIP_SPRING[3] / TIP_SPRING[0])
+    _is("If a radian counts as 0.26 m", 0.26, WorkspaceVelocityPD.lever)
+    _is("The 0.26 m come from the [impedance](impedance.md) of 300 N/m and 20 N m/rad",
+        (0.26, 300.0, 20.0), (lever, TIP_SPRING[0], TIP_SPRING[3]), 0.02)  # fmt: skip
+    _is("in a shift of $\\sqrt{20/300} = 0.26$ m", 0.26, lever, 0.02)
 
 
 def comparison() -> None:
     """Of the comparison."""
     claim("3 1/s and a $K_d$ of 0.6", lambda p, d: (p, d) == (3.0, 0.6), p=KP, d=KD)
-    _is("luck alone would decide at least one claim",
+    server = lk.BAXTER.position_gain
+    _is("this arm is given 20 1/s, which makes 50 ms", (20.0, 50.0), (server, 1e3 / server))
+    _is("With eight claims about tracking, each with an interval of 95 %, the chance of at "
+        "least one wrong verdict would be about one in three",
         (8.0, 0.95, 1.0 / 3.0), (CLAIMS, LEVEL, 1.0 - LEVEL**CLAIMS), 0.02)  # fmt: skip
 
 
 def model() -> None:
     """Of the chapter on the model."""
     robot = lk.robot("left")
-    _is("has none either, allows it: 100 N m", 100.0, robot.effort[1])
+    _is("has none either and allows s1 100 N m", 100.0, robot.effort[1])
     _is("50 N m is right for that machine", 50.0, robot.effort[0])
     bare = lk.Model("left").mass_matrix(robot.ready)[6, 6]
     claim(
@@ -57,7 +62,6 @@ def model() -> None:
 
 def impedance() -> None:
     """Of the chapter on impedance."""
-    _is("a critically damped spring has 2 % to go", 0.02, 6.8 * math.exp(-5.8), 0.05)
     dry, lever, push = lk.BAXTER.stiction[0], 0.5, 10.0
     _is("dry friction of 1 N m and a lever of half a metre holds against 2 N at the hand, so of "
         "10 N only about 8", (1.0, 0.5, 2.0, 10.0, 8.0),
@@ -76,9 +80,9 @@ def impedance() -> None:
 def report() -> None:
     """Of the page on the report."""
     _is(
-        "24.5 rad/s for the report's gain at 200 Hz",
-        (24.5, 200.0),
-        (math.sqrt(KP * RATE), RATE),
+        "24.5 rad/s for the report's gain $k_p = 3$ at 200 Hz",
+        (24.5, 3.0, 200.0),
+        (math.sqrt(KP * RATE), KP, RATE),
         0.002,
     )
     _is("fixes the mean speed at 0.2 m/s", 0.2, 1.0 / 5.0)
@@ -87,7 +91,8 @@ def report() -> None:
     _is("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
         (law.D[0], 1.0, 1.0 / law.D[0]))  # fmt: skip
     _is("dry friction of about 1 N m explains it", 1.0, lk.BAXTER.stiction[0])
-    _is("0.3 N m/rad is as large as the dry friction of the wrist", 0.3, lk.BAXTER.stiction[6])
+    _is("0.3 N m/rad overcomes the dry friction of the wrist, 0.3 N m", (0.3, 0.3),
+        (law.K[3], lk.BAXTER.stiction[6]))  # fmt: skip
     _is('has 0.5 to 0.1 N/m under "proportional gain" and 45 N/m under', (0.5, 0.1, 45.0),
         (law.D[0], law.D[-1], law.K[0]))  # fmt: skip
     _is("45 N/m with a damping of 0.5 N s/m is an arm", (45.0, 0.5), (law.K[0], law.D[0]))
@@ -103,7 +108,7 @@ def plant() -> None:
     springs = report_gains.TABLE_1["joint torque"](model).controller.Kp
     _is("its gains of 8 to 12 N m/rad", (8.0, 12.0), (min(springs), max(springs)))
     dry = lk.BAXTER.stiction[0]
-    _is("A spring of 8 N m/rad against dry friction of 1 N m may stop 0.12 rad from its target",
+    _is("A spring of 8 N m/rad against dry friction of 1 N m may stop 0.125 rad from its target",
         (8.0, 1.0, 0.125), (min(springs), dry, dry / min(springs)))  # fmt: skip
     _is("225 1/s² times 2.1 kg m²", (225.0, 2.1), (225.0, inertia), 0.05)
     _is("even under the report's own $K_p$ = 3 1/s", 3.0, KP)

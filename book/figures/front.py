@@ -28,7 +28,7 @@ SEED = 1
 COURSE = Course(Path(__file__).parents[2])
 NOTEBOOKS = {
     "00_warmup": "vectors, rotations and orientation errors in numpy",
-    "01_paths": "lines, circles and polylines; when to be where",
+    "01_paths": "lines, circles and polylines, and the timing along them",
     "02_model": "the Jacobian, the mass matrix, gravity and Coriolis torques",
     "03_velocity_control": "joint and workspace velocity control",
     "04_torque_control": "torques from a model; gains; sampling",
@@ -69,8 +69,9 @@ def welcome() -> HTML:
 
 def picked() -> HTML:
     """The tracking error of each method on each task, on the realistic arm."""
+    names = {campaign.BASELINE: "baseline (the built-in method)"}
     rows = [
-        (way, *(_error(way, task) for task in campaign.TASKS))
+        (names.get(way, way), *(_error(way, task) for task in campaign.TASKS))
         for way in (*campaign.FIVE, campaign.BASELINE)
     ]
     return table(

@@ -96,7 +96,7 @@ def seen(log: lk.Log) -> tuple[Motion, str]:
     title = "Baxter's left arm with the chosen gains"
     motion = Motion(
         "left", log.t, log.q, title=title, label="arm", target_position=T_wd[:, :3, 3],
-        path=T_wd[:: max(1, len(log) // 60), :3, 3], error=e,
+        target_rotation=T_wd[:, :3, :3], path=T_wd[:: max(1, len(log) // 60), :3, 3], error=e,
     )  # fmt: skip
     rms, end = 1e3 * metrics.rms(e), 1e3 * e[-1]
     fact = f"RMS error {rms:.1f} mm, {1e3 * e.max():.1f} mm at most, {end:.1f} mm at the end."

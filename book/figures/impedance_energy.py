@@ -67,7 +67,8 @@ def elbow() -> HTML:
         free=late[1],
     )
     claim(
-        "has $\\sqrt{20}$ = 4.5 rad/s",
+        "asks for an acceleration of 20 rad/s² for each radian from the posture, so an undamped "
+        "elbow would swing at $\\sqrt{20}$ = 4.5 rad/s",
         lambda pull: math.isclose(pull, 4.5**2, rel_tol=0.02),
         pull=law.pull,
     )

@@ -17,6 +17,7 @@ from solutions.study import experiments
 from solutions.study.gains import TIP_SPRING
 
 from .claims import claim, shows
+from .impedance import ROTORS
 from .page import figure, number, numbers, table
 
 JOINT_SPRINGS = np.array((200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0))
@@ -142,6 +143,8 @@ def felt_inertia() -> HTML:
     ax.set(xlabel="inertia felt along x [kg]", ylabel="along z, upwards [kg]")
     ax.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     numbers({"lambda_x": L[0, 0], "lambda_z": L[2, 2], "lambda_xz": L[0, 2]}, ".2g")
+    rotors = lk.Model("left", ROTORS).operational_inertia(q)
+    number("lambda_x_rotors", rotors[0, 0], ".2g")
     numbers({"felt_x": 1.0 / mobility[0, 0], "felt_z": 1.0 / mobility[2, 2]}, ".2g")
     claim(
         "one push meets less than a tenth of the inertia that another meets",
@@ -200,6 +203,11 @@ def joint_springs() -> HTML:
     ]
     q, start = np.array(model.robot.ready), np.array(model.robot.ready)
     shows("A push of 10 N upwards", 10.0, PUSH)
+    shows(
+        "= (200, 200, 100, 100, 10, 10, 2) N m/rad",
+        (200.0, 200.0, 100.0, 100.0, 10.0, 10.0, 2.0),
+        JOINT_SPRINGS,
+    )
     for force in np.linspace(1.0, PUSH, 10):
         push = force * np.eye(6)[2]
         q = fsolve(lambda q, f=push: JOINT_SPRINGS * (start - q) + model.tip_jacobian(q).T @ f, q)
@@ -222,5 +230,6 @@ def joint_springs() -> HTML:
     return table(
         ("Push", "along x [mm]", "along y [mm]", "along z [mm]"),
         rows,
-        "Displacement of the tip under springs at the joints, by C = J K⁻¹ Jᵀ",
+        "Displacement of the tip under springs at the joints, by "
+        "C<sub>x</sub> = J K<sub>q</sub>⁻¹ Jᵀ",
     )

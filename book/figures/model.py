@@ -58,14 +58,21 @@ def checks() -> HTML:
     holds(max(worst.values()) < 1e-6, "the laws of the model hold")
     holds(smallest > 0.0, "the mass matrix is positive definite")
     rows = [
-        ("Linear rows of J are the slope of the pose", f"{worst['J']:.1e} m/rad"),
-        ("M is symmetric", f"{worst['symmetry']:.1e} kg m²"),
-        ("M is positive definite: its smallest eigenvalue", f"{smallest:.2g} kg m²"),
-        ("Ṁ − 2C is skew", f"{worst['skew']:.1e} kg m²/s"),
-        ("g is the slope of the potential energy", f"{worst['gravity']:.1e} N m"),
-        ("q̇ᵀ(Ṁ − 2C)q̇ vanishes", f"{worst['power']:.1e} W"),
+        ("Linear rows of J are the slope of the pose", f"{_small(worst['J'])} m/rad"),
+        ("M is symmetric", f"{_small(worst['symmetry'])} kg m²"),
+        ("Ṁ − 2C is skew", f"{_small(worst['skew'])} kg m²/s"),
+        ("g is the slope of the potential energy", f"{_small(worst['gravity'])} N m"),
+        ("q̇ᵀ(Ṁ − 2C)q̇ vanishes", f"{_small(worst['power'])} W"),
+        ("M is positive definite", f"none: its smallest eigenvalue is {smallest:.2g} kg m²"),
     ]
     return table(("Law", "Largest miss"), rows, "100 random states within the joint limits")
+
+
+def _small(miss: float) -> str:
+    """A miss as a reader writes it: 2.4·10⁻¹⁰, or 0."""
+    digits, _, power = f"{miss:.1e}".partition("e")
+    raised = str(int(power)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{digits}·10{raised}" if miss else "0"
 
 
 def singular() -> HTML:
@@ -206,9 +213,9 @@ def power() -> HTML:
     given = np.einsum("ij,ij->i", log.tau, log.dq)
     _, ax = plt.subplots(figsize=(6.0, 2.9))
     ax.plot(log.t, given, color="#999999", linewidth=5, label="τᵀq̇, given by the motors")
-    ax.plot(log.t, gained, "C0--", label="d(T + V)/dt, gained by the arm")
+    ax.plot(log.t, gained, "C0--", label="gained by the arm, kinetic and potential")
     ax.set(xlabel="time [s]", ylabel="power [W]")
-    ax.legend()
+    ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, fontsize="small")
     off = float(np.abs(gained - given)[2:-2].max())
     peak = float(np.abs(given).max())
     claim(
@@ -236,7 +243,7 @@ def check_yourself() -> HTML:
                 ("The body Jacobian", "Same velocity, other axes: still zero."),
                 (
                     "The spatial Jacobian",
-                    "Yes: it gives the velocity of the point of the turning body that passes "
+                    "It gives the velocity of the point of the turning body that passes "
                     "through the world's origin.",
                 ),
             ],
@@ -249,7 +256,7 @@ def check_yourself() -> HTML:
                 ("That C is right", "The zero matrix is skew, so this test passes for free."),
                 (
                     "Nothing about C q̇",
-                    "Yes. Skewness must come together with the right torque C q̇.",
+                    "Skewness must come together with the right torque C q̇.",
                 ),
             ],
             1,
@@ -261,7 +268,7 @@ def check_yourself() -> HTML:
                     r"\(M J^T a\), with a an acceleration",
                     "kg m² times m times m/s²: kg m⁴/s². Not a torque.",
                 ),
-                (r"\(\sum_i m_i J_i^T a\), with \(J_i\) of each link's centre", "Yes: N m."),
+                (r"\(\sum_i m_i J_i^T a\), with \(J_i\) of each link's centre", "The unit is N m."),
                 (r"\(J^T a\)", "m²/s²: a force is missing its mass."),
             ],
             1,

@@ -44,7 +44,17 @@ SYMBOLS = (
     Symbol("M", "M(q)", "mass matrix", "(n, n)", "kg m^2"),
     Symbol("C", r"C(q, \dot q)", "Coriolis matrix", "(n, n)", "kg m^2/s"),
     Symbol("g", "g(q)", "torque that holds the arm against gravity", "(n,)", "N m"),
-    Symbol("Lambda", r"\Lambda(q)", "inertia felt at the tip", "(6, 6)", ""),
+    Symbol(
+        "Lambda", r"\Lambda(q)", "inertia felt at the tip, in kg, kg m and kg m^2", "(6, 6)", ""
+    ),
+    Symbol("Jplus", "J^+", "pseudo-inverse of the Jacobian"),
+    Symbol("sigma", r"\sigma", "singular value of the Jacobian; of noise, the standard deviation"),
+    Symbol("lambda", r"\lambda", "damping of the damped inverse"),
+    Symbol("omega", r"\omega", "angular velocity of a body, or frequency", "", "rad/s"),
+    Symbol("F", "F = (f, m)", "wrench at the tip: force, then moment"),
+    Symbol("K", "K", "stiffness at the tip", "", "N/m"),
+    Symbol("B", "B", "damping at the tip", "", "N s/m"),
+    Symbol("T", "T", "duration, or sampling time", "", "s"),
     Symbol("Kp", "K_p", "gain on the error"),
     Symbol("Kd", "K_d", "gain on the error's rate"),
 )

@@ -20,7 +20,8 @@ from myst_nb import glue
 from PIL import Image
 
 from labkit import Arm, Log, Plant, Table, World, metrics, plotting
-from labkit.replay import motion_of
+from labkit.replay import Motion, motion_of
+from labkit.replay.widget import motion_still
 from labkit.tags.camera import Camera, looking_at
 from labkit.tags.intrinsics import Intrinsics
 from solutions.study.film import AT, EYE
@@ -141,12 +142,12 @@ def framed(inside: str, caption: str, alt: str, words: str = "") -> str:
 def replay(log: Log, title: str, caption: str = "", **options: Any) -> HTML:
     """A run as a 3-D replay in the page; a picture of its middle where there is no WebGL."""
     motion = motion_of(log, title, reference=False, **options)
-    return HTML(motion_html(motion, caption=caption, poster=poster(log)))
+    return HTML(motion_html(motion, caption=caption, poster=poster(motion)))
 
 
-def poster(log: Log) -> str:
-    """What a camera beside the table sees in the middle of a run, as a data address."""
-    return picture(log.robot.name, log.plant, log.q[len(log) // 2])
+def poster(motion: Motion) -> str:
+    """A motion's first view with its paths and what it meets drawn in, as a data address."""
+    return _encoded(Image.open(io.BytesIO(motion_still(motion))))
 
 
 def picture(side: str, plant: Plant, q: np.ndarray) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import matplotlib.pyplot as plt
@@ -12,6 +13,7 @@ import labkit as lk
 from labkit import metrics, plotting
 from solutions.study.joint_velocity import JointVelocityPD
 
+from .claims import claim, shows
 from .embed import demo_html
 from .page import (
     Question,
@@ -144,16 +146,52 @@ def line_numbers() -> None:
         {
             "line_cm": 100.0 * length,
             "peak_speed": 1.875 * length / DURATION,
-            "ff_rms": without.rms_mm,
-            "pd_rms": with_feedback.rms_mm,
             "ideal_rms": ideal.rms_mm,
             "gain": without.rms_mm / with_feedback.rms_mm,
         },
         ".2g",
     )
+    numbers({"ff_rms": without.rms_mm, "pd_rms": with_feedback.rms_mm})
     number("duration", target.duration, ".0f")
     holds(with_feedback.rms_mm < 0.5 * without.rms_mm, "feedback more than halves the RMS error")
     holds(ideal.rms_mm < 0.1 * with_feedback.rms_mm, "most of the error is the plant's")
+    _shapes()
+
+
+def _behind(kp: float, plant: lk.Plant = lk.BAXTER) -> tuple[np.ndarray, np.ndarray]:
+    """Times, and how far the tip is behind its target along the line, in [mm]."""
+    log = line_run(kp, plant)
+    way = np.array(WAY) / np.linalg.norm(WAY)
+    return log.t, 1e3 * metrics.tip_error(log)[:, :3] @ way
+
+
+def _shapes() -> None:
+    """Why the curves of the error look as they do: the lag's part, and that of the age."""
+    t, without = _behind(0.0)
+    _, late = _behind(KP)
+    _, lag = _behind(KP, replace(lk.BAXTER, name="without delay", state_delay=0.0))
+    _, age = _behind(KP, replace(lk.BAXTER, name="without lag", velocity_lag=0.0))
+    half, early = int(np.argmin(abs(t - DURATION / 2))), t < DURATION / 2
+    speed = 1.875 * float(np.linalg.norm(WAY)) / DURATION
+    shows("here 30 ms times 0.126 m/s, which is 3.8 mm", (30.0, 0.126, 3.8),
+          (1e3 * lk.BAXTER.velocity_lag, speed, 1e3 * lk.BAXTER.velocity_lag * speed),
+          0.01)  # fmt: skip
+    small = {
+        "ff_end": abs(without[-1]), "lag_first": lag[early].max(), "age_middle": -age[half],
+        "lag_second": -lag[~early].min(), "bump_first": late[early].max(), "pd_end": abs(late[-1]),
+    }  # fmt: skip
+    numbers({name: float(x) for name, x in small.items()}, ".1g")
+    numbers({"ff_most": float(without.max()), "bump_second": float(-late.min())}, ".2g")
+    claim(
+        "Behind and ahead cancel in the first half and add up in the second",
+        lambda first, second, lag, age: (
+            0.0 < first < 0.8 * lag and second > 1.3 * lag > 0.0 and age > 0.0
+        ),
+        first=float(small["bump_first"]),
+        second=float(-late.min()),
+        lag=float(small["lag_second"]),
+        age=float(small["age_middle"]),
+    )
 
 
 def check_yourself() -> HTML:
@@ -163,7 +201,7 @@ def check_yourself() -> HTML:
             r"A move of D = 0.10 m is to stay below v = 0.20 m/s and a = 0.50 m/s². "
             r"Which limit decides the duration of the bang-bang schedule?",
             [
-                ("The speed: T = 1.0 s", "T = 2D/v = 1.0 s is longer than √(4D/a) = 0.89 s. Yes."),
+                ("The speed: T = 1.0 s", "T = 2D/v = 1.0 s is longer than √(4D/a) = 0.89 s."),
                 ("The acceleration: T = 0.89 s",
                  "√(4D/a) = 0.89 s, but then the peak speed is 2D/T = 0.22 m/s: above the limit."),
                 ("Both give the same", "2D/v = 1.0 s and √(4D/a) = 0.89 s differ."),
@@ -177,7 +215,7 @@ def check_yourself() -> HTML:
                 ("Nothing: a line does not bend",
                  r"It is \(x''\) that vanishes on a line; \(x'\,\ddot s\) is all the acceleration "
                  "there is."),
-                ("All of it", r"Yes: \(x'' = 0\) on a line, so only \(x'\,\ddot s\) remains."),
+                ("All of it", r"\(x'' = 0\) on a line, so only \(x'\,\ddot s\) remains."),
                 ("Only the part at the corners", "A line has no corners."),
             ],
             1,
@@ -186,7 +224,7 @@ def check_yourself() -> HTML:
             "Twice the duration on the same path: what becomes of the largest acceleration?",
             [
                 ("Half", "That is the speed. Acceleration has the time squared below it."),
-                ("A quarter", "Yes: it goes with 1 / T²."),
+                ("A quarter", "It goes with 1 / T²."),
                 ("The same", r"\(\ddot s\) carries 1 / T², so it shrinks."),
             ],
             1,

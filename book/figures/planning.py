@@ -70,10 +70,11 @@ def planning() -> HTML:
     totals = [sum(float(row[k]) for row in rows) for k in (1, 2, 3, 4)]
     rows.append(("together", *(f"{x:g}" for x in totals), ""))
     return table(
-        ("Notebook", "Hours, core", "Hours, all", "Points by machine", "Points by hand",
-         "Before it"),
+        ("Notebook", "Hours, core", "Hours, all", "Points by machine",
+         "Points that a person may give", "Before it"),
         rows,
-        "Hours are for a student who has basic numpy and has read the chapter",
+        "Hours are for a student who has basic numpy and has read the chapter. A person marks two "
+        "whys of each student; the other whys earn their points if they are written",
     )  # fmt: skip
 
 

@@ -125,6 +125,9 @@ def impedance() -> None:
     law = push + mass * push  # its two terms of F_ext; all others vanish here
     printed = (law + push) / mass  # the push is on the arm
     turned = (law - push) / mass  # F_ext is what the arm does to the world
+    shows("Read as the push on the arm, +5 N", 5.0, push)
+    shows("the arm is pushed with −5 N", -5.0, -push)
+    shows("where −2.5 m/s² is wanted", -2.5, -desired)
     claim(
         "Neither is what it should be",
         lambda right, as_push, as_reaction: (

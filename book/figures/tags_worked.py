@@ -93,22 +93,23 @@ def frames() -> HTML:
 def timeline() -> HTML:
     """When pictures are taken, when they arrive, and what is known in between."""
     _, ax = plt.subplots(figsize=(6.4, 2.7))
-    for k in range(4):
+    for k, ink in enumerate(("C0", "C2", "C3", "C4")):
         taken, arrived = 100.0 * k, 100.0 * k + 100.0
-        ax.plot(taken, 1.0, "o", color="C0")
-        ax.annotate(
-            "", (arrived, 0.0), (taken, 1.0), arrowprops={"arrowstyle": "->", "color": "C0"}
-        )
-        ax.plot([arrived, arrived + 100.0], [0.0, 0.0], color=f"C{k % 3}", linewidth=5,
+        arrow = {"arrowstyle": "->", "color": ink}
+        ax.plot(taken, 1.0, "o", color=ink)
+        ax.annotate("", (arrived, 0.0), (taken, 1.0), arrowprops=arrow)
+        ax.plot([arrived, arrived + 100.0], [0.0, 0.0], color=ink, linewidth=5,
                 solid_capstyle="butt")  # fmt: skip
         ax.text(arrived + 50.0, -0.17, f"picture {k}", ha="center", va="top",
                 fontsize="small")  # fmt: skip
-    ax.annotate("", (360.0, 0.45), (200.0, 0.45), arrowprops={"arrowstyle": "|-|", "color": "C1"})
-    ax.text(280.0, 0.53, "its age now: 160 ms", ha="center", color="C1", fontsize="small")
-    ax.axvline(360.0, ymin=0.18, ymax=0.86, color="C1", linestyle=":")
-    ax.text(362.0, 1.02, "now", color="C1")
+    bracket = {"arrowstyle": "|-|", "color": "C1"}
+    ax.annotate("", (360.0, 1.25), (200.0, 1.25), arrowprops=bracket)
+    ax.text(280.0, 1.36, "age of picture 2 now: 160 ms", ha="center", color="C1", fontsize="small")
+    ax.plot([200.0, 200.0], [1.05, 1.25], color="C1", linestyle=":")
+    ax.plot([360.0, 360.0], [-0.1, 1.25], color="C1", linestyle=":")
+    ax.text(366.0, 1.2, "now", color="C1")
     ax.set_yticks([1.0, 0.0], ["taken", "arrived"])
-    ax.set(xlabel="time [ms]", xlim=(-15.0, 512.0), ylim=(-0.42, 1.2))
+    ax.set(xlabel="time [ms]", xlim=(-15.0, 512.0), ylim=(-0.42, 1.6))
     ax.spines["left"].set_visible(False)
     ax.tick_params(left=False)
     return figure(
@@ -132,14 +133,26 @@ def geometry() -> None:
     seen = corners_seen(0.5, at[2]) + (LENS.cx, LENS.cy)
     believed = [tag_pose(seen, LENS, a)[2, 3] for a in (SIZE, 1.25 * SIZE)]
     shows("a tag taken for 25 % larger appears 25 % farther away", (1.0, 1.25), believed, 0.001)
-    by_hand("= 0.00147 m", 0.00147, 0.1 / (math.sqrt(2.0) * FOCAL * SIZE))
+    sigma = 0.1  # of the corners, in pixels
+    by_hand("= 0.00147 m", 0.00147, sigma / (math.sqrt(2.0) * FOCAL * SIZE))
     away = at[2] + SIZE / 2.0 * math.sin(math.radians(24.6)) * np.array((-1.0, 1.0))
+    by_hand(
+        "and the sums by hand below count with 0.1 pixel",
+        0.1,
+        math.sqrt(2.0) * FOCAL * SIZE * 0.00147,
+    )
     shows("48.8 pixels tall, the right side 47.2", (48.8, 47.2), FOCAL * SIZE / away, 0.002)
-    shows("0.984 m and 1.017 m", (0.984, 1.017), FOCAL * SIZE / np.array((48.8, 47.2)), 0.001)
+    shows(
+        "so the two are at 0.984 m and 1.017 m",
+        (0.984, 1.017),
+        FOCAL * SIZE / np.array((48.8, 47.2)),
+        0.001,
+    )
     right = FOCAL * SIZE / np.array((48.8, 47.2, 47.7))
+    shows("so the two are at 0.984 m and 1.017 m", (0.984, 1.017), right[:2], 0.001)
     shows("is 80 mm wide and its right side is 33.3 mm farther away", (80.0, 33.3),
           (1e3 * SIZE, 1e3 * (right[1] - right[0])), 0.01)  # fmt: skip
-    shows("the right side is at 1.006 m, the difference is 22.6 mm", (1.006, 22.6),
+    shows("the right side is at 1.006 m, the difference is 22.7 mm", (1.006, 22.7),
           (right[2], 1e3 * (right[2] - right[0])), 0.01)  # fmt: skip
     turning, way = 0.5, 0.4
     shows("turns at 0.5 rad/s while a picture is 100 ms under way has turned by 0.05 rad, "
@@ -153,7 +166,9 @@ def geometry() -> None:
           (0.083, 0.000083), (1e3 * sideways, 0.1 * at[2] / (2.0 * FOCAL)), 0.01)  # fmt: skip
     by_hand("an unknown tilt makes it 0.118 mm", 0.118, 1e3 * math.sqrt(square[0, 0]))
     by_hand("make the tilt uncertain by 3.0°", 3.0, math.degrees(math.sqrt(square[3, 3])))
-    by_hand("the covariance says 0.27°", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03)
+    by_hand(
+        "the tilt is uncertain by 0.27° only", 0.27, math.degrees(math.sqrt(tilted[4, 4])), 0.03
+    )
     for words, value, heights in (
         ("is tilted by 24.6°", 24.6, (48.8, 47.2)),
         ("the answer becomes 16.5°", 16.5, (48.8, 47.7)),
@@ -217,6 +232,7 @@ def two_pictures() -> None:
         p=[P[0, 0], P[0, 1], P[1, 1]],
     )
     by_hand("changed the velocity by about 50 mm/s", 50.0, 1e3 * math.sqrt(q))
+    by_hand("In metres this is 0.0025 m²/s³", 0.0025, q)
     turn = RADIUS / SPEED
     shows("of radius $r$ = 60 mm at $v$ = 0.1 m/s", (60.0, 0.1), (1e3 * RADIUS, SPEED))
     shows("in $r/v$ = 0.6 s", 0.6, turn)
@@ -233,9 +249,10 @@ def two_pictures() -> None:
     P = 1e6 * after.covariance[np.ix_((0, 3), (0, 3))]
     by_hand("known to 16.8 mm/s", 16.8, math.sqrt(P[1, 1]))
     mean, covariance = carry_forward(after.mean, after.covariance, AGE, q)
-    shows("Now is 0.1 s later, because this reading was 100 ms under way", (0.1, 100.0),
+    shows("The present is 0.1 s later than the picture, because this reading was 100 ms under way",
+          (0.1, 100.0),
           (AGE, 1e3 * AGE))  # fmt: skip
-    by_hand("it expects the target at 23.9 mm", 23.9, 1e3 * mean[0])
+    by_hand("the filter expects the target at 23.9 mm", 23.9, 1e3 * mean[0])
     spread = 1e3 * math.sqrt(covariance[0, 0])
     by_hand("with a standard deviation of 2.6 mm", 2.58, spread)
     shows("said 12 mm, and would have been sure of it to 1 mm", (12.0, 1.0),
@@ -347,7 +364,11 @@ def aims() -> HTML:
              "aim_turns": turning[0]}, ".2g")  # fmt: skip
     numbers({"aim_turns_noisy": turning[-1], "aim_straight_noisy": straight[-1]}, ".2g")
     by_hand("at 0.1 m/s and 60 mm, 25 mm", 25.0, 1e3 * SPEED**2 * AHEAD**2 / (2 * RADIUS), 0.02)
-    by_hand("cubed, 7.7 mm", 7.7, 1e3 * SPEED**3 * AHEAD**3 / (6 * RADIUS**2))
+    by_hand(
+        "With the same numbers this is 7.7 mm, less than a third",
+        7.7,
+        1e3 * SPEED**3 * AHEAD**3 / (6 * RADIUS**2),
+    )
     shows("A blend of $T = 0.45$ s that starts when a picture is 0.1 s old", (0.45, 0.1),
           (TagFollower.horizon, AGE))  # fmt: skip
     ax.set(xlabel="noise of a reading, each coordinate [mm]", ylabel="error of the aim [mm]",

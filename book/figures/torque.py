@@ -18,7 +18,7 @@ from .page import Question, figure, holds, number, numbers, quiz, replay, table,
 from .velocity import circle_task
 
 SEED = 5
-KP, KD, ON_CIRCLE = 100.0, 20.0, 225.0
+KP, KD, ON_CIRCLE, ON_CIRCLE_KD = 100.0, 20.0, 225.0, 30.0
 RATES = (200.0, 1000.0)
 SPRING = (200.0, 200.0, 100.0, 100.0, 15.0, 15.0, 10.0)
 DAMPER = (30.0, 30.0, 15.0, 15.0, 2.0, 2.0, 1.5)
@@ -45,7 +45,7 @@ def responses() -> HTML:
         ax.set(xlabel="time [s]", title=name)
         spread[name] = float(np.ptp(e, axis=1).max())
     exact = (1.0 + 10.0 * log.t) * np.exp(-10.0 * log.t)
-    axes[0].plot(log.t, exact, color="#999999", linewidth=5, alpha=0.6, zorder=0)
+    axes[0].plot(log.t, exact, color="#999999", linewidth=9, alpha=0.6, zorder=0)
     axes[0].set_ylabel("error / initial error")
     axes[1].legend(ncols=2, fontsize="small")
     same, different = spread.values()
@@ -107,12 +107,12 @@ def sampled() -> HTML:
         radius=values["bare_200"],
     )
     numbers(values, ".3g")
-    number("bare", bare, ".5f")
+    number("bare", bare, ".3g")
     number("real", real, ".2g")
     return figure(
         "A joint under kp = 8 N m/rad, kd = 1.5 N m s/rad, with the torque held between ticks. "
         "Above one the error grows.",
-        f"Spectral radius against inertia, for 200 Hz and 1 kHz. At the bare wrist, {bare:.5f} "
+        f"Spectral radius against inertia, for 200 Hz and 1 kHz. At the bare wrist, {bare:.3g} "
         f"kg m², it is {values['bare_200']:.3g} at 200 Hz; with its rotor, {real:.2g} kg m², it is "
         f"{values['real_200']:.3g}.",
     )
@@ -161,7 +161,7 @@ def weight() -> HTML:
 def circle_run() -> lk.Log:
     """The circle by computed torque on the realistic arm."""
     _, joints = circle_task()
-    law = ComputedTorque(lk.Model("left", lk.BAXTER), ON_CIRCLE, 30.0, gravity=False)
+    law = ComputedTorque(lk.Model("left", lk.BAXTER), ON_CIRCLE, ON_CIRCLE_KD, gravity=False)
     with lk.Arm("left", lk.BAXTER, SEED, q0=lk.robot("left").ready) as arm:
         return lk.run(arm, joints, law)
 
@@ -177,6 +177,8 @@ def circle_replay() -> HTML:
 def circle_tracking() -> HTML:
     """The same as curves, with its number."""
     number("circle_rms", metrics.summary(circle_run()).rms_mm, ".2g")
+    shows("Computed torque with $K_p = 225$ 1/s² and $K_d = 30$ 1/s", (225.0, 30.0),
+          (ON_CIRCLE, ON_CIRCLE_KD))  # fmt: skip
     return tracking(circle_run(), "Computed torque on the circle.")
 
 
@@ -198,7 +200,7 @@ def check_yourself() -> HTML:
             "In which law do the gains have the unit N m/rad?",
             [
                 ("Computed torque", "There they stand inside M and are 1/s²."),
-                ("Augmented PD", "Yes: a spring at each joint."),
+                ("Augmented PD", "It puts a spring at each joint."),
                 ("Both", "Inside M the gain is an acceleration for an angle."),
             ],
             1,
@@ -208,7 +210,7 @@ def check_yourself() -> HTML:
             "and the arm drifts up. Someone multiplies g by 0.05 and is content. What was that?",
             [
                 ("A calibration of the model", "The model's g is right; it was added twice."),
-                ("A step towards the right factor, 0", "Yes: on this arm the factor is zero."),
+                ("A step towards the right factor, 0", "On this arm the factor is zero."),
                 ("A better estimate of the gravity constant", "9.81 is not in doubt."),
             ],
             1,
@@ -219,7 +221,7 @@ def check_yourself() -> HTML:
                 (r"\(C\,\dot q\)", "That belongs to computed torque, which cancels what is there."),
                 (
                     r"\(C\,\dot q_d\)",
-                    r"Yes: then \(C\dot e\) remains and \(\dot M - 2C\) cancels it in the energy.",
+                    r"Then \(C\dot e\) remains and \(\dot M - 2C\) cancels it in the energy.",
                 ),
             ],
             1,

@@ -17,7 +17,7 @@ from labkit.plotting import STYLES
 from solutions.study.joint_torque import ComputedTorque
 
 from .claims import claim, shows
-from .page import figure, number, numbers
+from .page import figure, number, numbers, shown, table
 from .torque import DAMPER, KP, ON_CIRCLE, REPORT_KD, REPORT_KP, SPRING, circle_run, radius
 
 WEIGHT = 0.5
@@ -57,25 +57,31 @@ def drawing() -> HTML:
         at = 4.0 if computed else 5.6
         ax.plot((10.5, 10.5, at), (-0.42, -1.2, -1.2), color="#57606a", lw=1.2)
         if computed:
-            ax.text(4.2, 0.62, "+ q̈ of target", fontsize="small")
+            ax.text(2.6, 0.75, "+ q̈ of target", fontsize="small")
+            ax.plot((1.1, 1.1, 5.5), (0.42, 0.62, 0.62), color="#57606a", lw=1.2)
+            arrow(ax, (5.5, 0.62), (5.5, 0.04))
             arrow(ax, (4.0, -1.2), (4.0, -0.44))
+            arrow(ax, (6.5, -1.2), (6.5, -0.44))
         else:
             box(ax, 4.0, -1.2, "springs Kp e + Kd ė", 2.9, "C0")
             arrow(ax, (5.45, -1.0), (6.4, -0.44))
             arrow(ax, (5.8, -1.2), (5.47, -1.2))
             ax.plot((1.1, 1.1), (-0.42, -1.2), color="#57606a", lw=1.2)
             arrow(ax, (1.1, -1.2), (2.53, -1.2))
-        ax.text(7.4, -1.6, "measured q and q̇", fontsize="small")
+        arrow(ax, (8.5, -1.2), (8.5, -0.44))
+        more = "" if computed else ", q also into M"
+        ax.text(6.6, -1.62, f"measured q and q̇{more}", fontsize="small")
     return figure(
         "The two laws: the mass matrix multiplies the gains in the first, not in the second.",
         "Two block diagrams from left to right. Above: target, gains plus the target's "
         "acceleration, mass matrix, Coriolis and gravity torques, arm. Below: the mass matrix "
         "multiplies the target's acceleration alone, and springs and dampers are added after it. "
-        "In both, measured angles and speeds return to the gains.",
+        "In both, measured angles and speeds return to the gains, to the mass matrix and to the "
+        "Coriolis and gravity torques.",
     )
 
 
-def columns() -> None:
+def columns() -> HTML:
     """One joint off its target: what computed torque asks of all the others."""
     model = lk.Model("left", lk.IDEAL)
     M = model.mass_matrix(model.robot.ready)
@@ -88,9 +94,8 @@ def columns() -> None:
         stretched=float(model.mass_matrix(np.zeros(7))[0, 0]),
         folded=float(M[0, 0]),
     )
-    numbers({"hand_m00": M[0, 0], "hand_m20": M[2, 0], "hand_m40": M[4, 0]}, ".3g")
     tau = M[:, 0] * accelerate
-    numbers({"hand_t0": tau[0], "hand_t2": tau[2], "hand_t4": tau[4]}, ".3g")
+    number("hand_t2", tau[2])
     claim(
         "has 4 % of its error left after 0.5 s",
         lambda left: 0.039 < left < 0.042,
@@ -101,6 +106,12 @@ def columns() -> None:
         lambda t: t > 10.0,
         t=float(tau[2]),
     )
+    rows = [
+        (name.removeprefix("left_"), shown(m, ".2f"), shown(t, ".1f"))
+        for name, m, t in zip(model.robot.joint_names, M[:, 0], tau, strict=True)
+    ]
+    head = ("Joint", "first column of M [kg m²]", "torque [N m]")
+    return table(head, rows, "What computed torque asks of each joint while s0 alone is off")
 
 
 def springs() -> None:
@@ -111,7 +122,10 @@ def springs() -> None:
     numbers({"omega_s0": omega[0], "omega_w1": omega[1]}, ".2g")
     numbers({"zeta_s0": zeta[0], "zeta_w1": zeta[1]}, ".2g")
     shows("200 N m/rad and 30 N m s/rad at s0", (200.0, 30.0), (SPRING[0], DAMPER[0]))
-    numbers({"inertia_s0": M[0, 0], "inertia_w1": M[5, 5]}, ".2g")
+    numbers({"inertia_s0": M[0, 0], "inertia_w1": M[5, 5]})
+    shows("At a joint with 2.17 kg m² on a spring of 200 N m/rad an acceleration of 1 rad/s² "
+          "leaves 0.011 rad", (2.17, 200.0, 1.0, 0.011),
+          (M[0, 0], SPRING[0], 1.0, M[0, 0] / SPRING[0]), 0.02)  # fmt: skip
 
 
 def ticks() -> None:
@@ -133,7 +147,7 @@ def ticks() -> None:
     large = min(0.5 * (trace - root), 0.5 * (trace + root))
     number("tick_root", large, ".3g")
     claim(
-        "the eigenvalue that the figure shows",
+        "Its size is the spectral radius given above",
         lambda by_hand, drawn: math.isclose(-by_hand, drawn, rel_tol=1e-6),
         by_hand=large,
         drawn=radius(I, REPORT_KP, REPORT_KD, h),
@@ -196,8 +210,9 @@ def wrists() -> None:
     shows("On the circle, with 225 1/s²", 225.0, ON_CIRCLE)
     shows("A friction of 0.3 N m alone", 0.3, lk.BAXTER.stiction[5])
     number("held_w1", 1e3 * lk.BAXTER.stiction[5] / (ON_CIRCLE * M[5, 5]), ".2g")
+    number("wrist_times", off[5] / off[0], ".2g")
     claim(
-        "the wrist errs by more than ten times as much as the shoulder",
+        "times as much as the shoulder",
         lambda shoulder, wrist: wrist > 10.0 * shoulder > 0.0,
         shoulder=float(off[0]),
         wrist=float(off[5]),
@@ -236,6 +251,13 @@ def payload() -> HTML:
     )
     numbers({"sag_hand": ends[1][1], "sag_run": ends[1][0]}, ".3g")
     numbers({"sag_soft": ends[0][0], "mobility_z": mobility[2, 2]}, ".3g")
+    weight = np.array((0.0, 0.0, -force, 0.0, 0.0, 0.0))
+    rest = fsolve(
+        lambda q: model.mass_matrix(q) @ (gains[0] * (q0 - q)) + model.tip_jacobian(q).T @ weight,
+        q0,
+    )
+    exact = 1e3 * float(model.pose(q0)[2, 3] - model.pose(rest)[2, 3])
+    numbers({"sag_soft_sum": ends[0][1], "sag_soft_exact": exact})
     number("sag_force", force, ".3g")
     ax.set(xlabel="time [s]", ylabel="hand below its target [mm]", ylim=(0, None))
     ax.legend()

@@ -52,7 +52,7 @@ def paths() -> None:
     apart = 0.05
     shows("If they differ by 5 cm, a controller with $K_p = 5$ 1/s asks for 0.25 m/s",
           (5.0, 5.0, 0.25), (100.0 * apart, KP, KP * apart))  # fmt: skip
-    shows("angles that are up to 14 ms old", 14.0, 1e3 * (lk.BAXTER.state_delay + 0.01))
+    shows("angles are up to 14 ms old", 14.0, 1e3 * (lk.BAXTER.state_delay + 0.01))
 
 
 def _durations(D: float) -> None:
@@ -191,14 +191,14 @@ def _elbow() -> None:
     )
     shows("is 364.4 mm in front of the shoulder's and 69 mm below it, and the wrist's axis is "
           "374.3 mm in front of the elbow's and 10 mm below it", (364.4, 69.0, 374.3, 10.0),
-          (upper, drop, fore, sink), 1e-3)  # fmt: skip
-    shows("set off from the elbow's axis by 69 mm", 69.0, drop, 1e-3)
+          (upper, drop, fore, sink), 1e-4)  # fmt: skip
+    shows("elbow axis is set off from the upper arm's by 69 mm", 69.0, drop, 1e-3)
     slopes = atan(drop / upper), atan(sink / fore)
-    shows("\\arctan(69/364.4) = 0.1872$ rad", 0.1872, slopes[0], 1e-3)
+    shows("\\arctan(69/364.4) = 0.1871$ rad", 0.1871, slopes[0], 3e-4)
     shows("\\arctan(10/374.3) = 0.0267$ rad", 0.0267, slopes[1], 1e-3)
     sigma = {x: _smallest(arm, x) for x in np.linspace(0.155, 0.165, 21)}
-    shows("which is 0.1605 rad", 0.1605, slopes[0] - slopes[1], 1e-3)
-    shows("The three axes are in one line", 0.1605, min(sigma, key=lambda x: sigma[x]), 4e-3)
+    shows("which is 0.1604 rad", 0.1604, slopes[0] - slopes[1], 3e-4)
+    shows("The three axes are in one line", 0.1604, min(sigma, key=lambda x: sigma[x]), 4e-3)
 
 
 def _smallest(arm: lk.Model, elbow: float) -> float:

@@ -6,7 +6,7 @@ import { product } from "./space.js";
 import { cornersOf, seen, twoPoses } from "./two_poses.js";
 
 const NAMES = ["upper left", "upper right", "lower right", "lower left"];
-const WIDE = 128, TALL = 92; // of the part of the picture that is shown, in its pixels
+const WIDE = 168, TALL = 132; // of the part of the picture that is shown, in its pixels: room for the nearest, most tilted tag
 const STEP = 0.5; // of a key, in pixels
 const COLOURS = { A: "var(--lk-line-0)", B: "var(--lk-line-3)" };
 const MARGIN = 4;
@@ -63,7 +63,7 @@ export function corners({ h, svg, unique }) {
   function show(what = "") {
     const before = found?.better;
     found = named(image, found);
-    for (const name of ["A", "B"]) words[name].textContent = `Pose ${name}: faces ${told(found[name])}.${name === found.better ? " Taken." : ""}`;
+    for (const name of ["A", "B"]) words[name].textContent = `Pose ${name}: faces ${told(found[name])}.${name === found.better ? " Chosen." : ""}`;
     if (before && before !== found.better) said.textContent = `The pose flipped: now ${found.better} fits better.`;
     else if (what) said.textContent = what;
     draw();

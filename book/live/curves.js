@@ -5,7 +5,7 @@ const POINTS = 160;
 const rest = () => new Promise((go) => setTimeout(go, 0));
 
 /** What can be plotted of a run's ticks; `top` is the least height of its axis. */
-export const ERROR = { title: "Tip error of a run from the start [mm]", unit: "mm", top: 10, value: (tick) => 1000 * tick.error };
+export const ERROR = { title: "Tip error, computed anew for the whole run [mm]", unit: "mm", top: 10, value: (tick) => 1000 * tick.error };
 export const ASKED = { title: "Largest joint speed that the law asks for [rad/s]", unit: "rad/s", top: 5, most: 20,
   value: (tick) => Math.max(...tick.asked.map(Math.abs)) };
 
@@ -31,7 +31,7 @@ export class Curves {
     this.show(ticks);
     this.numbers = summary(ticks);
     const { rms, most, speed } = this.numbers;
-    return `error ${rms.toFixed(2)} mm (root mean square), ${most.toFixed(1)} mm at most; quickest joint ${speed.toFixed(2)} rad/s.`;
+    return `error ${rms.toFixed(2)} mm (root mean square), ${most.toFixed(2)} mm at most; the quickest joint reaches ${speed.toFixed(2)} rad/s.`;
   }
 
   /** Draw these ticks as the present run; the one before stays behind them. */

@@ -2,6 +2,7 @@
 import { subtract } from "./algebra.js";
 import { Form } from "./form.js";
 import { hold } from "./hands.js";
+import { quaternion } from "./model.js";
 import { TAG } from "./numbers.js";
 import { ELBOW, READY, wallAt } from "./settings.js";
 
@@ -60,7 +61,8 @@ export class Drawing extends Form {
   }
 
   furnish(now) {
-    const things = { target: { kind: "target", position: now.goal } };
+    const [w, ...xyz] = quaternion(this.session.turn);
+    const things = { target: { kind: "target", position: now.goal, quaternion: [...xyz, w] } };
     if (this.session.chase) things.tag = { kind: "tag", position: subtract(now.goal, TAG.offset), size: TAG.size };
     if (this.settings.controller === "workspaceImpedance") things.spring = { kind: "band", position: now.goal }; // what the law makes
     if (this.settings.wall !== undefined) {

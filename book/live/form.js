@@ -49,7 +49,7 @@ export class Form {
     const { plant, controller, gains } = this.settings;
     const dials = gainDials(plant, controller).map((spec) => this.dial({ ...spec, value: gains[spec.key] ?? spec.value },
       (x) => this.change({ gains: { ...this.settings.gains, [spec.key]: x } })));
-    const none = "The position mode has no gains to choose: it goes where it is told as fast as its motors can still brake.";
+    const none = "The position mode has no gains to choose: it goes to its target as fast as its motors can still brake.";
     this.gainbox.replaceChildren(...(dials.length ? dials.map((d) => d.element) : [this.h("p", { class: "lk-kept" }, none)]));
   }
 

@@ -154,7 +154,7 @@ export function principal(inertia) {
   return { moments: values, quaternion: quaternion([a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2]]) };
 }
 
-function quaternion([xx, xy, xz, yx, yy, yz, zx, zy, zz]) {
+export function quaternion([xx, xy, xz, yx, yy, yz, zx, zy, zz]) {
   const four = [xx + yy + zz, xx - yy - zz, yy - xx - zz, zz - xx - yy];
   const k = four.indexOf(Math.max(...four)), most = Math.sqrt(four[k] + 1) / 2, s = 1 / (4 * most);
   return [

@@ -10,7 +10,7 @@ import { write } from "./predict.js";
 
 const GHOST = 0x1f77d0;
 export const CALM = 800; // ms without another curve until the last one is told
-const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "below σ =" }; // of gains, as the text has them
+const SIGNS = { zeta: "ζ", lambda2: "λ²", threshold: "damped where σ is below" }; // of gains, as the text has them
 
 export class Panel extends Drawing {
   constructor(host, config, mujoco, viewer, robot, began) {

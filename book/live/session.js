@@ -36,12 +36,13 @@ export class Session {
     if (settings.path === "tag") {
       const { dragged = null } = this.chase ?? {};
       this.chase = Object.assign(new Chase(settings, READY, joints, this.seed + 2), { dragged });
-      Object.assign(this, { lap: LAP, target: (t) => this.chase.target(t), goal: (t) => this.chase.goal(t) });
+      Object.assign(this, { lap: LAP, target: (t) => this.chase.target(t), goal: (t) => this.chase.goal(t), turn: READY.R });
       return;
     }
     const target = targetOf(settings, joints), poses = targetOf(settings, false);
     this.chase = null;
-    Object.assign(this, { lap: target.duration, target: (t) => target(t % this.lap), goal: (t) => poses(t % this.lap).pose.p });
+    Object.assign(this, { lap: target.duration, target: (t) => target(t % this.lap), goal: (t) => poses(t % this.lap).pose.p,
+      turn: poses(0).pose.R }); // one orientation along a path
   }
 
   /** Put everything back to the start. */

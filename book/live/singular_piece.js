@@ -46,7 +46,7 @@ const SETTINGS = { controller: "workspaceVelocity", path: "stretch", start: STAR
   gains: { lambda2: 0, threshold: 0.1 } };
 
 class Singular extends Panel {
-  quantities() { return [{ ...ASKED, title: "Largest joint speed that the law asks for [rad/s]" }, { ...ERROR, title: "Path error [mm]", top: 5 }]; }
+  quantities() { return [{ ...ASKED, title: "Largest joint speed that the law asks for, before the motors' limits [rad/s]" }, { ...ERROR, title: "Path error [mm]", top: 5 }]; }
 
   parts() {
     const { h, viewer } = this;
@@ -59,7 +59,7 @@ class Singular extends Panel {
     });
     const axis = { xName: "elbow e1 [rad]", zero: true };
     this.maps = [
-      new viewer.Plot({ title: "Largest joint speed for 10 cm/s outwards [rad/s]; cut at 20", series: [], x: [0, 1], least: 20, ...axis }),
+      new viewer.Plot({ title: "Equations alone: largest joint speed for 10 cm/s outwards [rad/s]; cut at 20", series: [], x: [0, 1], least: 20, ...axis }),
       new viewer.Plot({ title: "Speed of the tip that is lost [mm/s]", series: [], x: [0, 1], least: 100, ...axis })];
     this.maptold = h("p", { class: "lk-kept", role: "status" });
     this.mapbox = h("div", { class: "lk-plots", hidden: true }, this.maps.map((plot) => plot.element));
@@ -84,7 +84,7 @@ class Singular extends Panel {
     });
     this.mapped = values;
     const peak = found.reduce((a, b) => (b.quickest > a.quickest ? b : a)), at = x[found.indexOf(peak)];
-    this.maptold.textContent = `With λ² = ${lambda2}: the quickest joint turns at ${peak.quickest.toFixed(1)} rad/s, at e1 = ${at.toFixed(2)} rad; up to ${Math.max(...values[1]).toFixed(0)} of 100 mm/s are lost.`;
+    this.maptold.textContent = `With λ² = ${lambda2}: the quickest joint turns at ${peak.quickest.toFixed(1)} rad/s, at e1 = ${at.toFixed(2)} rad; ${lambda2 ? `up to ${Math.max(...values[1]).toFixed(0)} of 100 mm/s are lost` : "nothing of the tip's speed is lost"}.`;
   }
 }
 

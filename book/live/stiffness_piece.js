@@ -36,7 +36,7 @@ class Stiffness extends Panel {
     const next = mode === "three" ? { Kx: had, Ky: had, Kz: had, ...gains } : { K: had, ...gains };
     this.change({ controller: mode === "position" ? "baxtersOwn" : "workspaceImpedance", gains: mode === "position" ? {} : next });
     this.showGains();
-    this.say(`Held by ${MODES[mode]}.`);
+    this.say(`Held by ${MODES[mode]}${next.K && mode === "one" ? `, K = ${next.K} N/m` : ""}.`);
   }
 
   showGains() {
@@ -67,11 +67,16 @@ class Stiffness extends Panel {
     if (!this.settled()) { write(this.verdict, "Coming to rest…"); this.told = false; return; }
     if (this.told) return;
     this.told = true; // once it is at rest, once for a screen reader
-    const both = this.wallForce <= LIMITS.wall && this.sag <= LIMITS.sag;
-    this.verdict.textContent = `At rest: ${this.wallForce.toFixed(1)} N on the wall (at most ${LIMITS.wall}), ${this.sag.toFixed(1)} mm of sag (at most ${LIMITS.sag}). ${both ? "Both limits are kept." : "Not both limits are kept."}`;
+    this.verdict.textContent = `At rest: ${this.wallForce.toFixed(1)} N on the wall (at most ${LIMITS.wall}), ${this.sag.toFixed(1)} mm of sag (at most ${LIMITS.sag}). ${kept(this.wallForce, this.sag)}`;
     this.host.dataset.wall = this.wallForce.toFixed(2);
     this.host.dataset.sag = this.sag.toFixed(2);
   }
+}
+
+/** Which of the two limits are kept, in words. */
+function kept(force, sag) {
+  const over = [...(force > LIMITS.wall ? ["force"] : []), ...(sag > LIMITS.sag ? ["sag"] : [])];
+  return over.length ? `Over its limit: the ${over.join(" and the ")}.` : "Both limits are kept.";
 }
 
 /** A bar with a limit and its number. */

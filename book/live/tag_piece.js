@@ -43,7 +43,7 @@ class Age extends Panel {
     const camera = (what) => this.change({ camera: { ...this.settings.camera, ...what } });
     const { camera: now, tagSpeed } = this.settings;
     this.predicted = predictBox(h, {
-      question: "The tag rides on a conveyor at 60 mm/s; what the camera says is 200 ms old. How far beside the tag does the hand aim? And if the noise is tripled?",
+      question: "The tag rides on a conveyor at 60 mm/s; what the camera says is 200 ms old. How far beside the tag does the hand aim?",
       unit: "mm", commit: () => this.answer(), found: () => miss({ ...this.settings, ...SETTINGS }) });
     const move = viewer.choice({ label: "The tag on", values: Object.values(MOVES), value: MOVES[this.settings.move],
       onchange: (label) => { this.release(); this.change({ move: Object.keys(MOVES).find((k) => MOVES[k] === label) }); } });
@@ -57,7 +57,7 @@ class Age extends Panel {
     const keys = steps.map(([name, by]) => h("button", { type: "button", onclick: () => this.drag(add(this.session.chase.dragged ?? [0, 0, 0], by)) }, `${name} 2 cm`));
     this.table = h("table", { class: "lk-table" });
     this.results = h("div", { hidden: true }, this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table));
-    this.veil = h("p", { class: "lk-kept" }, "How far the hand aims beside the tag is told, drawn and tabled here once you have said a number above.");
+    this.veil = h("p", { class: "lk-kept" }, "Once you have entered a number above, the distance between the point aimed at and the tag appears here as a number, a curve and a table.");
     return [this.predicted.element, this.buttons(), this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys)),
       this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)), h("label", { class: "lk-check" }, box, "predict: go on as in the last two pictures")),
       this.numbers, this.veil, this.results, corners(viewer)];
@@ -110,7 +110,7 @@ class Age extends Panel {
       h("tbody", {}, lines.map(([name, cells]) => h("tr", {}, h("th", { scope: "row" }, name), cells.map((x) => h("td", {}, x))))));
     const rms = miss(settings), { age, rate, predict } = settings.camera;
     const turn = settings.move === "circle" ? ` The circle turns by ω T = ${((settings.tagSpeed / TAG.radius) * age).toFixed(2)} in the age of a picture.` : "";
-    this.said.textContent = `Aims ${rms.toFixed(1)} mm beside the tag; speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
+    this.said.textContent = `The hand aims ${rms.toFixed(1)} mm beside the tag (root mean square); speed × mean age is ${(1000 * settings.tagSpeed * (age + 0.5 / rate)).toFixed(1)} mm.${turn}`;
     if (this.predicted.said !== null) this.say(`${predict ? "Predicted" : "As seen"}: ${this.said.textContent}`, CALM);
     this.host.dataset.rerun = String(Math.round(performance.now() - began));
   }

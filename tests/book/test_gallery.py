@@ -1,10 +1,14 @@
 """The galleries: runs to compare, at the same place on every page, on the same scales."""
 
+from pathlib import Path
+
 import pytest
 from bs4 import BeautifulSoup
 from figures import gallery
 
 from solutions.study.campaign import TASKS
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_the_scales_of_a_page_hold_every_way():
@@ -27,3 +31,17 @@ def test_every_run_leads_to_the_same_way_on_the_other_tasks_and_to_all_ways(book
             assert links == others | {"#all-methods"}
         names = [a["href"] for a in page.select("section#all-methods table a")]
         assert names == [f"#{way.replace(' ', '-')}" for way in gallery.SHOWN]
+
+
+@pytest.mark.slow
+def test_the_readme_has_the_books_numbers(book):
+    """README's table of errors is the landing page's."""
+    page = BeautifulSoup((book / "index.html").read_text(), "html.parser")
+    table = next(x for x in page.select("table") if x.caption and "RMS error" in x.caption.text)
+    rows = [[cell.text for cell in row.select("th, td")] for row in table.select("tbody tr")]
+    assert len(rows) == len(gallery.SHOWN)
+    lines = (ROOT / "README.md").read_text().splitlines()
+    for way, *numbers in rows:
+        assert any(
+            x.startswith(f"| {way}") and x.endswith(f"| {' | '.join(numbers)} |") for x in lines
+        ), way

@@ -121,6 +121,7 @@ def test_words_and_numbers_in_tables_stay_whole_on_a_phone(visit):
 def test_a_wide_formula_is_moved_by_keyboard(visit):
     """It begins at the left, and fades at the right until its end has been brought in."""
     page = visit("chapters/torque.html", phone=True)
+    page.set_viewport_size({"width": 260, "height": 844})  # on a phone of 390 all of them fit
     page.evaluate("MathJax.startup.promise")
     page.wait_for_selector("div.math mjx-container")
     fade = "d => getComputedStyle(d).getPropertyValue('--more')"
