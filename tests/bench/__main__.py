@@ -24,6 +24,7 @@ from . import (
     realistic,
     start,
     viewer,
+    week,
 )
 
 ROOT = Path(__file__).parents[2]
@@ -43,6 +44,7 @@ MEASUREMENTS = (
     notebooks,
     grading,
     costs,
+    week,
     claims,
 )
 OUT = Path("build/bench.json")

@@ -18,7 +18,6 @@ def measure():
     target, controller = task()
     model = mujoco.MjModel.from_xml_string(lk.robot("left").urdf())
     model.opt.timestep = 1e-3
-    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
     data, rows, apart = mujoco.MjData(model), [], 0.0
     arms = [lk.Arm("left", world=lk.World(engine=name)) for name in ("pybullet", "mujoco")]
     for _ in range(PAIRS):

@@ -1,4 +1,7 @@
-"""The plain loops that `run` is measured against: an engine by hand, no classes, log or checks."""
+"""The plain loops that `run` is measured against: an engine by hand, no classes, log or checks.
+
+Their physics are those of `run`: torques end at the joints' limits, joints at their stops.
+"""
 
 import tempfile
 
@@ -9,6 +12,8 @@ import labkit as lk
 from labkit.quiet import quiet
 
 JOINTS = range(7)
+MOST = lk.robot("left").effort
+LEAST = -MOST
 
 
 def pybullet():
@@ -47,8 +52,8 @@ def hand_loop(client, body, target, controller, seconds):
         joints = bullet.getJointStates(body, JOINTS, physicsClientId=client)
         q, dq = np.array([j[0] for j in joints]), np.array([j[1] for j in joints])
         command = controller(lk.State(k * 1e-3, q, dq), target(k * 1e-3))
-        bullet.setJointMotorControlArray(body, JOINTS, bullet.TORQUE_CONTROL,
-                                         forces=command.value.tolist(),
+        tau = np.minimum(np.maximum(command.value, LEAST), MOST)
+        bullet.setJointMotorControlArray(body, JOINTS, bullet.TORQUE_CONTROL, forces=tau.tolist(),
                                          physicsClientId=client)  # fmt: skip
         bullet.stepSimulation(physicsClientId=client)
     return np.array([j[0] for j in bullet.getJointStates(body, JOINTS, physicsClientId=client)])
@@ -60,6 +65,7 @@ def hand_loop_mujoco(model, data, target, controller, seconds):
     q, dq, tau = data.qpos, data.qvel, data.qfrc_applied
     q[:] = target(0.0).position
     for k in range(round(seconds * 1000)):
-        tau[:] = controller(lk.State(k * 1e-3, q.copy(), dq.copy()), target(k * 1e-3)).value
+        command = controller(lk.State(k * 1e-3, q.copy(), dq.copy()), target(k * 1e-3))
+        tau[:] = np.minimum(np.maximum(command.value, LEAST), MOST)
         mujoco.mj_step(model, data)
     return q.copy()

@@ -1,0 +1,117 @@
+"""A week of `labkit grade --watch`: how long people wait, and whether anything is lost."""
+
+import json
+import math
+import os
+import random
+import signal
+import statistics
+import subprocess
+import sys
+import time
+from datetime import timedelta
+
+from labkit.grader.release import release
+from labkit.grader.results import Results, digest
+
+from .courses import ROOT, fresh_course
+
+ASSIGNMENT = "01_paths"
+PEOPLE = 150
+WEEK = timedelta(days=7).total_seconds()
+HURRY = timedelta(hours=2).total_seconds()
+"""How long before the deadline the typical late hand-in comes."""
+PACE = 60.0
+"""So many times faster than the clock the hours pass in which people hand in."""
+LONGEST = 1.0
+"""The longest gap between two hand-ins [s]; a grader that waits for an hour does nothing new."""
+PATIENCE = 600.0
+
+
+def hand_ins(seed=1):
+    """Who hands in after how many seconds: each early, and again in the rush at the end."""
+    draw = random.Random(seed)
+    early = [(draw.uniform(0.0, WEEK - HURRY), k) for k in range(PEOPLE)]
+    late = [(max(0.0, WEEK - draw.expovariate(1.0 / HURRY)), k) for k in range(PEOPLE)]
+    return [(moment, f"s{k:03d}") for moment, k in sorted(early + late)]
+
+
+class Watching:
+    """A `labkit grade --watch` of its own, as an instructor starts it."""
+
+    def __init__(self, course):
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "labkit", "grade", ASSIGNMENT, "--watch"],
+            cwd=course.root,
+            env=os.environ | {"PYTHONPATH": str(ROOT)},
+            stdout=subprocess.DEVNULL,
+        )
+
+    def end(self, how):
+        """End it by a signal."""
+        self.process.send_signal(how)
+        self.process.wait()
+
+
+def waits(course, handed_in):
+    """Seconds from each person's last hand-in to its result; infinite while there is none."""
+    results = Results(course, ASSIGNMENT)
+    for student, (moment, data) in handed_in.items():
+        result = results.get(student)
+        done = result is not None and result.hashes["submission"] == digest(data)
+        yield results.path(student).stat().st_mtime - moment if done else math.inf
+
+
+def measure():
+    """A week with `grade --watch`: seconds that people wait, and hand-ins that are lost.
+
+    150 people hand in notebook 01 twice, most of them in the last hours, which pass sixty times as
+    fast as the clock's.  In the middle of the rush the grader is killed and started again.
+    """
+    with fresh_course() as course:
+        release(course, ASSIGNMENT, seed=1)
+        solved = course.solution / ASSIGNMENT / f"{ASSIGNMENT}.ipynb"
+        notebook = json.loads(solved.read_text())
+        handed_in = {}
+
+        def hand_in(student, number):
+            """Put a notebook where it is looked for, at one stroke."""
+            notebook["metadata"]["hand-in"] = number  # no two are the same file
+            data = json.dumps(notebook).encode()
+            place = course.submitted / student / ASSIGNMENT
+            place.mkdir(parents=True, exist_ok=True)
+            (place.parent / "coming").write_bytes(data)
+            (place.parent / "coming").replace(place / solved.name)
+            handed_in[student] = time.time(), data
+
+        def all_waited(until):
+            """How long each waited, when nobody waits any more."""
+            while math.inf in (waited := list(waits(course, handed_in))):
+                if time.monotonic() > until:
+                    break
+                time.sleep(0.5)
+            return waited
+
+        watching, before = Watching(course), 0.0
+        plan = hand_ins()
+        for number, (moment, student) in enumerate(plan):
+            time.sleep(min((moment - before) / PACE, LONGEST))
+            before = moment
+            hand_in(student, number)
+            if number == 3 * len(plan) // 4:
+                watching.end(signal.SIGKILL)
+                watching = Watching(course)
+        waited = all_waited(time.monotonic() + PATIENCE)
+        hand_in("alone", len(plan))
+        alone = all_waited(time.monotonic() + PATIENCE)[-1]
+        watching.end(signal.SIGINT)
+        own = Results(course, ASSIGNMENT).get("alone").seconds["student"]
+        marks = {result.score for result in Results(course, ASSIGNMENT)}
+    if len(marks) != 1:
+        raise RuntimeError(f"one notebook has the marks {sorted(marks)}")
+    return {
+        "week_median_wait_s": statistics.median(waited),
+        "week_longest_wait_s": max(waited),
+        "week_lost": waited.count(math.inf),
+        "watch_overhead_s": alone - own,
+    }
