@@ -28,8 +28,11 @@ class Answer(NamedTuple):
 
     @property
     def held(self) -> bool:
-        """Whether those who improve the naming must not see it: about half, by their hash."""
-        return sha256(self.source.encode()).digest()[0] % 2 == 0
+        """Whether those who improve the naming must not see it: by a hash of the source.
+
+        With this number in front, the hash holds back about half of each question's wrong answers.
+        """
+        return sha256(f"1774{self.source}".encode()).digest()[0] % 2 == 1
 
 
 def read(topic: str) -> tuple[Answer, ...]:
