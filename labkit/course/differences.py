@@ -28,10 +28,14 @@ _MEASURES = {
 def sentence(d: Difference) -> str:
     """A difference as a sentence, by which somebody could begin to correct it."""
     text, expected, got, guess = words(d)
-    if got and isinstance(d.expected, tuple) and isinstance(d.found, tuple) and not d.several:
+    if got and d.several:
+        text = f"{text}it gives {got}. Expected: {expected}"
+    elif got and d.at:
+        text = f"{text}it gives {got} instead of {expected}"
+    elif got and isinstance(d.expected, tuple) and isinstance(d.found, tuple):
         text = _farthest(d, np.array(d.expected), np.array(d.found))
     elif got:
-        text = f"{text}it gives {got}, and {expected} is expected"
+        text = f"{d.part or 'it'} is {got} instead of {expected}"
     says = guess or (f"it {text.strip()}" if d.kind is Kind.RAISED else text)
     if not (d.kind is Kind.CHANGED or (d.part and says.startswith(d.part))):  # those are names
         says = says[:1].upper() + says[1:]

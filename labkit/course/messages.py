@@ -109,7 +109,7 @@ def message(
     if verdict.outcome is not Outcome.RIGHT:
         if question.hints:
             call = f'hint("{question.name}", 1)'
-            hint = f"Stuck? `{call}` in a new cell (Esc, then B) is free."
+            hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
         if leans_on:
             names = " and ".join(leans_on)
             helps.append(f"It uses your {names}, not right yet: correct {names} first.")
@@ -217,7 +217,7 @@ def _numbers(question: Question, verdict: Verdict) -> list[str]:
             before.append(difference)
     if any("numbers>" in test.call or "(...)" in test.call for test in verdict.tests):
         name = question.name
-        lines += ["To try one yourself:", f'  args, kwargs = lk.course.case("{name}")']
+        lines += ["To try the first call yourself:", f'  args, kwargs = lk.course.case("{name}")']
         lines.append(f"  {name}(*args, **kwargs)")
     return lines
 

@@ -52,13 +52,13 @@ def test_wrong_shows_the_call_and_both_numbers():
     """A failure holds the call as typed, what was expected and what came; passed tests are told."""
     assert said(lambda x: abs(2.0 * x) + (x < 0)).splitlines() == [
         "double: not yet right. 3 of 4 points.",
-        "  It gives 3, and -2 is expected.",
+        "  It is 3 instead of -2.",
         "  [passed] two (needed before anything counts)",
         "  [passed] three",
         "  [failed] negative",
         "  Where it fails:",
         "    double(-1.0): expected -2, got 3",
-        '  Stuck? `hint("double", 1)` in a new cell (Esc, then B) is free.',
+        '  Stuck? Run `hint("double", 1)` in a new cell (press Esc, then B). It is free.',
     ]
 
 
