@@ -27,8 +27,9 @@ _STYLE = """<style>
 .lk-card b { color: #fff; background: var(--lk-badge); border-radius: 4px; padding: 0 .45em;
   margin-right: .4em; }
 .lk-card summary { cursor: pointer; } .lk-card ul { padding-left: 1.4em; }
-.lk-card pre { overflow-x: auto; white-space: pre; }
-.lk-card :is(code, pre) { color: inherit; background: none; font-size: .93em;
+.lk-card p:first-child { font-weight: 600; }
+.lk-card.lk-card.lk-card pre { white-space: pre-wrap; word-break: normal; }
+.lk-card :is(code, pre) { color: inherit; font-size: .93em;
   font-family: var(--jp-code-font-family, ui-monospace, monospace); }
 .lk-card img { max-width: 100%; background: #fff; }
 </style>"""
@@ -54,7 +55,7 @@ def card(
     parts = [f'<p><b aria-hidden="true">{sign}</b>{_inline(message.head)}</p>']
     parts += [f"<p>{_inline(line)}</p>" for line in message.helps]
     if message.tests:
-        says = f"{failed} of {len(message.tests)} tests failed: which, and with which numbers"
+        says = f"{failed} of {len(message.tests)} tests failed. Show them, with the numbers"
         parts.append(f"<details><summary>{says}</summary>{''.join(folded)}</details>")
     if message.printed:
         parts.append(f"<p>{PRINTED}</p>{_block(message.printed)}")
@@ -70,4 +71,4 @@ def _inline(text: str) -> str:
 
 
 def _block(lines: Iterable[str]) -> str:
-    return f'<pre tabindex="0">{escape(chr(10).join(lines))}</pre>'
+    return f"<pre>{escape(chr(10).join(lines))}</pre>"
