@@ -169,7 +169,8 @@ def _rods(J: np.ndarray) -> None:
 def _newton() -> None:
     """Two steps of inverse kinematics of the arm of two rods."""
     arm, goal, q, left = two_rods(), np.array((0.36, 0.44)), np.array(POSE), []
-    shows("is at $(0.4, 0.4)$ m in the", (0.4, 0.4), arm.pose(q)[[0, 2], 3], 1e-6)
+    shows("is at $(0.4, 0.4)$ m in the drawing and should go to $(0.36, 0.44)$ m",
+          (0.4, 0.4, 0.36, 0.44), (*arm.pose(q)[[0, 2], 3], *goal), 1e-6)  # fmt: skip
     for _ in range(2):
         e = goal - arm.pose(q)[[0, 2], 3]
         step = np.linalg.solve(arm.tip_jacobian(q)[[0, 2]], e)
