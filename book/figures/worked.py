@@ -132,8 +132,8 @@ def model() -> None:
     shows("presses the hand down with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
     shows("the hand must press up with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
     shows("The shoulder gives 4 N m and the elbow nothing", (4.0, 0.0), J.T @ (0.0, 10.0))
-    shows("is 0.4 m from the shoulder, the hand's mass is at $J$",
-          (1.28, 0.32, 0.32, 0.32), M.ravel(), 1e-6)  # fmt: skip
+    shows("is 0.4 m from the shoulder, and the hand's mass moves with the tip, whose Jacobian is "
+          "$J$", (1.28, 0.32, 0.32, 0.32), M.ravel(), 1e-6)  # fmt: skip
     far = arm.mass_matrix(np.zeros(2))[0, 0]
     shows("the hand is 0.8 m away", 0.8, arm.pose(np.zeros(2))[0, 3])
     shows("1.28 kg m² to 1.92 kg m²", (1.28, 1.92), (M[0, 0], far), 1e-6)
