@@ -158,6 +158,19 @@ def two_speeds() -> None:
     )
 
 
+def half_turn() -> None:
+    """What the law by the image asks for when the camera must turn by 180° about its axis."""
+    s = 0.2 * np.array(((1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)))
+    turned = s @ np.array(((math.cos(math.pi), -math.sin(math.pi)),
+                           (math.sin(math.pi), math.cos(math.pi))))  # fmt: skip
+    V = np.linalg.pinv(image_servoing.interaction(s, depth=0.25)) @ (turned - s).ravel()
+    claim(
+        "the camera must turn by 180° about its optical axis",
+        lambda V: V[2] < -0.1 and max(map(abs, (*V[:2], *V[3:]))) < 1e-9,
+        V=V.tolist(),
+    )
+
+
 def lens_by_hand() -> None:
     """Where the camera stops whose depth is wrong by a fifth, and what a wrong depth costs."""
     away = math.hypot(0.12, 0.22)

@@ -91,8 +91,9 @@ def report() -> None:
     _is("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
         (law.D[0], 1.0, 1.0 / law.D[0]))  # fmt: skip
     _is("dry friction of about 1 N m explains it", 1.0, lk.BAXTER.stiction[0])
-    _is("0.3 N m/rad overcomes the dry friction of the wrist, 0.3 N m", (0.3, 0.3),
-        (law.K[3], lk.BAXTER.stiction[6]))  # fmt: skip
+    spring, wrist = law.K[3], lk.BAXTER.stiction[6]
+    _is("0.3 N m/rad overcomes the dry friction of the wrist, 0.3 N m, only after a turn of one "
+        "radian", (0.3, 0.3, 1.0), (spring, wrist, wrist / spring))  # fmt: skip
     _is('has 0.5 to 0.1 N/m under "proportional gain" and 45 N/m under', (0.5, 0.1, 45.0),
         (law.D[0], law.D[-1], law.K[0]))  # fmt: skip
     _is("45 N/m with a damping of 0.5 N s/m is an arm", (45.0, 0.5), (law.K[0], law.D[0]))

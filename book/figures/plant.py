@@ -104,7 +104,7 @@ def hangs() -> HTML:
     shows("With two seeds a difference below 0.5 mm", 0.5, SMALL)
     shoulder = [SPRINGS[x][0] for x in ("joint_stiffness", "joint_damping")]
     shows("at the shoulder 843 N m/rad and 4 N m s/rad", (843.0, 4.0), shoulder)
-    shows("from 10 to 100 1/s its error falls", (10.0, 100.0), ends)
+    shows("from 10 to 100 1/s the error of the built-in method falls", (10.0, 100.0), ends)
     numbers({"hang_low": error[ends[0]], "hang_high": error[ends[1]]}, ".2g")
     spring = pick(rows, way="joint velocity", assumption="joint_stiffness, most")
     number("spring_velocity", spring[0]["late_rms_mm"], ".0f")
