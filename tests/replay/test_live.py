@@ -244,6 +244,17 @@ def test_walls_bands_and_targets_are_moved(live):
     assert kinds == {"target": "target", "thing 0": "face", "thing 1": "band"}
 
 
+@pytest.mark.parametrize(("goal", "fixed"), [(T_READY, False), (READY, True)])
+def test_the_page_is_told_which_target_cannot_be_dragged(live, goal, fixed):
+    """A target of poses can be moved; one of joint angles stays where it is."""
+    session, _ = live({"springs": springy}, target=lk.Hold(goal, 1.0))
+    session.around.target(0.0)
+    before = session.around.things()["target"]
+    assert before["fixed"] is fixed
+    session.around.move("target", T_READY[:3, 3] + [0.0, 0.1, 0.0])
+    assert (session.around.things()["target"] == before) is fixed
+
+
 def test_a_model_may_be_shared_by_threads():
     """Pinocchio's work space is each thread's own: no answer is mixed up with another thread's."""
     model = lk.Model("left")

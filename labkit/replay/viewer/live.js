@@ -120,13 +120,12 @@ export class LiveArm {
     picture.stage.rig.use("Motion");
     picture.stage.drawn = () => { this.host.dataset.ready = "1"; this.frames++; };
     this.sight.alone.click();
-    if (this.link) picture.grab((picked, event) => this.grip(picked, event));
+    if (this.link) picture.grab((picked, event) => this.grip(picked, event), ({ thing }) => !this.things[thing]?.fixed);
   }
 
   /** A pointer takes hold of a link or a thing. */
   grip(picked, event) {
     const { picture } = this;
-    if (picked.thing === "camera") return null; // it stands where its readings are made
     const { at } = picked;
     if (picked.thing !== undefined) {
       const { position } = this.things[picked.thing];
