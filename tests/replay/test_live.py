@@ -11,7 +11,7 @@ import labkit as lk
 from labkit.errors import Closed, OutOfRange, TypeMismatch, UnknownName
 from labkit.hand import STRONGEST, Hand
 from labkit.replay.dials import read_dials
-from labkit.replay.session import FRESH, Session
+from labkit.replay.session import FRAME, FRESH, Session
 
 READY = np.array(lk.robot("left").ready)
 T_READY = lk.Model("left").pose(READY)
@@ -129,6 +129,23 @@ def test_the_force_ends_when_nothing_is_heard(live):
     gone = until(frames, lambda f: f["t"] > pushed["t"] and f["force"] is None)
     assert gone["state"] == "running"
     assert FRESH <= 0.2
+
+
+def test_a_move_of_the_hand_is_answered_after_the_next_tick(live):
+    """A picture with its force, which names the move, is sent at once, not when the next is due."""
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    to, gaps = np.array(T_READY[:3, 3]), []
+    for move in range(1, 11):
+        to = to + [0.0, 0.005, 0.0]
+        hand = {"kind": "hand", "link": 7, "local": [0, 0, 0], "to": to.tolist(), "move": move}
+        session.tell(hand)
+        answer = until(frames, lambda f, move=move: f["move"] == move)
+        assert np.linalg.norm(answer["force"]) > 0.1
+        before = [f for f in frames if f["t"] < answer["t"]]
+        gaps.append(answer["t"] - before[-1]["t"] if before else 0.0)
+        time.sleep(0.007 * move)
+    assert min(gaps[1:]) < FRAME - 0.006
 
 
 def test_dials_take_effect_and_a_kept_run_says_which(live):

@@ -105,6 +105,26 @@ def test_a_pointer_on_the_arm_pulls_and_beside_it_turns_the_view(page):
     assert len(sent(page, "hand")) == count
 
 
+def test_the_answer_to_a_move_is_drawn_before_all_else(page, data):
+    """A picture waits for the answer to the pointer, and is drawn as soon as that comes."""
+    drawn, quiet = page.evaluate(
+        """(frame) => {
+            const live = document.querySelector("[data-ready]").labkit, { stage } = live.picture;
+            const drawn = [];
+            for (const move of [0, 1]) {
+                const before = live.frames;
+                stage.hold();
+                tell({ ...frame, move });
+                drawn.push(live.frames - before);
+            }
+            return [drawn, stage.quiet];
+        }""",
+        frame(data),
+    )
+    assert drawn == [0, 1]
+    assert quiet == 0
+
+
 def test_the_cursor_says_what_can_be_taken_hold_of(page, data):
     """A hand over link and wall, a closed one to drag, an arrow over what stays where it is."""
 
