@@ -328,9 +328,13 @@ def check_yourself() -> HTML:
     """The quiz of the chapter."""
     return quiz(
         Question(
-            "A program reports tags 1.25 times too far, always. What is the first thing to check?",
+            "A program reports tags 1.25 times too far, always, and the focal length has been "
+            "checked. What should be checked next?",
             [
-                ("The focal length", "Possible too, but look at the size first."),
+                (
+                    "The distortion of the lens",
+                    "That bends lines. It does not scale all distances alike.",
+                ),
                 (
                     "Whether the size includes the white border",
                     "A square taken for larger appears farther, by the same factor.",
@@ -340,7 +344,7 @@ def check_yourself() -> HTML:
             1,
         ),
         Question(
-            "The hand camera sees the tag. Which pose of the camera belongs into "
+            "The hand camera sees the tag. Which pose of the camera belongs in "
             r"\(T_{wm} = T_{wc} T_{cm}\)?",
             [
                 ("The one when the result arrives", "The hand has moved since the exposure."),

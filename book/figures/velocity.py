@@ -395,7 +395,7 @@ def check_yourself() -> HTML:
             1,
         ),
         Question(
-            r"Why is \(I - J^T J\) no projector on the null space?",
+            r"Why is \(I - J^T J\) not a projector onto the null space?",
             [
                 ("It has the wrong size", "It is 7 by 7, as it should be."),
                 (
