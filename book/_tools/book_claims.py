@@ -125,7 +125,7 @@ def main() -> None:
         run(page, reading=chosen.read)
     notes, before = noted(), kept()
     if chosen.read:
-        after = dict(before) if chosen.pages else {}
+        after = dict(before)
         for name, x in ((name, note["data"]) for name, note in notes.items()):
             moved = name not in before or not near(tuple(x), tuple(before[name]))
             after[name] = x if moved else before[name]

@@ -291,7 +291,7 @@ def trust() -> HTML:
     found = {name: consistency(setup, PICTURES, seed=5) for name, setup in SETUPS.items()}
     refused = ("blur 2 px", "smear 6 px", "corner 30 %")
     claim(
-        "refuses them all",
+        "the detector refuses every picture",
         lambda right, wrong: max(wrong) == 0.0 < 0.7 < min(right),
         right=[found[name][0] for name in found if name not in refused],
         wrong=[found[name][0] for name in refused],

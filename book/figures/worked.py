@@ -84,6 +84,9 @@ def _durations(D: float) -> None:
     shows("= 2.9$ s", 2.9, lk.Trapezoid(0.5, 0.2, 0.5).duration, 1e-6)
     asked = 0.01 * lk.Quintic.PEAK_ACCELERATION / scaled.duration**2
     shows("to 0.149 s for one centimetre", 0.149, scaled.duration, 4e-3)
+    quick, slow = (np.array(lk.Quintic(T)(T / 4.0)[1:]) for T in (2.0, 4.0))
+    shows("In half the time the speed doubles and the acceleration is four times as large",
+          (2.0, 4.0), quick / slow)  # fmt: skip
     shows("asks the arm for 2.62 m/s², five times", (2.62, 5.0), (asked, asked / a), 0.05)
 
 
@@ -214,7 +217,7 @@ def velocity() -> None:
     left = {kd: 0.1 * exp(-3.0 / (1.0 + kd)) for kd in (0.0, 0.6)}
     shows("and the joint starts 0.1 rad away", (0.0050, 0.0153), left.values(), 0.01)
     shows("which is 0.0050 rad", 0.0050, left[0.0], 0.01)
-    shows("0.0153 rad are left: three times as much", (0.0153, 3.0),
+    shows("0.0153 rad is left: three times as much", (0.0153, 3.0),
           (left[0.6], left[0.6] / left[0.0]), 0.03)  # fmt: skip
     _swing()
     crossing, lag = 4.95, lk.BAXTER.velocity_lag
