@@ -184,7 +184,7 @@ def tuning() -> HTML:
         ax.axvline(row["Kp"], color=f"C{k}", linestyle=":")
         ends[row["plant"]] = row
     ax.axhline(OSCILLATES, color="C5", linewidth=1.0)
-    ax.set(xlabel="Kp [1/s]", ylabel="size of a swing / of the one before")
+    ax.set(xlabel="Kp [1/s]", ylabel="size of a swing,\nthe one before = 1")
     ax.legend(fontsize="small")
     stiff, soft = ends["realistic"]["Kp"], ends["with joint springs"]["Kp"]
     claim(
