@@ -38,8 +38,8 @@ def rehearse(
         course: Where the sources are; nothing is written there.
         name: The assignment.
         to: The folder; a course is made in it.
-        count: GradeOptions many students.
-        options: GradeOptions to grade.
+        count: How many students.
+        options: How to grade.
 
     Yields:
         What was done, a sentence each, with its time; and what failed for somebody.
@@ -103,7 +103,7 @@ def _set_up(stage: Course, course: Course) -> None:
 
 
 class _Clock:
-    """GradeOptions long each step took."""
+    """How long each step took."""
 
     def __init__(self) -> None:
         self.last = time.perf_counter()
