@@ -26,6 +26,8 @@ from .results import Result
 
 ALIKE = 0.9
 """Answers that share this much of their structure are looked at together."""
+LONG = 5
+"""Lines of an answer; among answers that are no longer, the same text is to be expected."""
 SLOW = 30.0
 FEWEST = 5
 """A report without names tells no count of fewer students."""
@@ -87,7 +89,7 @@ def report(
         doubtful=list(common_failures(graded)),
         slow_limit=f"{SLOW:g}",
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
-        alike=list(_alike(graded, who)),
+        alike=[*_same_text(graded, who), *_alike(graded, who)],
     )
     return text.rstrip() + "\n"
 
@@ -170,7 +172,8 @@ def _believed(
                 if n >= fewest
             ]
             rest = len(sources) - sum(n for n in counts.values() if n >= fewest)
-            others = f"{rest} others, fewer than {fewest} of them alike, or nothing"
+            alike = f", fewer than {fewest} of them alike," if fewest > 1 else ""
+            others = f"{rest} {'other' if rest == 1 else 'others'}{alike} or no answer"
             said = [*told, *[others] * bool(rest)]
             yield _Prediction(question.name, " ".join(question.asks.split()), truth, said)
 
@@ -205,6 +208,27 @@ def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
             yield f"{who[result.student]}, not counted: {'; '.join(used)}"
         if result.tricks:
             yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
+
+
+def _same_text(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
+    """Three or more whose answers of some length are the same letter for letter, at least twice."""
+    by_text: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for result in graded:
+        for q in result.questions:
+            lines = [line for line in q.source.splitlines() if line.strip()]
+            if len(lines) > LONG and q.verdict.outcome is not Outcome.NOT_ATTEMPTED:
+                by_text[q.verdict.name, q.source.strip()].append(who[result.student])
+    groups: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for (name, _), those in by_text.items():
+        if len(those) > 2:
+            groups[tuple(sorted(those))].append(name)
+    for students, names in sorted(groups.items(), key=lambda item: -len(item[1]))[:10]:
+        if len(names) > 1:
+            ask = " and ".join(f"`{name}`" for name in names[:2])
+            yield (
+                f"{', '.join(students)} handed in the same text in {len(names)} answers; this "
+                f"proves nothing, so ask each of them how they came to {ask}"
+            )
 
 
 def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
