@@ -12,6 +12,7 @@ from labkit.course import my_arm
 from labkit.course.bundle import Bundle
 from labkit.course.own_arm import FILE, HANDLES, Arms
 from labkit.errors import LabkitError
+from labkit.grader.arms import without_arms
 from labkit.grader.release import release
 
 NAME = "05_impedance"
@@ -71,6 +72,16 @@ def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):
     assert main(words) == 0
     assert "zoe" not in (course.root / HANDLES).read_text()
     capsys.readouterr()
+
+
+def test_a_notebook_without_its_students_arms_is_named(course):
+    """Before the list is imported all have the public arm; who asks for none is not named."""
+    names = (NAME, "01_paths")
+    assert without_arms(course, names) == ""
+    (course.release / NAME / FILE).unlink()
+    assert without_arms(course, names).startswith(
+        f"{NAME}: every student has the public arm 'demo'"
+    )
 
 
 def test_a_damaged_file_of_arms_is_a_sentence(tmp_path):
