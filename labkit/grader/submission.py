@@ -86,6 +86,17 @@ def plain_name(student: str) -> str:
     return student if is_name(student) else ascii(student)
 
 
+def none_of(course: Course, assignment: str, student: str | None = None) -> str:
+    """That somebody, or nobody at all, handed in an assignment, and what to do."""
+    found = students(course, assignment)
+    if student and found:
+        return f"no submission of {student!r} for {assignment}{meant(student, found)}"
+    return (
+        f"nothing was handed in for {assignment}; type: labkit collect {assignment} DOWNLOAD.zip, "
+        "or put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
+    )
+
+
 def meant(name: str, known: Iterable[str]) -> str:
     """Whom an unknown name may mean, as the end of a sentence; "" where nobody is known."""
     plain = {one.casefold(): one for one in known}
