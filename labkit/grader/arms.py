@@ -37,9 +37,8 @@ def lay_arms(course: Course, name: str) -> None:
 
 
 def without_arms(course: Course, names: Sequence[str]) -> str:
-    """Which notebooks ask about one's own arm and have only the public one, in a sentence."""
-    there = [name for name in names if (course.release / name).is_dir()]
-    lacking = [x for x in there if _asks(course, x) and not (course.release / x / FILE).exists()]
+    """Which of these notebooks ask about one's own arm and have only the public one."""
+    lacking = [x for x in names if _asks(course, x) and not (course.release / x / FILE).exists()]
     if not lacking:
         return ""
     return (

@@ -120,8 +120,9 @@ def _naming(course: Course, student: str) -> Iterator[Path]:
             rows = csv.DictReader(io.StringIO((private / Path(ROSTER).name).read_text("utf-8")))
             for row in rows:
                 if row.get("id") == student:
-                    first, last = (re.escape(row.get(f"{x}_name", "")) for x in ("first", "last"))
-                    names |= {re.escape(row.get(key, "")) for key in ("login", "email")}
+                    keys = ("first_name", "last_name", "login", "email")
+                    first, last, *others = (re.escape(row.get(key) or "") for key in keys)
+                    names |= {*others}
                     if first and last:
                         names |= {rf"{first}[\W_]*{last}", rf"{last}[\W_]*{first}"}
     words = "|".join(sorted(filter(None, names)))

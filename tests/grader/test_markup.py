@@ -190,12 +190,19 @@ def test_a_report_on_its_authors_page_is_rendered(course):
     assert "# Claim" not in shown
 
 
+def test_a_page_has_the_students_name_and_their_folder(course):
+    """The name is whose page it is, the folder in brackets is the handle of their arm."""
+    mark = replace(mark_of(result := result_of(course, "bh7")), first="Bob", last="Hope")
+    assert "<h1>01_paths: feedback for Bob Hope (bh7)</h1>" in page(result, mark)
+    assert "<h1>01_paths: feedback for bh7</h1>" in page(result)
+
+
 def test_the_mean_says_whose_it_is(course):
     """Before all are marked in full, it is the mean of some, and the report says of how many."""
     marks = [mark_of(result_of(course, f"s{number}")) for number in range(3)]
-    assert "\nMean 24.0, median" in report(NAME, marks, {}, str)
+    assert "\nMean 22.0, median" in report(NAME, marks, {}, str)
     marks[1:] = [replace(mark, raw=None, missing="no mark for why") for mark in marks[1:]]
-    assert "\nMean of the 1 student marked in full: 24.0, median" in report(NAME, marks, {}, str)
+    assert "\nMean of the 1 student marked in full: 22.0, median" in report(NAME, marks, {}, str)
 
 
 def test_the_same_text_of_three_is_listed_and_accuses_nobody(course):
