@@ -182,9 +182,10 @@ def way_back(course: Course, folder: str) -> str:
         f"{', '.join(sorted(files))} to {'the course folder' if place == '.' else place}"
         for place, files in sorted(by_place.items())
     )
+    again = " ".join(["labkit release", *sorted(x.stem for x in (old / "bundle").glob("*.json"))])
     return (
-        f"the last term is in {old.relative_to(course.root)}; to return to it, remove these from "
-        f"the new term, move them back ({back}), and type: labkit release"
+        f"the last term is in {old.relative_to(course.root)}; to return to it, move its files back "
+        f"in place of the new term's ({back}), then type: {again}"
     )
 
 

@@ -206,6 +206,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert "archived: 2 students, 1 submission, 1 graded mark" in said
     assert f"course_private/{old.folder.name}; to return" in said
     assert str(term.seed_of(course)) not in said, "the terminal may be projected"
+    assert said.count("then type: labkit release 00_warmup\n") == 1
     back = dict(re.findall(r"[(;] ?([\w., ]+) to ([\w/ ]+?)(?=[;)])", said))
     kept = {name for names in back for name in names.split(", ")}
     assert kept == {path.name for path in old.folder.iterdir()}
