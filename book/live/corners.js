@@ -114,5 +114,5 @@ export function corners({ h, svg, unique }) {
   return h("fieldset", {}, h("legend", {}, "One picture, two poses: drag the corners"), art,
     h("div", { class: "lk-twoposes" }, words.A, words.B, said),
     h("div", { class: "lk-dials" }, dials),
-    h("div", { class: "lk-pushes" }, h("label", { for: id }, "Corner"), choose, keys, h("button", { type: "button", onclick: () => start({}) }, "As it is")));
+    h("div", { class: "lk-pushes" }, h("label", { for: id }, "Corner"), choose, keys, h("button", { type: "button", onclick: () => start({}) }, "Reset")));
 }

@@ -31,7 +31,7 @@ export class Curves {
     this.show(ticks);
     this.numbers = summary(ticks);
     const { rms, most, speed } = this.numbers;
-    return `error ${rms.toFixed(2)} mm (root mean square), ${most.toFixed(2)} mm at most; the quickest joint reaches ${speed.toFixed(2)} rad/s.`;
+    return `error ${rms.toFixed(2)} mm (root mean square), ${most.toFixed(2)} mm at most; the fastest joint reaches ${speed.toFixed(2)} rad/s.`;
   }
 
   /** Draw these ticks as the present run; the one before stays behind them. */

@@ -83,7 +83,7 @@ export class Panel extends Drawing {
       this.curves.keep(this.words());
       this.restart();
     }
-    this.keeper.textContent = this.kept ? "Let the kept run go" : "Keep this run";
+    this.keeper.textContent = this.kept ? "Discard the kept run" : "Keep this run";
     this.say(this.kept ? "Kept: the see-through arm goes on with these values." : "The kept run is gone.");
   }
 
@@ -131,7 +131,7 @@ export class Panel extends Drawing {
     if (!now) return;
     if (picture.works) this.drawNow(now);
     const words = [`t = ${now.t.toFixed(2)} s`, `tip ${(1000 * now.error).toFixed(1)} mm from its target`,
-      ...now.forces.map((f) => `${f.name} ${f.size.toFixed(1)} N`), `quickest joint ${now.speed.toFixed(2)} rad/s`];
+      ...now.forces.map((f) => `${f.name} ${f.size.toFixed(1)} N`), `fastest joint ${now.speed.toFixed(2)} rad/s`];
     this.numbers.textContent = words.join(" · ");
     this.curves.time(now.t % this.session.lap);
     this.shown?.(now);

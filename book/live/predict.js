@@ -18,11 +18,11 @@ export function predictBox(h, { question, unit, commit, found }) {
     if (said === null || told) return;
     const now = found();
     told = now !== null;
-    write(answer, now === null ? `You said ${said} ${unit}. Watch.`
-      : `You said ${said} ${unit}; the arm: ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`);
+    write(answer, now === null ? `You predicted ${said} ${unit}. Watch.`
+      : `You predicted ${said} ${unit}; the arm gave ${+now.toPrecision(3)} ${unit}. ${Math.abs(now - said) <= 0.1 * Math.abs(now) ? "Within a tenth." : "What did you leave out?"}`);
   };
   const go = () => {
-    if (!Number.isFinite(number.valueAsNumber)) { answer.textContent = "Say a number first; a guess will do."; return; }
+    if (!Number.isFinite(number.valueAsNumber)) { answer.textContent = "Enter a number first; a guess will do."; return; }
     said = number.valueAsNumber;
     told = false;
     for (const [words, hidden] of veils) [words.hidden, hidden.hidden] = [true, false];

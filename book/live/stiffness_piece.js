@@ -83,7 +83,8 @@ class Stiffness extends Panel {
 /** Which of the two limits are kept, in words. */
 function kept(force, sag) {
   const over = [...(force > LIMITS.wall ? ["force"] : []), ...(sag > LIMITS.sag ? ["sag"] : [])];
-  return over.length ? `Over its limit: the ${over.join(" and the ")}.` : "Both limits are kept.";
+  if (over.length === 2) return "The force and the sag are over their limits.";
+  return over.length ? `The ${over[0]} is over its limit.` : "Both limits are kept.";
 }
 
 /** A bar with a limit and its number. */

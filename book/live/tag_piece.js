@@ -53,7 +53,7 @@ class Age extends Panel {
       this.dial({ label: "Pictures", unit: "1/s", min: 2, max: 60, value: now.rate }, (rate) => camera({ rate })),
       this.dial({ label: "Noise", unit: "mm", min: 0, max: 5, value: 1000 * now.sigma }, (x) => camera({ sigma: x / 1000 })),
       this.dial({ label: "Tag's speed", unit: "mm/s", min: 10, max: 300, value: 1000 * tagSpeed }, (x) => this.change({ tagSpeed: x / 1000 }))];
-    const steps = Object.entries({ "left": [0, 0.02, 0], "right": [0, -0.02, 0], "away": [0.02, 0, 0], "near": [-0.02, 0, 0] });
+    const steps = Object.entries({ "left": [0, 0.02, 0], "right": [0, -0.02, 0], "away": [0.02, 0, 0], "closer": [-0.02, 0, 0] });
     const keys = steps.map(([name, by]) => h("button", { type: "button", onclick: () => this.drag(add(this.session.chase.dragged ?? [0, 0, 0], by)) }, `${name} 2 cm`));
     this.table = h("table", { class: "lk-table" });
     const results = this.predicted.behind("Once you have entered a number above, the distance between the point aimed at and the tag appears here as a number, a curve and a table.",

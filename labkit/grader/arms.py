@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Sequence
 
 from ..course.layout import Course
-from ..course.own_arm import FILE, HANDLES, Arms
+from ..course.own_arm import DEMO, FILE, HANDLES, Arms
 from .atomic import write
 from .roster import Roster
 
@@ -31,6 +32,22 @@ def give_arms(course: Course, roster: Roster, secret: int) -> None:
 def lay_arms(course: Course, name: str) -> None:
     """Lay the sealed arms beside a released notebook that asks about one's own arm."""
     arms, folder = Arms.of(course.root), course.release / name
-    asks = re.search(r"\bmy_(arm|bug)\(", course.notebook_source(name).read_text(encoding="utf-8"))
-    if arms.handles and asks and folder.is_dir():
+    if arms.handles and _asks(course, name) and folder.is_dir():
         write(folder / FILE, json.dumps(arms.sealed(), indent=1) + "\n")
+
+
+def without_arms(course: Course, names: Sequence[str]) -> str:
+    """Which of these notebooks ask about one's own arm and have only the public one."""
+    lacking = [x for x in names if _asks(course, x) and not (course.release / x / FILE).exists()]
+    if not lacking:
+        return ""
+    return (
+        f"{', '.join(lacking)}: every student has the public arm {DEMO!r}; for an arm each, import "
+        "the list of students (labkit students import FILE.csv), then make the zip again"
+    )
+
+
+def _asks(course: Course, name: str) -> bool:
+    """Whether a notebook has a question about one's own arm."""
+    text = course.notebook_source(name).read_text(encoding="utf-8")
+    return bool(re.search(r"\bmy_(arm|bug)\(", text))

@@ -98,7 +98,9 @@ def summary(found: Sequence[Change]) -> Iterator[str]:
         if change.by or change.before is None:
             yield str(change)
     changed = sum(bool(m.by) for m in found)
-    yield f"{changed} of {len(found)} marks move, {sum(m.by < 0 for m in found)} of them down"
+    lower = sum(m.by < 0 for m in found)
+    would = f"{changed} of {len(found)} marks would change, {lower} of them to a lower mark"
+    yield would if changed else f"none of the {len(found)} marks would change"
     before = {m.before.points for m in found if m.before} - {m.after.points for m in found}
     if before:
         full = ", ".join(f"{points:g}" for points in sorted(before))

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
-import warnings
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import combinations, islice
 from pathlib import Path
 from statistics import mean, median
 from typing import Any, NamedTuple
@@ -18,14 +16,13 @@ from ..course.outcomes import OUTCOMES
 from ..course.problem import Problem
 from ..course.question import Question
 from ..course.verdict import Outcome, Verdict
+from .alike import pairs_alike, same_text
 from .batch import common_failures
 from .clean import clean_line
 from .mark import Mark
 from .pages import render
 from .results import Result
 
-ALIKE = 0.9
-"""Answers that share this much of their structure are looked at together."""
 SLOW = 30.0
 FEWEST = 5
 """A report without names tells no count of fewer students."""
@@ -87,7 +84,7 @@ def report(
         doubtful=list(common_failures(graded)),
         slow_limit=f"{SLOW:g}",
         slow=[f"{name}: {seconds:.0f} s" for seconds, name in times if seconds > SLOW],
-        alike=list(_alike(graded, who)),
+        alike=[*same_text(graded, who), *pairs_alike(graded, who)],
     )
     return text.rstrip() + "\n"
 
@@ -170,7 +167,8 @@ def _believed(
                 if n >= fewest
             ]
             rest = len(sources) - sum(n for n in counts.values() if n >= fewest)
-            others = f"{rest} others, fewer than {fewest} of them alike, or nothing"
+            alike = f", fewer than {fewest} of them alike," if fewest > 1 else ""
+            others = f"{rest} {'other' if rest == 1 else 'others'}{alike} or no answer"
             said = [*told, *[others] * bool(rest)]
             yield _Prediction(question.name, " ".join(question.asks.split()), truth, said)
 
@@ -205,45 +203,6 @@ def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
             yield f"{who[result.student]}, not counted: {'; '.join(used)}"
         if result.tricks:
             yield f"{who[result.student]}, worth a look: {'; '.join(result.tricks[:20])}"
-
-
-def _alike(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:
-    """Pairs whose wrong or unusual answers have one structure, and what to ask them."""
-    shapes: dict[str, dict[str, frozenset[str]]] = {}
-    common: Counter[tuple[str, frozenset[str]]] = Counter()
-    for result in graded:
-        shapes[result.student] = {
-            q.verdict.name: _shape(q.source)
-            for q in result.questions
-            if q.verdict.outcome is not Outcome.NOT_ATTEMPTED
-        }
-        common.update((name, shape) for name, shape in shapes[result.student].items() if shape)
-    rare = max(2, len(graded) // 20)
-    pairs = []
-    for a, b in combinations(sorted(shapes), 2):
-        alike = [
-            (name, len(x & y) / len(x | y))
-            for name, x in shapes[a].items()
-            if (y := shapes[b].get(name)) and len(x) > 12 and common[name, x] <= rare
-        ]
-        alike = [(name, share) for name, share in alike if share >= ALIKE]
-        if len(alike) >= 2:
-            pairs.append((sum(share for _, share in alike), a, b, [name for name, _ in alike]))
-    for _, a, b, names in sorted(pairs, reverse=True)[:10]:
-        ask = " and ".join(f"`{name}`" for name in names[:2])
-        yield f"{who[a]} and {who[b]}: {len(names)} answers alike; ask both how they came to {ask}"
-
-
-def _shape(source: str) -> frozenset[str]:
-    """The structure of an answer, without names and texts: triples of neighbouring nodes."""
-    try:
-        with warnings.catch_warnings(action="ignore"):
-            some = islice(ast.walk(ast.parse(source)), 404)
-            nodes = [type(node).__name__ for node in some]
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return frozenset()
-    windows = ["".join(nodes[k : k + 5]) for k in range(len(nodes) - 4)]
-    return frozenset(f"{w}{windows[:k].count(w)}" for k, w in enumerate(windows[:400]))
 
 
 def _brief(question: Question) -> str:

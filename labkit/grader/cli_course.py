@@ -110,10 +110,12 @@ def student_bundle(
 
     Without a NAME the zip holds every assignment that was released.
     """
-    from .student_bundle import student_bundle
+    from .student_bundle import remarks, student_bundle
 
     path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip", book)
     print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+    for says in remarks(course, names or course.names()):
+        print(says, file=sys.stderr)
     return 0
 
 

@@ -118,7 +118,7 @@ def _on_top(course: Course, assignment: str) -> Iterator[str]:
     from ..course.bundle import Bundle
 
     if by_hand := Bundle.of(course, assignment).by_hand:
-        yield f"all this without what is marked by hand, {by_hand:g} points more"
+        yield f"not included: {by_hand:g} points that are marked by hand"
 
 
 def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
@@ -196,17 +196,14 @@ def _handed_in(
     course: Course, assignment: str, student: str | None, failures: Failures
 ) -> list[str]:
     """The students who handed in, or the one asked for; folders with unfit names are failures."""
-    from .submission import misnamed, students
+    from .submission import misnamed, none_of, students
 
     found = students(course, assignment)
     who = [student] if student else found
     if student is None:
         failures.add("not graded", misnamed(course, assignment))
     if set(who) - set(found) or not (who or failures.code):
-        raise LabkitError(
-            f"nothing of {student or 'anybody'} is in submitted/*/{assignment}; "
-            "put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
-        )
+        raise LabkitError(none_of(course, assignment, student))
     return who
 
 

@@ -35,7 +35,8 @@ from .cli_course import SEED, names, of_course
 @click.option(
     "--yes",
     is_flag=True,
-    help="forget: delete, instead of only listing what would be deleted.",
+    help="new: end a term that has students or marks; forget: delete, instead of only listing "
+    "what would be deleted.",
 )
 @of_course
 def term(
@@ -51,40 +52,50 @@ def term(
 
     \b
     new     archives the last term and releases each NAME, or all assignments,
-            with a new seed
+            with a new seed; refuses, without --yes, if the last term has
+            students, submissions or marks
     list    lists the terms that are stored
     forget  lists what it would delete: terms that ended some YEARS ago, or
             everything of one student; with --yes it deletes them
 
     The law may say how long marks must be kept.
     """  # noqa: D301
-    from .forget import forget, places_of
-    from .term import about, archives, new_term, old_rules
+    from .forget import entries_of, forget, left_by_hand, places_of, unknown
+    from .term import about, archives, new_term, old_rules, refuse_running, running, way_back
 
     if action == "new":
+        if not yes:
+            refuse_running(course)
+        there = running(course)
         record = new_term(course, seed, names)
-        for name, digest in record["bundles"].items():
-            print(f"{name}: bundle {digest[:16]}")
-        begun = f"a term with seed {record['seed']} begins"
-        print(f"{begun}; keep course_private/term.json, which holds it")
+        if record["archived"]:
+            print(f"archived: {there or 'files without students'}")
+            print(way_back(course, record["archived"]))
+        print(f"a new term begins, released: {', '.join(record['bundles'])}")
+        print("its secret seed is in course_private/term.json; keep a copy")
         tell(filter(None, [old_rules(course)]), sys.stdout)
     elif action == "list":
         print("\n".join(about(course)))
     else:
         if (student is None) == (older is None):
             raise LabkitError("say what to forget: --older YEARS, or --student NAME")
-        if student is not None:
-            found = places_of(course, student)
-        else:
+        entries, by_hand = [], []
+        if student is None:
             found = [one.folder for one in archives(course, older or 0.0)]
-        for path in found:
-            print(f"{'deleted' if yes else 'would go'}: {path.relative_to(course.root)}")
+        else:
+            found, entries = places_of(course, student), entries_of(course, student)
+            if not (found or entries):
+                raise unknown(course, student)
+            by_hand = list(left_by_hand(course, student))
+        if yes:
+            forget(course, found, entries, student or "")
+        done, changed = ("deleted", "no more in") if yes else ("would go", "would go from")
+        tell((f"{done}: {path.relative_to(course.root)}" for path in found), sys.stdout)
+        tell((f"{changed} {path.relative_to(course.root)}" for path in entries), sys.stdout)
+        tell(by_hand, sys.stdout)
         if not found and student is None:
             print("there is nothing to forget")
-        elif yes:
-            for sentence in forget(course, found, student):
-                print(sentence)
-        else:
+        elif not yes:
             print("nothing is deleted yet; add --yes")
     return 0
 

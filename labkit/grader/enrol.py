@@ -135,10 +135,11 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     absent = [str(student) for student in before.students if student.id not in listed]
     told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
     if absent:
-        told.append(f"not in this list, and still in the roster: {', '.join(absent)}")
+        some = ", ".join(absent[:5]) + (", ..." if len(absent) > 5 else "")
+        told.append(f"not in this list, and still in the roster: {len(absent)} ({some})")
     told += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
-        told.append(f"participants of {assignment}: {numbered}, times of hand-ins: {times}")
+        told.append(f"{assignment}: {numbered} participants; {times} hand-in times set")
     elif numbered:
         told.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"

@@ -26,7 +26,7 @@ from .plan import imports
 from .results import Result
 from .sandbox.launch import Sandbox
 from .sandbox.limits import Limits, slowness
-from .submission import Submission
+from .submission import Submission, none_of
 from .worker import in_sandbox
 
 _ALONE = "all cases are laid open here, so this page is for teachers and not for students"
@@ -67,7 +67,7 @@ class Explanation:
             tests = tuple(test for test in self.found.tests if test.name in hidden)
             yield from map(wrapped, summary(replace(self.found, tests=tests))[1:])
         elif not self.told.right:
-            yield "\nWhat the student has read decided; no hidden case did."
+            yield ("\nThe tests that the student has seen decided this mark; no hidden case did.")
         if (self.told.right, self.told.earned) != (self.found.right, self.found.earned):
             yield "\nATTENTION: this time it came out otherwise:"
             yield from map(wrapped, summary(self.found))
@@ -97,7 +97,7 @@ def explain(
     name = bundle.data["assignment"]
     mark = next(marks_of(course, name, student), None)
     if mark is None or mark.result is None:
-        why = (mark and mark.missing) or f"nothing of {student} is in submitted/*/{name}"
+        why = (mark and mark.missing) or none_of(course, name, student)
         raise LabkitError(f"there is no mark to explain: {why}")
     if mark.result.rejected:
         raise LabkitError(f"{name} of {student} was rejected: {mark.result.rejected}")

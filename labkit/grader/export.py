@@ -68,7 +68,11 @@ def moodle(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     table: list[list[Any]] = [
         ["First name", "Last name", "ID number", "Username", "Email address", column]
     ]
-    table += [[r.first, r.last, r.id_number, r.login, r.email, r.score] for r in marks]
+    table += [
+        [r.first, r.last, r.id_number, r.login, r.email, r.score]
+        for r in marks
+        if r.email or r.id_number or r.login  # otherwise the mark would be nobody's
+    ]
     return table
 
 
@@ -160,8 +164,8 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
     way = ways[layout]
     there = [r for r in marks if not r.absent]
     lost = [r.student for r in there if not way(r) or _cell(way(r), True) != way(r)]
-    said = f"{len(lost)} of {len(there)} cannot be matched by this table: {_some(lost)}"
-    return said if lost else ""
+    who = f"{len(lost)} of the {len(there)} who handed in"
+    return f"{who} cannot be matched by this table: {_some(lost)}" if lost else ""
 
 
 def _some(names: Sequence[str]) -> str:

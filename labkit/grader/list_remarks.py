@@ -27,8 +27,9 @@ def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) 
     for group in roster.namesakes():
         told_apart = [x for x, people in known.items() if all(one.id in people for one in group)]
         yield (
-            f"called alike: {', '.join(map(str, group))}; a download of Moodle's does not tell who "
-            "is who until you import the grading worksheet of that assignment, with --assignment"
+            f"{len(group)} students have the same name: {', '.join(map(str, group))}; Moodle's zip "
+            "does not say which is which, so import the grading worksheet of each assignment, with "
+            "--assignment"
             + f"; this is done for {', '.join(sorted(told_apart))}"
             * bool(told_apart)
         )

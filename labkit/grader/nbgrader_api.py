@@ -6,6 +6,7 @@ import logging
 import os
 import re
 import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +31,8 @@ def nbgrader_api(course: Course) -> Any:
         os.environ["PATH"] = os.pathsep.join([here, os.environ["PATH"]])
     try:
         config = PyFileConfigLoader("nbgrader_config.py", path=str(course.root)).load_config()
+    except tomllib.TOMLDecodeError as error:  # the rules, which it reads
+        raise LabkitError(f"{course.root / 'course.toml'}: {error}; correct that line") from None
     except (Exception, SystemExit) as error:  # it is a program, the instructor's
         why = clean_line(f"{type(error).__name__}: {error}")
         raise LabkitError(f"nbgrader_config.py cannot be run: {why}; correct it") from None

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import jupytext
@@ -21,6 +21,7 @@ import nbformat
 
 from ..course.layout import Course
 from ..errors import LabkitError
+from .arms import without_arms
 from .pages import render
 from .release import FORBIDDEN
 
@@ -64,6 +65,16 @@ def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | N
                 if path.is_file():
                     archive.write(path, path.relative_to(folder))
     return to
+
+
+def remarks(course: Course, names: Sequence[str]) -> Iterator[str]:
+    """What a zip with these notebooks lacks, a sentence each."""
+    there = [name for name in names if (course.release / name).is_dir()]
+    old = [name for name in there if not (course.bundle / f"{name}.json").exists()]
+    if old and course.term.exists():
+        yield f"not released in this term: {', '.join(old)}; first run: labkit release NAME"
+    if says := without_arms(course, there):
+        yield says
 
 
 def student_folder(

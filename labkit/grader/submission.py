@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import stat
+from collections.abc import Iterable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 from ..course.layout import Course
@@ -82,6 +84,28 @@ def is_name(student: str) -> bool:
 def plain_name(student: str) -> str:
     """A name as it may be shown: in plain letters if it is not allowed."""
     return student if is_name(student) else ascii(student)
+
+
+def none_of(course: Course, assignment: str, student: str | None = None) -> str:
+    """That somebody, or nobody at all, handed in an assignment, and what to do."""
+    found = students(course, assignment)
+    if student and found:
+        return f"no submission of {student!r} for {assignment}{meant(student, found)}"
+    return (
+        f"nothing was handed in for {assignment}; type: labkit collect {assignment} DOWNLOAD.zip, "
+        "or put notebooks there as submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb"
+    )
+
+
+def meant(name: str, known: Iterable[str]) -> str:
+    """Whom an unknown name may mean, as the end of a sentence; "" where nobody is known."""
+    plain = {one.casefold(): one for one in known}
+    near = [one for key, one in plain.items() if name.casefold() in key]
+    near = near or [plain[key] for key in get_close_matches(name.casefold(), plain)]
+    some = ", ".join((near or sorted(plain.values()))[:5])
+    if near:
+        return f"; did you mean {some}?"
+    return f"; there are {some}{', ...' * (len(plain) > 5)}" if plain else ""
 
 
 def _folders(course: Course, name: str) -> list[str]:

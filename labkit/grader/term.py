@@ -87,6 +87,29 @@ def public_warning(seed: int) -> str:
     )
 
 
+def running(course: Course) -> str:
+    """What the term under way has of students, in words; "" if it has nothing of them yet."""
+    enrolled = len(roster.read_roster(course).students)
+    submitted = len({path.parent for path in course.submitted.glob("*/*/*")})
+    graded = len(list(course.results.glob("*/*.json")))
+    counts = ((enrolled, "student"), (submitted, "submission"), (graded, "graded mark"))
+    return ", ".join(f"{n} {what}{'s' * (n != 1)}" for n, what in counts if n)
+
+
+def refuse_running(course: Course) -> None:
+    """Refuse to end a term that has something of students.
+
+    Raises:
+        LabkitError: It has.
+    """
+    if there := running(course):
+        raise LabkitError(
+            f"the term under way has {there}; to hand out another notebook in it, type: labkit "
+            "release NAME; to archive all this and begin the next term, add --yes to labkit "
+            "term new"
+        )
+
+
 def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> dict[str, Any]:
     """Begin a term: archive the last one's, release with a new seed, keep a record.
 
@@ -96,7 +119,8 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
         names: What to release; all by default.
 
     Returns:
-        The record: seed, date, and the hash of each bundle, which every result names.
+        The record: seed, date, the archive of the last term, and the hash of each bundle, which
+        every result names.
 
     Raises:
         LabkitError: The seed is the public one, or the last term's; or a name is unknown.
@@ -107,8 +131,9 @@ def new_term(course: Course, seed: int | None, names: tuple[str, ...] = ()) -> d
     if seed in (PUBLIC_SEED, seed_of(course)):
         raise LabkitError(f"seed {seed} was used before, so its cases may be known; take another")
     seed = secrets.randbelow(2**31) if seed is None else seed
-    archive(course)
+    old = archive(course)
     record = {"seed": seed, "begun": datetime.now(UTC).date().isoformat(), "bundles": {}}
+    record["archived"] = old.name if old else ""
     _keep(course, record)  # first, so that a release that fails is made again with this seed
     for name in names:
         release(course, name, seed)
@@ -143,6 +168,25 @@ def archive(course: Course) -> Path | None:
     if (course.root / RULES).exists():
         shutil.copy(course.root / RULES, folder)
     return folder
+
+
+def way_back(course: Course, folder: str) -> str:
+    """Where the last term is now, and how to return to it."""
+    old = _private(course) / folder
+    by_place: dict[str, list[str]] = {}
+    for name in (*PERSONAL_FILES, course.term.relative_to(course.root).as_posix()):
+        path = Path(name)
+        if (old / path.name).exists():
+            by_place.setdefault(path.parent.as_posix(), []).append(path.name)
+    back = "; ".join(
+        f"{', '.join(sorted(files))} to {'the course folder' if place == '.' else place}"
+        for place, files in sorted(by_place.items())
+    )
+    again = " ".join(["labkit release", *sorted(x.stem for x in (old / "bundle").glob("*.json"))])
+    return (
+        f"the last term is in {old.relative_to(course.root)}; to return to it, move its files back "
+        f"in place of the new term's ({back}), then type: {again}"
+    )
 
 
 def old_rules(course: Course) -> str:

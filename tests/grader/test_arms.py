@@ -13,6 +13,7 @@ from labkit.course.bundle import Bundle
 from labkit.course.own_arm import FILE, HANDLES, Arms
 from labkit.errors import LabkitError
 from labkit.grader.release import release
+from labkit.grader.student_bundle import remarks
 
 NAME = "05_impedance"
 CLASS = "Login,First name,Last name,Team\nada,Ada,L,one\nbob,Bob,M,one\neve,Eve,N,\n"
@@ -71,6 +72,18 @@ def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):
     assert main(words) == 0
     assert "zoe" not in (course.root / HANDLES).read_text()
     capsys.readouterr()
+
+
+def test_a_notebook_without_its_students_arms_is_named(course):
+    """Before the list is imported all have the public arm; who asks for none is not named."""
+    names = (NAME, "01_paths")
+    assert not list(remarks(course, names))
+    (course.release / NAME / FILE).unlink()
+    (said,) = remarks(course, names)
+    assert said.startswith(f"{NAME}: every student has the public arm 'demo'")
+    course.term.write_text("{}")
+    (course.bundle / f"{NAME}.json").unlink()
+    assert next(remarks(course, names)).startswith(f"not released in this term: {NAME};")
 
 
 def test_a_damaged_file_of_arms_is_a_sentence(tmp_path):

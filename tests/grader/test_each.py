@@ -174,6 +174,14 @@ def test_a_config_that_cannot_be_run_is_a_sentence(marked, capsys, text):
     assert "nbgrader_config.py cannot be run: " in err
 
 
+def test_rules_that_cannot_be_read_are_named_themselves(marked, capsys):
+    """course.toml is at fault, not nbgrader's settings, which read it too."""
+    (marked.root / "course.toml").write_text("[late]\nat_most = \n")
+    code, _, err = verb(marked, capsys, "feedback")
+    assert code == 2 and "course.toml: " in err and "line 2" in err
+    assert "nbgrader_config" not in err
+
+
 @pytest.mark.parametrize("damage", [b"no database at all" * 90, None])
 def test_a_damaged_gradebook_is_a_sentence(marked, capsys, damage):
     """Garbage or half a file: exit 2, what to do, results kept; restored, all is as it was."""

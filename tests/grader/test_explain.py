@@ -52,7 +52,10 @@ def test_where_a_visible_case_decided_it_is_said(course, solved, capsys):
     capsys.readouterr()
     assert main(["explain", "ada", "bang_bang", "--course", str(course.root)]) == 0
     out = capsys.readouterr().out
-    assert "What the student has read decided" in out and "do not show it" not in out
+    assert (
+        "The tests that the student has seen decided this mark" in out
+        and "do not show it" not in out
+    )
     page = (course.build / "explain/ada-bang_bang.html").read_text()
     (points,) = (q.points for q in Bundle.of(course, NAME).questions if q.name == "bang_bang")
     assert f" of {points:g} points.</strong>" in page
@@ -62,5 +65,5 @@ def test_what_cannot_be_explained_is_a_sentence(course):
     """A question that is none, a student who handed in nothing."""
     with pytest.raises(UnknownName, match="band_bang"):
         explain(course, "ada", "band_bang")
-    with pytest.raises(LabkitError, match="nothing of ada is in submitted"):
+    with pytest.raises(LabkitError, match="nothing was handed in for 01_paths; type"):
         explain(course, "ada", "bang_bang")

@@ -48,7 +48,9 @@ def test_no_participant_has_two_marks():
         row(who, LmsUser("moodle", n, who)) for who, n in (("a", "42"), ("b", "42"), ("c", "3"))
     ]
     assert [line["Identifier"] for line in table("moodle-worksheet", *marks)] == ["Participant 3"]
-    assert left_out("moodle-worksheet", marks) == "2 of 3 cannot be matched by this table: a, b"
+    assert left_out("moodle-worksheet", marks) == (
+        "2 of the 3 who handed in cannot be matched by this table: a, b"
+    )
 
 
 def test_who_has_no_number_of_canvas_is_named():
@@ -74,4 +76,4 @@ def test_what_could_be_a_formula_is_quoted_and_named(login):
     assert table("canvas", mark)[-1]["SIS Login ID"] == f"'{login}"
     assert table("moodle", mark)[-1]["First name"] == f"'{login}"
     assert table("moodle", mark)[-1]["Email address"] == f"'{login}"
-    assert "1 of 1 cannot be matched by this table" in left_out("moodle", [mark])
+    assert "1 of the 1 who handed in cannot be matched by this table" in left_out("moodle", [mark])

@@ -16,6 +16,7 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from labkit.__main__ import main
 from labkit.course.verdict import Outcome
+from labkit.grader.class_report import report
 from labkit.grader.feedback import page
 from labkit.grader.gradebook import record
 from labkit.grader.mark import Line
@@ -189,6 +190,40 @@ def test_a_report_on_its_authors_page_is_rendered(course):
     assert "# Claim" not in shown
 
 
+def test_a_page_has_the_students_name_and_their_folder(course):
+    """The name is whose page it is, the folder in brackets is the handle of their arm."""
+    mark = replace(mark_of(result := result_of(course, "bh7")), first="Bob", last="Hope")
+    assert "<h1>01_paths: feedback for Bob Hope (bh7)</h1>" in page(result, mark)
+    assert "<h1>01_paths: feedback for bh7</h1>" in page(result)
+
+
+def test_the_mean_says_whose_it_is(course):
+    """Before all are marked in full, it is the mean of some, and the report says of how many."""
+    marks = [mark_of(result_of(course, f"s{number}")) for number in range(3)]
+    assert "\nMean 22.0, median" in report(NAME, marks, {}, str)
+    marks[1:] = [replace(mark, raw=None, missing="no mark for why") for mark in marks[1:]]
+    assert "\nMean of the 1 student marked in full: 22.0, median" in report(NAME, marks, {}, str)
+
+
+def test_the_same_text_of_three_is_listed_and_accuses_nobody(course):
+    """Of long answers alone, and of two or more; a lone one or a short one is not listed."""
+    long = "def f(t):\n" + "".join(f"    x{k} = {k} * t\n" for k in range(6))
+    results = [result_of(course, who) for who in ("ada", "bob", "eve", "zoe")]
+    for where in (0, 1):
+        results[:3] = [
+            changed(result, where, source=f"{long}    # {where}") for result in results[:3]
+        ]
+    results[:] = [changed(result, 2, source="def g(t):\n    return t") for result in results]
+    results[:] = [changed(result, 3, source=long) for result in results]
+    text = report(NAME, list(map(mark_of, results)), {}, str)
+    (said,) = [line for line in text.splitlines() if "handed in the same text" in line]
+    first, second = (q.verdict.name for q in results[0].questions[:2])
+    assert said == (
+        "- ada, bob, eve handed in the same text in 2 answers; this proves nothing, so ask each of "
+        f"them how they came to `{first}` and `{second}`"
+    )
+
+
 def test_a_prediction_in_the_class_report_has_its_text_and_its_truth(course, capsys):
     """A lecturer reads what was asked, what is true, and how many chose it."""
     results = [result_of(course, f"s{number}") for number in range(12)]
@@ -206,7 +241,7 @@ def test_a_prediction_in_the_class_report_has_its_text_and_its_truth(course, cap
         "The truth: (b) the quintic.",
         "- 6 x (a) bang-bang",
         "- 5 x (b) the quintic, which is true",
-        "- 1 others, fewer than 5 of them alike, or nothing",
+        "- 1 other, fewer than 5 of them alike, or no answer",
     ]
     row = next(line for line in lines if line.startswith("| bang_bang |"))
     assert "| Give `(s, ds, dds)` at time `t` for a motion that speeds up" in row

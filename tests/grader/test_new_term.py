@@ -1,7 +1,9 @@
 """A term begins, ends and is forgotten; a course is exported."""
 
 import json
+import re
 import shutil
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -133,9 +135,12 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
         sheet.write_text(f'"id": "{pseudonyms(course)(author)}_claim"')
     words = ["term", "forget", "--student", "ada", "--course", str(course.root)]
     assert main(words) == 0
-    assert capsys.readouterr().out.count("would go: ") == 16
+    before = capsys.readouterr().out
+    assert before.count("would go: ") == 16 and "nothing is deleted yet" in before
     assert main([*words, "--yes"]) == 0
     said = capsys.readouterr().out
+    listed = before.replace("would go: ", "deleted: ").replace("would go from", "no more in")
+    assert listed.replace("nothing is deleted yet; add --yes\n", "") == said
     assert said.count("no more in") == 6 and "backups" in said
     assert "hold their report: feedback/bob/08_report_review/08_report_review.ipynb\n" in said
     left = {str(x.relative_to(course.root)) for x in course.root.rglob("ada*")}
@@ -144,6 +149,75 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
     assert [x.id for x in read_roster(course).students] == ["ada-2"]
     with open_gradebook(course) as book:
         assert [x.id for x in book.students] == ["ada-2"]
+
+
+def test_who_is_unknown_is_not_forgotten(course, capsys):
+    """A name that nobody has is refused, with those who are meant perhaps."""
+    save_roster(course, Roster((Student("Bob-Hope", "Bob", "Hope"), Student("eve", "Eve", "Li"))))
+    for name, near in (("Bob", "did you mean Bob Hope"), ("zz", "there are Bob Hope (Bob-Hope), ")):
+        for more in ([], ["--yes"]):
+            words = ["term", "forget", "--student", name, "--course", str(course.root)]
+            assert main([*words, *more]) == 2
+            said = capsys.readouterr()
+            assert f"no student '{name}' in this term or an earlier one; {near}" in said.err
+            assert not said.out
+    assert "Bob-Hope" in read_roster(course)
+
+
+def test_files_in_the_course_folder_that_name_a_student_are_named(course, capsys):
+    """Downloads and tables, by folder, name, login or address; not those of a namesake's."""
+    mine = Student("ada", "Ada", "Lovelace", email="al@x.org")
+    save_roster(course, Roster((mine, Student("ada-2", "Ada", "Byron"))))
+    (course.root / "downloads").mkdir()
+    with zipfile.ZipFile(course.root / "downloads/moodle.zip", "w") as archive:
+        archive.writestr("Ada Lovelace_101_assignsubmission_file/01_paths.ipynb", "{}")
+    texts = {"marks.csv": "Lovelace, Ada,3\n", "mail.txt": "al@x.org", "term.csv": "ada,3\n"}
+    others = {"other.csv": "ada-2,3\nByron, Ada", "report.md": "Canada\n"}
+    for name, text in (texts | others).items():
+        (course.root / name).write_text(text)
+    words = ["term", "forget", "--student", "ada", "--course", str(course.root)]
+    assert main(words) == 0
+    named = "name them, for you to delete: downloads/moodle.zip, mail.txt, marks.csv, term.csv\n"
+    assert named in capsys.readouterr().out
+    assert main([*words, "--yes"]) == 0 and named in capsys.readouterr().out
+
+
+def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
+    """What is there is said, with both commands; --yes archives it and says how to return."""
+    words = ["term", "new", "00_warmup", "--course", str(course.root)]
+    assert main(words) == 0
+    assert "archived" not in capsys.readouterr().out
+    record = course.term.read_text()
+    seed = str(term.seed_of(course))
+    save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
+    hand_in = course.submitted / "ada/00_warmup/00_warmup.ipynb"
+    result = course.results / "00_warmup/ada.json"
+    for file in (hand_in, result):
+        file.parent.mkdir(parents=True)
+        file.write_text("{}")
+    assert main(words) == 2
+    said = capsys.readouterr().err
+    assert "has 2 students, 1 submission, 1 graded mark; to hand out" in said
+    assert "labkit release NAME" in said and "--yes" in said
+    assert hand_in.exists() and course.term.read_text() == record
+    assert main([*words, "--yes"]) == 0
+    said = capsys.readouterr().out
+    (old,) = term.archives(course)
+    assert "archived: 2 students, 1 submission, 1 graded mark" in said
+    assert f"course_private/{old.folder.name}; to return" in said
+    assert str(term.seed_of(course)) not in said, "the terminal may be projected"
+    assert said.count("then type: labkit release 00_warmup\n") == 1
+    back = dict(re.findall(r"[(;] ?([\w., ]+) to ([\w/ ]+?)(?=[;)])", said))
+    kept = {name for names in back for name in names.split(", ")}
+    assert kept == {path.name for path in old.folder.iterdir()}
+    for names, place in back.items():
+        folder = course.root / place.replace("the course folder", "")
+        for name in names.split(", "):
+            now = folder / name
+            shutil.rmtree(now) if now.is_dir() else now.unlink(missing_ok=True)
+            shutil.move(old.folder / name, now)
+    assert hand_in.exists() and result.exists() and str(term.seed_of(course)) == seed
+    assert len(read_roster(course).students) == 2
 
 
 @pytest.mark.parametrize("seed", [PUBLIC_SEED])

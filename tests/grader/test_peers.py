@@ -112,7 +112,8 @@ def test_what_one_member_hands_in_counts_for_the_team(course, capsys):
     assert bob.email == "bob@uni.org" and not bob.absent
     assert typed(course, "feedback", NAME, "--unmarked", "--student", "bob") == 0
     html = (course.root / "feedback/bob" / NAME / f"{NAME}.html").read_text()
-    assert "feedback for bob" in html and "Handed in by ada for your team." in html
+    assert "feedback for Bob Bobson (bob)</h1>" in html
+    assert "Handed in by ada for your team." in html
     capsys.readouterr()
     typed(course, "export", NAME, "--absent-zero")
     said = capsys.readouterr()

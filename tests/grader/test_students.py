@@ -223,7 +223,9 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     assert main(["students", "import", str(file), *where]) == 0
     said = capsys.readouterr()
     assert f"{FILE}: 4 students, 4 of them new" in said.out
-    assert "called alike: Li Wei (Li-Wei-li), Wei Li (Wei-Li-wei)" in said.err
+    assert (
+        "2 students have the same name: Li Wei (Li-Wei-li), Wei Li (Wei-Li-wei); Moodle" in said.err
+    )
     remember(course, NAME, {n: LmsUser("moodle", n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
     assert main(["students", "import", str(file), *where]) == 0
     assert "with --assignment; this is done for 01_paths" in capsys.readouterr().err
@@ -234,8 +236,8 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     file.write_text("Identifier,Full name,Email address\nParticipant 7,Ada,ada@uni.org\n")
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 0
     said = capsys.readouterr().out
-    assert "0 of them new" in said and "participants of 01_paths: 1" in said
-    assert "not in this list, and still in the roster: Zoë O'Brien (Zoë-OBrien)" in said
+    assert "0 of them new" in said and "01_paths: 1 participants; " in said
+    assert "not in this list, and still in the roster: 3 (Zoë O'Brien (Zoë-OBrien), " in said
     file.write_text(CANVAS)
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 2
     assert "has no column 'Identifier'" in capsys.readouterr().err

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 from handmade import ROOT
 
+from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.submission import Submission, read_file
+from labkit.grader.submission import Submission, none_of, read_file
 
 NAME = "01_paths"
 
@@ -55,3 +56,15 @@ def test_a_device_is_not_opened():
     """Opening a device may do something, so that it is looked at first."""
     with pytest.raises(LabkitError, match="zero is not a file"):
         read_file(Path("/dev/zero"), 1)
+
+
+def test_who_handed_in_nothing_is_answered_with_near_names(tmp_path):
+    """Or with the command that collects, where nobody did."""
+    course = Course(tmp_path)
+    assert "type: labkit collect 01_paths" in none_of(course, "01_paths", "ada")
+    for student in ("Ada-Lovelace", "Bob-Hope"):
+        (course.submitted / student / "01_paths").mkdir(parents=True)
+    said = "no submission of {!r} for 01_paths; {}"
+    near = (("ada", "did you mean Ada-Lovelace?"), ("bobhope", "did you mean Bob-Hope?"))
+    for name, end in (*near, ("zz", "there are Ada-Lovelace, Bob-Hope")):
+        assert none_of(course, "01_paths", name) == said.format(name, end)

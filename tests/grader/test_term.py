@@ -229,12 +229,13 @@ def test_moodle_layouts():
     assert {"Identifier", "Grade", "Last modified (grade)"} <= set(table[0])
     assert table[1:] == [["Participant 101", "Ada Lovelace", 1.0, 2.0, ""]]
     assert left_out("moodle-worksheet", [moodle, row("carl")]).startswith(
-        "1 of 2 cannot be matched"
+        "1 of the 2 who handed in cannot be matched"
     )
     table = LAYOUTS["moodle"]("Paths", [row("carl", email="c@x.org", lms="9")])
     assert table[0][2:] == ["ID number", "Username", "Email address", "Paths"]
     assert table[1][2:] == ["9", "carl", "c@x.org", 1.0]
     assert "Ada-Lovelace" in left_out("moodle", [moodle])
+    assert LAYOUTS["moodle"]("Paths", [moodle]) == table[:1], "a mark that is nobody's stays out"
 
 
 def row(student, *, first="", last="", email="", lms="", known=None):
