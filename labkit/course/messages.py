@@ -107,7 +107,8 @@ def summary(verdict: Verdict) -> list[str]:
 
 def _mistake(verdict: Verdict) -> Iterator[str]:
     if verdict.mistake is not None:
-        yield f"  This mistake is a well-known one: {verdict.mistake.name}."
+        if verdict.mistake.name:
+            yield f"  This mistake is a well-known one: {verdict.mistake.name}."
         yield f"  {verdict.mistake.says}"
 
 

@@ -22,6 +22,7 @@ from .calling import heard
 from .marking import Evidence, mark, not_counted, try_public
 from .messages import HEADS, tell, wrapped
 from .notebook import verdict_metadata
+from .observed import explained
 from .question import Question
 from .reply import Here
 from .serialize import read_question
@@ -103,6 +104,7 @@ class Desk:
                     here = Here(function, question.withheld)
                     tried = try_public(question, here)
                     verdict, found = mark(question, here, tried), tried.evidence(question)
+                    verdict = explained(question, verdict, tried, here)
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""

@@ -1,0 +1,111 @@
+"""How many wrong answers the checks call by their names, on answers that the names never saw.
+
+`build/names.tsv` lists each wrong answer with its author's sentence and with what the student is
+told, so that somebody can judge whether it fits.
+"""
+
+import linecache
+import re
+from collections import Counter
+from pathlib import Path
+
+from labkit.course import student
+from labkit.course.messages import tell
+from labkit.course.verdict import Kind, Outcome
+
+ROOT = Path(__file__).parents[2]
+OUT = ROOT / "build/names.tsv"
+BEFORE = "import numpy as np\nimport labkit as lk\nfrom math import *\n"
+
+
+def desks():
+    """Each stub question's desk, by the question's name."""
+    found = {}
+    for file in sorted((ROOT / "assignments").glob("*/checks.json")):
+        desk = student.Desk.beside(file.parent)
+        found |= dict.fromkeys(desk.questions, desk)
+    return found
+
+
+def function_of(question, source):
+    """The function that a cell's text defines, where a notebook's imports ran before it."""
+    file = f"<{question} {abs(hash(source))}>"
+    linecache.cache[file] = (len(source), None, source.splitlines(True), file)
+    cell = {}
+    exec(BEFORE, cell)
+    exec(compile(source, file, "exec"), cell)
+    return cell[question]
+
+
+def told(desk, answer):
+    """The verdict of the real check on an answer, and the text that a student reads."""
+    try:
+        function = function_of(answer.question, answer.source)
+    except Exception as error:
+        return None, f"the cell stops: {type(error).__name__}: {error}"
+    verdict, printed, _ = desk.verdict(answer.question, function)
+    return verdict, tell(desk.question(answer.question), verdict, printed)
+
+
+FORM = (Kind.TYPE, Kind.PARTS, Kind.KEY, Kind.NOTHING, Kind.CHANGED, Kind.REFUSED)
+"""Differences whose sentence says what is wrong: another type or shape, nothing, NaN."""
+PLACE = re.compile("right as soon as|is [-0-9.e+]+ times what")
+"""Sentences that say where to look, but not what is wrong; these do not count as names."""
+NAMED = ("known", "observed", "form")
+
+
+def name_of(verdict):
+    """How a verdict knows the mistake, and the sentence; "numbers" where it only shows these."""
+    if verdict.mistake is not None:
+        known = verdict.mistake.name
+        how = "known" if known else "place" if PLACE.search(verdict.mistake.says) else "observed"
+        return how, f"{known}: {verdict.mistake.says}".strip(": ")
+    for test in verdict.tests:
+        if test.difference is not None:
+            kind = test.difference.kind
+            if kind in FORM or kind is Kind.RAISED:
+                how = "form" if kind in FORM else "raised"
+                return how, str(test.difference.found or kind)
+    return "numbers", ""
+
+
+def measure_answers(answers, out=OUT):
+    """Check answers, write the table, and count: {question: Counter}."""
+    found, counts, lines = desks(), {}, []
+    for answer in answers:
+        count = counts.setdefault(answer.question, Counter())
+        verdict, text = told(found[answer.question], answer)
+        right = verdict is not None and verdict.outcome is Outcome.RIGHT
+        if answer.right:
+            count["right"] += 1
+            count["right_refused"] += not right
+            how, name = ("refused" if not right else "accepted"), ""
+        else:
+            how, name = name_of(verdict) if verdict else ("raised", text)
+            count["wrong"] += 1
+            how = "accepted" if right else how
+            count["named"] += how in NAMED
+            count[f"by_{how}"] += 1
+            count["accepted_wrong"] += right
+        row = (answer.question, str(answer.right), answer.says, how, name, text)
+        lines.append("\t".join(" ".join(x.split()) for x in row))
+    out.parent.mkdir(exist_ok=True)
+    head = "question\tright\tauthor says\thow\tname\ttext"
+    out.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
+    return counts
+
+
+def measure():
+    """Wrong answers that are named; wrong ones that a student's check accepts; right ones refused."""
+    from tests.answers import ANSWERS
+
+    counts = measure_answers([answer for answer in ANSWERS if answer.held])
+    total = sum(counts.values(), Counter())
+    figures = {
+        "named_share": total["named"] / total["wrong"],
+        "accepted_wrong": total["accepted_wrong"],
+        "right_refused": total["right_refused"],
+    }
+    for question, count in counts.items():
+        figures[f"named_{question}"] = count["named"] / max(count["wrong"], 1)
+    return figures
