@@ -797,12 +797,6 @@ PAIRED = Problem(
             "A difference has a sign.",
         ),
         Wrong(
-            "both rows sorted",
-            "Sorting pairs the best with the best. What belongs to one seed stays together.",
-            mistakes.Paired(lambda a, b: np.sort(a) - np.sort(b)),
-            "Pairs first, then statistics.",
-        ),
-        Wrong(
             "the median",
             "The middle of the interval is the mean of the differences.",
             mistakes.Paired(mean=np.median),
