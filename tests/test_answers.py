@@ -1,0 +1,27 @@
+"""The plausible answers of `tests/answers` are whole: each can be asked, and no two are alike."""
+
+import ast
+from collections import Counter
+
+import pytest
+from answers import TOPICS, read
+
+
+@pytest.mark.parametrize("topic", TOPICS)
+def test_each_answer_defines_its_question_and_no_two_are_alike(topic):
+    answers = read(topic)
+    for answer in answers:
+        defined = [x.name for x in ast.parse(answer.source).body if isinstance(x, ast.FunctionDef)]
+        assert answer.question in defined, answer.says
+    assert len({answer.source for answer in answers}) == len(answers)
+
+
+def test_each_question_has_eleven_wrong_answers_and_six_right_ones():
+    counts = Counter((a.topic, a.question, a.right) for topic in TOPICS for a in read(topic))
+    assert len(counts) == 2 * 42
+    assert all(n >= (6 if right else 11) for (_, _, right), n in counts.items())
+
+
+def test_about_half_of_the_wrong_answers_are_held_back():
+    wrong = [answer for topic in TOPICS for answer in read(topic) if not answer.right]
+    assert 0.4 < sum(answer.held for answer in wrong) / len(wrong) < 0.6
