@@ -21,7 +21,6 @@ from ..shapes import Array
 from ..trajectory import PoseSample, Sample
 from .question import Call, Probe, Question
 
-
 TELLS = 0.5
 """A probe where more of the known mistakes than this share are right tells nothing."""
 

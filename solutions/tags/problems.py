@@ -395,12 +395,6 @@ QUALITY = Problem(
             "A mean does not grow with n.",
         ),
         Wrong(
-            "the sine of the turn",
-            "The skew part gives the axis times the sine. Read the logarithm.",
-            mistakes.Quality(turn=lambda R, S: se3.vee(R @ S.T)),
-            "sin x and x agree only for small x.",
-        ),
-        Wrong(
             "no transpose",
             "R_truth R_estimate is no turn between the two. Undo the estimate with its transpose.",
             mistakes.Quality(turn=lambda R, S: se3.rotation_log(R @ S)),

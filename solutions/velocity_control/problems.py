@@ -134,6 +134,12 @@ JOINT_VELOCITY_PD = Problem(
             "Try every gain by itself.",
         ),
         Wrong(
+            "the target's acceleration added",
+            "A speed is commanded: the target's acceleration has no place in it, and another unit.",
+            mistakes.JointLaw(ddq=1.0),
+            "Only like units may be added.",
+        ),
+        Wrong(
             "kp on the feed-forward too",
             "The gain belongs to the error. The target's speed is commanded as it is.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: kp * (ff + e) + kd * de),
@@ -707,12 +713,6 @@ WORKSPACE_VELOCITY_PD = Problem(
             "The target's twist has six numbers. Yours uses the angular velocity alone.",
             mistakes.TwistLaw(feed=(0.0, 1.0)),
             "A twist is (v, w).",
-        ),
-        Wrong(
-            "the target's acceleration added",
-            "A speed is commanded, and an acceleration is none: leave dtwist out.",
-            mistakes.TwistLaw(dtwist=1.0),
-            "Units: m/s² is not m/s.",
         ),
         Wrong(
             "the inverse forgotten",

@@ -12,6 +12,7 @@ from pathlib import Path
 from labkit.course import student
 from labkit.course.messages import tell
 from labkit.course.verdict import Kind, Outcome
+from tests.answers import TOPICS, read
 
 ROOT = Path(__file__).parents[2]
 OUT = ROOT / "build/names.tsv"
@@ -19,21 +20,9 @@ BEFORE = "import control\nimport cv2\nimport numpy as np\nimport labkit as lk\nf
 
 
 def desks():
-    """Each question's desks, by the question's name, which two notebooks may share."""
-    found = {}
-    for file in sorted((ROOT / "assignments").glob("*/checks.json")):
-        desk = student.Desk.beside(file.parent)
-        for name in desk.questions:
-            found.setdefault(name, []).append(desk)
-    return found
-
-
-def desk_of(answer, found):
-    """The desk that asks for the arguments of an answer."""
-    desks = found[answer.question]
-    given = re.search(rf"def {answer.question}\((\w+)", answer.source)
-    named = [d for d in desks if given and given[1] in d.question(answer.question).arguments]
-    return (named or desks)[0]
+    """The desk of each notebook, by its topic."""
+    files = sorted((ROOT / "assignments").glob("*/checks.json"))
+    return {file.parent.name.partition("_")[2]: student.Desk.beside(file.parent) for file in files}
 
 
 def function_of(question, source):
@@ -82,8 +71,8 @@ def measure_answers(answers, out=OUT):
     """Check answers, write the table, and count: {question: Counter}."""
     found, counts, lines = desks(), {}, []
     for answer in answers:
-        count = counts.setdefault(answer.question, Counter())
-        verdict, text = told(desk_of(answer, found), answer)
+        count = counts.setdefault(f"{answer.topic}/{answer.question}", Counter())
+        verdict, text = told(found[answer.topic], answer)
         right = verdict is not None and verdict.outcome is Outcome.RIGHT
         if answer.right:
             count["right"] += 1
@@ -96,7 +85,7 @@ def measure_answers(answers, out=OUT):
             count["named"] += how in NAMED
             count[f"by_{how}"] += 1
             count["accepted_wrong"] += right
-        row = (answer.question, str(answer.right), answer.says, how, name, text)
+        row = (f"{answer.topic}/{answer.question}", str(answer.right), answer.says, how, name, text)
         lines.append("\t".join(" ".join(x.split()) for x in row))
     out.parent.mkdir(exist_ok=True)
     head = "question\tright\tauthor says\thow\tname\ttext"
@@ -105,16 +94,16 @@ def measure_answers(answers, out=OUT):
 
 
 def measure():
-    """Wrong answers that are named; wrong ones that a student's check accepts; right ones refused."""
-    from tests.answers import ANSWERS
-
-    counts = measure_answers([answer for answer in ANSWERS if answer.held])
+    """Wrong answers that are named, wrong ones that pass the student's check, right ones refused."""
+    answers = [answer for topic in TOPICS for answer in read(topic)]
+    counts = measure_answers([answer for answer in answers if answer.held or answer.right])
     total = sum(counts.values(), Counter())
     figures = {
         "named_share": total["named"] / total["wrong"],
+        "wrong_answers": total["wrong"],
         "accepted_wrong": total["accepted_wrong"],
+        "right_answers": total["right"],
         "right_refused": total["right_refused"],
     }
-    for question, count in counts.items():
-        figures[f"named_{question}"] = count["named"] / max(count["wrong"], 1)
-    return figures
+    shares = {f"named_{q}": count["named"] / max(count["wrong"], 1) for q, count in counts.items()}
+    return figures | shares
