@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from math import atan, pi, sqrt
 
+import control
 import numpy as np
+from scipy.stats import t as student
 
 from labkit.course import Choice, Close, Response
 from labkit.course.problem import Problem, Trial, Wrong, call
@@ -384,9 +386,7 @@ OPEN_LOOP = Problem(
         Wrong(
             "the sensitivity",
             "1/(1 + L) is what the closed loop does to a disturbance. The open loop L itself is asked for.",
-            mistakes.Loop(
-                mistakes.plain_loop, close=lambda loop: mistakes.control.feedback(1, loop)
-            ),
+            mistakes.Loop(mistakes.plain_loop, close=lambda loop: control.feedback(1, loop)),
             "The open loop is what is between error and angle.",
         ),
     ),
@@ -754,8 +754,8 @@ PAIRED = Problem(
             mistakes.Paired(
                 half=lambda d: (
                     mistakes.half_of(d)
-                    * mistakes.student.ppf(0.995, len(d) - 1)
-                    / mistakes.student.ppf(0.975, len(d) - 1)
+                    * student.ppf(0.995, len(d) - 1)
+                    / student.ppf(0.975, len(d) - 1)
                 )
             ),
             "95 % in the middle leaves 2.5 % on each side.",

@@ -382,7 +382,7 @@ class Spoke:
 
         def spoke(angle: float) -> np.ndarray:
             out = [cos(angle), sin(angle)]
-            return r * np.array([*(out[::-1] if self.mirrored else out), 0.0])
+            return np.asarray(r * np.array([*(out[::-1] if self.mirrored else out), 0.0]))
 
         at, rates = w * s + self.start * yaw, w * s + self.rates * yaw
         c = start if self.about_start else self.centre * np.asarray(centre)
@@ -445,7 +445,7 @@ class Segments:
 
     def __call__(self, durations: Sequence[float], t: float) -> Any:
         """Which one, and for how long."""
-        n, begun, found = len(durations), 0.0, None
+        n, begun, found = len(durations), 0.0, (0, t)
         if t < 0.0 and self.before:
             return self.before(n, t, durations[0])
         for k, d in enumerate(durations):

@@ -437,8 +437,8 @@ class Quality:
     """
 
     scale: tuple[float, float] = (1.0, 1.0)
-    centre: Callable[[Array], Array] = lambda e: e.mean(axis=0)
-    spread: Callable[[Array], Array] = lambda e: np.cov(e.T)
+    centre: Callable[[Array], Any] = lambda e: e.mean(axis=0)
+    spread: Callable[[Array], Any] = lambda e: np.cov(e.T)
     tag: bool = False
     turn: Callable[[Array, Array], Array] = lambda R, S: se3.rotation_log(R @ S.T)
 

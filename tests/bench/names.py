@@ -94,7 +94,7 @@ def measure_answers(answers, out=OUT):
 
 
 def measure():
-    """Wrong answers that are named, wrong ones that pass the student's check, right ones refused."""
+    """Wrong answers that are named, wrong ones that pass, right ones that do not."""
     answers = [answer for topic in TOPICS for answer in read(topic)]
     counts = measure_answers([answer for answer in answers if answer.held or answer.right])
     total = sum(counts.values(), Counter())
