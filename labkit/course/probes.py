@@ -100,7 +100,7 @@ def variations(call: Call, names: Sequence[str]) -> Iterator[tuple[str, Call]]:
     state = next((x for x in given.values() if isinstance(x, State)), None)
     model = next((x for x in given.values() if isinstance(x, Model)), None)
     for name, x in given.items():
-        if name != "t":  # where a motion is asked is no part of it
+        if name != "t":  # where a motion is asked does not belong to it
             for where, value, other in _others(x, state, model):
                 yield f"`{name}{where}` is {value}", _with(call, names, {name: other})
 
