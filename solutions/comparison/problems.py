@@ -804,7 +804,7 @@ PAIRED = Problem(
         ),
         Wrong(
             "half of the range",
-            "From the smallest to the largest difference is no 95 % interval of the mean.",
+            "From the smallest to the largest difference is not a 95 % interval of the mean.",
             mistakes.Paired(half=lambda d: (d.max() - d.min()) / 2.0),
             "The range grows with n, the interval of the mean shrinks.",
         ),

@@ -665,7 +665,7 @@ WORKSPACE_IMPEDANCE = Problem(
             "the weight through the Jacobian",
             "The weight is a torque at the joints already: it does not go through the tip.",
             mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ a + D + K + J @ g) + C),
-            "A torque is no wrench.",
+            "A torque is not a wrench.",
         ),
     ),
     variants=(
@@ -918,7 +918,7 @@ SHAPED_IMPEDANCE = Problem(
                     J.T @ (a + np.linalg.inv(M) @ (D + K + F) - v - F) + C + g
                 )
             ),
-            "Units: an acceleration is no wrench.",
+            "Units: an acceleration is not a wrench.",
         ),
         Wrong(
             "the inverse of the tip's inertia",
@@ -928,7 +928,7 @@ SHAPED_IMPEDANCE = Problem(
                     J.T @ (np.linalg.inv(L) @ (a + np.linalg.inv(M) @ (D + K + F) - v) - F) + C + g
                 )
             ),
-            "Units: an acceleration is no wrench.",
+            "Units: an acceleration is not a wrench.",
         ),
         Wrong(
             "the target's acceleration divided by the inertia",

@@ -221,7 +221,7 @@ MASS_MATRIX = Problem(
             "the mass on the inertia",
             "The inertia of a link holds its mass already, in kg m².",
             mistakes.Kinetic(mass=True),
-            "Units: kg m² times kg is no inertia.",
+            "Units: kg m² times kg is not an inertia.",
         ),
         Wrong(
             "rotation alone",
@@ -536,7 +536,7 @@ CORIOLIS = Problem(
         ),
         Wrong(
             "steps too large",
-            "The differences are taken over steps so large that M is no straight line there. Take about 1e-5 rad.",
+            "The differences are taken over steps so large that M is not a straight line there. Take about 1e-5 rad.",
             mistakes.Slopes(h=0.3),
             "A difference is a slope for small steps only.",
         ),
@@ -653,13 +653,13 @@ POWER_BALANCE = Problem(
             "the energy, not its growth",
             "The energy itself is not a power. Take its slope over time, np.gradient(energy, log.t).",
             mistakes.Balance(growth=lambda energy, t: energy),
-            "Units: joules are no watts.",
+            "Units: joules are not watts.",
         ),
         Wrong(
             "torque times angle",
             "A power is torque times speed: log.dq, not log.q.",
             mistakes.Balance(by=lambda log: log.q),
-            "Units: joules are no watts.",
+            "Units: joules are not watts.",
         ),
         Wrong(
             "half of the kinetic energy",
@@ -683,7 +683,7 @@ POWER_BALANCE = Problem(
             "energies, not powers",
             "This is the growth since the start without the work since the start. The rate at each time is asked for.",
             mistakes.as_energies,
-            "Units: joules are no watts.",
+            "Units: joules are not watts.",
         ),
     ),
     variants=(variants.balance_in_loops, variants.balance_from_theory),

@@ -429,7 +429,7 @@ class Segments:
 
     Attributes:
         joint: Whether the earlier one is on where two meet.
-        local: What is told of the time, of t, when it began and how long it lasts.
+        local: What is given of the time, of t, when it began and how long it lasts.
         after: (index, local_time) after the end, of n, t and the last duration; None is right.
         before: The same before the start.
         first: The index of the first one.

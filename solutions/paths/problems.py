@@ -475,7 +475,7 @@ CIRCLE = Problem(
             "the radius squared",
             "x² + y² is the square of the radius; its root is missing.",
             mistakes.Spoke(power=2.0),
-            "Units: square metres are no length.",
+            "Units: square metres are not length.",
         ),
         Wrong(
             "a radius of 1 m",
@@ -714,7 +714,7 @@ SEGMENT_AT = Problem(
         ),
         Wrong(
             "an index too large after the end",
-            "After the end there is no other segment: the last one stays on, with index n - 1.",
+            "After the end there is not a other segment: the last one stays on, with index n - 1.",
             mistakes.Segments(after=lambda n, t, d: (n, t)),
             "The last index is one less than the number.",
         ),

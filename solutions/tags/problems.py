@@ -396,7 +396,7 @@ QUALITY = Problem(
         ),
         Wrong(
             "no transpose",
-            "R_truth R_estimate is no turn between the two. Undo the estimate with its transpose.",
+            "R_truth R_estimate is not a turn between the two. Undo the estimate with its transpose.",
             mistakes.Quality(turn=lambda R, S: se3.rotation_log(R @ S)),
             "Orientations are compared by R Sᵀ.",
         ),
@@ -529,7 +529,7 @@ BLEND = Problem(
         ),
         Wrong(
             "speeds up for ever",
-            "After the end there is no acceleration, whatever the goal's was.",
+            "After the end there is not an acceleration, whatever the goal's was.",
             mistakes.speeds_up_for_ever,
             "Read the sentence about the end.",
         ),

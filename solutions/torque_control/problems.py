@@ -347,7 +347,7 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "the weight inside M",
-            "model.gravity is a torque already; M times it is none.",
+            "model.gravity is a torque already; M times it is not one.",
             mistakes.TorqueBy(lambda x: x.motion + x.pull + x.M @ x.g),
             "Units: M times an acceleration is a torque.",
         ),
@@ -583,7 +583,7 @@ COMPUTED_TORQUE = Problem(
                     x.M @ (x.wish - x.target.acceleration) + x.target.acceleration + x.drift + x.g
                 )
             ),
-            "Units: an acceleration is no torque.",
+            "Units: an acceleration is not a torque.",
         ),
         Wrong(
             "the target's acceleration reversed",
@@ -595,7 +595,7 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "the weight inside M",
-            "model.gravity is a torque already; M times it is none.",
+            "model.gravity is a torque already; M times it is not one.",
             mistakes.TorqueBy(lambda x: x.M @ (x.wish + x.g) + x.drift),
             "Units: M times an acceleration is a torque.",
         ),

@@ -72,7 +72,7 @@ JOINT_VELOCITY_PD = Problem(
         ),
     ),
     hints=(
-        "Suppose there is no error at all: what should the arm do then? And which way should an "
+        "Suppose there is not a error at all: what should the arm do then? And which way should an "
         "error push? (Target minus actual, always.)",
         "e = target.position - state.q and de = target.velocity - state.dq. The command starts from "
         "the target's speed, not from the measured one.",
@@ -173,7 +173,7 @@ JOINT_VELOCITY_PD = Problem(
         ),
         Wrong(
             "a position in a speed",
-            "The target's position is no speed: the feed-forward is target.velocity.",
+            "The target's position is not a speed: the feed-forward is target.velocity.",
             mistakes.Fed(
                 lambda ff, e, de, kp, kd, state, target: target.position + kp * e + kd * de
             ),
@@ -465,7 +465,7 @@ DAMPED_INVERSE = Problem(
             "a transpose, made smaller",
             "This is the transpose with a factor. An inverse has s/(s² + damping) for each singular value.",
             mistakes.BySingularValues(lambda s, d: s / (1.0 + d)),
-            "A transpose is no inverse.",
+            "A transpose is not a inverse.",
         ),
         Wrong(
             "the damping in the place of J Jᵀ",
@@ -746,7 +746,7 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "Euler angles of the turn",
-            "Roll, pitch and yaw of the right rotation are no rotation vector: read it with lk.se3.rotation_log.",
+            "Roll, pitch and yaw of the right rotation are not rotation vector: read it with lk.se3.rotation_log.",
             mistakes.TwistLaw(turn=mistakes.euler_of_the_turn),
             "A rotation vector is angle times axis.",
         ),
