@@ -324,8 +324,8 @@ OPEN_LOOP = Problem(
             "A first-order lag has one pole, at -1/lag.",
         ),
         Wrong(
-            "the lag turned over",
-            "The lag stands below, 1/(lag·s + 1). Above it would hurry and not lag.",
+            "the lag in the numerator",
+            "The lag is in the denominator, 1/(lag·s + 1). Above it would hurry and not lag.",
             mistakes.Loop(lambda kp, lag: ([kp * lag, kp], [1.0, 0.0])),
             "A lag takes phase away.",
         ),

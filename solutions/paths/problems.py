@@ -118,7 +118,7 @@ BANG_BANG = Problem(
         ),
         Wrong(
             "t where the time that is left belongs",
-            "The second half is the first one seen from the end. In it stands T - t, the time that is left, not t.",
+            "The second half is the first one seen from the end. It needs T - t, the time that is left, not t.",
             mistakes.Bang(left=lambda t, T: t),
             "Use the symmetry of the motion: put the origin of time at the end.",
         ),
@@ -424,7 +424,7 @@ CIRCLE = Problem(
             "Put s = 0 into every path: it must begin at the start.",
         ),
         Wrong(
-            "the start's angle turned round",
+            "the start's angle with the wrong sign",
             "The circle begins at minus the start's angle. The spoke stands at θ₀ + 2πs, with a plus.",
             mistakes.Spoke(start=-1.0, rates=-1.0),
             "Put s = 0 into every path: it must begin at the start.",
@@ -714,7 +714,7 @@ SEGMENT_AT = Problem(
         ),
         Wrong(
             "an index too large after the end",
-            "After the end there is not a other segment: the last one stays on, with index n - 1.",
+            "After the end no other segment begins: the last one stays on, with index n - 1.",
             mistakes.Segments(after=lambda n, t, d: (n, t)),
             "The last index is one less than the number.",
         ),

@@ -291,13 +291,13 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "the springs inside M",
-            "In this law the gains stand beside M: kp e is a torque.",
+            "In this law the gains do not multiply M: kp e is a torque.",
             mistakes.TorqueBy(lambda x: x.motion + x.M @ (x.kp * x.e) + x.kd * x.de + x.g),
             "Units: say whether kp e is a torque or an acceleration.",
         ),
         Wrong(
             "the dampers inside M",
-            "In this law the gains stand beside M: kd ė is a torque.",
+            "In this law the gains do not multiply M: kd ė is a torque.",
             mistakes.TorqueBy(lambda x: x.motion + x.kp * x.e + x.M @ (x.kd * x.de) + x.g),
             "Units: say whether kp e is a torque or an acceleration.",
         ),

@@ -72,7 +72,7 @@ JOINT_VELOCITY_PD = Problem(
         ),
     ),
     hints=(
-        "Suppose there is not a error at all: what should the arm do then? And which way should an "
+        "Suppose there is no error at all: what should the arm do then? And which way should an "
         "error push? (Target minus actual, always.)",
         "e = target.position - state.q and de = target.velocity - state.dq. The command starts from "
         "the target's speed, not from the measured one.",
@@ -287,7 +287,7 @@ DECAY_RATE = Problem(
         ),
         Wrong(
             "turned over",
-            "The rate grows with kp: kp stands above.",
+            "The rate grows with kp: kp is in the numerator.",
             mistakes.Rate(lambda kp, kd: (1.0 + kd) / kp),
             "Put kd = 0: what is left is kp.",
         ),
@@ -465,7 +465,7 @@ DAMPED_INVERSE = Problem(
             "a transpose, made smaller",
             "This is the transpose with a factor. An inverse has s/(s² + damping) for each singular value.",
             mistakes.BySingularValues(lambda s, d: s / (1.0 + d)),
-            "A transpose is not a inverse.",
+            "A transpose is not an inverse.",
         ),
         Wrong(
             "the damping in the place of J Jᵀ",
