@@ -70,6 +70,7 @@ ORDER = [
     {"course.own_arm"},
     {"course.equivalence"},
     {"course.question"},
+    {"course.differences"},
     {
         "course.brief",
         "course.serialize",
@@ -77,7 +78,7 @@ ORDER = [
         "course.predictions",
         "course.identification",
     },
-    {"course.reply", "course.notebook"},
+    {"course.reply", "course.notebook", "course.card"},
     {"course.gaps", "course.marking", "course.probes"},
     {"course.relations", "course.problem"},
     {"course.observed"},

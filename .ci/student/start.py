@@ -88,7 +88,7 @@ def right_python():
     """None where this Python will do, else another one that will."""
     if (sys.platform, platform.machine()) not in SYSTEMS:
         raise Stop(
-            "on {} ({}) pip has not all that the lab needs, but conda has: {}".format(
+            "on {} ({}) pip does not have all that the lab needs, but conda does: {}".format(
                 platform.system(), platform.machine(), BY_CONDA
             )
         )
@@ -129,7 +129,7 @@ def make(python):
             "make room, then type the same again".format(free / 1e9, FREE / 1e9)
         )
     if ENV.exists():
-        print("an environment that is not whole or of another version is made anew")
+        print("an environment that is incomplete or of another version is made again")
         shutil.rmtree(str(ENV))
     print("1 of 3: making an environment in {}".format(ENV), flush=True)
     try:

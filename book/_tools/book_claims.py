@@ -12,6 +12,7 @@ import argparse
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping
@@ -118,13 +119,17 @@ def main() -> None:
     parser.add_argument("--count", action="store_true", help="run nothing, count alone")
     parser.add_argument("pages", nargs="*", metavar="PAGE", help="as chapters/velocity; all")
     chosen = parser.parse_args()
+    if not chosen.count and not chosen.pages:
+        shutil.rmtree(FOUND, ignore_errors=True)  # what an earlier version of the pages told
     for page in () if chosen.count else chosen.pages or PAGES:
         run(page, reading=chosen.read)
     notes, before = noted(), kept()
     if chosen.read:
-        after = {**before, **{name: note["data"] for name, note in notes.items()}}
-        for name, x in sorted(after.items()):
-            if name in before and not near(tuple(x), tuple(before[name])):
+        after = dict(before)
+        for name, x in ((name, note["data"]) for name, note in notes.items()):
+            moved = name not in before or not near(tuple(x), tuple(before[name]))
+            after[name] = x if moved else before[name]
+            if moved and name in before:
                 print(f"{name}: {before[name]} before, {x} now")
         rows = ",\n".join(f"{json.dumps(k)}: {json.dumps(x)}" for k, x in sorted(after.items()))
         KEPT.write_text(f"{{\n{rows}\n}}\n")

@@ -9,7 +9,7 @@ from IPython.display import HTML
 import labkit as lk
 from labkit.plotting import STYLES
 from solutions.study import identification, image_servoing, passivity, redundancy, tasks
-from solutions.study.gains import TIP_SPRING
+from solutions.study.gains import TIP_SPRING, five
 
 from .claims import claim, shows
 from .page import figure, holds, numbers, shown, table
@@ -33,8 +33,18 @@ def friction() -> HTML:
         raw=float(raw.viscous[:2].max()),
         true=true,
     )
-    shows("Instants below 0.05 rad/s are left out", 0.05, identification.MOVING)
+    for words in ("Instants below 0.05 rad/s are left out", "with the limit of 0.05 rad/s"):
+        shows(words, 0.05, identification.MOVING)
     shows("late and at 100 Hz", 100.0, lk.BAXTER.state_rate)
+    fastest = float(np.median([np.abs(speed).max() for speed in found.speed[:4]]))
+    share = true * fastest / (true * fastest + true_dry[1])
+    shows("because even at 0.3 rad/s, as fast as they swing, it is only a sixth of the friction",
+          (0.3, 1.0 / 6.0), (fastest, share), 0.06)  # fmt: skip
+    step, rate = 1.0 / lk.BAXTER.state_rate, five(model, lk.BAXTER)["joint torque"].rate
+    shows("a cubic fitted to 21 neighbouring angles", 21.0, identification.WINDOW)
+    shows("over the same 0.2 s", 0.2, (identification.WINDOW - 1) * step)
+    shows("The controller runs at 200 Hz and computes two commands from each report",
+          (200.0, 2.0), (rate, rate * step))  # fmt: skip
     holds(off[:4].max() < 0.1, "the dry friction of shoulder and elbow is found")
     _, axes = plt.subplots(1, 2, figsize=(6.4, 3.0))
     for ax, joint in zip(axes, (1, 5), strict=True):
@@ -105,6 +115,7 @@ def _ahead(log: lk.Log) -> None:
         along=float(1e3 * e[k] @ forward),
         size=float(1e3 * np.linalg.norm(e[k])),
     )
+    shows("The reports are 9 ms old on average", 9.0, 1e3 * age)
     shows(
         "At 0.2 m/s, 9 ms are 1.8 mm",
         (0.2, 9.0, 1.8),
@@ -195,9 +206,11 @@ def servoing() -> HTML:
         x=[ends["image"], ends["pose, goal measured"], ends["pose, goal shown"]],
     )
     numbers({"servo_image": ends["image"], "servo_pose": ends["pose, goal measured"]}, ".2g")
-    ax.set(xlabel="time [s]", ylabel="distance from the goal [mm]", ylim=(1e-2, 300))
+    ax.set(xlabel="time [s]", ylabel="distance from the goal [mm]", ylim=(1e-3, 300))
     ax.legend(fontsize="small")
-    told = "; ".join(f"{way}: {end:.2g} mm" for way, end in ends.items())
+    told = "; ".join(
+        f"{way.replace('measured', 'in metres')}: {end:.2g} mm" for way, end in ends.items()
+    )
     return figure(
         "Distance of the hand's camera from its goal, the focal length believed 20 % too long.",
         f"Three falling curves on a logarithmic scale. At the end {told}.",
@@ -270,8 +283,9 @@ def robust() -> HTML:
             peak[0] > 1000.0 and peak[0] > 5.0 * peak[1] > 0.0 and 0.0 <= miss[0] < 1.0 < miss[1]
         ),
         peak=[peak[0.0], peak[1e-2]],
-        miss=[miss[0.0], miss[1e-2]],
+        miss=[round(miss[0.0], 3), miss[1e-2]],  # the first is rounding, which differs by machine
     )
+    shows("of the 100 mm/s that are wanted", 100.0, 1e3 * redundancy.OUTWARDS)
     numbers({"peak_2": peak[1e-2], "miss_2": miss[1e-2]}, ".2g")
     above.axhline(1.5, color="#999999", linestyle=":", label="limit, 1.5 rad/s")
     above.set_ylabel("fastest joint [rad/s]")

@@ -91,15 +91,16 @@ def report() -> None:
     _is("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
         (law.D[0], 1.0, 1.0 / law.D[0]))  # fmt: skip
     _is("dry friction of about 1 N m explains it", 1.0, lk.BAXTER.stiction[0])
-    _is("0.3 N m/rad overcomes the dry friction of the wrist, 0.3 N m", (0.3, 0.3),
-        (law.K[3], lk.BAXTER.stiction[6]))  # fmt: skip
+    spring, wrist = law.K[3], lk.BAXTER.stiction[6]
+    _is("0.3 N m/rad overcomes the dry friction of the wrist, 0.3 N m, only after a turn of one "
+        "radian", (0.3, 0.3, 1.0), (spring, wrist, wrist / spring))  # fmt: skip
     _is('has 0.5 to 0.1 N/m under "proportional gain" and 45 N/m under', (0.5, 0.1, 45.0),
         (law.D[0], law.D[-1], law.K[0]))  # fmt: skip
     _is("45 N/m with a damping of 0.5 N s/m is an arm", (45.0, 0.5), (law.K[0], law.D[0]))
 
 
 def plant() -> None:
-    """Of the page on what is true of the arm."""
+    """Of the page on what is known of the arm."""
     model = lk.Model("left", lk.BAXTER)
     q = np.array(model.robot.ready)
     inertia = float(model.mass_matrix(q)[0, 0])
@@ -110,7 +111,7 @@ def plant() -> None:
     dry = lk.BAXTER.stiction[0]
     _is("A spring of 8 N m/rad against dry friction of 1 N m may stop 0.125 rad from its target",
         (8.0, 1.0, 0.125), (min(springs), dry, dry / min(springs)))  # fmt: skip
-    _is("225 1/s² times 2.1 kg m²", (225.0, 2.1), (225.0, inertia), 0.05)
+    _is("225 1/s² times 2.17 kg m²", (225.0, 2.17), (225.0, inertia), 0.01)
     _is("even under the report's own $K_p$ = 3 1/s", 3.0, KP)
     _is("about 60 times as stiff at the shoulder", 60.0, 225.0 * inertia / 8.0, 0.1)
     swing = math.sqrt(SPRINGS["joint_stiffness"][0] / inertia)

@@ -126,14 +126,16 @@ def everything(way: str, task: str) -> HTML:
     found = metrics.summary(log, _model())
     e, off, torque = (_panels(way, task)[k][1] for k in (2, 4, 5))
     drawn = figure(
-        f"{way.capitalize()} on the {task}, realistic arm.",
+        f"{way.capitalize()} on the {task}, realistic arm. RMS error of the tip: "
+        f"{_numbers(way, task)[0]:.3g} mm after the first second, {found.rms_mm:.3g} mm with the "
+        "start.",
         f"{way.capitalize()} on the {task}: {found}.",
         f"Six panels over {found.duration:.3g} s: position and speed of the tip and of its target, "
         "its position error along x, y and z, its orientation error, the error of each joint and "
         f"the torque of each motor beyond gravity. {found}. The largest joint error is "
         f"{np.abs(off).max():.2g} degrees, the largest torque {np.abs(torque).max():.3g} N m, the "
         f"last error {_told(float(np.linalg.norm(e[-1]))).replace('&lt;', 'below')} mm. All errors "
-        "here are those of the whole run, start included.",
+        "here are those of the whole run, and the RMS torque includes the arm's weight.",
     )
     links = " · ".join(_elsewhere(way, task))
     return HTML(

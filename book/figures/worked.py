@@ -84,6 +84,9 @@ def _durations(D: float) -> None:
     shows("= 2.9$ s", 2.9, lk.Trapezoid(0.5, 0.2, 0.5).duration, 1e-6)
     asked = 0.01 * lk.Quintic.PEAK_ACCELERATION / scaled.duration**2
     shows("to 0.149 s for one centimetre", 0.149, scaled.duration, 4e-3)
+    quick, slow = (np.array(lk.Quintic(T)(T / 4.0)[1:]) for T in (2.0, 4.0))
+    shows("In half the time the speed doubles and the acceleration is four times as large",
+          (2.0, 4.0), quick / slow)  # fmt: skip
     shows("asks the arm for 2.62 m/s², five times", (2.62, 5.0), (asked, asked / a), 0.05)
 
 
@@ -132,8 +135,8 @@ def model() -> None:
     shows("presses the hand down with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
     shows("the hand must press up with 10 N", (4.0, 0.0), J.T @ (0.0, 10.0))
     shows("The shoulder gives 4 N m and the elbow nothing", (4.0, 0.0), J.T @ (0.0, 10.0))
-    shows("is 0.4 m from the shoulder, the hand's mass is at $J$",
-          (1.28, 0.32, 0.32, 0.32), M.ravel(), 1e-6)  # fmt: skip
+    shows("is 0.4 m from the shoulder, and the hand's mass moves with the tip, whose Jacobian is "
+          "$J$", (1.28, 0.32, 0.32, 0.32), M.ravel(), 1e-6)  # fmt: skip
     far = arm.mass_matrix(np.zeros(2))[0, 0]
     shows("the hand is 0.8 m away", 0.8, arm.pose(np.zeros(2))[0, 3])
     shows("1.28 kg m² to 1.92 kg m²", (1.28, 1.92), (M[0, 0], far), 1e-6)
@@ -169,7 +172,8 @@ def _rods(J: np.ndarray) -> None:
 def _newton() -> None:
     """Two steps of inverse kinematics of the arm of two rods."""
     arm, goal, q, left = two_rods(), np.array((0.36, 0.44)), np.array(POSE), []
-    shows("is at $(0.4, 0.4)$ m in the", (0.4, 0.4), arm.pose(q)[[0, 2], 3], 1e-6)
+    shows("is at $(0.4, 0.4)$ m in the drawing and should go to $(0.36, 0.44)$ m",
+          (0.4, 0.4, 0.36, 0.44), (*arm.pose(q)[[0, 2], 3], *goal), 1e-6)  # fmt: skip
     for _ in range(2):
         e = goal - arm.pose(q)[[0, 2], 3]
         step = np.linalg.solve(arm.tip_jacobian(q)[[0, 2]], e)
@@ -213,7 +217,7 @@ def velocity() -> None:
     left = {kd: 0.1 * exp(-3.0 / (1.0 + kd)) for kd in (0.0, 0.6)}
     shows("and the joint starts 0.1 rad away", (0.0050, 0.0153), left.values(), 0.01)
     shows("which is 0.0050 rad", 0.0050, left[0.0], 0.01)
-    shows("0.0153 rad are left: three times as much", (0.0153, 3.0),
+    shows("0.0153 rad is left: three times as much", (0.0153, 3.0),
           (left[0.6], left[0.6] / left[0.0]), 0.03)  # fmt: skip
     _swing()
     crossing, lag = 4.95, lk.BAXTER.velocity_lag

@@ -73,14 +73,18 @@ class HandIn:
         ]
         right = {name for name, v in self.verdicts.items() if v is not None and v.right}
         tasks = self.verdicts.keys() - set(self.predictions)
-        end = f"{len(right & tasks)} of {len(tasks)} tasks were right, as far as can be tried here"
+        counts = []
+        if tasks:
+            of = f"{len(right & tasks)} of {len(tasks)}"
+            counts.append(f"{of} tasks were right, as far as can be tried here")
         if self.predictions:
             committed = len(right & set(self.predictions))
-            end += f", and {committed} of {len(self.predictions)} predictions committed"
+            counts.append(f"{committed} of {len(self.predictions)} predictions were committed")
+        ran = f"; when it was last run, {', and '.join(counts)}" if counts else ""
         end = (
             "correct what is marked with [fix] first."
             if self.problems
-            else f"it can be handed in as it is; when it was last run, {end}."
+            else f"it can be handed in as it is{ran}."
         )
         return "\n".join([*lines, f"{self.assignment}: {end}"])
 

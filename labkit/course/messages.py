@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
-from ..control import COMMANDS
 from ..errors import ControllerError
+from .differences import sentence, words
 from .factors import likely_cause
 from .forms import COMMITTED, OWN_ARM
-from .question import Loop, Question, Test, Tuned, in_brief
-from .verdict import Difference, Kind, Outcome, TestResult, Value, Verdict
+from .question import Loop, Question, Test, Tuned
+from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import spoken
 
 WIDTH = 79
@@ -29,7 +30,6 @@ HEADS = {
 
 _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 """The words for tests that need no explanation."""
-_COMMANDS = [kind.__name__ for kind in COMMANDS]
 
 
 def head(verdict: Verdict) -> str:
@@ -62,9 +62,41 @@ def uses(withheld: Iterable[str]) -> str:
     return f"uses {' and '.join(names)}, which {why}"
 
 
-def tell(
-    question: Question, verdict: Verdict, printed: str = "", leans_on: tuple[str, ...] = ()
-) -> str:
+@dataclass(frozen=True)
+class Message:
+    """What a student reads after a check, in this order; `str` folds it to lines of text.
+
+    Attributes:
+        head: The verdict in one line.
+        helps: What helps most: sentences.
+        tests: Each test in a line.
+        numbers: The calls that failed, with what was expected of them, and how to try one.
+        printed: What the student's code printed meanwhile.
+        hint: Where to get a hint.
+    """
+
+    head: str
+    helps: Sequence[str] = ()
+    tests: Sequence[str] = ()
+    numbers: Sequence[str] = ()
+    printed: Sequence[str] = ()
+    hint: str = ""
+
+    def __str__(self) -> str:
+        lines = [*self.helps, *self.tests]
+        lines += ["Where it fails:", *(f"  {x}" for x in self.numbers)] if self.numbers else []
+        lines += [PRINTED, *(f"  {x}" for x in self.printed)] if self.printed else []
+        lines += [self.hint] if self.hint else []
+        return "\n".join(map(wrapped, [self.head, *(f"  {line}" for line in lines)]))
+
+
+PRINTED = "While it was tried, your code printed:"
+"""Above what the student's code printed."""
+
+
+def message(
+    question: Question, verdict: Verdict, printed: str = "", leans_on: Sequence[str] = ()
+) -> Message:
     """Everything that a student reads after a check.
 
     Args:
@@ -72,54 +104,74 @@ def tell(
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
         leans_on: Names of other answers that this one uses and that are not right.
-
-    Returns:
-        Lines of text, the verdict first.
     """
-    lines = [head(verdict)]
-    if verdict.outcome is Outcome.NOT_ATTEMPTED:
-        lines.append(f"  To do: {question.asks}")
-    elif verdict.outcome is Outcome.RIGHT:
-        lines += [] if verdict.complete or _waits(verdict) else _unseen(question)
-    elif verdict.outcome is Outcome.NOT_COUNTED:
-        lines.append("  You may use it elsewhere in the notebook; here, write it yourself.")
-    else:
-        lines += _results(question, verdict)
-        lines += _mistake(verdict)
-    if leans_on and verdict.outcome is not Outcome.RIGHT:
-        names = ", ".join(leans_on)
-        lines.append(f"  Note: it uses your {names}, not right yet; correct {names} first.")
-    lines += _printed(printed)
-    if verdict.outcome is not Outcome.RIGHT and question.hints:
-        call = f'hint("{question.name}", 1)'
-        lines.append(f"  Stuck? Run {call} in a new cell (press Esc, then B). It is free.")
-    return "\n".join(wrapped(line) for line in lines)
+    helps, hint = [], ""
+    if verdict.outcome is not Outcome.RIGHT:
+        if question.hints:
+            call = f'hint("{question.name}", 1)'
+            hint = f"Stuck? Run `{call}` in a new cell (press Esc, then B). It is free."
+        if leans_on:
+            names = " and ".join(leans_on)
+            helps.append(f"It uses your {names}, not right yet: correct {names} first.")
+    tests: list[str] = []
+    numbers: list[str] = []
+    match verdict.outcome:
+        case Outcome.NOT_ATTEMPTED:
+            helps.append(f"To do: {question.asks}")
+        case Outcome.RIGHT:
+            helps += [] if verdict.complete or _waits(verdict) else _unseen(question)
+        case Outcome.NOT_COUNTED:
+            helps.append("You may use it elsewhere in the notebook; here, write it yourself.")
+        case _:
+            helps += _helps(verdict)
+            tests = [named(test) for test in verdict.tests]
+            numbers = _numbers(question, verdict)
+    return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
+
+
+def tell(
+    question: Question, verdict: Verdict, printed: str = "", leans_on: Sequence[str] = ()
+) -> str:
+    """The same as lines of text, the verdict first."""
+    return str(message(question, verdict, printed, leans_on))
 
 
 def summary(verdict: Verdict) -> list[str]:
-    """A verdict for a teacher's page: its head, and after a failure each test and the mistake."""
+    """A verdict for a teacher's page: its head, and after a failure the mistake and each test."""
     lines = [head(verdict)]
     if verdict.outcome in (Outcome.WRONG, Outcome.ERROR):
+        lines += [f"  {mistake(verdict.mistake)}"] if verdict.mistake else []
         lines += [f"  {line(test)}" for test in verdict.tests]
-        lines += _mistake(verdict)
     return lines
 
 
-def _mistake(verdict: Verdict) -> Iterator[str]:
-    if verdict.mistake is not None:
-        if verdict.mistake.name:
-            yield f"  This mistake is a well-known one: {verdict.mistake.name}."
-        yield f"  {verdict.mistake.says}"
+def mistake(known: Misconception) -> str:
+    """A known mistake: its name, and what to tell who made it."""
+    return f"A well-known mistake: {known.name}. {known.says}" if known.name else known.says
+
+
+def _helps(verdict: Verdict) -> Iterator[str]:
+    """What helps most: the mistake, if it is known, else a likely cause, else the difference."""
+    if verdict.mistake:
+        yield mistake(verdict.mistake)
+    elif lead := _lead(verdict):
+        yield sentence(lead)
+
+
+def _lead(verdict: Verdict) -> Difference | None:
+    """The difference that says most, where no known mistake says more."""
+    found = [test.difference for test in verdict.tests if test.difference and not verdict.mistake]
+    return next(filter(likely_cause, found), found[0] if found else None)
 
 
 def _unseen(question: Question) -> Iterator[str]:
     """What only the teacher's copy of a question tests."""
     also = dict.fromkeys(test.also for test in question.tests if test.also)
     if also:
-        yield f"  The teacher also tries: {'; '.join(also)}."
+        yield f"The teacher also tries: {'; '.join(also)}."
     for test in question.tests:
         if not test.cases:
-            yield f"  Not tried here, and points hang on it: {test.name}."
+            yield f"Not tried here, and points hang on it: {test.name}."
 
 
 def wrapped(line: str) -> str:
@@ -129,23 +181,18 @@ def wrapped(line: str) -> str:
 
 
 GATE = " (needed before anything counts)"
-_MEASURES = {
-    "max_mm": ("the largest error of the tip", " mm"),
-    "rms_mm": ("the RMS error of the tip", " mm"),
-    "max_deg": ("the largest tilt of the tip", " degrees"),
-    "rms_velocity_mm_s": ("the RMS error of the tip's speed", " mm/s"),
-    "worst_mm": ("the worst error", " mm"),
-}
-"""Measures of a run in words, with their units."""
 
 
 def line(test: TestResult) -> str:
     """A test in one line: whether it passed, and if it failed, on which case and why."""
+    says = "" if test.outcome in _SHORT else why(test)
+    return f"{named(test)}{says and f': {says}'}"
+
+
+def named(test: TestResult) -> str:
+    """A test by its name, and whether it passed."""
     gate = "" if test.weight else GATE
-    if test.outcome in _SHORT:
-        return f"[{_SHORT[test.outcome]}] {test.name}{gate}"
-    says = why(test)
-    return f"[failed] {test.name}{gate}{says and f': {says}'}"
+    return f"[{_SHORT.get(test.outcome, 'failed')}] {test.name}{gate}"
 
 
 def why(test: TestResult) -> str:
@@ -154,90 +201,24 @@ def why(test: TestResult) -> str:
     where = hidden if test.hidden else test.call
     if test.difference is None:
         return where
-    before, expected, got, guess = _words(test.difference)
+    before, expected, got, guess = words(test.difference)
     text = f"{before}expected {expected}, got {got}{guess and f'; {guess}'}" if got else before
     return f"{where}{text if text[:1] == ' ' else f': {text}'}" if where else text.strip()
 
 
-def _words(d: Difference) -> tuple[str, str, str, str]:
-    """A difference in words: where it is, what was expected, what was returned, a likely cause."""
-    of = f"{d.part}: " if d.part else ""
-    text = ""
-    match d.kind:
-        case Kind.NUMBERS if d.expected is None:
-            text = f"got {_brief(d.found)}, which is not one of the right values"
-        case Kind.NUMBERS:
-            index = ", ".join(f"{k:g}" for k in d.at)
-            at = f"at index {f'({index})' if len(d.at) > 1 else index} " if d.at else ""
-            also = ", or any that moves the tip alike" if d.several else ""
-            return f"{of}{at}", _brief(d.expected) + also, _brief(d.found), likely_cause(d)
-        case Kind.RESPONSE:
-            return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
-        case Kind.MEASURE:
-            what, unit = _MEASURES.get(d.part, (d.part.replace("_", " "), ""))
-            text = f"{what} is {_much(d.found)}{unit}, allowed {_much(d.expected)}{unit}"
-        case Kind.TYPE if not d.expected:
-            text = f"{of}plain numbers are asked for, not a {d.found}"
-        case Kind.TYPE:
-            text = f"{of}it should be a {d.expected}, not {_instead(d)}"
-        case Kind.VALUE:
-            text = f"{of}it should be {d.expected}, not {_brief(d.found)}"
-        case Kind.KEY:
-            text = f"the key {d.part!r} is missing"
-        case Kind.PARTS:
-            parts = f"{len(d.parts)} things ({', '.join(d.parts)})"
-            text = f"{of}it should be {parts}, not {_brief(d.found)}"
-        case Kind.NOTHING:
-            text = "it returned nothing (None); does every branch of it end in a return?"
-        case Kind.RAISED:
-            text = f" raised {d.found or d.error}"
-        case Kind.REFUSED | Kind.CHANGED:
-            text = str(d.found or d.error)
-        case Kind.OTHER:
-            text = "the answer cannot be compared with the expected one"
-    return text, "", "", ""
-
-
-def _instead(d: Difference) -> str:
-    """What was returned instead of the type that was asked for, and how to make that type."""
-    if d.found in _COMMANDS:
-        return f"a {d.found}"
-    what = _brief(d.found) or "plain numbers"
-    if d.expected not in _COMMANDS:
-        return what
-    return f"{what}; return lk.{d.expected}(...) with one number for each joint"
-
-
-def _brief(x: Value) -> str:
-    if isinstance(x, float):
-        return f"{x:.6g}" if abs(x) > 1e-10 else "0"
-    return x if isinstance(x, str) else in_brief(x)
-
-
-def _polar(x: Value) -> str:
-    return f"{x[0]:.4g} at {x[1]:.4g} degrees" if isinstance(x, tuple) else str(x)
-
-
-def _much(x: Value) -> str:
-    return f"{x:.{'3g' if abs(x) < 1e3 else '0f'}}" if isinstance(x, float) else str(x)
-
-
-def _results(question: Question, verdict: Verdict) -> list[str]:
-    """Each test in a line; for one that failed also the call and what it returned."""
+def _numbers(question: Question, verdict: Verdict) -> list[str]:
+    """The cases that failed, each difference once, and how to try such a call again."""
     lines: list[str] = []
     before: list[Difference] = []
     for test, result in zip(question.tests, verdict.tests, strict=True):
-        short = f"  {line(result)}"
-        failed = f"  [failed] {result.name}{'' if result.weight else GATE}:"
-        difference = result.difference
-        if difference is not None and _again(test, difference, before):
-            lines.append(f"{failed} the same")
-        elif len(short) <= WIDTH or result.outcome in _SHORT:
-            lines.append(short)
-        else:
-            parts = _parts(result, verdict.mistake is None)
-            lines += [failed, *(f"      {part}" for part in parts)]
-        before += [difference] if difference else []
+        if (difference := result.difference) is not None:
+            if not _again(test, difference, before):
+                lines += _parts(result, difference is _lead(verdict))
+            before.append(difference)
+    if any("numbers>" in test.call or "(...)" in test.call for test in verdict.tests):
+        name = question.name
+        lines += ["To try the first call yourself:", f'  args, kwargs = lk.course.case("{name}")']
+        lines.append(f"  {name}(*args, **kwargs)")
     return lines
 
 
@@ -247,21 +228,21 @@ def _again(test: Test, difference: Difference, before: list[Difference]) -> bool
         if difference.error == ControllerError.__name__:
             return bool(before)
         return any(x.kind is Kind.RAISED and x.error == difference.error for x in before)
-    return difference in before and not _words(difference)[2]
+    return difference in before and not words(difference)[2]
 
 
-def _parts(test: TestResult, guess: bool) -> list[str]:
-    """A call and two answers too long for a line: one below the other, and a likely cause."""
-    start, expected, got, means = _words(test.difference) if test.difference else ("", "", "", "")
-    if not got:
-        return [why(test)]
-    more = [f"({means})"] if means and guess else []
-    return [f"{test.call}: {start}".rstrip(), f"  expected {expected}", f"  got      {got}", *more]
+def _parts(test: TestResult, led: bool) -> list[str]:
+    """A call and what came of it; two answers too long for a line stand one below the other."""
+    start, expected, got, _ = words(test.difference) if test.difference else ("", "", "", "")
+    if not got:  # a sentence; a value that is written down was not called
+        return [why(test)] if not led else [] if test.call.endswith("()") else [test.call]
+    short = f"{test.call}: {start}expected {expected}, got {got}"
+    if len(short) < WIDTH - 4:
+        return [short]
+    return [f"{test.call}: {start}".rstrip(), f"  expected {expected}", f"  got      {got}"]
 
 
 def _printed(text: str, most: int = 6) -> list[str]:
     lines = [line[:160] for line in text.splitlines() if line.strip()]
-    if not lines:
-        return []
-    more = [f"    ... and {len(lines) - most} more lines"] if len(lines) > most else []
-    return ["  While it was tried, your code printed:", *(f"    {x}" for x in lines[:most]), *more]
+    more = [f"... and {len(lines) - most} more lines"] if len(lines) > most else []
+    return [*lines[:most], *more]

@@ -111,9 +111,12 @@ def _controls(name: str, form: Form) -> None:
     parts = _inputs(form, widgets)
 
     def changed(_: Any) -> None:
-        values = [round(x, 9) if isinstance(x := part.value, float) else x for part in parts]
+        values = [_number(part.value) for part in parts]
         said = values if isinstance(form, Curve) else values[0]
-        if not form.problem(said):
+        desk().chosen.pop(name, None)
+        if found := form.problem(said):
+            note.value = escape(found)
+        else:
             desk().chosen[name] = said
             note.value = f"{escape(form.words(said))}: not committed yet; {again}"
 
@@ -123,6 +126,14 @@ def _controls(name: str, form: Form) -> None:
     display(widgets.VBox([box(parts), note]))
 
 
+def _number(said: Any) -> Any:
+    """A number as it was written or pulled, without the noise of its last digits; else as it is."""
+    try:
+        return round(float(said), 9)
+    except ValueError:
+        return said
+
+
 def _inputs(form: Form, widgets: Any) -> list[Any]:
     """One control for each value of a prediction."""
     match form:
@@ -130,10 +141,8 @@ def _inputs(form: Form, widgets: Any) -> list[Any]:
             pairs = [(f"({letter}) {text}", letter) for letter, text in options.items()]
             layout = widgets.Layout(width="auto")
             return [widgets.RadioButtons(options=pairs, value=None, layout=layout)]
-        case Rank():
+        case Rank() | Number():  # a field for numbers would begin with one that nobody chose
             return [widgets.Text(placeholder=form.how, layout=widgets.Layout(width="30em"))]
-        case Number(unit, least, most):
-            return [widgets.BoundedFloatText(least, min=least, max=most, description=unit)]
         case Curve(at, _, height, least, most):
             middle, step = (least + most) / 2, (most - least) / 50
             return [

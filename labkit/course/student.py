@@ -19,8 +19,9 @@ from ..errors import LabkitError, UnknownName
 from ..formats import check_stamp
 from .advice import line_of
 from .calling import heard
+from .card import card
 from .marking import Evidence, mark, not_counted, try_public
-from .messages import HEADS, tell, wrapped
+from .messages import HEADS, Message, message, wrapped
 from .notebook import verdict_metadata
 from .observed import explained
 from .question import Question
@@ -196,12 +197,8 @@ def check(name: str, function: Callable[..., Any]) -> float:
         print(wrapped(_NOT_RUN.format(name=name)))
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
-    text = tell(question, verdict, printed, desk().leaning(name, function))
-    if any("numbers>" in test.call or "(...)" in test.call for test in verdict.tests):
-        text += f'\nThe numbers: args, kwargs = lk.course.case("{name}")'
-    _say(text, verdict)
-    if verdict.mistake is not None and found is not None:
-        _show(found)
+    says = message(question, verdict, printed, desk().leaning(name, function))
+    _say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
 
 
@@ -279,29 +276,26 @@ def use(
     return given
 
 
-def _say(text: str, verdict: Verdict) -> None:
-    """Print a verdict; in a notebook its output also keeps it as data, for `before_handing_in`."""
+def _say(says: Message, verdict: Verdict, found: Evidence | None) -> None:
+    """Print a message; in a notebook it is a card, which also keeps the verdict as data."""
     if shell() is None:
-        print(text)
+        print(says)
         return
     from IPython.display import display
 
-    display({"text/plain": text}, metadata=verdict_metadata(verdict), raw=True)
+    shown = card(says, verdict.outcome, found and _picture(found))
+    display(shown, metadata=verdict_metadata(verdict), raw=True)
 
 
-def _show(found: Evidence) -> None:
-    """A small figure of the answers that gave a known mistake away, where there is a notebook."""
-    if shell() is None:
-        return
-    from IPython.display import Image, display
-
+def _picture(found: Evidence) -> tuple[bytes, str]:
+    """A small figure of the answers that gave a known mistake away, and its words."""
     from .. import plotting
 
     picture = BytesIO()  # a notebook draws figures only once pyplot has made one
     plotting.answers(*found).savefig(picture, format="png")
     call, expected, given = found
-    alt = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
-    display(Image(picture.getvalue(), format="png", alt=alt))
+    words = f"{call}, number by number: expected {_list(expected)}; yours {_list(given)}."
+    return picture.getvalue(), words
 
 
 def _list(numbers: Any) -> str:

@@ -455,7 +455,7 @@ if twenty_pairs is not None:
     print(f"± {pooled:.2f} mm from 20 differences, ± {by_task:.2f} mm from the means of 4 tasks")
 predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled > 1.4 * by_task else "a")
 
-# %% [markdown] why="why_so_narrow"
+# %% [markdown] why="why_twenty_pairs"
 # Which interval was narrower, and why? Say what five seeds of one task have in common, what a second task
 # would tell you that a sixth seed would not, and which interval belongs to "controllers in general".
 #

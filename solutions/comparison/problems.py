@@ -81,33 +81,34 @@ RMS_ERROR = Problem(
             "An RMS of a vector: sum over components, mean over time.",
         ),
         Wrong(
-            "the tip of the last row for all rows",
-            "Every row is compared with where the arm ended. The report's plots did this, and their "
-            "curves of the workspace are constants.",
+            "the last tip used for all rows",
+            "Every row is compared with where the arm ended. Compute the tip for each row. The "
+            "report's plots did not, so their curves of the workspace are constants.",
             mistakes.last_row_for_all,
             "A plot that cannot be wrong is not a measurement.",
         ),
         Wrong(
             "the mean length instead of the root of the mean square",
-            "That is the mean error. The root mean square weighs large errors more.",
+            "This is the mean error. Square the lengths, take their mean, then the root: large "
+            "errors weigh more.",
             mistakes.mean_of_lengths,
             "Mean, RMS and maximum are three numbers; say which.",
         ),
         Wrong(
             "the largest error",
-            "That is the largest error of the run, not its root mean square.",
+            "This is the largest error of the run. Give the root mean square.",
             mistakes.largest,
             "Mean, RMS and maximum are three numbers; say which.",
         ),
         Wrong(
-            "the root forgotten",
+            "the root left out",
             "A mean of squares is in square metres: take the root at the end.",
             mistakes.without_the_root,
             "Look at the unit of the result.",
         ),
         Wrong(
-            "millimetres",
-            "Asked are metres.",
+            "millimetres for metres",
+            "These numbers are in millimetres. Give metres.",
             mistakes.in_millimetres,
             "SI inside, millimetres in print.",
         ),
@@ -120,14 +121,15 @@ RMS_ERROR = Problem(
         ),
         Wrong(
             "the whole poses subtracted",
-            "Sixteen numbers, nine of them a rotation's: a tilt counts as metres. Asked is the position "
-            "alone, [:3, 3].",
+            "A pose has sixteen numbers, nine of them a rotation's, so a tilt counts as metres. "
+            "Take the position alone, [:3, 3].",
             mistakes.whole_poses,
             "Metres and radians do not add.",
         ),
         Wrong(
             "one row late",
-            "Each tip is compared with the target of the next row. Both have one row for each instant.",
+            "Each tip is compared with the target of the next row. Compare the same rows: both "
+            "have one for each instant.",
             mistakes.one_row_late,
             "Same instant, same row.",
         ),
@@ -139,7 +141,7 @@ RMS_ERROR = Problem(
             "A mean of signed numbers hides how large they are.",
         ),
         Wrong(
-            "always the left arm",
+            "the left arm's model for every arm",
             "The log of the right arm is compared with tips of the left one. Ask the `model` that "
             "you are given.",
             mistakes.always_the_left_arm,
@@ -260,60 +262,60 @@ OPEN_LOOP = Problem(
     wrong=(
         Wrong(
             "no integrator",
-            "That is the loop of a speed. The controller looks at an angle, the integral of the "
-            "speed: one more factor 1/s.",
+            "This is the loop of a speed. The controller looks at an angle, the integral of the "
+            "speed: multiply by 1/s.",
             mistakes.no_integrator,
             "Count the integrators between command and measurement.",
         ),
         Wrong(
             "the closed loop",
-            "Margins are read from the open loop; what feedback makes of it comes after.",
+            "Margins are read from the open loop: leave the feedback out.",
             mistakes.closed_loop,
             "Open loop: cut the wire once and multiply what is left.",
         ),
         Wrong(
             "the delay as one more lag",
-            "A lag costs at most 90 degrees and lowers the gain; a delay costs phase without end and "
-            "leaves the gain alone.",
+            "A lag costs at most 90 degrees of phase and lowers the gain; a delay costs ever more "
+            "phase and leaves the gain alone. Use control.pade for the delay.",
             mistakes.delay_as_a_lag,
             "A delay is not a slow lag.",
         ),
         Wrong(
-            "no delay, or next to none",
-            "The controller sees an angle of a while ago: control.pade comes close to that. `delay` is "
-            "in seconds.",
+            "almost no delay",
+            "The controller sees an old angle, and the loop hardly shows it. `delay` is in "
+            "seconds; control.pade approximates it.",
             mistakes.LoopWithout(delay=0.0),
             "The age of the state is part of the loop.",
         ),
         Wrong(
             "no lag",
-            "The speed follows its command with a time constant: one more factor, 1 / (lag s + 1).",
+            "The speed follows its command with a time constant. Multiply by 1 / (lag s + 1).",
             mistakes.LoopWithout(lag=0.0),
             "Name every part of the loop before you multiply.",
         ),
         Wrong(
             "the gain left out",
-            "kp is a factor of the open loop.",
+            "kp is missing. It is a factor of the open loop.",
             mistakes.LoopWithout(kp=0.0),
             "Name every part of the loop before you multiply.",
         ),
         Wrong(
-            "the delay turned over",
-            "This loop knows the angle before it is there: the delay is divided by, not multiplied "
-            "with.",
+            "the delay inverted",
+            "The loop is divided by the delay, so it knows the angle before it is there. Multiply "
+            "by the delay.",
             mistakes.LoopWithout(delay=-1.0),
             "A delay takes phase away.",
         ),
         Wrong(
             "the delay twice",
-            "Phase is lost as if the state were twice as old.",
+            "Put it in once.",
             mistakes.LoopWithout(delay=2.0),
             "Name every part of the loop before you multiply.",
         ),
         Wrong(
             "a delay of first order",
-            "control.pade(delay, 1) is right for slow signals only. At 25 rad/s and 30 ms its phase is "
-            "2 degrees off; order 4 is not.",
+            "control.pade(delay, 1) is right for slow signals only: at 25 rad/s and 30 ms its "
+            "phase is 2 degrees off. Use order 4.",
             mistakes.LoopWithout(order=1),
             "An approximation has a range; know it.",
         ),
@@ -428,50 +430,54 @@ KP_FOR_MARGIN = Problem(
     wrong=(
         Wrong(
             "the margin taken for radians",
-            "60 radians are nearly ten turns. Turn the margin into radians before you add it to one.",
+            "60 radians are nearly ten turns. Convert the margin to radians before you add it to "
+            "an angle in radians.",
             mistakes.margin_in_radians,
             "Degrees outside, radians inside.",
         ),
         Wrong(
             "the delay left out",
-            "Without the delay the crossover may lie much higher, and the gain comes out too large "
-            "for the loop that there is.",
+            "Without the delay the crossover may be much higher, and the gain is too large for "
+            "the real loop. Put the delay's phase, delay·ω, into the condition.",
             mistakes.without_the_delay,
             "The age of the state is part of the loop.",
         ),
         Wrong(
             "the frequency taken for the gain",
-            "At the crossover the gain of the lag is below 1 already; kp has to make up for it.",
+            "kp is not the frequency itself: at the crossover the gain of the lag is below 1, and "
+            "kp has to make up for it.",
             mistakes.lag_free_gain,
             "Phase first, then the gain to be 1 there.",
         ),
         Wrong(
             "the loop's gain, not its inverse",
-            "That is the gain that the loop has there without kp. To make it 1, kp is one over that.",
+            "This is the gain that the loop has there without kp. To make the loop's gain 1, kp "
+            "must be one over it.",
             mistakes.GainAt(power=-1.0),
             "kp times the rest is 1.",
         ),
         Wrong(
             "the integrator's gain left out",
-            "At the crossover the integrator has the gain 1/ω too.",
+            "The integrator is missing: at the crossover it has the gain 1/ω.",
             mistakes.GainAt(integrator=0.0),
             "Every factor has a gain and a phase.",
         ),
         Wrong(
             "the lag's gain squared",
-            "The gain of the lag is 1 / √(1 + (lag ω)²): the root is missing.",
+            "The root is missing. The gain of the lag is 1 / √(1 + (lag ω)²).",
             mistakes.GainAt(lag=2.0),
             "The length of a complex number has a root in it.",
         ),
         Wrong(
             "radians among degrees",
-            "delay·ω is in radians. Turn it into degrees before you take it off 90.",
+            "delay·ω is in radians. Convert it to degrees before you subtract it from 90.",
             mistakes.phase_mixed,
             "Degrees outside, radians inside.",
         ),
         Wrong(
             "divided by 2π",
-            "kp is in 1/s: the frequency in it is in rad/s, as in the loop.",
+            "kp is in 1/s, and the frequency in it is in rad/s, as in the loop. Do not divide by "
+            "2π.",
             mistakes.in_hertz,
             "s is iω, and ω is in rad/s.",
         ),
@@ -581,8 +587,8 @@ CHOOSE_GAINS = Problem(
             "The best gain on one path is the most fragile one.",
         ),
         Wrong(
-            "as soft as possible",
-            "It never shakes, and it never catches up either.",
+            "gains as low as possible",
+            "With such gains the arm never shakes, and it never catches up either. Raise Kp.",
             mistakes.as_soft_as_possible,
             "A margin is bought with error; buy what you need.",
         ),
@@ -594,16 +600,16 @@ CHOOSE_GAINS = Problem(
             "The best gain on one path is the most fragile one.",
         ),
         Wrong(
-            "a tenth off the lowest point",
+            "only a tenth below the lowest point",
             "A tenth is too small a margin: a state that is a little older needs more. Take a third of the "
             "largest Kp that was safe.",
             mistakes.Lowest(0.9),
             "Say how large your margin is, and against what.",
         ),
         Wrong(
-            "gains without a try",
-            "The same gains for an arm that is a quarter as quick: what was typed once cannot be right for "
-            "both. Ask the runner.",
+            "gains chosen without a run",
+            "You return the same gains for an arm that is a quarter as fast, and they cannot be "
+            "right for both. Try gains with the runner.",
             mistakes.Typed(20.0, 1.0),
             "A procedure can be carried to another arm; a number cannot.",
         ),
@@ -652,57 +658,59 @@ PAIRED = Problem(
     ),
     wrong=(
         Wrong(
-            "unpaired",
-            "Taken as strangers, the rows spread as much as the seeds do, and the difference drowns. "
-            "Subtract pair by pair first.",
+            "the rows taken as unpaired",
+            "Taken as unpaired, the rows spread as much as the seeds do, and the difference "
+            "drowns. Subtract pair by pair first.",
             mistakes.unpaired,
             "Same seeds: pair them.",
         ),
         Wrong(
             "the spread of one difference",
-            "That says where a single difference may fall. The mean of n of them is surer by √n.",
+            "This says where a single difference may fall. The mean of n of them is surer: divide "
+            "by √n.",
             mistakes.deviation_of_one,
             "Standard deviation and standard error are two things.",
         ),
         Wrong(
             "1.96 for a handful of seeds",
-            "1.96 belongs to very many pairs. For a few, Student's t is wider.",
+            "1.96 is right for very many pairs. For a few, use Student's t, which is wider.",
             mistakes.normal_quantile,
             "Five seeds are not many.",
         ),
         Wrong(
-            "n in the deviation",
-            "numpy's std divides by n; with a mean from the same numbers n - 1 are left: ddof=1.",
+            "n instead of n - 1 in the deviation",
+            "numpy's std divides by n. The mean comes from the same numbers, so divide by n - 1: "
+            "ddof=1.",
             mistakes.Interval(given=0),
             "n or n - 1: who gave you the mean?",
         ),
         Wrong(
-            "95 % on one side",
+            "95 % on one side only",
             "ppf(0.95) leaves 5 % above and another 5 % below. For 95 % in the middle take 0.975.",
             mistakes.Interval(quantile=0.95),
             "Two tails of 2.5 % each.",
         ),
         Wrong(
             "n degrees of freedom",
-            "The mean has used one up: n - 1 are left.",
+            "The mean has used up one degree of freedom. Use n - 1.",
             mistakes.Interval(freedom=0),
             "n or n - 1: who gave you the mean?",
         ),
         Wrong(
-            "b - a",
-            "Asked is the mean of a - b.",
+            "b - a instead of a - b",
+            "Give the mean of a - b.",
             mistakes.Interval(sign=-1.0),
             "Say what a positive difference means before you compute it.",
         ),
         Wrong(
             "the whole width",
-            "Asked is half of the interval's width.",
+            "This is the whole width of the interval. Give half of it.",
             mistakes.Interval(share=2.0),
             "Mean ± half width.",
         ),
         Wrong(
             "the ends of the interval",
-            "Asked are its middle and half of its width, not its ends.",
+            "These are the ends of the interval. Give its middle and half of its width.",
             mistakes.ends_of_the_interval,
             "Mean ± half width.",
         ),
@@ -714,7 +722,7 @@ PAIRED = Problem(
         ),
         Wrong(
             "the standard deviation alone",
-            "That is the spread of the differences. Divide by √n, multiply by Student's t.",
+            "This is the spread of the differences. Divide it by √n and multiply by Student's t.",
             mistakes.plain_deviation,
             "Standard deviation and standard error are two things.",
         ),
@@ -864,50 +872,50 @@ VERDICTS = Problem(
     ),
     wrong=(
         Wrong(
-            "always decided",
+            "every claim decided",
             "The sign of a mean is always one or the other. If the interval holds 0, another seed "
-            "might turn it: undecided.",
+            'might reverse it: return "undecided".',
             mistakes.always_decided,
             "Undecided is a result.",
         ),
         Wrong(
-            "the other way round",
-            "The numbers are errors: the claim is that the first is larger, so a positive difference "
-            "speaks for it.",
+            "the two verdicts swapped",
+            "The claim is that the first error is larger, so a positive difference speaks for it.",
             mistakes.the_other_way_round,
             "Say what a positive difference means before you compute it.",
         ),
         Wrong(
             "an interval too narrow",
-            "A claim is decided that five seeds do not settle. It takes Student's t for both sides "
-            "(0.975, n - 1) and the deviation with n - 1; 1.96, or five wins of five, is not enough.",
+            "You decide a claim that five seeds do not settle. Take Student's t for both sides "
+            "(0.975, n - 1) and the deviation with n - 1; 1.96, or five wins of five, is not "
+            "enough.",
             mistakes.VerdictsBy(mistakes.normal_quantile),
             "Five seeds are not many.",
         ),
         Wrong(
             "an interval too wide",
-            "A claim is left undecided that five seeds do settle. The mean of n differences is surer "
-            "than one of them by √n.",
+            "You leave a claim undecided that five seeds do settle. The mean of n differences is "
+            "surer than one of them: divide by √n.",
             mistakes.VerdictsBy(mistakes.deviation_of_one),
             "Standard deviation and standard error are two things.",
         ),
         Wrong(
-            "unpaired",
-            "A claim is left undecided that five seeds do settle: as strangers the rows spread as much "
-            "as the seeds do. Subtract pair by pair first.",
+            "the rows taken as unpaired",
+            "You leave a claim undecided that five seeds do settle: taken as unpaired, the rows "
+            "spread as much as the seeds do. Subtract pair by pair first.",
             mistakes.VerdictsBy(mistakes.unpaired),
             "Same seeds: pair them.",
         ),
         Wrong(
-            "always undecided",
+            "every claim undecided",
             "Undecided is right only where the interval holds 0. Where it does not, say which way.",
             mistakes.never_decided,
             "Undecided is a result, not a way out.",
         ),
         Wrong(
             "a threshold instead of an interval",
-            "Ten percent more is much where the seeds hardly differ, and nothing where they do. Ask the "
-            "interval of the differences.",
+            "Ten percent more is much where the seeds hardly differ, and little where they do. "
+            "Use the interval of the differences.",
             mistakes.ten_percent,
             "How sure is a matter of the spread, not of the size.",
         ),
@@ -920,7 +928,7 @@ VERDICTS = Problem(
         ),
         Wrong(
             "Student's t of five pairs for any number",
-            "2.776 belongs to five pairs. Three pairs need 4.303, ten need 2.262: ask "
+            "2.776 is right for five pairs only. Three pairs need 4.303, ten need 2.262: use "
             "scipy.stats.t.ppf(0.975, n - 1).",
             mistakes.VerdictsBy(mistakes.t_of_five),
             "A number in a program should say where it comes from.",

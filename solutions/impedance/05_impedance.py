@@ -625,7 +625,7 @@ else:
 share = early[20.0][1] / max(early[5.0][1], 1e-9)
 predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.25], share))])
 
-# %% [markdown] why="why_as_far"
+# %% [markdown] why="why_four_times_the_mass"
 # What did you see: how far away was the tip that behaves like 20 kg, after a tenth of a second and after two
 # seconds? Say which of inertia, damping and stiffness decides at which moment, and which of the three
 # alone sets the force with which the tip rests against a wall.

@@ -102,21 +102,21 @@ MSD = Problem(
     ),
     wrong=(
         Wrong(
-            "the spring pushes away",
-            "Beside its target the mass is driven farther away. A spring pulls back: k (x_d - x).",
+            "a spring that pushes away",
+            "The spring drives the mass away from its target. It should pull back: k (x_d - x).",
             mistakes.spring_pushes_away,
             "The report's equation 21 has this sign.",
         ),
         Wrong(
             "the force counted twice",
-            "The push comes in twice, once divided by m and once as if it were an acceleration. The "
-            "report's equation 19 does this.",
+            "The push is in twice, once divided by m and once as if it were an acceleration, as "
+            "in the report's equation 19. Keep the first.",
             mistakes.force_twice,
             "Check units term by term.",
         ),
         Wrong(
             "the force of the mass on the hand",
-            "`force` is what the hand does to the mass. A push to the right speeds it up to the "
+            "`force` is what the hand does to the mass: a push to the right accelerates it to the "
             "right.",
             mistakes.hand_pushed_back,
             "Say always: force of whom, on what.",
@@ -130,39 +130,39 @@ MSD = Problem(
         ),
         Wrong(
             "the target's acceleration left out",
-            "Without error and without push the mass must move as its target does, its acceleration "
-            "included.",
+            "Without error and without push the mass must move as its target does. Add the "
+            "target's acceleration.",
             mistakes.forgets_the_targets_acceleration,
             "Feed-forward.",
         ),
         Wrong(
             "a force, not an acceleration",
-            "That is the sum of the forces; divide by the mass.",
+            "This is the sum of the forces. Divide it by the mass.",
             mistakes.force_not_acceleration,
             "Newton.",
         ),
         Wrong(
             "all springs and dampers reversed",
-            "Beside its target the mass is driven farther away: e is target minus actual, and "
-            "then every gain comes with a plus.",
+            "The mass is driven away from its target. With e as target minus actual, every gain "
+            "has a plus.",
             mistakes.OneMass(spring=-1.0, damper=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the damper reversed",
-            "The damper drives the mass where it should brake: b (dx_d - dx).",
+            "The sign of the damper is wrong, so it drives the mass. Take b (dx_d - dx).",
             mistakes.OneMass(damper=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "spring and damper swapped",
-            "k belongs to the place, b to the speed.",
+            "k multiplies the error of the position, b that of the speed.",
             mistakes.OneMass(swapped=True),
             "Units tell: N/m and N s/m.",
         ),
         Wrong(
             "the target left out",
-            "The spring is tied to the target, not to the origin, and the damper too.",
+            "Spring and damper are tied to it, not to the origin: use x_d - x and dx_d - dx.",
             mistakes.OneMass(follows=0.0),
             "Draw the mass to the right of its target.",
         ),
@@ -185,14 +185,14 @@ MSD = Problem(
             "What do the two ends of the spring hold?",
         ),
         Wrong(
-            "the hand forgotten",
-            "The force of the hand is missing.",
+            "the force of the hand left out",
+            "Add it to the forces of the spring and the damper.",
             mistakes.OneMass(force=0.0),
             "Count the forces: spring, damper, hand.",
         ),
         Wrong(
             "not divided by the mass",
-            "Forces make an acceleration only when they are divided by m.",
+            "The forces are not divided by the mass. Divide them all by m.",
             mistakes.OneMass(power=0.0),
             "Units tell: N and m/s².",
         ),
@@ -291,22 +291,23 @@ OPERATIONAL_INERTIA = Problem(
     wrong=(
         Wrong(
             "J M Jᵀ",
-            "That has the right shape and the wrong unit: with J in m/rad, J M Jᵀ grows with the lever, "
-            "while the mass felt at the end of a longer lever gets smaller.",
+            "J M Jᵀ has the right shape and the wrong unit: with J in m/rad it grows with the "
+            "lever, while the mass felt at the end of a longer lever gets smaller. Begin with the "
+            "inverse of M.",
             mistakes.j_m_jt,
             "Follow a push through the arm instead of guessing a product that fits.",
         ),
         Wrong(
             "pseudo-inverses of J on both sides",
-            "With six joints this is right. With seven it forces the elbow to stay out of the motion, "
-            "and the arm seems heavier than it is: the elbow is free to give way.",
+            "With six joints this is right. With seven it keeps the elbow out of the motion, and "
+            "the arm seems heavier than it is. Follow the push instead: Jᵀ F, then M⁻¹, then J.",
             mistakes.pseudo_inverses,
             "pinv(J) chooses the shortest motion of the joints, the arm the one with the least "
             "energy.",
         ),
         Wrong(
-            "the last inverse is missing",
-            "J M⁻¹ Jᵀ tells how easily the tip moves. How heavy it feels is the inverse of that.",
+            "the last inverse left out",
+            "J M⁻¹ Jᵀ says how easily the tip moves. Its inverse says how heavy the tip feels.",
             mistakes.mobility,
             "Mobility and inertia.",
         ),
@@ -319,18 +320,19 @@ OPERATIONAL_INERTIA = Problem(
         ),
         Wrong(
             "only the diagonal of M",
-            "The joints shake each other: the numbers beside the diagonal matter.",
+            "The joints move each other, so the numbers beside the diagonal of M matter. Use the "
+            "whole matrix.",
             mistakes.diagonal_only,
             "Coupling.",
         ),
         Wrong(
             "the inverse of J M Jᵀ",
-            "Follow the push: Jᵀ F, then M⁻¹, then J. It is M that is inverted first.",
+            "M must be inverted first. Follow the push: Jᵀ F, then M⁻¹, then J.",
             mistakes.inverse_of_the_wrong,
             "Units tell: kg at the end.",
         ),
         Wrong(
-            "each axis alone",
+            "each axis by itself",
             "A push along x may move the tip along y: the numbers beside the diagonal belong to Λ.",
             mistakes.each_axis_alone,
             "Λ is a matrix.",
@@ -456,29 +458,31 @@ WORKSPACE_IMPEDANCE = Problem(
     ),
     wrong=(
         Wrong(
-            "a plus too many",
+            "the spring's sign reversed",
             "The spring drives the tip away from its target: within a second the arm leaves its "
-            "workspace. The report's equation 21 has this sign; its program does not.",
+            "workspace. With e as target minus actual, the stiffness has a plus. The report's "
+            "equation 21 has your sign; its program does not.",
             mistakes.plus_in_front,
             "One convention: e = target - actual, and every gain with a plus.",
         ),
         Wrong(
             "M Jᵀ for the acceleration of the tip",
-            "M Jᵀ ẍ is not even a torque. The tip's inertia is Λ, and its force comes to the joints by "
-            "Jᵀ: Jᵀ Λ ẍ. While the target stands still nobody notices.",
+            "M Jᵀ ẍ is not a torque: check its unit. The tip's inertia is Λ, and Jᵀ brings its "
+            "force to the joints: Jᵀ Λ ẍ. A target at rest does not show this.",
             mistakes.joint_inertia_for_tip,
             "The report's program has this; units would have told.",
         ),
         Wrong(
             "J̇ q̇ left out",
-            "The tip speeds up even if the joints turn evenly (think of a circle). That part comes by "
-            "itself: take it off before you multiply with Λ.",
+            "The tip accelerates even if the joints turn evenly (think of a circle). Subtract "
+            "this part, J̇ q̇, before you multiply with Λ.",
             mistakes.no_drift,
             "ẍ = J q̈ + J̇ q̇: two terms.",
         ),
         Wrong(
-            "nobody carries the weight",
-            "Here the arm does not carry itself: g(q) belongs to the torque.",
+            "a weight that nobody carries",
+            "The weight is missing, and here the arm does not carry itself. Add g(q) to the "
+            "torque.",
             mistakes.weightless,
             "A spring holds a weight only where it is stretched.",
         ),
@@ -491,15 +495,16 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "Euler angles subtracted",
-            "The difference of roll, pitch and yaw is not a rotation vector; with the gripper down it "
-            "even has the wrong signs. lk.se3.pose_error takes the logarithm.",
+            "The difference of roll, pitch and yaw is not a rotation vector; with the gripper "
+            "down it even has the wrong signs. Use lk.se3.pose_error, which takes the logarithm.",
             mistakes.euler_subtraction,
             "Position errors alone never show it.",
         ),
         Wrong(
-            "the springs inside Λ",
-            "This multiplies the springs by the inertia: then a stiffness in N/m means nothing any more. "
-            "It is computed torque at the tip, a good tracking law, but no spring.",
+            "the springs multiplied by Λ",
+            "The springs are multiplied by the inertia, so that a stiffness in N/m has no "
+            "meaning. Keep springs and dampers outside Λ; inside, the law is computed torque at "
+            "the tip.",
             mistakes.springs_inside,
             "Impedance: gains in N/m, outside the inertia.",
         ),
@@ -512,57 +517,60 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "springs and dampers reversed",
-            "e and ė are target minus actual, and then every gain comes with a plus.",
+            "The tip is driven away from its target. With e and ė as target minus actual, every "
+            "gain has a plus.",
             mistakes.TipLaw(e=-1.0, de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the dampers reversed",
-            "ė is the target's twist minus J q̇: as it is, the dampers drive.",
+            "The sign of ė is wrong, so the dampers drive the tip. Take the target's twist minus "
+            "J q̇.",
             mistakes.TipLaw(de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the target's acceleration left out",
-            "Λ times target.dtwist is missing: the tip drags behind a target that speeds up.",
+            "Λ times target.dtwist is missing, so the tip lags behind a target that speeds up. "
+            "Add it.",
             mistakes.TipLaw(feed=0.0),
             "What does the motion itself take?",
         ),
         Wrong(
             "J̇ q̇ with the other sign",
-            "That part of the acceleration comes by itself: it is taken off what the joints have "
-            "to bring up.",
+            "This part of the acceleration comes by itself: subtract it from what the joints have "
+            "to provide.",
             mistakes.TipLaw(drift=-1.0),
             "ẍ = J q̈ + J̇ q̇: solve for J q̈.",
         ),
         Wrong(
             "no Coriolis torques",
-            "C q̇ belongs to the equation of motion. At low speed nobody notices.",
+            "C q̇ is missing. Add it, although at low speed its effect is hard to see.",
             mistakes.TipLaw(coriolis=0.0),
             "Small is not nought: try it fast.",
         ),
         Wrong(
-            "the weight taken off",
-            "g(q) is what the motors must give to hold the arm: it comes with a plus.",
+            "the weight subtracted",
+            "g(q) is what the motors must give to hold the arm: add it.",
             mistakes.TipLaw(weight=-1.0),
             "g is on the left of the equation, with the motors on the right.",
         ),
         Wrong(
             "no inertia at the tip",
-            "The acceleration must go through Λ to become a force.",
+            "Λ is missing. Multiply the acceleration by it to get a force.",
             mistakes.TipLaw(power=0),
             "Units tell: N and m/s².",
         ),
         Wrong(
             "the inverse of Λ",
-            "Λ turns an acceleration into a force; its inverse does the opposite.",
+            "Λ itself turns an acceleration into a force.",
             mistakes.TipLaw(power=-1),
             "Units tell: N and m/s².",
         ),
         Wrong(
             "a pseudo-inverse for Jᵀ",
-            "A force at the tip takes the joint torques Jᵀ F, exactly. The pseudo-inverse belongs "
-            "to speeds.",
+            "The pseudo-inverse belongs to speeds. A force at the tip takes the joint torques Jᵀ "
+            "F, exactly.",
             mistakes.TipLaw(pinv=True),
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
@@ -575,7 +583,7 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "stiffness and damping swapped",
-            "stiffness belongs to the error, damping to its rate.",
+            "Multiply the error by stiffness and its rate by damping.",
             mistakes.TipLaw(swapped=True),
             "Units tell: N/m and N s/m.",
         ),
@@ -595,7 +603,8 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "no springs for the turn",
-            "The last three numbers of the error are missing, so the hand keeps any tilt.",
+            "The last three numbers of the error are missing, so the hand keeps any tilt. Use all "
+            "six.",
             mistakes.TipLaw(turn=0.0),
             "A gain of zero hides a wrong sign.",
         ),
@@ -725,23 +734,24 @@ SHAPED_IMPEDANCE = Problem(
     ),
     wrong=(
         Wrong(
-            "the wrench added plainly",
-            "The wrench comes in with the factor Λ M_d⁻¹ - 1: nought if M_d = Λ. Added plainly, the "
-            "motors always help the hand as much as it pushes.",
+            "the wrench added as it is",
+            "Added as it is, the wrench makes the motors always help the hand as much as it "
+            "pushes. Multiply it by Λ M_d⁻¹ - 1, which is zero if M_d = Λ.",
             mistakes.force_added_plainly,
             "Test the special case M_d = Λ.",
         ),
         Wrong(
             "the wrench of the robot on the hand",
-            "`wrench` is what the hand does to the arm. Turned round, a heavy arm feels light and a "
-            "light one heavy.",
+            "The sign of the wrench is wrong, so a heavy arm feels light and a light one heavy. "
+            "`wrench` is what the hand does to the arm.",
             mistakes.wrench_of_the_robot,
             "Say always: force of whom, on what.",
         ),
         Wrong(
-            "the wrench forgotten",
-            "Without the measured wrench the arm cannot pretend to another inertia: the hand's push "
-            "still meets the arm's own.",
+            "the wrench left out",
+            "Without the measured wrench the hand still feels the arm's own inertia. The wrench "
+            "belongs both to the acceleration that M_d shapes and to the hand's share of the "
+            "work.",
             mistakes.force_forgotten,
             "That is why shaping needs a sensor, and plain impedance does not.",
         ),
@@ -754,79 +764,82 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the report's equation 19",
-            "The wrench stands outside the braces as a force and inside as an acceleration. The report "
-            "says that M_d = M removes it; from this equation it does not.",
+            "The wrench is outside the braces as a force and inside as an acceleration, as in the "
+            "report's equation 19. Divide the one inside by M_d, so that the wrench cancels where "
+            "M_d = Λ.",
             mistakes.the_reports_equation,
             "Units, and the special case M_d = Λ.",
         ),
         Wrong(
-            "the hand's work done twice",
-            "The motors bring up all the force that the motion takes, and the hand pushes on top. Take "
-            "its wrench off again.",
+            "the hand's share left in",
+            "The motors provide all the force that the motion takes, and the hand pushes as well. "
+            "Subtract its wrench.",
             mistakes.hand_works_twice,
             "Λ a = F_motors + F_hand.",
         ),
         Wrong(
             "the wrench inside reversed",
-            "The hand pushes the tip where it pushes: in M_d⁻¹ (D ė + K e + F) the wrench has a "
-            "plus.",
+            "The tip should yield to the push: M_d⁻¹ (D ė + K e + F).",
             mistakes.ShapedLaw(inside=-1.0),
             "Follow one push through the law, sign by sign.",
         ),
         Wrong(
             "the hand's share added",
-            "The hand does its share of the work, so the motors do less: take the wrench off.",
+            "The hand does its share of the work, so the motors must do less. Subtract the wrench "
+            "instead of adding it.",
             mistakes.ShapedLaw(outside=-1.0),
             "Who does which share of the work?",
         ),
         Wrong(
-            "the wrench outside alone",
-            "The wrench must also speed the tip up, by M_d⁻¹ F.",
+            "the wrench outside the braces alone",
+            "The wrench must also accelerate the tip. Add M_d⁻¹ F inside the braces.",
             mistakes.ShapedLaw(inside=0.0),
             "Follow one push through the law, sign by sign.",
         ),
         Wrong(
             "M_d where Λ belongs",
-            "The acceleration wanted is put through the arm's own inertia Λ: that is what the "
-            "motors have to move. M_d only says which acceleration is wanted.",
+            "The motors have to move the arm's own inertia, so multiply the acceleration by Λ. "
+            "M_d only says how large this acceleration should be.",
             mistakes.ShapedLaw(for_own=True),
             "First the wanted acceleration, then what it takes.",
         ),
         Wrong(
             "J̇ q̇ left out",
-            "The tip speeds up even if the joints turn evenly: take that off before you multiply "
-            "with Λ.",
+            "The tip accelerates even if the joints turn evenly. Subtract this part, J̇ q̇, "
+            "before you multiply with Λ.",
             mistakes.ShapedLaw(drift=0.0),
             "ẍ = J q̈ + J̇ q̇: two terms.",
         ),
         Wrong(
-            "nobody carries the weight",
-            "Here the arm does not carry itself: g(q) belongs to the torque.",
+            "a weight that nobody carries",
+            "The weight is missing, and here the arm does not carry itself. Add g(q) to the "
+            "torque.",
             mistakes.ShapedLaw(weight=0.0),
             "A spring holds a weight only where it is stretched.",
         ),
         Wrong(
             "no Coriolis torques",
-            "C q̇ belongs to the equation of motion. At low speed nobody notices.",
+            "C q̇ is missing. Add it, although at low speed its effect is hard to see.",
             mistakes.ShapedLaw(coriolis=0.0),
             "Small is not nought: try it fast.",
         ),
         Wrong(
             "springs and dampers reversed",
-            "e and ė are target minus actual, and then every gain comes with a plus.",
+            "The tip is driven away from its target. With e and ė as target minus actual, every "
+            "gain has a plus.",
             mistakes.ShapedLaw(e=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the target's acceleration left out",
-            "target.dtwist is missing: the tip drags behind a target that speeds up.",
+            "target.dtwist is missing, so the tip lags behind a target that speeds up. Add it.",
             mistakes.ShapedLaw(feed=0.0),
             "What does the motion itself take?",
         ),
         Wrong(
             "a pseudo-inverse for Jᵀ",
-            "A force at the tip takes the joint torques Jᵀ F, exactly. The pseudo-inverse belongs "
-            "to speeds.",
+            "The pseudo-inverse belongs to speeds. A force at the tip takes the joint torques Jᵀ "
+            "F, exactly.",
             mistakes.ShapedLaw(pinv=True),
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
@@ -1034,39 +1047,41 @@ APPARENT_STIFFNESS = Problem(
         ),
         Wrong(
             "a fit through the origin",
-            "The force at rest is not zero (a tool's weight, a sensor's offset), and without a term for "
-            "it the stiffness has to explain it.",
+            "The force at rest is not zero (a tool's weight, a sensor's offset), and without a "
+            "term for it the stiffness has to explain it. Fit an offset too.",
             mistakes.through_the_origin,
             "Fit the offset, or it fits you.",
         ),
         Wrong(
             "the compliance",
-            "That is metres for a newton. The stiffness is newtons for a metre, its inverse.",
+            "This is the compliance, in metres per newton. The stiffness is its inverse, in "
+            "newtons per metre.",
             mistakes.compliance,
             "Units.",
         ),
         Wrong(
             "K transposed",
-            "lstsq works with rows: what it gives is K turned on its side. As long as K is symmetric "
-            "nobody notices.",
+            "lstsq works with rows, so what it gives is the transpose of K. Transpose it; a "
+            "symmetric K does not show this.",
             mistakes.transposed,
             "Rows of data: F = x Kᵀ.",
         ),
         Wrong(
-            "the regression the other way round, or of both",
-            "This puts the noise into the displacement, by a fit of the displacement to the force or by "
-            "total least squares. It is in the force, so the force alone belongs on the left.",
+            "a fit with the noise in the displacement",
+            "This fit assumes noise in the displacement, but the noise is in the force. Fit the "
+            "force to the displacement by ordinary least squares.",
             mistakes.other_regression,
             "Least squares is not symmetric: errors belong to the left side.",
         ),
         Wrong(
             "a stiffness below zero",
-            "`force` is that of the hand on the arm, so it points where the arm goes.",
+            "`force` is that of the hand on the arm, so it points where the arm moves, and the "
+            "stiffness is positive. Check the sign.",
             mistakes.arm_against_hand,
             "Say always: force of whom, on what.",
         ),
         Wrong(
-            "no offset, and on its side",
+            "no offset, and K transposed",
             "lstsq works with rows, so K comes out transposed; and the force at rest is not zero, "
             "so the fit needs an offset.",
             mistakes.transposed_through_the_origin,
@@ -1074,33 +1089,33 @@ APPARENT_STIFFNESS = Problem(
         ),
         Wrong(
             "a fit of the displacement",
-            "That is metres for a newton. Asked are newtons for a metre, with the noise in the "
-            "force.",
+            "This fit gives metres per newton. Give newtons per metre, from a fit with the noise "
+            "in the force.",
             mistakes.regression_of_the_displacement,
             "Look at the unit of the result.",
         ),
         Wrong(
             "the diagonal alone",
-            "A push along x may move the tip along y: the numbers beside the diagonal are asked "
-            "too.",
+            "A push along x may move the tip along y. Give the numbers beside the diagonal too.",
             mistakes.diagonal_of_the_fit,
             "K is a matrix.",
         ),
         Wrong(
             "made symmetric",
-            "What is measured need not be symmetric, and a fit should not make it so.",
+            "A measured stiffness need not be symmetric. Leave the fit as it is.",
             mistakes.made_symmetric,
             "Do not assume what you want to see.",
         ),
         Wrong(
             "newtons for a millimetre",
-            "Asked are N/m.",
+            "These numbers are in N/mm. Give N/m.",
             mistakes.in_millimetres,
             "SI inside, millimetres in print.",
         ),
         Wrong(
             "a line for each axis",
-            "Three fits, each of one axis by itself, miss what a push along x does along y.",
+            "Three fits, each of one axis by itself, miss what a push along x does along y. Fit "
+            "all nine numbers together.",
             mistakes.axis_by_axis_fit,
             "K is a matrix: one fit for all.",
         ),

@@ -478,7 +478,7 @@ lk.plotting.show(
     + ". With friction the balance follows what friction takes."
 )
 
-# %% [markdown] why="why_no_torque"
+# %% [markdown] why="why_base_joint"
 # What torque did you see at s0, and why? Use what $g_k = \partial V / \partial q_k$ says about the axis of
 # s0, and say how the answer would change if Baxter's torso leaned forwards by 30 degrees.
 #

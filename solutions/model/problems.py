@@ -61,20 +61,22 @@ JACOBIAN = Problem(
         ),
         Wrong(
             "the cross product reversed",
-            "The linear rows have the other sign: z × r, not r × z, with r from the joint to the tip.",
+            "The linear rows have the wrong sign. Take z × r, not r × z, with r from the joint to "
+            "the tip.",
             mistakes.product_reversed,
             "A cross product changes its sign with the order.",
         ),
         Wrong(
             "rows (w, v)",
-            "The angular rows come first. In this course a twist is (v, w), linear part first; books "
-            "differ, so say it aloud.",
+            "The angular rows come first. In this course a twist is (v, w), with the linear part "
+            "first; books differ.",
             mistakes.turns_first,
             "Twist order is a convention: settle it once.",
         ),
         Wrong(
             "columns of sliding joints",
-            "A joint that slides moves the tip along its axis; these joints turn.",
+            "These are the columns of joints that slide along their axes. Baxter's joints turn: "
+            "the linear part is z × r, the angular part is z.",
             mistakes.axis_for_velocity,
             "A revolute joint's linear part is z × r.",
         ),
@@ -169,27 +171,28 @@ MASS_MATRIX = Problem(
         ),
         Wrong(
             "the inertia turned the wrong way",
-            "Rᵀ I R takes an inertia from the world into the link; here it goes the other way.",
+            "Rᵀ I R takes an inertia from the world into the link. Take it the other way, with R "
+            "I Rᵀ.",
             mistakes.inertia_turned_back,
             "R_wl takes vectors from the link to the world, so I_w = R I_l Rᵀ.",
         ),
         Wrong(
-            "links as points",
-            "The links' own turning is left out. The shoulder hardly notices, but the last joint "
-            "turns the hand about itself, and comes out with next to no inertia.",
+            "links treated as points",
+            "The links' own turning is left out, so the last joint, which turns the hand about "
+            "itself, has almost no inertia. Add the part of the angular velocities.",
             mistakes.points_only,
             "The smallest eigenvalue of M tells: it is close to zero.",
         ),
         Wrong(
-            "half of it",
-            "The one half belongs to the energy, not to the matrix.",
+            "half of the mass matrix",
+            "The factor one half belongs to the energy, not to the matrix. Leave it out.",
             mistakes.half_of_it,
             "T = ½ dqᵀ M dq.",
         ),
         Wrong(
             "the rows swapped",
-            "Rows 0 to 2 of each Jacobian belong to the velocity and go with the mass; rows 3 "
-            "to 5 to the turning, with the inertia.",
+            "Rows 0 to 2 of each Jacobian are the velocity and go with the mass; rows 3 to 5 are "
+            "the angular velocity and go with the inertia.",
             mistakes.rows_swapped,
             "A twist is (v, w), linear part first.",
         ),
@@ -303,35 +306,36 @@ GRAVITY = Problem(
     ),
     wrong=(
         Wrong(
-            "the other sign",
-            "This is what gravity does. Asked is what holds against it: positive where raising the "
-            "arm takes work.",
+            "the sign reversed",
+            "These are the torques of gravity itself. The question asks for those that hold "
+            "against it: positive where raising the arm takes work.",
             mistakes.falls_faster,
             "g(q) = +∂V/∂q is on the same side of the equation as the motors' torque.",
         ),
         Wrong(
             "all the weight at the hand",
-            "Every link has its own centre of mass, and its own Jacobian. With all of it at the hand "
-            "the arm seems heavier than it is.",
+            "With all the weight at the hand the arm seems heavier than it is. Every link has its "
+            "own centre of mass and its own Jacobian: use each.",
             mistakes.all_at_the_hand,
             "Each link pulls where it is.",
         ),
         Wrong(
             "only the hand has weight",
-            "The formula of the report lets gravity pull at the tip alone. Most of the weight is in "
-            "the upper arm.",
+            "Gravity pulls at the hand alone here, as in the report's formula. Most of the weight "
+            "is in the upper arm: sum over all links.",
             mistakes.only_the_hand,
             "Sum over all links.",
         ),
         Wrong(
-            "a tenth of it",
-            "Ten times too small: the report has 0.981 where 9.81 belongs.",
+            "a tenth of the torques",
+            "The torques are ten times too small. The report has 0.981 where 9.81 belongs.",
             mistakes.a_tenth,
             "Print a number with its unit, and ask whether you believe it.",
         ),
         Wrong(
             "masses for weights",
-            "These are kg m, not N m: the weight of a mass is 9.81 m/s² times it.",
+            "These numbers are in kg m, not in N m. The weight of a mass is the mass times 9.81 "
+            "m/s².",
             mistakes.without_g,
             "Write the unit of every factor.",
         ),
@@ -465,36 +469,37 @@ CORIOLIS = Problem(
     ),
     wrong=(
         Wrong(
-            "half the rate of M",
-            "C = Ṁ/2 passes the skew test, for Ṁ - 2C is then zero, and zero is skew. But C dq is not "
-            "the torque. Both tests are needed.",
+            "half of the rate of M",
+            "C = Ṁ/2 passes the skew test, because Ṁ - 2C is then zero, and zero is skew. But C "
+            "dq is not the Coriolis torque. Use Christoffel's symbols.",
             mistakes.half_the_rate,
             "A test that zero passes says little.",
         ),
         Wrong(
-            "right torque, not skew",
-            "C dq is right, straight from Lagrange's equation. But there are many such matrices, and "
-            "for this one Ṁ - 2C is not skew, which the proofs of notebook 04 rely on.",
+            "the right torque, but not skew",
+            "C dq is right, but there are many such matrices, and for this one Ṁ - 2C is not "
+            "skew, on which the proofs of notebook 04 rely. Use Christoffel's symbols.",
             mistakes.not_skew,
             "C dq does not fix C; Christoffel's choice does.",
         ),
         Wrong(
-            "twice too large",
+            "twice the right matrix",
             "Either Christoffel's one half is missing, or a difference between q + h and q - h was "
             "divided by h: it spans 2h.",
             mistakes.without_the_half,
             "The half comes from the kinetic energy; the 2h from a difference taken both ways.",
         ),
         Wrong(
-            "the minus at the wrong term",
-            "This is the transpose. The minus goes to the slope along the row's own joint, ∂M_jk/∂q_i.",
+            "the minus on the wrong term",
+            "This is the transpose of C. The minus belongs to the slope along the row's own "
+            "joint, ∂M_jk/∂q_i.",
             mistakes.signs_mixed,
             "The minus is the slope of the kinetic energy along q_i.",
         ),
         Wrong(
             "all three slopes added",
-            "The third one, ∂M_jk/∂q_i, is taken off: it is the slope of the kinetic energy, on "
-            "the other side of Lagrange's equation.",
+            "The third slope, ∂M_jk/∂q_i, must be subtracted: it comes from the kinetic energy, "
+            "on the other side of Lagrange's equation.",
             mistakes.all_signs_plus,
             "The signs are +, +, -.",
         ),
@@ -580,47 +585,47 @@ POWER_BALANCE = Problem(
     wrong=(
         Wrong(
             "kinetic energy only",
-            "A lift stores energy in height. Without the potential energy, the balance shows the "
-            "power that gravity takes.",
+            "Lifting the arm stores energy too. Add the potential energy; without it the balance "
+            "shows the power that gravity takes.",
             mistakes.kinetic_only,
             "Energy is T + V.",
         ),
         Wrong(
             "the torque that was commanded",
-            "`log.command` is what was asked for. Where a limit cut it, the motors gave less: that is "
-            "`log.tau`.",
+            "`log.command` is what the controller asked for. Where a limit cut it, the motors "
+            "gave less: use `log.tau`.",
             mistakes.commanded_torque,
             "What was commanded is not what was done.",
         ),
         Wrong(
-            "the other way round",
-            "The sign: growth of the energy minus what the motors put in. Friction then shows as a "
-            "loss, below zero, and a helping hand above it.",
+            "the sign reversed",
+            "Take the growth of the energy minus the power of the motors: friction then shows as "
+            "a loss, below zero, and a helping hand as a gain.",
             mistakes.motors_minus_energy,
             "Say in words what a positive number means.",
         ),
         Wrong(
             "per row, not per second",
-            "The slope is taken per row of the log. Give np.gradient the times as well.",
+            "The slope is per row of the log, not per second. Give np.gradient the times as well.",
             mistakes.steps_not_seconds,
             "J and W differ by seconds.",
         ),
         Wrong(
-            "without its sign",
-            "An absolute value hides whether energy came or went: friction is a loss, below zero, a "
-            "helping hand lies above it.",
+            "the absolute value",
+            "An absolute value hides whether energy came or went. Keep the sign: friction is a "
+            "loss, below zero, and a helping hand a gain.",
             mistakes.absolute,
             "Say in words what a positive number means.",
         ),
         Wrong(
-            "what friction takes",
-            "That is the power of the plant's friction, not what the energies and the motors leave. "
-            "A hand that helps is missing in it.",
+            "the power of friction instead",
+            "This is the power of the plant's friction alone; a helping hand is missing in it. "
+            "Subtract the motors' power from the growth of the energy.",
             mistakes.friction_alone,
             "A balance finds what nobody told you of.",
         ),
         Wrong(
-            "the power of some joints",
+            "the power of only some joints",
             "The wrist turns too, and its motor works: sum torque times speed over all seven joints.",
             mistakes.without_the_last_joint,
             "Count the motors.",

@@ -428,7 +428,7 @@ def witness(theta, duration):
     ### END SOLUTION
 
 
-# %% [markdown] why="why_a_quarter"
+# %% [markdown] why="why_twice_the_time"
 # What did you see: by how much did the largest acceleration change when the circle took twice as long? Say
 # why with the two terms of `compose`, and what follows for an arm whose motors are too weak for a path.
 #

@@ -61,13 +61,13 @@ BANG_BANG = Problem(
     wrong=(
         Wrong(
             "the second half still uses a·t for the speed",
-            "The speed grows to the end and drops to nothing at once. While braking it is a times "
-            "the time that is left.",
+            "The speed grows to the end and then drops to zero at once. While braking, the speed "
+            "is a times the time that is left.",
             mistakes.accelerates_on,
             "The speed is the integral of the acceleration from the start, not a·t for ever.",
         ),
         Wrong(
-            "no hold before the start and after the end",
+            "no rest before the start and after the end",
             "The formulas go on where the motion does not: s runs below 0 or back from 1. Hold the "
             "start before t = 0 and the goal from t = T on, both at rest.",
             mistakes.runs_past_the_ends,
@@ -75,7 +75,8 @@ BANG_BANG = Problem(
         ),
         Wrong(
             "an acceleration of 2/T²",
-            "That reaches only half of the way. Speeding up lasts T/2, so a (T/2)²/2 = 1/2.",
+            "With this, s reaches only half of what it should. Speeding up lasts T/2, so choose a "
+            "such that a (T/2)²/2 = 1/2.",
             mistakes.twice_too_slow,
             "Check the end point of every time scaling: s(T) = 1.",
         ),
@@ -219,22 +220,22 @@ TRAPEZOID = Problem(
     wrong=(
         Wrong(
             "no triangular case",
-            "On a short way the ramps of a long one overlap: s passes 1 or comes back. The speed "
-            "reached is the smaller of v_max and √(distance·a_max).",
+            "On a short distance the ramps of a long one overlap: s passes 1 or comes back. Use "
+            "the smaller of v_max and √(distance·a_max) as the top speed.",
             mistakes.always_cruises,
             "A trapezoid with a negative cruise is a triangle.",
         ),
         Wrong(
             "limits taken for limits of s",
-            "v_max and a_max are in metres; s has no unit. Divide way, speed and acceleration by the "
-            "distance.",
+            "v_max and a_max are in metres, and s has no unit. Divide way, speed and acceleration "
+            "by the distance.",
             mistakes.limits_on_s,
             "Units: a limit in m/s bounds distance·ds, not ds.",
         ),
         Wrong(
             "metres in place of s",
-            "This is the way in metres. s goes from 0 to 1: divide way, speed and acceleration "
-            "by the distance.",
+            "This is the distance travelled, in metres. s goes from 0 to 1: divide way, speed and "
+            "acceleration by the distance.",
             mistakes.way_for_s,
             "s has no unit.",
         ),
@@ -371,14 +372,15 @@ CIRCLE = Problem(
     wrong=(
         Wrong(
             "the radius measured in space",
-            "With the centre at another height, the distance in space is longer than the radius in "
-            "the plane, and the circle misses its own start. The report's equation 12 does this.",
+            "With the centre at another height, the distance in space is longer than the radius "
+            "in the plane, and the circle misses its own start. Measure the radius in the plane. "
+            "The report's equation 12 has this mistake.",
             mistakes.radius_in_space,
             "A radius is measured in the circle's plane.",
         ),
         Wrong(
             "the height of the centre",
-            "The circle jumps to the centre's height. It keeps the height of its start.",
+            "The circle jumps to the centre's height. Keep the height of its start.",
             mistakes.height_of_the_centre,
             "A reference must begin where the arm is.",
         ),
@@ -390,23 +392,23 @@ CIRCLE = Problem(
             "A reference must begin where the arm is.",
         ),
         Wrong(
-            "derivatives by the angle",
-            "The derivatives are those with respect to the angle. With respect to s each carries "
-            "one more factor 2π.",
+            "derivatives with respect to the angle",
+            "These are the derivatives with respect to the angle. With respect to s each has one "
+            "more factor 2π.",
             mistakes.rates_without_two_pi,
             "The chain rule again: dφ/ds = 2π.",
         ),
         Wrong(
-            "clockwise",
-            "Seen from above it goes round with the clock. Angles grow counter-clockwise: θ = "
-            "θ₀ + 2πs.",
+            "a clockwise circle",
+            "Seen from above your circle runs clockwise. Angles grow counter-clockwise: θ = θ₀ + "
+            "2πs.",
             mistakes.clockwise,
             "Angles about z grow from x to y.",
         ),
         Wrong(
-            "accelerated outwards",
-            "The second derivative points from the point to the axis: differentiating a cosine "
-            "twice gives minus a cosine.",
+            "an acceleration that points outwards",
+            "The second derivative should point to the axis: differentiating a cosine twice gives "
+            "minus a cosine.",
             mistakes.accelerates_outwards,
             "What goes round is pulled inwards.",
         ),
@@ -537,36 +539,35 @@ COMPOSE = Problem(
     ),
     wrong=(
         Wrong(
-            "the term dx·dds is missing",
-            "The acceleration along the way is lost: on a line nothing would remain. The product "
+            "the term dx·dds left out",
+            "The acceleration along the path is lost; on a line none would remain. The product "
             "rule has two terms.",
             mistakes.drops_the_ramp,
             "Product rule: d/dt (dx ds) = ddx ds² + dx dds.",
         ),
         Wrong(
             "ds where ds² belongs",
-            "The centripetal term grows with the square of the speed. A line cannot show this, for "
-            "its ddx is zero; a circle does.",
+            "The centripetal term grows with the square of the speed: write ds². A line cannot "
+            "show this, because its ddx is zero; a circle does.",
             mistakes.forgets_the_square,
             "The inner derivative comes out twice.",
         ),
         Wrong(
-            "the path asked at t",
-            "A path knows nothing of time: ask it at s, which the schedule gives.",
+            "the path evaluated at t",
+            "A path knows nothing of time. Evaluate it at s, which the schedule gives.",
             mistakes.time_for_s,
             "s is where, t is when.",
         ),
         Wrong(
             "still the derivatives with respect to s",
-            "These are dx and ddx of the path. With respect to time each needs its chain rule: "
-            "what is d/dt of x(s(t))?",
+            "These are dx and ddx of the path. For derivatives with respect to time use the chain "
+            "rule: what is d/dt of x(s(t))?",
             mistakes.still_by_s,
             "A derivative has a variable; say it aloud.",
         ),
         Wrong(
-            "ddx·dds",
-            "Derivatives of the same order are not multiplied. Differentiate dx·ds once more: "
-            "the product rule gives two terms.",
+            "the second derivatives multiplied",
+            "Differentiate dx·ds once more: the product rule gives two terms.",
             mistakes.schedule_twice,
             "The second derivative of x(s(t)) is ddx·ds² + dx·dds.",
         ),
@@ -679,30 +680,30 @@ SEGMENT_AT = Problem(
     ),
     wrong=(
         Wrong(
-            "sums through the current segment",
-            "The local time comes out negative: the sum holds the segment's own duration as well. "
-            "The report's equation 15 does this.",
+            "a sum that includes the current segment",
+            "The local time comes out negative, because the sum includes the segment's own "
+            "duration, as in the report's equation 15. Subtract only the durations before it.",
             mistakes.sums_through_the_segment,
             "Sum over j < k, not over j <= k.",
         ),
         Wrong(
             "index -1 at the start",
-            "At t = 0 nothing is over, and the count gives -1, which Python takes for the last "
-            "segment: the arm would start at the last corner. The authors' program did.",
+            "At t = 0 the index is -1, which Python takes for the last segment: the arm would "
+            "start at the last corner, as in the authors' program. Return index 0 there.",
             mistakes.one_segment_early,
             "Python's index -1 is valid, and wrong.",
         ),
         Wrong(
-            "runs out of segments",
-            "At the end no segment is left to look at, and the list is asked for one too many. "
-            "After the end the last one stays on.",
+            "no segment left at the end",
+            "At the end no segment is left, and the index runs past the list. After the end stay "
+            "in the last segment.",
             mistakes.runs_out_of_segments,
             "A reference is asked at any time.",
         ),
         Wrong(
             "the last segment begins again",
-            "After the end the last segment is still on: its local time goes on growing, so do "
-            "not take off its duration.",
+            "After the end the last segment goes on and its local time keeps growing. Do not "
+            "subtract its duration.",
             mistakes.starts_anew_after_the_end,
             "Say what happens at the ends before you write the loop.",
         ),
@@ -808,15 +809,16 @@ WITNESS = Problem(
     ),
     wrong=(
         Wrong(
-            "an end point",
-            "At its end the printed motion stands still, at a wrong angle, but nothing jumps there.",
+            "a time at the end of the motion",
+            "At its end the printed motion stands still, at a wrong angle, but it does not jump "
+            "there. Look for the time of the jump.",
             mistakes.an_end_point,
             "A witness is a place where the law fails, not where the number looks odd.",
         ),
         Wrong(
             "a time in the second half",
-            "The whole second half is shifted, but it moves smoothly. The break is where the shift "
-            "comes in.",
+            "The whole second half is shifted, but it moves smoothly. Look for the jump where the "
+            "shift begins.",
             mistakes.a_late_time,
             "Shifted is not broken: look at the seam.",
         ),

@@ -24,6 +24,8 @@ from .tasks import Task
 
 MOVING = 0.05
 """Below this speed, in [rad/s], a joint may stick, and says nothing about its friction."""
+WINDOW = 21
+"""Neighbouring reports through which one cubic is laid."""
 SOFT = 0.01
 """Over this speed, in [rad/s], the sign of the target's speed is rounded off."""
 
@@ -99,8 +101,9 @@ def fit(log: Log, model: Model, smooth: bool = True) -> Friction:
     step = float(np.median(np.diff(t)))
     even = np.arange(t[0], t[-1], step)
     q = np.column_stack([np.interp(even, t, x) for x in log.measured.q[at].T])
-    dq, ddq = (savgol_filter(q, 21, 3, deriv=k, delta=step, axis=0) for k in (1, 2))
-    wide = 2 * round(10 * step / float(np.median(np.diff(log.t)))) + 1  # as 21 of the reports
+    dq, ddq = (savgol_filter(q, WINDOW, 3, deriv=k, delta=step, axis=0) for k in (1, 2))
+    per_report = step / float(np.median(np.diff(log.t)))
+    wide = 2 * round(WINDOW // 2 * per_report) + 1  # the same time, in commands
     sent = savgol_filter(log.command, wide, 3, axis=0) if smooth else log.command
     command = np.column_stack([np.interp(even, log.t, x) for x in sent.T])
     moved = np.array(

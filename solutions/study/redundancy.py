@@ -18,6 +18,9 @@ from labkit.shapes import Array
 
 from .singular import damped_inverse
 
+OUTWARDS = 0.1
+"""How fast the tip is pulled while the elbow is nearly straight, in [m/s]."""
+
 
 def laps(model: Model, q0: Any, count: int = 6, pull: float = 0.0, radius: float = 0.12) -> Array:
     """Joint angles after each lap of the tip around an upright circle, shape (count + 1, n).
@@ -53,7 +56,7 @@ def manipulability(model: Model, joints: Any, count: int = 60) -> tuple[Array, A
 
 
 def stretched(model: Model, angles: Any, damping: float) -> tuple[Array, Array]:
-    """The tip pulled outwards at 0.1 m/s, the elbow at these angles.
+    """The tip pulled outwards, the elbow at these angles.
 
     Args:
         model: Of the arm.
@@ -68,7 +71,7 @@ def stretched(model: Model, angles: Any, damping: float) -> tuple[Array, Array]:
         q = np.array(model.robot.ready)
         q[3] = angle
         J, p = model.tip_jacobian(q), model.pose(q)[:3, 3]
-        V = np.concatenate([0.1 * p / np.linalg.norm(p), np.zeros(3)])
+        V = np.concatenate([OUTWARDS * p / np.linalg.norm(p), np.zeros(3)])
         u = damped_inverse(J, damping) @ V
         fastest.append(np.abs(u).max())
         missed.append(np.linalg.norm((V - J @ u)[:3]))

@@ -460,8 +460,8 @@ lk.plotting.show(
 # %%
 lk.replay.show(lk.replay.motion_of(log, "The hand follows the tag", label="the hand"))
 
-# %% [markdown] why="why_it_harms"
-# When did you see the prediction make things worse, and why? Say what the predictor believes about the tag,
+# %% [markdown] why="why_round_and_round"
+# When did you see the prediction help and when not, and why? Say what the predictor believes about the tag,
 # how its error grows with the age of the picture, and whether you would use it for a conveyor, for a waving
 # hand, or for both.
 #

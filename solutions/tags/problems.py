@@ -42,53 +42,54 @@ TAG_CORNERS = Problem(
     ),
     wrong=(
         Wrong(
-            "counter-clockwise",
-            "With the corners the other way round the tag is seen from behind, and its pose comes out "
-            "mirrored: z points into the paper.",
+            "the corners counter-clockwise",
+            "With the corners in this order the tag is seen from behind, and z points into the "
+            "paper. Go clockwise.",
             mistakes.counter_clockwise,
             "The order of the corners is part of the measurement.",
         ),
         Wrong(
-            "the white border counted in",
-            "The size is that of the black square. With the border everything seems a quarter too far away.",
+            "the white border included",
+            "The size is that of the black square. With the border included everything seems a "
+            "quarter too far away: leave it out.",
             mistakes.border_counted,
             "Measure the black square, not the paper.",
         ),
         Wrong(
-            "origin in a corner",
-            "The frame sits in the middle of the tag, so coordinates have both signs.",
+            "the origin in a corner",
+            "The origin should be in the middle of the tag, so coordinates have both signs.",
             mistakes.from_a_corner,
             "Say where a frame sits before using it.",
         ),
         Wrong(
             "counter-clockwise from the upper left",
-            "Upper left is right, but then it goes down. Clockwise as one looks at it: to the upper "
-            "right.",
+            "The upper left corner is right, but the next one is wrong. Go clockwise as you look "
+            "at the tag: to the upper right.",
             mistakes.Reordered((0, 3, 2, 1)),
             "The order of the corners is part of the measurement.",
         ),
         Wrong(
-            "y down",
-            "In the picture y goes down; in the tag's frame it goes up.",
+            "y pointing down",
+            "That is right in a picture. In the tag's frame y points up.",
             mistakes.Reordered(scale=(1.0, -1.0, 1.0)),
             "Picture and tag have axes of their own.",
         ),
         Wrong(
-            "from the lower left",
-            "The order runs the right way round but begins at the wrong corner: the tag comes out "
-            "turned by a quarter.",
+            "the lower left corner first",
+            "The corners are clockwise but begin at the wrong one, so the tag seems turned by a "
+            "quarter. Begin at the upper left.",
             mistakes.Reordered((3, 0, 1, 2)),
             "The order of the corners is part of the measurement.",
         ),
         Wrong(
-            "from the upper right",
-            "The order runs the right way round but begins at the wrong corner: the tag comes out "
-            "turned by a quarter.",
+            "the upper right corner first",
+            "The corners are clockwise but begin at the wrong one, so the tag seems turned by a "
+            "quarter. Begin at the upper left.",
             mistakes.Reordered((1, 2, 3, 0)),
             "The order of the corners is part of the measurement.",
         ),
         Wrong(
-            "twice the square",
+            "a square twice as large",
             "The corners lie half a side from the middle, not a whole one.",
             mistakes.Reordered(scale=(2.0, 2.0, 1.0)),
             "Side or half a side: draw it.",
@@ -143,13 +144,15 @@ TAG_POSE = Problem(
     wrong=(
         Wrong(
             "the camera in the tag's frame",
-            "That is T_mc, the inverse: its translation does not point along the camera's view.",
+            "This is T_mc, the inverse: its translation does not point along the camera's view. "
+            "Invert it.",
             mistakes.camera_in_the_tag,
             "T_cm takes points of the tag to the camera: the subscripts say so.",
         ),
         Wrong(
             "the size of the paper",
-            "With the white border in the size everything is 1.25 times too far away.",
+            "With the white border in the size everything seems 1.25 times too far away. Use the "
+            "size of the black square.",
             mistakes.border_in_the_pose,
             "Measure the black square, not the paper.",
         ),
@@ -161,31 +164,35 @@ TAG_POSE = Problem(
         ),
         Wrong(
             "the candidate that fits worse",
-            "A flat square looks nearly alike tilted one way or the other. The error tells them apart.",
+            "A flat square looks nearly the same tilted one way or the other. Choose the "
+            "candidate with the smaller error.",
             mistakes.the_worse_answer,
             "A flat tag has two poses; look at the error.",
         ),
         Wrong(
             "corners the other way round",
-            "The corners run counter-clockwise, so a tag from behind is fitted to the picture.",
+            "The corners run counter-clockwise, so a tag seen from behind is fitted to the "
+            "picture. Use those of tag_corners, clockwise.",
             mistakes.PoseOf(mistakes.Reordered((0, 3, 2, 1))),
             "The order of the corners is part of the measurement.",
         ),
         Wrong(
-            "twice the size",
-            "Everything is twice as far away: the corners lie half a side from the middle.",
+            "twice the size of the square",
+            "Everything seems twice as far away as it is. The corners lie half a side from the "
+            "middle.",
             mistakes.PoseOf(scale=2.0),
             "Side or half a side: draw it.",
         ),
         Wrong(
-            "half the size",
-            "Everything is half as far away: `size` is the whole side.",
+            "half the size of the square",
+            "Everything seems half as far away as it is. `size` is the whole side.",
             mistakes.PoseOf(scale=0.5),
             "Side or half a side: draw it.",
         ),
         Wrong(
             "the rotation transposed",
-            "The translation is right, the rotation is that of the camera in the tag.",
+            "The translation is right, but the rotation is that of the camera in the tag's frame. "
+            "Transpose it.",
             mistakes.rotation_transposed,
             "R_cm takes directions of the tag to the camera.",
         ),
@@ -278,71 +285,77 @@ QUALITY = Problem(
     ),
     wrong=(
         Wrong(
-            "spread about zero",
-            "The covariance is taken about zero, so a constant offset counts as spread. Averaging cures "
-            "spread and never an offset; keep them apart.",
+            "the spread about zero",
+            "The covariance is taken about zero, so a constant offset counts as spread. Take it "
+            "about the mean: averaging reduces the spread and never an offset.",
             mistakes.spread_about_zero,
             "Bias and spread need different cures.",
         ),
         Wrong(
             "estimate minus truth",
-            "In this course an error is always target minus actual, here truth minus estimate.",
+            "The sign is wrong: in this course an error is target minus actual, here truth minus "
+            "estimate.",
             mistakes.the_other_sign,
             "One sign of the error, said loudly.",
         ),
         Wrong(
             "Euler angles subtracted",
-            "A tag that faces the camera is turned by half a turn: just where Euler angles jump.",
+            "A tag that faces the camera is turned by half a turn, exactly where Euler angles "
+            "jump. Use the logarithm of one rotation.",
             mistakes.euler_subtracted,
             "Never subtract Euler angles.",
         ),
         Wrong(
-            "n in the denominator",
-            "The mean was taken from the same numbers, so n - 1 are left.",
+            "n instead of n - 1 in the denominator",
+            "You divided by n. The mean comes from the same numbers, so divide by n - 1.",
             mistakes.n_in_the_denominator,
             "n or n - 1: who gave you the mean?",
         ),
         Wrong(
             "the covariance of the mean",
-            "That is how sure the mean is. Asked is how far a single picture may be off.",
+            "This is how sure the mean is. Give the covariance of a single picture: do not divide "
+            "by the number of pictures.",
             mistakes.of_the_mean,
             "Standard deviation and standard error are two things.",
         ),
         Wrong(
             "the variances alone",
-            "The errors go together: a tag that seems tilted also seems moved. np.cov gives the whole.",
+            "The errors go together: a tag that seems tilted also seems moved. Give the whole "
+            "covariance, as np.cov does.",
             mistakes.diagonal_only,
             "What is beside the diagonal says what goes together.",
         ),
         Wrong(
             "the turn in the tag's axes",
-            "R_estimateᵀ R_truth speaks of the tag's axes. Position and turn should speak of the "
-            "camera's: R_truth R_estimateᵀ.",
+            "R_estimateᵀ R_truth is a turn in the tag's axes. Position and turn should both be in "
+            "the camera's: R_truth R_estimateᵀ.",
             mistakes.turn_in_tag_axes,
             "Which axes does a rotation vector speak of?",
         ),
         Wrong(
-            "the turn backwards",
-            "This turns from the truth to the estimate: the truth is on the left of the product.",
+            "the turn reversed",
+            "This is the turn from the truth to the estimate. Put the truth on the left of the "
+            "product.",
             mistakes.turn_backwards,
             "One sign of the error, said loudly.",
         ),
         Wrong(
             "logarithms subtracted",
-            "The difference of two rotation vectors is not a rotation vector, least of all near half "
-            "a turn, where they jump.",
+            "The difference of two rotation vectors is not a rotation vector, least of all near "
+            "half a turn, where they jump. Multiply the rotations, then take one logarithm.",
             mistakes.logarithms_subtracted,
             "Orientations are compared by a product.",
         ),
         Wrong(
-            "the turn first",
-            "The order is position, then turn.",
+            "the turn before the position",
+            "Put the position first, then the turn.",
             mistakes.turn_first,
             "(v, w), in this course.",
         ),
         Wrong(
             "everything in the tag's axes",
-            "The inverse of the estimate times the truth has all six numbers in the tag's axes.",
+            "The inverse of the estimate times the truth has all six numbers in the tag's axes. "
+            "Give them in the camera's.",
             mistakes.everything_in_the_tag,
             "Which axes does an error speak of?",
         ),
@@ -460,7 +473,7 @@ BLEND = Problem(
     ),
     wrong=(
         Wrong(
-            "restarts at rest",
+            "a new start from rest",
             "Every new goal stops the reference dead, and the arm with it: the report's Algorithm 1. Take "
             "over the velocity that it has.",
             mistakes.restarts_at_rest,
@@ -468,26 +481,29 @@ BLEND = Problem(
         ),
         Wrong(
             "rates of t used for x = t/T",
-            "In x = t/T a velocity is T times, an acceleration T² times as large. At T = 1 nobody sees it.",
+            "In x = t/T a velocity is T times as large, and an acceleration T² times. Convert "
+            "both; T = 1 does not show this.",
             mistakes.rates_not_scaled,
             "Scale derivatives when you scale time.",
         ),
         Wrong(
-            "stops at the goal",
-            "The goal moves on, and the reference arrives at rest: it will always lag behind.",
+            "a stop at the goal",
+            "The goal moves on, and the reference arrives at rest, so it will always lag behind. "
+            "End with the goal's velocity.",
             mistakes.stops_at_the_goal,
             "Meet a moving goal with its velocity.",
         ),
         Wrong(
-            "a cubic",
-            "A cubic meets position and velocity; the acceleration jumps at every new goal, and the "
-            "torque with it.",
+            "a cubic polynomial",
+            "A cubic matches position and velocity, but the acceleration jumps at every new goal, "
+            "and the torque with it. Use fifth order to match it as well.",
             mistakes.without_the_bend,
             "Count conditions, then coefficients.",
         ),
         Wrong(
             "the start's velocity left out",
-            "The reference moves when the blend begins; at t = 0 it must move just so.",
+            "The reference moves when the blend begins. At t = 0 the blend must have the same "
+            "velocity.",
             mistakes.Blended(start=(0.0, 1.0)),
             "Check both ends, all three derivatives.",
         ),
@@ -499,62 +515,68 @@ BLEND = Problem(
         ),
         Wrong(
             "the goal's velocity left out",
-            "The goal moves on; at t = duration the blend must move just so.",
+            "The goal moves on. At t = duration the blend must have the goal's velocity.",
             mistakes.Blended(end=(0.0, 1.0)),
             "Check both ends, all three derivatives.",
         ),
         Wrong(
             "the goal's acceleration left out",
-            "Towards t = duration the acceleration must come to the goal's, which is not always nought.",
+            "At t = duration the blend must have the goal's acceleration, which is not always "
+            "zero.",
             mistakes.Blended(end=(1.0, 0.0)),
             "Check both ends, all three derivatives.",
         ),
         Wrong(
             "from rest to rest",
-            "Neither start nor goal need be at rest.",
+            "This blend begins and ends at rest. Take over the velocities and accelerations of "
+            "start and goal.",
             mistakes.Blended(start=(0.0, 0.0), end=(0.0, 0.0)),
             "Check both ends, all three derivatives.",
         ),
         Wrong(
             "a polynomial without end",
-            "After `duration` it goes on with the goal's velocity; a polynomial runs away.",
+            "After `duration` the polynomial runs away. Go on with the goal's velocity there.",
             mistakes.never_ends,
             "A polynomial is good between its ends only.",
         ),
         Wrong(
-            "waits at the goal",
-            "After the end the place must go on with the velocity of the goal.",
+            "a wait at the goal",
+            "After the end your blend stands still. The position must go on with the velocity of "
+            "the goal.",
             mistakes.waits_at_the_goal,
             "Velocity is the slope of position, or somebody lies.",
         ),
         Wrong(
-            "speeds up for ever",
-            "After the end there is not an acceleration, whatever the goal's was.",
+            "an acceleration that never ends",
+            "After the end the acceleration is zero, whatever the goal's was. Set it to zero "
+            "there.",
             mistakes.speeds_up_for_ever,
             "Read the sentence about the end.",
         ),
         Wrong(
             "an acceleration without effect",
-            "After the end the velocity is constant, so the acceleration is nought.",
+            "After the end the velocity is constant, so the acceleration is zero.",
             mistakes.acceleration_kept,
             "Acceleration is the slope of velocity, or somebody lies.",
         ),
         Wrong(
-            "derivatives by t/T",
-            "These are the derivatives by t/T. Divide the first by T and the second by T².",
+            "derivatives with respect to t/T",
+            "These are derivatives with respect to t/T. Divide the first by T and the second by "
+            "T².",
             mistakes.derivatives_by_share,
             "Scale derivatives when you scale time.",
         ),
         Wrong(
-            "start and goal mixed",
-            "Mixed in proportion to time, place and velocity no longer belong together.",
+            "a mixture of start and goal",
+            "A mixture in proportion to time gives a velocity that is not the derivative of the "
+            "position. Use one polynomial of fifth order.",
             mistakes.the_ends_mixed,
             "Velocity is the slope of position, or somebody lies.",
         ),
         Wrong(
             "three coordinates, however many there are",
-            "A sample may hold a point, seven joint angles or a single number: shape (n,). Take as many "
-            "as come.",
+            "A sample may hold a point, seven joint angles or a single number, of shape (n,). Do "
+            "not assume three.",
             mistakes.three_alone,
             "Read the shape in the docstring; then try another n.",
         ),
@@ -670,19 +692,22 @@ PREDICT = Problem(
         ),
         Wrong(
             "noise that does not know of time",
-            "The same noise whatever the step: ask ten times as often and the tag is ten times as unsure.",
+            "The noise is the same whatever the step, so ten steps for one make the tag ten times "
+            "as unsure. Let Q grow with `age`.",
             mistakes.noise_without_time,
             "Two half steps must make one step.",
         ),
         Wrong(
-            "certain for ever",
-            "The mean moves on and the covariance does not: the filter will soon believe only itself.",
+            "a covariance that stays the same",
+            "The mean moves on, but the covariance does not, so the filter soon believes only "
+            "itself. Carry it forward too, and add the noise.",
             mistakes.certain_for_ever,
             "What is not seen becomes less sure.",
         ),
         Wrong(
-            "no cross terms",
-            "A push changes the velocity and, through it, the position: the two errors go together.",
+            "the cross terms left out",
+            "A push changes the velocity and, through it, the position, so the two errors go "
+            "together. Keep the terms between them.",
             mistakes.noise_on_the_diagonal,
             "Derive Q, do not guess its diagonal.",
         ),
@@ -694,26 +719,29 @@ PREDICT = Problem(
             "Held noise and white noise have other powers of the step.",
         ),
         Wrong(
-            "no pushes",
-            "Q is missing: the belief gets no less sure of its velocity, and soon heeds no picture.",
+            "Q left out",
+            "Q is missing, so the belief never becomes less sure of its velocity and soon ignores "
+            "every picture. Add Q.",
             mistakes.Predicted(((0, 0.0), (0, 0.0), (0, 0.0))),
             "What is not seen becomes less sure.",
         ),
         Wrong(
             "pushes on the velocity alone",
-            "A push at the beginning of the step has moved the place by its end: integrate F(s) too.",
+            "A push at the beginning of the step has moved the position by its end. Integrate "
+            "F(s) too.",
             mistakes.Predicted(((0, 0.0), (0, 0.0), (1, 1.0))),
             "Derive Q, do not guess its diagonal.",
         ),
         Wrong(
             "the same on place and velocity",
-            "accel_noise · age on all six has the wrong unit in the place: integrate F(s) diag(0, q) F(s)ᵀ.",
+            "accel_noise · age has the wrong unit for the position. Integrate F(s) diag(0, q) "
+            "F(s)ᵀ.",
             mistakes.Predicted(((1, 1.0), (0, 0.0), (1, 1.0))),
             "Units tell: m² for the place.",
         ),
         Wrong(
             "the noise squared",
-            "accel_noise is a power already, in m²/s³.",
+            "accel_noise is a power already, in m²/s³. Do not square it.",
             mistakes.Predicted(((3, 1 / 3), (2, 0.5), (1, 1.0)), power=2.0),
             "Variance or deviation? Look at the unit.",
         ),
@@ -724,14 +752,14 @@ PREDICT = Problem(
             "A covariance is symmetric: look whether yours is.",
         ),
         Wrong(
-            "Fᵀ P F",
-            "The other way round: F P Fᵀ.",
+            "Fᵀ P F instead of F P Fᵀ",
+            "Write the transpose on the right.",
             mistakes.product_turned_round,
             "y = F x has the covariance F P Fᵀ.",
         ),
         Wrong(
             "back in time",
-            "The age carries forward, from the picture to now.",
+            "Carry the mean forward by `age`, from the picture to now.",
             mistakes.back_in_time,
             "Say when each number is of.",
         ),

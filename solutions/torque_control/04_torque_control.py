@@ -696,7 +696,7 @@ lk.replay.show(
     )
 )
 
-# %% [markdown] why="why_it_sags"
+# %% [markdown] why="why_unknown_load"
 # How far did you see computed torque sag under half a kilogram, and why? The load pulls with 5 N: say which
 # matrix converts it to accelerations, and why "stiff" means something else for kp in 1/s² than for kp in N
 # m/rad.

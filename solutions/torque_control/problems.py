@@ -117,50 +117,52 @@ AUGMENTED_PD = Problem(
     wrong=(
         Wrong(
             "the error reversed",
-            "The springs push the arm away from its target. Here e is target minus actual, and then "
-            "every gain comes with a plus.",
+            "The springs push the arm away from its target. With e as target minus actual, every "
+            "gain has a plus.",
             mistakes.actual_minus_target,
             "Settle the sign of e once, aloud.",
         ),
         Wrong(
             "the weight carried twice",
-            "The weight is added although the arm carries it already (arm_compensates is True): the "
-            "arm would rise.",
+            "The weight is added although the arm carries it already, so the arm would rise. "
+            "Where arm_compensates is True, add none.",
             mistakes.always_carries,
             "On Baxter the right factor for gravity is 0.",
         ),
         Wrong(
-            "the weight carried by nobody",
-            "Where arm_compensates is False nobody carries the weight: the arm would sag until the "
-            "springs are stretched far enough.",
+            "a weight that nobody carries",
+            "Where arm_compensates is False, nothing carries the weight: the arm sags until the "
+            "springs are stretched far enough. Add g(q) there.",
             mistakes.never_carries,
             "A spring holds a weight only where it is stretched.",
         ),
         Wrong(
             "C times the arm's own speed",
-            "The law that is proven stable has C times the *target's* speed; with the arm's own speed, "
-            "as in the report's equation 18, it takes more damping to be stable. At low speed nobody notices.",
+            "Multiply C with the target's speed: for this law stability is proven. With the arm's "
+            "own speed, as in the report's equation 18, it takes more damping. At low speed the "
+            "difference is hard to see.",
             mistakes.own_speed_in_coriolis,
             "MLS 4.53: C(q, dq) dq_d, so that the skew symmetry of dM - 2C does its work.",
         ),
         Wrong(
             "springs and dampers alone",
-            "The torque that the motion itself takes is missing, so the arm lags until the springs "
-            "provide it.",
+            "The torque that the target's motion takes is missing, so the arm lags until the "
+            "springs provide it. Add M times the acceleration and C times the speed of the "
+            "target.",
             mistakes.no_motion_terms,
             "Feed-forward does the work, feedback corrects the rest.",
         ),
         Wrong(
-            "damps the motion, not the error",
+            "damping of the motion, not of the error",
             "The damper brakes the arm's own speed, so it holds the arm back whenever the target "
             "moves. It should brake the difference: target.velocity - state.dq.",
             mistakes.damps_the_motion,
             "The damper sits between the arm and the target, not between the arm and the wall.",
         ),
         Wrong(
-            "the model asked where the target is",
-            "M, C and g are those of the target's angles. The arm feels its inertia and its weight "
-            "where it is.",
+            "the model evaluated at the target",
+            "M, C and g are evaluated at the target's angles. The arm feels its inertia and its "
+            "weight where it is: use state.q.",
             mistakes.model_at_the_target,
             "The physics happens at q, not at q_d.",
         ),
@@ -173,63 +175,68 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "the gains inside M",
-            "This is computed torque, which comes next. Here the springs act on the joints as they "
-            "are, outside M.",
+            "This is computed torque, which comes next. Here springs and dampers act on the "
+            "joints directly: keep them outside M.",
             mistakes.gains_inside,
             "Two laws, two theorems: gains in N m/rad here, in 1/s² there.",
         ),
         Wrong(
             "the springs reversed",
-            "Target minus actual, for the angles too: as it is, the springs push away.",
+            "The error of the angles has the wrong sign, so the springs push the arm away. Take "
+            "target minus actual.",
             mistakes.AugmentedLaw(e=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the dampers reversed",
-            "Target minus actual, for the speeds too: as it is, the dampers drive.",
+            "The error of the speeds has the wrong sign, so the dampers drive the arm. Take "
+            "target minus actual.",
             mistakes.AugmentedLaw(de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the switch reversed",
-            "arm_compensates is True where the arm carries its own weight. Then the law adds none.",
+            "arm_compensates is True where the arm carries its own weight; add g(q) only where it "
+            "is False.",
             mistakes.AugmentedLaw(switch=True),
             "Say aloud who carries the weight.",
         ),
         Wrong(
-            "the weight taken off",
-            "g(q) is what the motors must give to hold the arm: it comes with a plus.",
+            "the weight subtracted",
+            "g(q) is what the motors must give to hold the arm: add it.",
             mistakes.AugmentedLaw(weight=-1.0),
             "g is on the left of the equation, with the motors on the right.",
         ),
         Wrong(
             "no Coriolis torques",
-            "C times the target's speed is missing. At low speed nobody notices.",
+            "C times the target's speed is missing. Add it, although at low speed its effect is "
+            "hard to see.",
             mistakes.AugmentedLaw(coriolis=0.0),
             "Small is not nought: try it fast.",
         ),
         Wrong(
             "C of the target's speed",
-            "C is that of the arm where it is and as it moves, C(q, q̇). Only what it is "
-            "multiplied with is the target's.",
+            "C must be the arm's own, C(q, q̇). Only the speed that you multiply it with is the "
+            "target's.",
             mistakes.AugmentedLaw(at_target=True),
             "C(q, q̇) q̇_d: which speed stands where?",
         ),
         Wrong(
             "no inertia",
-            "M times the target's acceleration is missing.",
+            "M times the target's acceleration is missing. Add it.",
             mistakes.AugmentedLaw(beside=0.0, diagonal=0.0),
             "A target that speeds up needs torque.",
         ),
         Wrong(
             "only the diagonal of M",
-            "The joints shake each other: the numbers beside the diagonal matter.",
+            "The joints move each other, so the numbers beside the diagonal of M matter. Use the "
+            "whole matrix.",
             mistakes.AugmentedLaw(beside=0.0),
             "M is a matrix, M @ ddq.",
         ),
         Wrong(
-            "gains swapped",
-            "kp belongs to the angles and kd to the speeds.",
+            "kp and kd swapped",
+            "kp multiplies the error of the angles, and kd that of the speeds.",
             mistakes.AugmentedLaw(swapped=True),
             "Units tell: N m/rad, N m s/rad.",
         ),
@@ -420,74 +427,76 @@ COMPUTED_TORQUE = Problem(
             "Computed torque: gains in 1/s², so they stand inside M.",
         ),
         Wrong(
-            "the model asked where the target is",
-            "M, C and g are taken at the target's angles and speeds. They cancel the arm's own only "
-            "where the arm is.",
+            "the model evaluated at the target",
+            "M, C and g are evaluated at the target's angles and speeds. They cancel the arm's "
+            "own only where the arm is: use state.q and state.dq.",
             mistakes.everything_at_the_target,
             "What is to cancel must be evaluated at the same place.",
         ),
         Wrong(
             "the weight carried twice",
-            "The weight is in although the arm carries it already. inverse_dynamics and bias hold g: "
-            "take it off where arm_compensates is True.",
+            "The weight is in although the arm carries it already. inverse_dynamics and bias "
+            "contain g: subtract it where arm_compensates is True.",
             mistakes.carries_twice,
             "Know what a library call contains.",
         ),
         Wrong(
-            "the weight carried by nobody",
-            "Where arm_compensates is False the law has to add g(q).",
+            "a weight that nobody carries",
+            "Where arm_compensates is False, nothing carries the weight. Add g(q) there.",
             mistakes.weightless,
             "Without it, e = g / (M kp) remains.",
         ),
         Wrong(
             "C times the target's speed",
-            "C dq_d belongs to the augmented law. Here the arm's own Coriolis torque has to cancel, "
-            "and that is C times the arm's own speed.",
+            "C dq_d belongs to the augmented law. Here the arm's own Coriolis torque has to "
+            "cancel: multiply C with the arm's own speed.",
             mistakes.targets_speed_in_coriolis,
             "Cancel what is there: C(q, dq) dq.",
         ),
         Wrong(
             "the target's acceleration left out",
-            "Without the target's acceleration the arm always comes too late. On a target that "
-            "stands still nobody notices.",
+            "Without the target's acceleration the arm is always late. Add it before you multiply "
+            "with M; a target at rest does not show this.",
             mistakes.no_target_acceleration,
             "Feed-forward.",
         ),
         Wrong(
             "the error reversed",
-            "The arm runs away from its target. Here e is target minus actual.",
+            "The arm runs away from its target. Take target minus actual for both errors.",
             mistakes.runs_away,
             "Settle the sign of e once, aloud.",
         ),
         Wrong(
             "the error of the angles reversed",
-            "Target minus actual, for the angles too.",
+            "The error of the angles has the wrong sign. Take target minus actual.",
             mistakes.ComputedLaw(e=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the error of the speeds reversed",
-            "Target minus actual, for the speeds too: as it is, kd drives.",
+            "The error of the speeds has the wrong sign, so kd drives the arm. Take target minus "
+            "actual.",
             mistakes.ComputedLaw(de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the switch reversed",
-            "arm_compensates is True where the arm carries its own weight. Then the law adds "
-            "none. (model.inverse_dynamics holds g already; take it off only where the arm "
-            "compensates.)",
+            "Where arm_compensates is True the arm carries its own weight, and the law adds none. "
+            "(model.inverse_dynamics contains g already; subtract it only there.)",
             mistakes.ComputedLaw(switch=True),
             "Say aloud who carries the weight.",
         ),
         Wrong(
-            "the weight once too often",
-            "model.inverse_dynamics holds g already, and g is added to that.",
+            "g added to inverse_dynamics",
+            "The weight is in twice: model.inverse_dynamics contains g already. Do not add it "
+            "again.",
             mistakes.ComputedLaw(twice=True),
             "Know what a function holds before you add to it.",
         ),
         Wrong(
             "no Coriolis torques",
-            "C times the arm's speed is missing. At low speed nobody notices.",
+            "C times the arm's speed is missing. Add it, although at low speed its effect is hard "
+            "to see.",
             mistakes.ComputedLaw(coriolis=0.0),
             "Small is not nought: try it fast.",
         ),
@@ -498,20 +507,20 @@ COMPUTED_TORQUE = Problem(
             "Units tell: N m and rad/s².",
         ),
         Wrong(
-            "the acceleration as a torque",
-            "The acceleration wanted must go through M to become a torque.",
+            "the acceleration given as a torque",
+            "This is an acceleration. Multiply it by M to get a torque.",
             mistakes.ComputedLaw(power=0),
             "Units tell: N m and rad/s².",
         ),
         Wrong(
             "the inverse of M",
-            "M turns an acceleration into a torque; its inverse does the opposite.",
+            "M itself turns an acceleration into a torque.",
             mistakes.ComputedLaw(power=-1),
             "Units tell: N m and rad/s².",
         ),
         Wrong(
-            "gains swapped",
-            "kp belongs to the angles and kd to the speeds.",
+            "kp and kd swapped",
+            "kp multiplies the error of the angles, and kd that of the speeds.",
             mistakes.ComputedLaw(swapped=True),
             "Units tell: kp is in 1/s², kd in 1/s.",
         ),
@@ -699,25 +708,26 @@ GAINS_FOR = Problem(
     wrong=(
         Wrong(
             "kd without the 2",
-            "The damping is half of what was asked. The standard form is ë + 2 ζ ω ė + ω² e = 0.",
+            "The damping is half of what it should be. The standard form is ë + 2 ζ ω ė + ω² e = "
+            "0.",
             mistakes.without_the_two,
             "Critical damping is kd² = 4 kp.",
         ),
         Wrong(
             "Hz taken for rad/s",
-            "A frequency in Hz counts whole turns: ω = 2π · frequency.",
+            "A frequency in Hz counts whole turns. Convert it to rad/s: ω = 2π · frequency.",
             mistakes.hertz_as_radians,
             "Units: 1 Hz is 6.28 rad/s.",
         ),
         Wrong(
-            "(kd, kp)",
-            "The two came in the other order: kp first.",
+            "kp and kd in the wrong order",
+            "The two numbers are in the wrong order. Return kp first.",
             mistakes.other_way_round,
             "Table 1 of the report has the same slip, for the impedance controller.",
         ),
         Wrong(
             "kp without the square",
-            "kp is in 1/s², so it is the square of ω.",
+            "kp is in 1/s². Square ω.",
             mistakes.root_as_gain,
             "Units again.",
         ),
@@ -741,7 +751,7 @@ GAINS_FOR = Problem(
         ),
         Wrong(
             "kp in the place of ω",
-            "kd = 2 ζ ω, and ω is the root of kp.",
+            "You used kp in the place of ω. kd = 2 ζ ω, and ω is the root of kp.",
             mistakes.stiffness_for_frequency,
             "Units tell: kd is in 1/s.",
         ),
@@ -814,52 +824,54 @@ SAMPLED_JOINT = Problem(
             "A held torque makes the exact solution a parabola.",
         ),
         Wrong(
-            "a torque that is never held",
-            "That is the loop with the torque changing all the time. It is stable for all positive "
-            "gains, which is just what a sampled loop is not.",
+            "a torque that is not held",
+            "In this loop the torque changes all the time, and it is stable for all positive "
+            "gains. A sampled loop is not: hold the torque during the period.",
             mistakes.torque_never_held,
             "exp(A_closed dt) samples a continuous loop; the loop itself is not sampled.",
         ),
         Wrong(
             "the new speed moves the angle",
-            "The angle moves with the speed at the end of the period, which is the same as dt² without "
-            "its half in the kick. It moves with the mean of the old and the new speed: dt²/2.",
+            "The angle moves with the speed at the end of the period. Use the mean of the old and "
+            "the new speed.",
             mistakes.new_speed_first,
             "Semi-implicit Euler is what a simulator does; here the exact answer is asked.",
         ),
         Wrong(
-            "the torque's sign",
-            "The torque pushes away from zero: it is -kp q - kd q̇.",
+            "the torque with the wrong sign",
+            "The torque pushes the joint away from zero. Its sign is negative: -kp q - kd q̇.",
             mistakes.pushes_away,
             "Feedback against the error.",
         ),
         Wrong(
             "torque taken for acceleration",
-            "The inertia plays no part: divide the torque by it.",
+            "The inertia is missing. Divide the torque by it to get the acceleration.",
             mistakes.without_inertia,
             "The whole point is that the wrist has so little of it.",
         ),
         Wrong(
             "the matrix of the differential equation",
-            "That gives the rates of angle and speed. Asked is where both are after dt.",
+            "This matrix gives the rates of angle and speed. Give the one that leads to both "
+            "after the time dt.",
             mistakes.not_a_step,
             "At dt = 0 a step is the identity.",
         ),
         Wrong(
-            "the matrix on its side",
-            "Row by row: the first row gives the new angle, the second the new speed.",
+            "the matrix transposed",
+            "Rows and columns are swapped. The first row gives the new angle, the second the new "
+            "speed.",
             mistakes.on_its_side,
             "At rest, with no gains: q + dt q̇ is the first row.",
         ),
         Wrong(
-            "times the inertia",
-            "The acceleration is the torque divided by the inertia.",
+            "multiplied by the inertia",
+            "Divide the torque by it to get the acceleration.",
             mistakes.times_inertia,
             "The heavier, the slower.",
         ),
         Wrong(
-            "gains swapped",
-            "kp belongs to the angle and kd to the speed.",
+            "kp and kd swapped",
+            "kp multiplies the angle and kd the speed.",
             mistakes.gains_of_the_other,
             "Columns: angle, speed.",
         ),
@@ -871,7 +883,7 @@ SAMPLED_JOINT = Problem(
             "What stands still during the step?",
         ),
         Wrong(
-            "the damper does not move the angle",
+            "a damper that does not move the angle",
             "The torque of the damper accelerates the joint from the first moment on: -kd dt²/(2 "
             "inertia) belongs to the angle too.",
             mistakes.half_forgotten,
@@ -879,8 +891,9 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "an implicit step",
-            "That takes the torque from the end of the step, which no computer knows yet. It is "
-            "stable whatever the gains, and the arm is not.",
+            "This takes the torque from the end of the step, which no computer knows yet. Hold "
+            "the torque of its beginning: the real loop can become unstable, and an implicit step "
+            "never does.",
             mistakes.implicit_step,
             "A stable formula does not make a stable arm.",
         ),
@@ -998,54 +1011,56 @@ GRAVITY_FACTOR = Problem(
     wrong=(
         Wrong(
             "the mean of ratios",
-            "Joint s0 stands upright and carries nothing, so its ratio divides by zero, and in the "
-            "wrist the noise is divided by almost zero. Least squares weighs each equation by what it "
-            "knows.",
+            "Joint s0 is vertical and carries nothing, so its ratio divides by zero, and in the "
+            "wrist the noise is divided by almost zero. Use least squares, which weighs each "
+            "equation by what it knows.",
             mistakes.mean_of_ratios,
             "Never divide by a measurement that may be zero.",
         ),
         Wrong(
-            "the sign",
-            "gravity_model is the torque that holds the arm, the same as the motors give, and no "
-            "minus belongs between them.",
+            "a minus between model and torques",
+            "gravity_model is the torque that holds the arm, and so is that of the motors. Leave "
+            "the minus out.",
             mistakes.turned_sign,
             "g(q) is what the motors must give, not what the weight does.",
         ),
         Wrong(
             "the regression the other way round",
-            "This explains the model by the torques. The noise is in the torques, so this "
-            "fit makes the factor too large.",
+            "This fit explains the model by the torques, and the noise in them makes the factor "
+            "too large. Fit the torques to the model.",
             mistakes.other_regression,
             "Least squares is not symmetric: errors belong to the left side.",
         ),
         Wrong(
             "a ratio of lengths",
-            "A length knows no sign and no direction: noise alone gives a factor, too.",
+            "A length has no sign and no direction, so that noise alone gives a factor too. Use "
+            "least squares.",
             mistakes.ratio_of_lengths,
             "Project, do not compare lengths.",
         ),
         Wrong(
             "a ratio of sums",
-            "Torques of opposite sign cancel in the sums before they are compared.",
+            "Torques of opposite sign cancel in the sums before they are compared. Use least "
+            "squares.",
             mistakes.ratio_of_sums,
             "Sums of signed numbers lose what they stand for.",
         ),
         Wrong(
             "a line with an offset",
-            "The slope of a line that need not go through the origin answers another question: "
-            "one factor, no offset, is asked.",
+            "This is the slope of a line with an offset. Fit one factor and no offset.",
             mistakes.with_an_offset,
             "Which model is fitted?",
         ),
         Wrong(
             "the torques explain the model",
-            "Asked is the factor of the model: divide by the model's squares, not the torques'.",
+            "This is a factor of the torques. For the factor of the model, divide by the model's "
+            "squares, not by the torques'.",
             mistakes.model_over_torque,
             "What explains what?",
         ),
         Wrong(
             "one over the factor",
-            "tau = factor · g; yours is the g for one tau.",
+            "Look at tau = factor · g again.",
             mistakes.one_over_the_factor,
             "What explains what?",
         ),
@@ -1064,8 +1079,8 @@ GRAVITY_FACTOR = Problem(
             "Sum, then divide.",
         ),
         Wrong(
-            "how far from 1",
-            "The factor itself is asked.",
+            "the distance from 1",
+            "This is how far the factor is from 1. Give the factor itself.",
             mistakes.what_is_missing,
             "1 is right; 0 leaves gravity out.",
         ),
@@ -1209,50 +1224,52 @@ CHOOSE_GAINS = Problem(
     ),
     wrong=(
         Wrong(
-            "tuned on the slow line only",
-            "Good enough while little is asked. Friction, the quicker circle and the load stretch soft "
-            "springs three times as far as need be.",
+            "gains tuned on the slow line only",
+            "These gains are good enough for the slow line only. Friction, the faster circle and "
+            "the load stretch such soft springs three times as far as necessary: try those as "
+            "well.",
             mistakes.Swings(6.0),
             "Gains that were tried on one motion are tuned to that motion.",
         ),
         Wrong(
             "too stiff for an old state",
-            "The arm buzzes: it reacts to where it was 14 ms ago. Look at the error of the speed. A "
-            "loop must be slower than its news.",
+            "The arm buzzes, because it reacts to where it was 14 ms ago. Lower the gains: a loop "
+            "must be slower than its news.",
             mistakes.Swings(25.0),
             "Delay times bandwidth must stay well below one.",
         ),
         Wrong(
             "the same gains in every joint",
-            "A wrist joint has a fortieth of the shoulder's inertia: what is mild there is fierce "
-            "here. Multiply by each joint's inertia.",
+            "A wrist joint has a fortieth of the shoulder's inertia, so gains that are mild there "
+            "are fierce here. Multiply them by each joint's inertia.",
             mistakes.same_for_every_joint,
             "N m/rad means something only beside kg m².",
         ),
         Wrong(
-            "the pair the other way round",
-            "kp first, then kd: in this order the spring is very weak, and the damper shakes the "
-            "arm.",
+            "kd before kp",
+            "In this order the spring is very weak, and the damper shakes the arm. Return kp "
+            "first, then kd.",
             mistakes.pair_turned_round,
             "Table 1 of the report has the same slip.",
         ),
         Wrong(
             "the report's gains",
-            "8 N m/rad at the shoulder: one newton metre of friction leaves an eighth of a radian. "
-            "The report's figures show just that.",
+            "With 8 N m/rad at the shoulder, one newton metre of friction leaves an error of an "
+            "eighth of a radian, as the report's figures show. Make the springs stiffer.",
             mistakes.the_reports_gains,
             "Their plateaus are friction over kp.",
         ),
         Wrong(
-            "hardly a damper",
-            "Let go beside its target the arm swings for seconds; on a smooth tour nobody notices. "
-            "Critical damping is kd = 2 m ω, and less than half of that rings.",
+            "too little damping",
+            "Released beside its target the arm swings for seconds, which a smooth tour does not "
+            "show. Critical damping is kd = 2 m ω; use at least half of it.",
             mistakes.Swings(zeta=0.1),
             "Test a damper with a jolt, not with a tour.",
         ),
         Wrong(
-            "no damper at all",
-            "A spring without a damper swings for ever, and with an old state it swings up.",
+            "no damping",
+            "A spring without a damper swings for ever, and with an old state the swing grows. "
+            "Choose kd above zero.",
             mistakes.Swings(zeta=0.0),
             "Test a damper with a jolt, not with a tour.",
         ),

@@ -486,9 +486,9 @@ lk.replay.show(
 # old. And the two controllers? One has kp = 5, the other 4. Give both the same gain before you call one of
 # them better.
 
-# %% [markdown] why="why_slower"
-# What did you see happen to the error of a resting joint when D grew? Say why D *slows* an arm whose speed is
-# commanded, although in your mechanics lecture a damper lets you raise P. What is the difference?
+# %% [markdown] why="why_with_more_d"
+# What did you see happen to the error of a resting joint when D grew, and why? In your mechanics lecture a
+# damper lets you raise P: say what is different in an arm whose speed is commanded.
 #
 # ### BEGIN SOLUTION
 # With more D the error died more slowly: its rate is kp/(1 + kd). Where the speed itself is commanded,

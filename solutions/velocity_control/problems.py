@@ -82,60 +82,63 @@ JOINT_VELOCITY_PD = Problem(
     wrong=(
         Wrong(
             "the error with the other sign",
-            "Actual minus target pushes the arm away. With feed-forward on, and a start on the path, "
-            "nobody would have noticed for a while.",
+            "Actual minus target pushes the arm away from its target; take target minus actual. "
+            "With feed-forward and a start on the path, the arm would hide this for a while.",
             mistakes.pushes_away,
             "Start from an offset; feed-forward hides broken feedback.",
         ),
         Wrong(
             "a correction of the measured speed",
-            "The speed wanted is the target's plus the corrections. Added to the measured speed at "
-            "every tick, they pile up two hundred times a second: the arm swings, barely damped. The "
-            "report's equation 17 prints this.",
+            "The corrections are added to the measured speed, so they pile up two hundred times a "
+            "second: the arm swings, barely damped. Add them to the target's speed. The report's "
+            "equation 17 has this mistake.",
             mistakes.adds_to_the_measured,
             "An integrator too many.",
         ),
         Wrong(
             "no feed-forward",
-            "It follows, but always late, by the target's speed over kp. The target says how fast it "
-            "moves: pass that on.",
+            "The arm follows, but always late, by the target's speed over kp. The target says how "
+            "fast it moves: add its speed to the command.",
             mistakes.no_feedforward,
             "Feedback waits for an error; feed-forward does not.",
         ),
         Wrong(
-            "damps the motion, not its error",
-            "kd brakes the arm even where the target moves just as fast. It multiplies the error of "
-            "the speeds.",
+            "damping of the motion, not of its error",
+            "kd brakes the arm even where the target moves equally fast. Multiply kd with the "
+            "error of the speeds.",
             mistakes.damps_the_motion,
             "D acts on the derivative of the error.",
         ),
         Wrong(
-            "gains swapped",
-            "kp belongs to the angles and kd to the speeds.",
+            "kp and kd swapped",
+            "kp multiplies the error of the angles, and kd that of the speeds.",
             mistakes.gains_swapped,
             "Units tell: kp is in 1/s, kd has none.",
         ),
         Wrong(
             "the error of the angles reversed",
-            "Target minus actual, for the angles too: as it is, kp pushes the arm away.",
+            "The error of the angles has the wrong sign, so kp pushes the arm away. Take target "
+            "minus actual.",
             mistakes.JointLaw(e=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "the error of the speeds reversed",
-            "Target minus actual, for the speeds too: as it is, kd drives on what it should brake.",
+            "The error of the speeds has the wrong sign, so kd drives what it should brake. Take "
+            "target minus actual.",
             mistakes.JointLaw(de=-1.0),
             "One sign for every error.",
         ),
         Wrong(
             "kd left out",
-            "The error of the speeds counts too, kd times.",
+            "The error of the speeds is missing. Add kd times this error.",
             mistakes.JointLaw(de=0.0),
             "Try every gain by itself.",
         ),
         Wrong(
             "the target's acceleration added",
-            "A speed is commanded: the target's acceleration has no place in it, and another unit.",
+            "The command is a speed, and an acceleration has another unit. Leave the target's "
+            "acceleration out.",
             mistakes.JointLaw(ddq=1.0),
             "Only like units may be added.",
         ),
@@ -239,36 +242,37 @@ DECAY_RATE = Problem(
     ),
     wrong=(
         Wrong(
-            "D makes it faster",
-            "The other way round. The speed is on both sides: (1 + kd) de/dt = -kp e. Here D only "
-            "slows.",
+            "kd making the decay faster",
+            "It is the other way round: here kd slows the decay. The speed is on both sides: "
+            "(1 + kd) de/dt = -kp e.",
             mistakes.faster_with_d,
             "In a velocity loop D brakes the very speed that closes the error.",
         ),
         Wrong(
-            "a mass on a spring",
-            "√kp is the frequency of a second-order system. Here the speed itself is commanded, so "
-            "the equation is of first order.",
+            "the frequency of a mass on a spring",
+            "√kp is the frequency of a second-order system. Here the speed itself is commanded: "
+            "write the equation of the error, which is of first order.",
             mistakes.second_order,
             "Count the integrators between command and angle.",
         ),
         Wrong(
-            "D left out",
-            "kp alone is right for kd = 0. The measured speed is the commanded one, so kd feeds the "
-            "command back into itself.",
+            "kd left out",
+            "kp alone is right only for kd = 0. The measured speed is the commanded one, so kd "
+            "feeds the command back into itself: solve for the speed.",
             mistakes.without_d,
             "Write down the whole loop.",
         ),
         Wrong(
-            "the rate with a minus",
-            "exp(-r t) already contains the minus: an error that dies away has an r above zero.",
+            "a rate with a minus",
+            "exp(-r t) already contains the minus, so the rate of an error that dies away is "
+            "positive.",
             mistakes.minus_the_rate,
             "A pole and a decay rate differ by their sign.",
         ),
         Wrong(
-            "D with the other sign",
-            "The target stands still, so the error of the speed is minus the speed: kd brakes, and at "
-            "kd = 1 nothing may divide by zero.",
+            "kd with the wrong sign",
+            "The target is at rest, so the error of the speed is minus the speed, and kd brakes; "
+            "at kd = 1 your rate divides by zero.",
             mistakes.d_turned_round,
             "Write down de/dt before you collect it.",
         ),
@@ -280,8 +284,8 @@ DECAY_RATE = Problem(
             "Units forbid sums.",
         ),
         Wrong(
-            "what is left after a second",
-            "That is exp(-r) itself; asked is the r in it.",
+            "the part that is left after one second",
+            "This is exp(-r) itself. Give the r in it.",
             mistakes.what_is_left,
             "Read what is asked: a rate, in 1/s.",
         ),
@@ -388,40 +392,42 @@ DAMPED_INVERSE = Problem(
     ),
     wrong=(
         Wrong(
-            "the transpose",
-            "Jᵀ takes forces at the tip to torques of the joints; it does not undo J.",
+            "the transpose instead of the inverse",
+            "Jᵀ turns forces at the tip into joint torques; it does not undo J. Use the damped "
+            "pseudo-inverse.",
             mistakes.transposed,
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
         Wrong(
             "no damping",
-            "That is the plain pseudo-inverse, np.linalg.pinv(J). Near e1 = 0 it asks for speeds that "
-            "no joint has.",
+            "This is the plain pseudo-inverse, np.linalg.pinv(J), which near e1 = 0 asks for "
+            "speeds that no joint has. Put the damping in.",
             mistakes.undamped,
             "Where no exact inverse exists, its formula does not help.",
         ),
         Wrong(
             "the damping squared",
-            "`damping` is what stands before |dq|² already; many books write it λ².",
+            "`damping` is already the factor of |dq|², which many books write as λ². Do not "
+            "square it.",
             mistakes.damping_squared,
             "Is it λ or λ²? Look at what is minimised.",
         ),
         Wrong(
-            "the damping on every number",
-            "A number plus a matrix is added to every entry by numpy. The damping belongs on the "
-            "diagonal alone: times an identity.",
+            "the damping added to every number",
+            "numpy adds a number to every entry of a matrix. The damping belongs on the diagonal "
+            "alone: multiply it by an identity matrix.",
             mistakes.damping_everywhere,
             "λ is not λ I.",
         ),
         Wrong(
-            "the damping taken off",
-            "With a minus the damping makes J Jᵀ singular where it was not.",
+            "the damping subtracted",
+            "With a minus the damping can make J Jᵀ singular. Add it.",
             mistakes.damping_taken_off,
             "Damping pushes eigenvalues away from zero.",
         ),
         Wrong(
-            "the root of the damping",
-            "`damping` stands before |dq|² as it is; no root.",
+            "the square root of the damping",
+            "`damping` is the factor of |dq|² itself. Do not take its root.",
             mistakes.damping_rooted,
             "Is it λ or λ²? Look at what is minimised.",
         ),
@@ -572,61 +578,63 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "the turn in the tool's axes",
-            "The tip Jacobian speaks of world axes; this error is in the tool's. With the gripper "
-            "down two components come out with the other sign.",
+            "The tip Jacobian is in world axes, and this error is in the tool's. With the gripper "
+            "down, two components then have the wrong sign. Use R_wd R_wtᵀ.",
             mistakes.turn_in_tool_axes,
             "Error and Jacobian must speak of the same axes.",
         ),
         Wrong(
             "the body Jacobian with an error in world axes",
-            "The body Jacobian gives the twist in the tool's axes. With the gripper down, z comes out "
-            "upside down.",
+            "The body Jacobian gives the twist in the tool's axes, so with the gripper down z is "
+            "upside down. Use tip_jacobian, in world axes like the error.",
             mistakes.body_jacobian,
             "Three Jacobians exist; use the one of your axes.",
         ),
         Wrong(
             "the orientation left to itself",
-            "The last three numbers of the error are zero, so the hand keeps any tilt. Several teams "
-            "chose that on purpose, to get rid of a wrong orientation error.",
+            "The last three numbers of the error are zero, so the hand keeps any tilt. Fill them "
+            "with orientation_error; several teams left them out to get rid of a wrong one.",
             mistakes.position_only,
             "A gain of zero hides a wrong sign.",
         ),
         Wrong(
             "no feed-forward",
-            "The target's twist is missing: the tip follows late, by its speed over kp.",
+            "The target's twist is missing, so the tip follows late, by the target's speed over "
+            "kp. Add target.twist.",
             mistakes.no_twist,
             "Feedback waits for an error; feed-forward does not.",
         ),
         Wrong(
             "the damping ignored",
-            "This is the plain pseudo-inverse. With the elbow straight it asks for speeds that no "
-            "joint has.",
+            "This is the plain pseudo-inverse, which asks for speeds that no joint has when the "
+            "elbow is straight. Use the damped inverse.",
             mistakes.damping_ignored,
             "Damping trades a little of the tip's error for possible speeds.",
         ),
         Wrong(
             "the error of position reversed",
-            "Target minus actual, for the position too: as it is, the tip flees its target.",
+            "The error of the position has the wrong sign, so the tip moves away from its target. "
+            "Take target minus actual.",
             mistakes.WorkspaceLaw(place=-1.0),
             "One sign for every error.",
         ),
         Wrong(
-            "the turn backwards",
+            "the turn reversed",
             "This is the turn from the target to the tip. The target comes first: "
             "orientation_error(R_wd, R_wt), and R_wd is on the left of the product.",
             mistakes.WorkspaceLaw(turn=mistakes.turned_back),
             "Say from where to where a rotation turns.",
         ),
         Wrong(
-            "the turn backwards, in the tool's axes",
-            "R_wdᵀ R_wt turns from the target to the tip, and speaks of the target's axes. Wanted is "
-            "the turn to the target, in the world's.",
+            "the turn reversed, in the tool's axes",
+            "R_wdᵀ R_wt turns from the target to the tip, and its components are along the "
+            "target's axes. Take the turn to the target, in the world's axes: R_wd R_wtᵀ.",
             mistakes.WorkspaceLaw(turn=mistakes.turned_back_in_tool_axes),
             "Frames that cancel: R_wd R_tw is a turn in world axes.",
         ),
         Wrong(
             "position and turn both reversed",
-            "All six numbers have the other sign: target minus actual.",
+            "All six numbers have the wrong sign. Take target minus actual.",
             mistakes.WorkspaceLaw(place=-1.0, turn=mistakes.turned_back),
             "One sign for every error.",
         ),
@@ -639,42 +647,43 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "the sine of the turn",
-            "Half the cross products of the axes, or half of R - Rᵀ, is the axis times the *sine* of "
-            "the angle. For small turns it is nearly right, at 90 degrees it gets weaker, at 180 it is "
-            "nought. The logarithm gives the angle.",
+            "Half the cross products of the axes, or half of R - Rᵀ, is the axis times the sine "
+            "of the angle: nearly right for small turns, too weak at 90 degrees, zero at 180. "
+            "Take the logarithm, which gives the angle.",
             mistakes.WorkspaceLaw(turn=mistakes.sine_of_the_turn),
             "sin x is x only for small x.",
         ),
         Wrong(
             "the arcsine of the turn",
-            "The sine does not tell 120 degrees from 60, so its arcsine is right up to 90 degrees and "
-            "falls again beyond. The logarithm gives the angle up to 180.",
+            "The sine cannot tell 120 degrees from 60, so its arcsine is wrong beyond 90 degrees. "
+            "Use the logarithm, which gives the angle up to 180.",
             mistakes.WorkspaceLaw(turn=mistakes.arcsine_of_the_turn),
             "sin x is the same for x and 180° - x.",
         ),
         Wrong(
             "the transpose for the inverse",
-            "Jᵀ takes forces to torques. Joint speeds for a twist come by the damped inverse.",
+            "Jᵀ turns forces into torques. To get joint speeds from a twist, use the damped "
+            "inverse.",
             mistakes.by_the_transpose,
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
         Wrong(
             "the error in the tool's axes",
-            "Both parts of the error are in the tool's axes, while twist and tip Jacobian speak of the "
-            "world's.",
+            "Both parts of the error are in the tool's axes, while the twist and the tip Jacobian "
+            "are in the world's. Turn the error into world axes.",
             mistakes.InToolAxes(body=False),
             "Error and Jacobian must speak of the same axes.",
         ),
         Wrong(
-            "all in the tool's axes but the target's twist",
-            "Error and Jacobian are in the tool's axes: possible, but then the target's twist has to "
-            "be turned into them too.",
+            "everything in the tool's axes but the target's twist",
+            "Error and Jacobian are in the tool's axes, but the target's twist is in the world's. "
+            "Use world axes for all three.",
             mistakes.InToolAxes(body=True),
             "Add only vectors of the same axes.",
         ),
         Wrong(
             "the damping squared",
-            "`damping` is what stands before |dq|² already, as in damped_inverse.",
+            "`damping` is already the factor of |dq|², as in damped_inverse. Do not square it.",
             mistakes.WorkspaceLaw(power=2.0),
             "Is it λ or λ²? Look at what is minimised.",
         ),
@@ -801,51 +810,52 @@ POSTURE_VELOCITY = Problem(
     wrong=(
         Wrong(
             "the transpose for the inverse",
-            "I - Jᵀ J is a projector only if the rows of J are orthonormal, as in the first test. The "
-            "arm's are not, and the tip moves.",
+            "I - Jᵀ J is a projector only if the rows of J are orthonormal, as in the first test. "
+            "The arm's are not, and the tip moves: use the pseudo-inverse of J.",
             mistakes.transpose_projector,
             "Test a projector: applied twice it does the same.",
         ),
         Wrong(
             "a damped inverse in the projector",
-            "The tip drifts: a damped inverse does not undo J exactly. Damp what moves the tip, but "
-            "not this.",
+            "A damped inverse does not undo J exactly, so the tip drifts. Use the plain "
+            "pseudo-inverse here.",
             mistakes.damped_projector,
             "Two inverses for two purposes.",
         ),
         Wrong(
-            "the other half",
-            "This is the part of the wish that the tip does feel. Take it off.",
+            "the part that the tip feels",
+            "This is the part of the wish that the tip does feel. Subtract it from the wish.",
             mistakes.the_rest,
             "Wish = felt part + free part.",
         ),
         Wrong(
             "the whole wish",
-            "The wish as it is moves the tip.",
+            "The whole wish moves the tip. Subtract the part of it that the tip feels.",
             mistakes.all_of_it,
             "J times the answer must be zero.",
         ),
         Wrong(
-            "1 for the identity",
-            "numpy takes the number 1 from every entry. The identity is np.eye(7).",
+            "the number 1 for the identity matrix",
+            "numpy applies the number 1 to every entry. Write np.eye(7) for the identity matrix.",
             mistakes.one_for_the_identity,
             "1 is not I.",
         ),
         Wrong(
-            "nothing at all",
-            "No motion is not felt by the tip, but it is not near to the wish either.",
+            "no motion at all",
+            "The tip does not feel an arm at rest, but the joints then ignore the wish. Keep as "
+            "much of the wish as the tip allows.",
             mistakes.no_motion,
             "Two conditions: not felt, and as near as can be.",
         ),
         Wrong(
-            "made one long",
+            "the answer scaled to length one",
             "The direction is right. Its length is part of the answer: do not divide by it.",
             mistakes.length_one,
             "A projection shortens; it does not normalise.",
         ),
         Wrong(
             "the free part with the other sign",
-            "Take the felt part off the wish, not the wish off the felt part.",
+            "Subtract the part that the tip feels from the wish, not the wish from that part.",
             mistakes.minus_the_free_part,
             "Wish = felt part + free part.",
         ),

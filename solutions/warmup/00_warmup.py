@@ -361,7 +361,7 @@ lk.replay.show(turning) if farthest_off else None
 # That is why so many programs get away with it. When you test an orientation error, point the hand down and
 # tilt it.
 
-# %% [markdown] why="why_it_turns_away"
+# %% [markdown] why="why_farthest_off"
 # What did you see the hand do when its error was given in the tool's axes, and why? The gripper points down:
 # say which components of the error change their sign, and what the controller then does.
 #

@@ -58,33 +58,35 @@ JOINT_ERROR = Problem(
     wrong=(
         Wrong(
             "actual minus target",
-            "The sign is wrong. A gain times this error drives the arm away from its target.",
+            "The sign is wrong: a gain times this error drives the arm away from its target. "
+            "Subtract the actual angles from the target's.",
             mistakes.actual_minus_target,
             "One convention for the whole course: target minus actual.",
         ),
         Wrong(
             "a table of 49 numbers",
             "A (7, 1) column minus a (7,) vector is a 7 by 7 table of all differences: numpy "
-            "stretches both without a word. Keep vectors 1-D.",
+            "stretches both without a warning. Keep vectors 1-D.",
             mistakes.a_column,
             "Broadcasting makes shapes fit that do not belong together.",
         ),
         Wrong(
             "one number for seven joints",
-            "The sum lets an error of one joint hide that of another. Each joint needs its own.",
+            "In a sum the error of one joint can hide that of another. Give one error for each "
+            "joint.",
             mistakes.the_sum,
             "Errors of opposite sign cancel in a sum.",
         ),
         Wrong(
             "the error of the speeds",
-            "These are speeds. The angles are `target.position` and `state.q`.",
+            "You subtracted the speeds. The angles are `target.position` and `state.q`.",
             mistakes.of_the_speeds,
             "A sample holds a value and its derivatives.",
         ),
         Wrong(
-            "wrapped to half a turn",
-            "A joint has stops. From -2.9 to 2.9 rad the only way is back through zero, 5.8 rad; the "
-            "short way round ends at the stop. So the error of a joint is not wrapped.",
+            "the error wrapped to half a turn",
+            "A joint has stops: from -2.9 to 2.9 rad the only way is back through zero, 5.8 rad, "
+            "because the short way ends at the stop. Do not wrap the error.",
             mistakes.wrapped,
             "Wrap what can go round and round; a joint with stops cannot.",
         ),
@@ -146,31 +148,33 @@ TRANSFORM_POINT = Problem(
     wrong=(
         Wrong(
             "the inverse, from a to b",
-            "That answers p_b from p_a. Read the subscripts: p_a = T_ab p_b, the two b's meet.",
+            "This gives p_b from p_a. Read the subscripts: in p_a = T_ab p_b the two b's meet.",
             mistakes.from_a_to_b,
             "Neighbouring subscripts must be equal, and cancel.",
         ),
         Wrong(
-            "the translation is lost",
-            "A rotation alone is right for directions. A point also needs the way from a's origin "
-            "to b's.",
+            "the translation left out",
+            "The rotation alone is right for a direction. For a point, also add the vector from "
+            "a's origin to b's.",
             mistakes.only_turns,
             "Points and directions transform differently.",
         ),
         Wrong(
-            "shifts first, then turns",
-            "T_ab[:3, 3] is in a's axes already; turning it with the rest is too much.",
+            "the shift before the turn",
+            "T_ab[:3, 3] is in a's axes already, so it must not be turned. Turn p_b first, then "
+            "add the translation.",
             mistakes.shifts_first,
             "Every vector has axes; add only vectors in the same ones.",
         ),
         Wrong(
-            "turns the wrong way round",
-            "The rotation is transposed: that is R_ba, which takes vectors from a to b.",
+            "the rotation the wrong way round",
+            "The rotation is transposed: that is R_ba, which takes vectors from a to b. Do not "
+            "transpose it.",
             mistakes.turns_backwards,
             "R_ab takes components in b to components in a.",
         ),
         Wrong(
-            "the rotation is lost",
+            "the rotation left out",
             "The components of p_b are along b's axes. Turn them into a's axes with R_ab before "
             "you add the translation.",
             mistakes.only_shifts,
@@ -214,32 +218,34 @@ INVERSE_TRANSFORM = Problem(
     wrong=(
         Wrong(
             "the translation only negated",
-            "-t is still in a's axes. In b's axes it is -R_abᵀ t.",
+            "-t is still in a's axes. Turn it into b's axes: -R_abᵀ t.",
             mistakes.minus_the_translation,
             "Every vector has axes.",
         ),
         Wrong(
             "the whole matrix transposed",
-            "Only a rotation is undone by transposing. Here the translation ends up in the last "
-            "row, where a pose has (0, 0, 0, 1).",
+            "Only the rotation is inverted by transposing. Here the translation ends up in the "
+            "last row, where a pose has (0, 0, 0, 1): compute it separately.",
             mistakes.transposed,
             "A pose is not an orthogonal matrix.",
         ),
         Wrong(
             "the rotation not inverted",
-            "The translation is right, but the rotation is still that from b to a.",
+            "The translation is right, but the rotation is still the one from b to a. Transpose "
+            "it.",
             mistakes.rotation_kept,
             "Test an inverse by multiplying: T_ab T_ba = I.",
         ),
         Wrong(
             "the translation turned by R, not by its transpose",
-            "-R_ab t would be right if t were in b's axes. It is in a's, so R_abᵀ brings it over.",
+            "-R_ab t would be right if t were in b's axes. It is in a's, so turn it by R_abᵀ.",
             mistakes.turned_forwards,
             "Let the subscripts cancel: R_ba t_a.",
         ),
         Wrong(
-            "the minus forgotten",
-            "The way from a to b, seen from b, is R_abᵀ t; from b back to a it is -R_abᵀ t.",
+            "the minus left out",
+            "R_abᵀ t leads from a to b, seen in b's axes. The inverse leads from b back to a: "
+            "-R_abᵀ t.",
             mistakes.minus_forgotten,
             "Test an inverse by multiplying: T_ab T_ba = I.",
         ),
@@ -308,56 +314,60 @@ ORIENTATION_ERROR = Problem(
     wrong=(
         Wrong(
             "roll, pitch and yaw subtracted",
-            "Euler angles are not a vector. With the gripper down, roll and pitch come out with the "
-            "wrong sign, so feedback pushes the hand over; and at ±180 degrees they jump.",
+            "Euler angles are not a vector. With the gripper down, roll and pitch come out with "
+            "the wrong sign, so feedback tips the hand over, and at ±180 degrees they jump. Take "
+            "the logarithm of one rotation instead.",
             mistakes.euler_subtracted,
             "Orientations are compared by a product, never by a difference of angles.",
         ),
         Wrong(
             "the turn in the tool's axes",
-            "The right turn, but its components are along the tool's axes, and the world's are asked "
-            "for. Which frame do the neighbouring letters of your product leave over?",
+            "The turn is right, but its components are along the tool's axes, and the question "
+            "asks for the world's. Which frame do the neighbouring letters of your product leave "
+            "over?",
             mistakes.in_tool_axes,
             "R_wtᵀ R_wd is in the tool's axes, R_wd R_wtᵀ in the world's.",
         ),
         Wrong(
-            "from the wanted to the actual",
-            "The turn goes the wrong way: target minus actual means from the actual one to the "
+            "the turn from the desired to the actual orientation",
+            "The turn goes the wrong way. It should lead from the actual orientation to the "
             "desired one.",
             mistakes.from_wanted_to_actual,
             "One convention for the whole course: target minus actual.",
         ),
         Wrong(
             "the sine of the angle",
-            "The skew part of a rotation gives the axis times the sine. For small angles nobody "
-            "sees it; at 90 degrees it is far off, and beyond it shrinks again.",
+            "The skew part of a rotation gives the axis times the sine of the angle. For small "
+            "angles the difference cannot be seen; at 90 degrees it is large, and beyond that the "
+            "sine shrinks again. Take the angle itself.",
             mistakes.sine_of_the_angle,
             "sin x and x agree only for small x.",
         ),
         Wrong(
             "the matrices subtracted",
-            "R_wd - R_wt is not a rotation, and its skew part is not the turn between them.",
+            "R_wd - R_wt is not a rotation, and its skew part is not the turn between them. "
+            "Multiply one with the transpose of the other.",
             mistakes.matrices_subtracted,
             "Orientations are compared by a product.",
         ),
         Wrong(
             "two rotation vectors subtracted",
-            "The logarithms of two orientations are turns about different axes, and their "
-            "difference is not a rotation vector. Multiply first, then take one logarithm.",
+            "The difference of two logarithms is not a rotation vector. Multiply the rotations "
+            "first, then take one logarithm.",
             mistakes.logarithms_subtracted,
             "Orientations are compared by a product.",
         ),
         Wrong(
-            "the wrong one transposed",
+            "the wrong rotation transposed",
             "Your product goes from the desired to the actual orientation, and in the tool's axes. "
             "Solve E R_wt = R_wd for E, and see which one is undone, and on which side.",
             mistakes.backwards_in_tool_axes,
             "E R_wt = R_wd: multiply from the right by R_wtᵀ.",
         ),
         Wrong(
-            "0/0 where nothing is turned",
-            "Angle over sine is 0/0 as soon as the arm has arrived, and every command after it is not "
-            "a number. Without a turn the answer is zero; lk.se3.rotation_log knows that.",
+            "0/0 where there is no turn",
+            "Angle over sine is 0/0 as soon as the arm has arrived, and every command after it is "
+            "not a number. Return zero where there is no turn, as lk.se3.rotation_log does.",
             mistakes.zero_by_zero,
             "Try a formula where the error is zero: there the arm should spend its life.",
         ),

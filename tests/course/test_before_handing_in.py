@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from labkit import LabkitError
-from labkit.course.before_handing_in import look
+from labkit.course.before_handing_in import HandIn, look
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
 from labkit.course.receipt import _last_word, receipt
 from labkit.course.verdict import Outcome, Verdict
@@ -44,8 +44,20 @@ def test_an_untouched_notebook_is_whole_and_not_run(folder):
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
     assert str(found).endswith(
-        "0 of 6 tasks were right, as far as can be tried here, and 0 of 2 predictions committed."
+        "0 of 6 tasks were right, as far as can be tried here, and 0 of 2 predictions were "
+        "committed."
     )
+
+
+def test_only_what_there_is_is_counted():
+    """A notebook without tasks hears nothing of tasks, and one with neither of no run."""
+    verdict = Verdict("x", Outcome.RIGHT, 1.0, 1.0)
+    some = HandIn("08_report", (), (), {"x": verdict}, ["x"])
+    assert str(some).splitlines()[-1] == (
+        "08_report: it can be handed in as it is; when it was last run, 1 of 1 predictions were "
+        "committed."
+    )
+    assert str(HandIn("a", (), (), {})) == "a: it can be handed in as it is."
 
 
 def test_what_is_not_yet_right_is_named(folder):

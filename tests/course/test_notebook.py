@@ -80,7 +80,7 @@ def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
     check("double", answers["double"])
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
-    assert "it uses your double, not right yet" in capsys.readouterr().out
+    assert "It uses your double, not right yet: correct double first." in capsys.readouterr().out
 
 
 def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
@@ -292,7 +292,7 @@ def test_questions_of_another_version_are_refused(tmp_path, numbers, todo):
 
 
 def test_a_figure_shows_the_evidence(desk):
-    """In a kernel a known mistake comes with a picture of the numbers, before any other picture."""
+    """In a kernel the card of a known mistake has a picture of the numbers, and words for it."""
     program = (
         "from IPython.testing.globalipapp import start_ipython\n"
         "ip = start_ipython()\n"
@@ -301,12 +301,12 @@ def test_a_figure_shows_the_evidence(desk):
         "import labkit.course.student, IPython.display\n"
         "IPython.display.display = lambda *a, **k: shown.extend(a)\n"
         "check('double', lambda x: x * x)\n"
-        "print(shown[0]['text/plain'])\n"
-        "print(shown[1].format, shown[1].data[1:4], shown[1].alt)\n"
+        "print(len(shown), shown[0]['text/plain'])\n"
+        "print(shown[0]['text/html'])\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=desk
     )
-    assert "well-known one: squared" in done.stdout
-    last = done.stdout.splitlines()[-1]
-    assert last == "png b'PNG' double(3.0), number by number: expected 6; yours 9."
+    assert done.stdout.startswith("1 double: not yet right. 0 of 4 points.\n  A well-known mistake")
+    words = "double(3.0), number by number: expected 6; yours 9."
+    assert f'<img alt="{words}" src="data:image/png;base64,' in done.stdout

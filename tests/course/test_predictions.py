@@ -79,3 +79,19 @@ def test_one_run_after_the_mouse_commits_and_writes_it_down(place, monkeypatch, 
     assert predict("x", None) == "b" == place.committed["x"]
     assert written == [('x = predict("x", "b")', True)]
     assert "You are committed to: (b) down." in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(("typed", "said"), [("0", 0.0), (" 2.5", 2.5), ("10", None), ("x", None)])
+def test_any_number_can_be_typed(monkeypatch, typed, said):
+    """The field begins empty, so that 0 can be chosen too; what is no prediction is not taken."""
+    made = desk.Desk({"x": Prediction("x", "?", Number("mm", 0.0, 9.0), 3).question()})
+    shown = []
+    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    monkeypatch.setattr("labkit.course.reveal.shell", lambda: True)
+    monkeypatch.setattr("IPython.display.display", shown.append)
+    assert predict("x") is None
+    box, note = shown[0].children
+    box.children[0].value = "1"
+    box.children[0].value = typed
+    assert made.chosen == ({} if said is None else {"x": said})
+    assert ("not committed yet" in note.value) == (said is not None)

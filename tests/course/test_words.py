@@ -7,7 +7,7 @@ from questions import CALLS, DOUBLE, HIDDEN, double, square
 
 from labkit.course import Call, Test
 from labkit.course.marking import mark, not_counted
-from labkit.course.messages import head, tell
+from labkit.course.messages import head, summary, tell
 
 COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
 """The same question without anything to be tried later."""
@@ -50,23 +50,55 @@ def test_right_says_what_else_is_tried():
 
 def test_wrong_shows_the_call_and_both_numbers():
     """A failure holds the call as typed, what was expected and what came; passed tests are told."""
-    words = said(lambda x: abs(2.0 * x))
-    assert "[passed] two (needed before anything counts)" in words
-    assert "[failed] negative" in words and "double(-1.0):" in words
-    assert "expected -2\n" in words and "got      2\n" in words
+    assert said(lambda x: abs(2.0 * x) + (x < 0)).splitlines() == [
+        "double: not yet right. 3 of 4 points.",
+        "  It is 3 instead of -2.",
+        "  [passed] two (needed before anything counts)",
+        "  [passed] three",
+        "  [failed] negative",
+        "  Where it fails:",
+        "    double(-1.0): expected -2, got 3",
+        '  Stuck? Run `hint("double", 1)` in a new cell (press Esc, then B). It is free.',
+    ]
 
 
-def test_a_known_mistake_is_named():
-    """Its name and its sentence follow the failures."""
-    words = said(square).splitlines()
-    named = next(k for k, line in enumerate(words) if "well-known" in line)
-    assert "squared" in words[named] and "That is the square." in words[named + 1]
+def test_a_known_mistake_is_named_first():
+    """Its name and its sentence come before the tests, and the tests before the numbers."""
+    words = said(square)
+    assert words.splitlines()[1] == "  A well-known mistake: squared. That is the square."
+    at = [words.index(x) for x in ("squared", "[failed] three", "double(3.0): expected 6, got 9")]
+    assert at == sorted(at)
+    assert summary(mark(DOUBLE, square))[1] == words.splitlines()[1]
 
 
-def test_errors_are_told_on_their_call():
-    """An exception is told with its type, its words and the call that raised it."""
-    words = " ".join(said(lambda x: [][0]).split())  # long lines are folded
-    assert "double(2.0) raised IndexError: list index out of range" in words
+def test_an_answer_that_is_wrong_already_is_named_before_all_else():
+    """Who uses a wrong answer of theirs reads first that it is to be corrected first."""
+    words = said(square, leans_on=("half", "third")).splitlines()
+    assert words[1] == "  It uses your half and third, not right yet: correct half and third first."
+
+
+def test_errors_are_told_with_their_call():
+    """An exception is told with its type and its words, and with the call that raised it."""
+    words = said(lambda x: [][0])
+    assert "\n  It raised IndexError: list index out of range, in the line `" in words
+    assert "\n  Where it fails:\n    double(2.0)\n" in words
+    assert words.count("IndexError") == 1
+
+
+def test_a_long_call_can_be_tried():
+    """A call that nobody could type comes with the line that fetches it."""
+    question = replace(DOUBLE, tests=(Test("a long one", (Call((np.eye(3),), expected=1.0),)),))
+    words = said(lambda x: 2.0, replace(question, mistakes=()))
+    assert '    args, kwargs = lk.course.case("double")\n      double(*args, **kwargs)' in words
+    assert "lk.course.case" not in said(square)
+
+
+def test_the_number_that_is_farthest_off_is_named():
+    """Of a vector, the sentence tells which number, what it is and what it should be."""
+    call = Call((1.0,), expected=np.arange(4.0))
+    question = replace(DOUBLE, tests=(Test("a vector", (call,)),), mistakes=())
+    words = said(lambda x: np.array([0.0, 1.0, 9.0, 3.5]), question).splitlines()
+    assert words[1] == "  The number at index 2 is farthest off: it is 9 instead of 2."
 
 
 def test_a_withheld_tool_is_an_outcome_of_its_own():
@@ -98,7 +130,7 @@ def test_long_answers_stand_below_each_other():
     at = next(k for k, line in enumerate(lines) if "expected" in line)
     assert "double(<3 x 3 numbers>)" in lines[at - 1]
     assert lines[at].index("[0, 1") == lines[at + 1].index("[0, -1")
-    assert "(the same with the other sign)" in lines[at + 2]
+    assert lines[1] == "  The same with the other sign."
 
 
 def test_a_test_that_nobody_can_see_is_told():
@@ -114,5 +146,5 @@ def test_a_test_that_nobody_can_see_is_told():
 def test_the_same_failure_is_told_once():
     """What went wrong in the same way again is not told again."""
     words = said(lambda x: None)
-    assert words.count("it returned nothing (None)") == 1
-    assert words.count(": the same") == 2
+    assert words.count("t returned nothing (None)") == 1
+    assert words.count("[failed]") == 3 and words.count("double(") == 1

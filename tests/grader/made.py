@@ -15,7 +15,7 @@ from labkit.grader.marks import mark_of
 from labkit.grader.results import Answer, Result, Results
 
 NAME = "01_paths"
-WHY = "why_a_quarter"
+WHY = "why_twice_the_time"
 """Its text that a person marks where it is drawn; of this class nobody's is."""
 NOTEBOOK = {"cells": [], "metadata": {}, "nbformat": 4, "nbformat_minor": 5}
 

@@ -29,7 +29,7 @@ def test_two_of_eight_are_drawn_evenly_and_for_good():
 
 def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
     """One that is written and not drawn has its points; a blank one has 0; the drawn one waits."""
-    texts = {"ada": "Because it is so.", "bob": "", "eve": "Because it is so."}
+    texts = {"ada": "Because it is so.", "bob": "", "dan": "Because it is so."}
     for student, text in texts.items():
         data = notebook_of(student)
         hand_in(course, NAME, student, data)
@@ -40,10 +40,10 @@ def test_only_a_why_that_is_drawn_waits_for_a_person(course, capsys):
     with open_gradebook(course) as book:
         grades = {s: book.find_grade(WHY, NAME, NAME, s) for s in texts}
         found = {s: (g.auto_score, g.needs_manual_grade) for s, g in grades.items()}
-    assert found == {"ada": (2.0, False), "bob": (0.0, False), "eve": (None, True)}
+    assert found == {"ada": (2.0, False), "bob": (0.0, False), "dan": (None, True)}
     assert main(["feedback", NAME, "--course", str(course.root)]) == 2
     said = capsys.readouterr().err
-    assert f"eve ({WHY})" in said and "ada" not in said
+    assert f"dan ({WHY})" in said and "ada" not in said
 
 
 def test_whys_of_notebooks_that_were_not_handed_out_are_not_drawn(course):

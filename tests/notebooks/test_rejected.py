@@ -155,35 +155,35 @@ def lowest(seeds, grid, share=1.0):
 GRID = (14.0, 22.0, 34.0, 50.0)
 FINE = tuple(np.geomspace(10.0, 90.0, 18))
 REJECTED = [
-    ("00 joint_error", wrapped, "wrapped to half a turn"),
-    ("00 orientation_error", zero_by_zero, "0/0 where nothing is turned"),
+    ("00 joint_error", wrapped, "the error wrapped to half a turn"),
+    ("00 orientation_error", zero_by_zero, "0/0 where there is no turn"),
     ("01 trapezoid", too_high_a_triangle, "a triangle that is too high"),
-    ("02 coriolis", over_h, "twice too large"),
-    ("02 power_balance", lambda *x: left_over(*x, joints=6), "the power of some joints"),
-    ("02 power_balance", lambda *x: abs(left_over(*x)), "without its sign"),
+    ("02 coriolis", over_h, "twice the right matrix"),
+    ("02 power_balance", lambda *x: left_over(*x, joints=6), "the power of only some joints"),
+    ("02 power_balance", lambda *x: abs(left_over(*x)), "the absolute value"),
     ("03 workspace_velocity_pd", by_arcsine, "the arcsine of the turn"),
-    ("04 choose_gains", springs(0.1), "hardly a damper"),
-    ("04 choose_gains", springs(0.0), "no damper at all"),
+    ("04 choose_gains", springs(0.1), "too little damping"),
+    ("04 choose_gains", springs(0.0), "no damping"),
     ("04 choose_gains", from_the_notebook, None),
-    ("04 choose_gains", from_the_notebooks_other_cell, "tuned on the slow line only"),
+    ("04 choose_gains", from_the_notebooks_other_cell, "gains tuned on the slow line only"),
     ("05 msd", spring_from_zero, "a spring tied to the origin"),
     (
         "05 apparent_stiffness",
         total_least_squares,
-        "the regression the other way round, or of both",
+        "a fit with the noise in the displacement",
     ),
     ("06 blend", three_coordinates, "three coordinates, however many there are"),
-    ("07 rms_error", rms_of_the_left_arm, "always the left arm"),
+    ("07 rms_error", rms_of_the_left_arm, "the left arm's model for every arm"),
     ("07 rms_error", norm_of_the_mean, "the length of the mean error"),
     ("07 open_loop", plain_function, None),
     ("07 open_loop", loop(1), "a delay of first order"),
-    ("07 open_loop", loop(4, unit=1e3), "no delay, or next to none"),
+    ("07 open_loop", loop(4, unit=1e3), "almost no delay"),
     (
         "07 verdicts",
         each(lambda a, b: by_interval(a, b, 2.776)),
         "Student's t of five pairs for any number",
     ),
-    ("07 verdicts", each(lambda a, b: "undecided"), "always undecided"),
+    ("07 verdicts", each(lambda a, b: "undecided"), "every claim undecided"),
     ("07 verdicts", each(by_ten_percent), "a threshold instead of an interval"),
     (
         "07 verdicts",
@@ -195,8 +195,8 @@ REJECTED = [
         for seeds in ((0,), (0, 1), range(5))
     ),
     ("07 choose_gains", lowest((0,), FINE), None),
-    ("07 choose_gains", lowest(range(5), GRID, 0.9), "a tenth off the lowest point"),
-    ("07 choose_gains", lambda runner: (20.0, 1.0), "gains without a try"),
+    ("07 choose_gains", lowest(range(5), GRID, 0.9), "only a tenth below the lowest point"),
+    ("07 choose_gains", lambda runner: (20.0, 1.0), "gains chosen without a run"),
     ("07 choose_gains", lambda runner: (40.0, 0.6), None),
 ]
 

@@ -1,0 +1,74 @@
+"""A message as a card in a notebook, with the plain text behind it."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Iterable
+from html import escape
+
+from .messages import PRINTED, Message
+from .verdict import Outcome
+
+_BADGES = {
+    Outcome.RIGHT: ("\N{CHECK MARK}", "#1a7f37"),
+    Outcome.WRONG: ("\N{MULTIPLICATION SIGN}", "#9a5b00"),
+    Outcome.ERROR: ("!", "#b3261e"),
+}
+"""A sign for an outcome, and its colour, on which white letters can be read."""
+_OTHER = ("\N{HORIZONTAL ELLIPSIS}", "#57606a")
+
+_STYLE = """<style>
+.lk-card { max-width: 46rem; margin: .2em 0; padding: .5em .9em; color: inherit; font-size: 1em;
+  border: 1px solid var(--jp-border-color1, #8888); border-left: 5px solid var(--lk-badge);
+  border-radius: 6px; overflow-wrap: anywhere; font-family: var(--jp-content-font-family,
+  system-ui, sans-serif); line-height: 1.5; }
+.lk-card :is(p, ul, details, pre) { margin: .35em 0; }
+.lk-card b { color: #fff; background: var(--lk-badge); border-radius: 4px; padding: 0 .45em;
+  margin-right: .4em; }
+.lk-card summary { cursor: pointer; } .lk-card ul { padding-left: 1.4em; }
+.lk-card p:first-child { font-weight: 600; }
+.lk-card.lk-card.lk-card pre { white-space: pre-wrap; word-break: normal; }
+.lk-card :is(code, pre) { color: inherit; font-size: .93em;
+  font-family: var(--jp-code-font-family, ui-monospace, monospace); }
+.lk-card img { max-width: 100%; background: #fff; }
+</style>"""
+
+
+def card(
+    message: Message, outcome: Outcome, picture: tuple[bytes, str] | None = None
+) -> dict[str, str]:
+    """What a notebook shows of a message: a card, and plain text for whatever shows no HTML.
+
+    Args:
+        message: What to say; nothing in it becomes markup.
+        outcome: Of the question.
+        picture: A PNG file's bytes and its words, of the numbers.
+    """
+    sign, colour = _BADGES.get(outcome, _OTHER)
+    failed = sum(test.startswith("[failed]") for test in message.tests)
+    folded = [f"<ul>{''.join(f'<li>{_inline(test)}</li>' for test in message.tests)}</ul>"]
+    folded += [_block(message.numbers)] if message.numbers else []
+    if picture:
+        data = base64.b64encode(picture[0]).decode()
+        folded.append(f'<img alt="{escape(picture[1])}" src="data:image/png;base64,{data}">')
+    parts = [f'<p><b aria-hidden="true">{sign}</b>{_inline(message.head)}</p>']
+    parts += [f"<p>{_inline(line)}</p>" for line in message.helps]
+    if message.tests:
+        says = f"{failed} of {len(message.tests)} tests failed. Show them, with the numbers"
+        parts.append(f"<details><summary>{says}</summary>{''.join(folded)}</details>")
+    if message.printed:
+        parts.append(f"<p>{PRINTED}</p>{_block(message.printed)}")
+    parts += [f"<p>{_inline(message.hint)}</p>"] if message.hint else []
+    names = "lk-card mathjax_ignore tex2jax_ignore"  # a dollar is a dollar
+    page = f'<div class="{names}" style="--lk-badge: {colour}">{"".join(parts)}</div>{_STYLE}'
+    return {"text/plain": str(message), "text/html": page}
+
+
+def _inline(text: str) -> str:
+    """Text as HTML, code between backticks as code."""
+    return re.sub(r"`([^`]+)`", r"<code>\1</code>", escape(text))
+
+
+def _block(lines: Iterable[str]) -> str:
+    return f"<pre>{escape(chr(10).join(lines))}</pre>"

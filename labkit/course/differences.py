@@ -1,0 +1,117 @@
+"""Differences in words: how an answer differs from what is expected."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..control import COMMANDS
+from ..shapes import Array
+from .factors import likely_cause
+from .question import in_brief
+from .verdict import Difference, Kind, Value
+
+_COMMANDS = [kind.__name__ for kind in COMMANDS]
+
+
+_MEASURES = {
+    "max_mm": ("the largest error of the tip", " mm"),
+    "rms_mm": ("the RMS error of the tip", " mm"),
+    "max_deg": ("the largest tilt of the tip", " degrees"),
+    "rms_velocity_mm_s": ("the RMS error of the tip's speed", " mm/s"),
+    "worst_mm": ("the worst error", " mm"),
+}
+"""Measures of a run in words, with their units."""
+
+
+def sentence(d: Difference) -> str:
+    """A difference as a sentence, by which somebody could begin to correct it."""
+    text, expected, got, guess = words(d)
+    if got and d.several:
+        text = f"{text}it gives {got}. Expected: {expected}"
+    elif got and d.at:
+        text = f"{text}it gives {got} instead of {expected}"
+    elif got and isinstance(d.expected, tuple) and isinstance(d.found, tuple):
+        text = _farthest(d, np.array(d.expected), np.array(d.found))
+    elif got:
+        text = f"{d.part or 'it'} is {got} instead of {expected}"
+    says = guess or (f"it {text.strip()}" if d.kind is Kind.RAISED else text)
+    if not (d.kind is Kind.CHANGED or (d.part and says.startswith(d.part))):  # those are names
+        says = says[:1].upper() + says[1:]
+    return says if says.endswith((".", "?", "!", "`")) else f"{says}."
+
+
+def _farthest(d: Difference, expected: Array, found: Array) -> str:
+    at = tuple(map(int, np.unravel_index(np.argmax(np.abs(found - expected)), found.shape)))
+    where = _index(at)
+    of = f"{d.part}: " if d.part else ""
+    is_, should = (_brief(float(x[at])) for x in (found, expected))
+    return f"{of}the number at {where} is farthest off: it is {is_} instead of {should}"
+
+
+def _index(at: Sequence[float]) -> str:
+    index = ", ".join(f"{k:g}" for k in at)
+    return f"index {f'({index})' if len(at) > 1 else index}"
+
+
+def words(d: Difference) -> tuple[str, str, str, str]:
+    """A difference in words: where it is, what was expected, what was returned, a likely cause."""
+    of = f"{d.part}: " if d.part else ""
+    text = ""
+    match d.kind:
+        case Kind.NUMBERS if d.expected is None:
+            text = f"got {_brief(d.found)}, which is not one of the right values"
+        case Kind.NUMBERS:
+            at = f"at {_index(d.at)} " if d.at else ""
+            also = ", or any that moves the tip alike" if d.several else ""
+            return f"{of}{at}", _brief(d.expected) + also, _brief(d.found), likely_cause(d)
+        case Kind.RESPONSE:
+            return f"at {d.at[0]:g} rad/s ", _polar(d.expected), _polar(d.found), ""
+        case Kind.MEASURE:
+            what, unit = _MEASURES.get(d.part, (d.part.replace("_", " "), ""))
+            text = f"{what} is {_much(d.found)}{unit}, allowed {_much(d.expected)}{unit}"
+        case Kind.TYPE if not d.expected:
+            text = f"{of}plain numbers are asked for, not a {d.found}"
+        case Kind.TYPE:
+            text = f"{of}it should be a {d.expected}, not {_instead(d)}"
+        case Kind.VALUE:
+            text = f"{of}it should be {d.expected}, not {_brief(d.found)}"
+        case Kind.KEY:
+            text = f"the key {d.part!r} is missing"
+        case Kind.PARTS:
+            parts = f"{len(d.parts)} things ({', '.join(d.parts)})"
+            text = f"{of}it should be {parts}, not {_brief(d.found)}"
+        case Kind.NOTHING:
+            text = "it returned nothing (None); does every branch of it end in a return?"
+        case Kind.RAISED:
+            text = f" raised {d.found or d.error}"
+        case Kind.REFUSED | Kind.CHANGED:
+            text = str(d.found or d.error)
+        case Kind.OTHER:
+            text = "the answer cannot be compared with the expected one"
+    return text, "", "", ""
+
+
+def _instead(d: Difference) -> str:
+    """What was returned instead of the type that was asked for, and how to make that type."""
+    if d.found in _COMMANDS:
+        return f"a {d.found}"
+    what = _brief(d.found) or "plain numbers"
+    if d.expected not in _COMMANDS:
+        return what
+    return f"{what}; return lk.{d.expected}(...) with one number for each joint"
+
+
+def _brief(x: Value) -> str:
+    if isinstance(x, float):
+        return f"{x:.6g}" if abs(x) > 1e-10 else "0"
+    return x if isinstance(x, str) else in_brief(x)
+
+
+def _polar(x: Value) -> str:
+    return f"{x[0]:.4g} at {x[1]:.4g} degrees" if isinstance(x, tuple) else str(x)
+
+
+def _much(x: Value) -> str:
+    return f"{x:.{'3g' if abs(x) < 1e3 else '0f'}}" if isinstance(x, float) else str(x)
