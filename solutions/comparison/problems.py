@@ -351,19 +351,19 @@ OPEN_LOOP = Problem(
         ),
         Wrong(
             "the gain below",
-            "kp multiplies the loop: it stands in the numerator.",
+            "kp multiplies the loop: it is in the numerator.",
             mistakes.Loop(lambda kp, lag: ([1.0], [kp * lag, kp, 0.0])),
             "More gain, larger loop.",
         ),
         Wrong(
             "the gain squared",
-            "kp stands in the loop once.",
+            "kp comes once in the loop.",
             mistakes.Loop(lambda kp, lag: ([kp**2], [lag, 1.0, 0.0])),
             "Follow the signal round the loop once.",
         ),
         Wrong(
             "the lag twice",
-            "The lag stands in the loop once.",
+            "The lag comes once in the loop.",
             mistakes.Loop(lambda kp, lag: ([kp], [lag**2, 2 * lag, 1.0, 0.0])),
             "Follow the signal round the loop once.",
         ),

@@ -427,7 +427,7 @@ CIRCLE = Problem(
         ),
         Wrong(
             "the start's angle with the wrong sign",
-            "The circle begins at minus the start's angle. The spoke stands at θ₀ + 2πs, with a plus.",
+            "The circle begins at minus the start's angle. The angle of the spoke is θ₀ + 2πs, with a plus.",
             mistakes.Spoke(start=-1.0, rates=-1.0),
             "Put s = 0 into every path: it must begin at the start.",
         ),
@@ -757,7 +757,7 @@ SEGMENT_AT = Problem(
         ),
         Wrong(
             "the last segment before the start",
-            "Index -1 is the last segment in Python: before the start the arm would stand at the end. The first one is on.",
+            "Index -1 is the last segment in Python: before the start the arm would jump to the end. The first one is on.",
             mistakes.Segments(before=lambda n, t, d: (n - 1, t)),
             "An index below 0 counts from the end.",
         ),
