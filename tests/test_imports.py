@@ -79,8 +79,10 @@ ORDER = [
         "course.identification",
     },
     {"course.reply", "course.notebook", "course.card"},
-    {"course.gaps", "course.marking"},
-    {"course.student", "course.problem"},
+    {"course.gaps", "course.marking", "course.probes"},
+    {"course.relations", "course.problem"},
+    {"course.observed"},
+    {"course.student"},
     {
         "course.before_handing_in",
         "course.failing_case",

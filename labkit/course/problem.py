@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
+from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from .equivalence import Judge
 from .judges import Close
 from .marking import fingerprint
+from .probes import probed
 from .question import Call, Case, Mistake, Question, Test
 
 CLOSE = Close()
@@ -121,7 +123,10 @@ class Problem:
             outcomes=self.outcomes,
         )
         mistakes = (Mistake(w.name, w.says, fingerprint(plain, w.function)) for w in self.wrong)
-        return replace(plain, mistakes=tuple(mistakes))
+        wrong = [w.function for w in self.wrong]
+        probes = probed(plain, self.answer, self.expected or self.answer, wrong)
+        names = tuple(signature(self.answer).parameters) if callable(self.answer) else ()
+        return replace(plain, mistakes=tuple(mistakes), arguments=names, probes=probes)
 
     def _test(self, trial: Trial, random: np.random.Generator) -> Test:
         public = (self._with_expected(case, hidden=False) for case in trial.public)

@@ -232,6 +232,21 @@ class Mistake(Misconception):
 
 
 @dataclass(frozen=True, eq=False)
+class Probe:
+    """The public calls with one thing in them changed, and what is right then.
+
+    Attributes:
+        label: What is changed, such as "`kd` is 0".
+        answers: The right answer to each call, in order.
+        tells: Whether few of the known mistakes are right there.
+    """
+
+    label: str
+    answers: tuple[Any, ...]
+    tells: bool = True
+
+
+@dataclass(frozen=True, eq=False)
 class Question:
     """One thing to write, and how it is marked.
 
@@ -246,6 +261,8 @@ class Question:
         mistakes: Known wrong answers.
         core: Whether it belongs to the core path; else it is an extension.
         outcomes: What it is evidence of, names of `outcomes.OUTCOMES`.
+        arguments: Names of the function's arguments.
+        probes: What is right where something in the public calls is changed.
     """
 
     name: str
@@ -258,6 +275,8 @@ class Question:
     mistakes: tuple[Mistake, ...] = ()
     core: bool = True
     outcomes: tuple[str, ...] = ()
+    arguments: tuple[str, ...] = ()
+    probes: tuple[Probe, ...] = ()
 
     @property
     def calls(self) -> tuple[Call | Choice, ...]:

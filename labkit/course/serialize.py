@@ -24,7 +24,7 @@ from ..model import Model
 from ..recordings import Runner, Trials
 from ..shapes import locked
 from .equivalence import Judge, Ratio, TipTorque
-from .question import Case, Mistake, Question, Raised, Test
+from .question import Case, Mistake, Probe, Question, Raised, Test
 
 DATA = (
     control.State,
@@ -62,7 +62,7 @@ GIVEN = (
 )
 """What a student's function may be given on top, values that are sent as what they are made of."""
 
-QUESTION = (Question, Test, Mistake, Raised, TipTorque, *get_args(Case), *get_args(Judge))
+QUESTION = (Question, Test, Mistake, Probe, Raised, TipTorque, *get_args(Case), *get_args(Judge))
 """What a question is made of on top."""
 
 _MADE_OF: dict[type, Callable[[Any], dict[str, Any]]] = {

@@ -24,6 +24,7 @@ from .card import card
 from .marking import Evidence, mark, not_counted, try_public
 from .messages import HEADS, Message, message, wrapped
 from .notebook import verdict_metadata
+from .observed import explained
 from .question import Question
 from .reply import Here
 from .serialize import read_question
@@ -105,6 +106,7 @@ class Desk:
                     here = Here(function, question.withheld)
                     tried = try_public(question, here)
                     verdict, found = mark(question, here, tried), tried.evidence(question)
+                    verdict = explained(question, verdict, tried, here)
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""

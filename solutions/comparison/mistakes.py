@@ -384,3 +384,151 @@ def sorted_first(table: Mapping[str, Any]) -> dict[str, str]:
     """Pairs the best with the best."""
     ordered = {claim: [sorted(row) for row in rows] for claim, rows in table.items()}
     return VerdictsBy(paired_difference)(ordered)
+
+
+@dataclass(frozen=True)
+class Rms:
+    """The right errors, and another number made of them.
+
+    Attributes:
+        number: Of the errors, shape (rows, 3).
+    """
+
+    number: Callable[[Array], Any]
+
+    def __call__(self, log: lk.Log, model: lk.Model) -> float:
+        """The number."""
+        return float(self.number(_errors(log, model)))
+
+
+def rms(errors: Array) -> Any:
+    """Root of the mean squared length of rows."""
+    return np.sqrt(np.mean(np.sum(np.square(errors), axis=1)))
+
+
+def from_the_first_target(log: lk.Log, model: lk.Model) -> float:
+    """All rows beside the first target."""
+    p = log.target.pose[0][:3, 3]  # type: ignore[union-attr]
+    return float(rms(np.array([p - model.pose(q)[:3, 3] for q in log.q])))
+
+
+def from_the_first_tip(log: lk.Log, model: lk.Model) -> float:
+    """How far the tip went, whatever its target."""
+    p = model.pose(log.q[0])[:3, 3]
+    return float(rms(np.array([p - model.pose(q)[:3, 3] for q in log.q])))
+
+
+@dataclass(frozen=True)
+class Loop:
+    """The loop with another factor in the place of the lag and the integrator.
+
+    Attributes:
+        rest: Numerator and denominator, of kp and lag.
+        delay: Of the delay.
+        close: What is made of the loop in the end.
+    """
+
+    rest: Callable[[float, float], tuple[list[float], list[float]]]
+    delay: Callable[[float, float], float] = lambda delay, lag: delay
+    close: Callable[[Any], Any] = lambda loop: loop
+
+    def __call__(self, kp: float, lag: float, delay: float) -> Any:
+        """The transfer function."""
+        loop = control.tf(*self.rest(kp, lag))
+        late = self.delay(delay, lag)
+        return self.close(loop * control.tf(*control.pade(late, 4)) if late else loop)
+
+
+def plain_loop(kp: float, lag: float) -> tuple[list[float], list[float]]:
+    """What is right: kp / (s (lag s + 1))."""
+    return [kp], [lag, 1.0, 0.0]
+
+
+@dataclass(frozen=True)
+class Margin:
+    """The gain of another phase, or another gain at the right one.
+
+    Attributes:
+        phase: Phase left at w, in [rad], of w, lag, delay and margin.
+        gain: The gain there, of w, lag and delay.
+    """
+
+    phase: Callable[[float, float, float, float], float] = lambda w, lag, delay, margin: (
+        pi / 2 - atan(lag * w) - delay * w - margin
+    )
+    gain: Callable[[float, float, float], float] = lambda w, lag, delay: (
+        w * sqrt(1.0 + (lag * w) ** 2)
+    )
+
+    def __call__(self, lag: float, delay: float, margin_deg: float) -> float:
+        """The gain."""
+
+        def left(w: float) -> float:
+            return self.phase(w, lag, delay, radians(margin_deg))
+
+        return float(self.gain(float(brentq(left, 1e-9, 1e5)), lag, delay))
+
+
+@dataclass(frozen=True)
+class Paired:
+    """A mean and a half width of the differences, or of something else.
+
+    Attributes:
+        of: What is made of the two rows.
+        half: The half width, of it.
+        mean: The middle, of it.
+    """
+
+    of: Callable[[Array, Array], Array] = np.subtract
+    half: Callable[[Array], Any] = lambda d: (
+        student.ppf(0.975, len(d) - 1) * d.std(ddof=1) / np.sqrt(len(d))
+    )
+    mean: Callable[[Array], Any] = np.mean
+
+    def __call__(self, errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+        """Middle and half width."""
+        a, b = np.asarray(errors_a, dtype=float), np.asarray(errors_b, dtype=float)
+        d = np.asarray(self.of(a, b))
+        return float(self.mean(d)), float(self.half(d))
+
+
+def half_of(d: Array) -> float:
+    """Half of the 95 % interval of one row."""
+    return float(student.ppf(0.975, len(d) - 1) * d.std(ddof=1) / np.sqrt(len(d)))
+
+
+def two_intervals(errors_a: Sequence[float], errors_b: Sequence[float]) -> tuple[float, float]:
+    """The half widths of both rows added."""
+    a, b = np.asarray(errors_a, dtype=float), np.asarray(errors_b, dtype=float)
+    return float(a.mean() - b.mean()), half_of(a) + half_of(b)
+
+
+def unpaired_with_more_freedom(
+    errors_a: Sequence[float], errors_b: Sequence[float]
+) -> tuple[float, float]:
+    """Two strangers, with 2 n - 2 degrees of freedom."""
+    mean, half = unpaired(errors_a, errors_b)
+    n = len(errors_a)
+    return mean, float(half * student.ppf(0.975, 2 * n - 2) / student.ppf(0.975, n - 1))
+
+
+@dataclass(frozen=True)
+class Said:
+    """The right verdicts in other words.
+
+    Attributes:
+        words: What is said for "holds", "does not hold" and "undecided".
+        sure: Whether it is decided, of the differences; None is right.
+    """
+
+    words: tuple[Any, Any, Any] = ("holds", "does not hold", "undecided")
+    sure: Callable[[Array], bool] = lambda d: abs(d.mean()) > half_of(d)
+
+    def __call__(self, table: Mapping[str, Any]) -> dict[str, Any]:
+        """The verdicts."""
+        found = {}
+        for claim, (a, b) in table.items():
+            d = np.subtract(a, b)
+            decided = self.words[0] if d.mean() > 0.0 else self.words[1]
+            found[claim] = decided if self.sure(d) else self.words[2]
+        return found

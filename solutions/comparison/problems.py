@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from math import atan, pi, sqrt
+
+import control
 import numpy as np
+from scipy.stats import t as student
 
 from labkit.course import Choice, Close, Response
 from labkit.course.problem import Problem, Trial, Wrong, call
@@ -143,6 +147,79 @@ RMS_ERROR = Problem(
             mistakes.always_the_left_arm,
             "Use what you are given, not what happens to lie about.",
         ),
+        Wrong(
+            "one row alone: the first",
+            "The mean goes over all rows of the run; this is the error of the first row.",
+            mistakes.Rms(lambda e: np.linalg.norm(e[0])),
+            "An RMS is a mean over the run.",
+        ),
+        Wrong(
+            "one row, not a mean",
+            "This is the error of a single row, the last or the one in the middle. The mean goes over the "
+            "squared lengths of all rows.",
+            mistakes.Rms(lambda e: np.linalg.norm(e[-1])),
+            "An RMS is a mean over the run.",
+        ),
+        Wrong(
+            "one direction alone",
+            "The error is a vector in space: its length has x, y and z in it. Yours has z alone.",
+            mistakes.Rms(lambda e: np.sqrt(np.mean(e[:, 2] ** 2))),
+            "The length of a vector has all its components.",
+        ),
+        Wrong(
+            "in the plane alone",
+            "The error is a vector in space: its length has x, y and z in it. Yours has no z.",
+            mistakes.Rms(lambda e: np.sqrt(np.mean(np.sum(e[:, :2] ** 2, axis=1)))),
+            "The length of a vector has all its components.",
+        ),
+        Wrong(
+            "the components' sizes added",
+            "The length of a vector is the root of the sum of squares; the sum of |x|, |y| and |z| is longer.",
+            mistakes.Rms(lambda e: np.mean(np.abs(e).sum(axis=1))),
+            "The length of a vector is the root of the sum of squares.",
+        ),
+        Wrong(
+            "components, or their RMS values, added without squares",
+            "(x + y + z)² is not x² + y² + z². In each row square the three components, then add them.",
+            mistakes.Rms(lambda e: np.sqrt(np.mean(e.sum(axis=1) ** 2))),
+            "Square first, then add.",
+        ),
+        Wrong(
+            "the spread of the length",
+            "This is the standard deviation of the error's length: a constant error would count for nothing.",
+            mistakes.Rms(lambda e: np.linalg.norm(e, axis=1).std()),
+            "A standard deviation is about the mean, an RMS about zero.",
+        ),
+        Wrong(
+            "divided by the rows outside the root",
+            "The mean square is the sum divided by n; the root comes after it. Yours divides the root by n.",
+            mistakes.Rms(lambda e: np.linalg.norm(e) / len(e)),
+            "Mean, then root: each letter of RMS is a step.",
+        ),
+        Wrong(
+            "the mean of three RMS values",
+            "Each axis has its own RMS here, and then a mean or a sum is taken. Add the three squares in each row first.",
+            mistakes.Rms(lambda e: np.sqrt(np.mean(e**2, axis=0)).mean()),
+            "Mean, then root: each letter of RMS is a step.",
+        ),
+        Wrong(
+            "centimetres",
+            "A hundred times too large: the answer is in metres.",
+            mistakes.Rms(lambda e: 100.0 * mistakes.rms(e)),
+            "Say the unit of every number.",
+        ),
+        Wrong(
+            "all rows beside the first target",
+            "The target moves: each row has its own, log.target.pose[k].",
+            mistakes.from_the_first_target,
+            "Compare what belongs to one instant.",
+        ),
+        Wrong(
+            "how far the tip went",
+            "This compares the tip with its own start. The error is between the tip and its target.",
+            mistakes.from_the_first_tip,
+            "An error needs a target.",
+        ),
     ),
     variants=(variants.rms_vectorised,),
 )
@@ -242,6 +319,78 @@ OPEN_LOOP = Problem(
             mistakes.LoopWithout(order=1),
             "An approximation has a range; know it.",
         ),
+        Wrong(
+            "s squared in the lag",
+            "The lag is lag·s + 1. With s² it is a spring that swings, not a first-order lag.",
+            mistakes.Loop(lambda kp, lag: ([kp], [lag, 0.0, 1.0, 0.0])),
+            "A first-order lag has one pole, at -1/lag.",
+        ),
+        Wrong(
+            "the lag in the numerator",
+            "The lag is in the denominator, 1/(lag·s + 1). Above it would hurry and not lag.",
+            mistakes.Loop(lambda kp, lag: ([kp * lag, kp], [1.0, 0.0])),
+            "A lag takes phase away.",
+        ),
+        Wrong(
+            "the lag's coefficients exchanged",
+            "control.tf wants the highest power first: [lag, 1], which is lag·s + 1. Yours is s + lag.",
+            mistakes.Loop(lambda kp, lag: ([kp], [1.0, lag, 0.0])),
+            "Highest power first.",
+        ),
+        Wrong(
+            "two integrators",
+            "From speed to angle is one integration. Yours has 1/s twice.",
+            mistakes.Loop(lambda kp, lag: ([kp], [lag, 1.0, 0.0, 0.0])),
+            "Count the integrations from command to angle.",
+        ),
+        Wrong(
+            "a differentiator for the integrator",
+            "From speed to angle is an integration, 1/s. Yours multiplies by s.",
+            mistakes.Loop(lambda kp, lag: ([kp, 0.0], [lag, 1.0])),
+            "Dividing by s integrates.",
+        ),
+        Wrong(
+            "the gain below",
+            "kp multiplies the loop: it is in the numerator.",
+            mistakes.Loop(lambda kp, lag: ([1.0], [kp * lag, kp, 0.0])),
+            "More gain, larger loop.",
+        ),
+        Wrong(
+            "the gain squared",
+            "kp comes once in the loop.",
+            mistakes.Loop(lambda kp, lag: ([kp**2], [lag, 1.0, 0.0])),
+            "Follow the signal round the loop once.",
+        ),
+        Wrong(
+            "the lag twice",
+            "The lag comes once in the loop.",
+            mistakes.Loop(lambda kp, lag: ([kp], [lag**2, 2 * lag, 1.0, 0.0])),
+            "Follow the signal round the loop once.",
+        ),
+        Wrong(
+            "a minus in the loop",
+            "The minus of the feedback is not part of the open loop: margins are read from L, and 1 + L is closed.",
+            mistakes.Loop(lambda kp, lag: ([-kp], [lag, 1.0, 0.0])),
+            "The open loop is what is between error and angle.",
+        ),
+        Wrong(
+            "half of the delay",
+            "Padé's approximation makes its own halves: give it the whole delay.",
+            mistakes.Loop(mistakes.plain_loop, delay=lambda delay, lag: delay / 2.0),
+            "A delay d turns the phase by w d.",
+        ),
+        Wrong(
+            "the lag added to the delay",
+            "Lag and delay are two things: the lag has its own factor, and the delay is the delay alone.",
+            mistakes.Loop(mistakes.plain_loop, delay=lambda delay, lag: delay + lag),
+            "A lag smooths, a delay only shifts.",
+        ),
+        Wrong(
+            "the sensitivity",
+            "1/(1 + L) is what the closed loop does to a disturbance. The open loop L itself is asked for.",
+            mistakes.Loop(mistakes.plain_loop, close=lambda loop: control.feedback(1, loop)),
+            "The open loop is what is between error and angle.",
+        ),
     ),
     variants=(variants.loop_from_s,),
 )
@@ -331,6 +480,56 @@ KP_FOR_MARGIN = Problem(
             "2π.",
             mistakes.in_hertz,
             "s is iω, and ω is in rad/s.",
+        ),
+        Wrong(
+            "one over the gain",
+            "At the crossover |L| = 1, so that kp = w √(1 + (w·lag)²). Yours divides by w where it multiplies.",
+            mistakes.Margin(gain=lambda w, lag, delay: sqrt(1.0 + (lag * w) ** 2) / w),
+            "At the crossover the loop's gain is 1.",
+        ),
+        Wrong(
+            "the root forgotten",
+            "The lag's gain is 1/√(1 + (w·lag)²); without the root it is squared.",
+            mistakes.Margin(gain=lambda w, lag, delay: w * (1.0 + lag * w)),
+            "The size of 1 + jx is √(1 + x²).",
+        ),
+        Wrong(
+            "the delay in the gain",
+            "A delay shifts and does not change the size: the gain has the lag in it.",
+            mistakes.Margin(gain=lambda w, lag, delay: w * sqrt(1.0 + (delay * w) ** 2)),
+            "The size of exp(-j w d) is 1.",
+        ),
+        Wrong(
+            "the delay's arctangent",
+            "A delay turns the phase by w·delay; the arctangent belongs to the lag alone.",
+            mistakes.Margin(lambda w, lag, delay, m: pi / 2 - atan(lag * w) - atan(delay * w) - m),
+            "A lag turns by 90 degrees at most, a delay without end.",
+        ),
+        Wrong(
+            "the lag's arctangent left out",
+            "A lag turns the phase by atan(w·lag), not by w·lag: it never takes more than 90 degrees.",
+            mistakes.Margin(lambda w, lag, delay, m: pi / 2 - lag * w - delay * w - m),
+            "A lag turns by 90 degrees at most, a delay without end.",
+        ),
+        Wrong(
+            "the margin for the phase",
+            "The margin is what is left to -180 degrees. Yours is the phase that lag and delay may take.",
+            mistakes.Margin(lambda w, lag, delay, m: m - atan(lag * w) - delay * w),
+            "Margin: what is missing to -180 degrees.",
+        ),
+        Wrong(
+            "the delay taken for milliseconds",
+            "The delay is in seconds already.",
+            mistakes.Margin(
+                lambda w, lag, delay, m: pi / 2 - atan(lag * w) - delay * w / 1000.0 - m
+            ),
+            "Say the unit of every number.",
+        ),
+        Wrong(
+            "half of it",
+            "At the crossover |L| = 1 gives kp = w √(1 + (w·lag)²), without a half.",
+            mistakes.Margin(gain=lambda w, lag, delay: 0.5 * w * sqrt(1.0 + (lag * w) ** 2)),
+            "At the crossover the loop's gain is 1.",
         ),
     ),
     variants=(variants.margin_by_search,),
@@ -527,6 +726,96 @@ PAIRED = Problem(
             mistakes.plain_deviation,
             "Standard deviation and standard error are two things.",
         ),
+        Wrong(
+            "two intervals added",
+            "The two rows have each its own interval here. The question is about the differences: take a - b first, then one interval.",
+            mistakes.two_intervals,
+            "Pairs first, then statistics.",
+        ),
+        Wrong(
+            "unpaired, with more degrees of freedom",
+            "2 n - 2 belongs to two groups of strangers. Here are n pairs: n differences, n - 1 degrees of freedom.",
+            mistakes.unpaired_with_more_freedom,
+            "Pairs first, then statistics.",
+        ),
+        Wrong(
+            "divided by n, not by its root",
+            "The standard error is the deviation divided by √n.",
+            mistakes.Paired(half=lambda d: mistakes.half_of(d) / np.sqrt(len(d))),
+            "Four times the pairs, half the interval.",
+        ),
+        Wrong(
+            "divided by the root of n - 1",
+            "With ddof=1 the n - 1 is in the deviation already; the standard error divides by √n.",
+            mistakes.Paired(half=lambda d: mistakes.half_of(d) * np.sqrt(len(d) / (len(d) - 1))),
+            "n - 1 comes once.",
+        ),
+        Wrong(
+            "the variance for the deviation",
+            "The half width is in the unit of the errors: take the root of the variance.",
+            mistakes.Paired(half=lambda d: mistakes.half_of(d) * d.std(ddof=1)),
+            "A variance has the unit squared.",
+        ),
+        Wrong(
+            "a 99 % interval",
+            "0.995 leaves half a percent on each side. For 95 % it is 0.975.",
+            mistakes.Paired(
+                half=lambda d: (
+                    mistakes.half_of(d)
+                    * student.ppf(0.995, len(d) - 1)
+                    / student.ppf(0.975, len(d) - 1)
+                )
+            ),
+            "95 % in the middle leaves 2.5 % on each side.",
+        ),
+        Wrong(
+            "2 for Student's t",
+            "2 is for many pairs. Student's t for n - 1 degrees of freedom is larger.",
+            mistakes.Paired(half=lambda d: 2.0 * d.std(ddof=1) / np.sqrt(len(d))),
+            "Few pairs: Student's t.",
+        ),
+        Wrong(
+            "2.776, however many pairs there are",
+            "2.776 is Student's t for five pairs. Ask for n - 1 degrees of freedom.",
+            mistakes.Paired(half=lambda d: 2.776 * d.std(ddof=1) / np.sqrt(len(d))),
+            "Few pairs: Student's t.",
+        ),
+        Wrong(
+            "1.645 for the half width",
+            "1.645 is the normal quantile of one side. Take Student's t at 0.975.",
+            mistakes.Paired(half=lambda d: 1.645 * d.std(ddof=1) / np.sqrt(len(d))),
+            "95 % in the middle leaves 2.5 % on each side.",
+        ),
+        Wrong(
+            "1.96 and n in the deviation",
+            "Two shortcuts for large n at once: 1.96 for Student's t, and n for n - 1.",
+            mistakes.Paired(half=lambda d: 1.96 * d.std() / np.sqrt(len(d))),
+            "Few pairs: Student's t.",
+        ),
+        Wrong(
+            "a ratio",
+            "a - b is asked for, and yours is made of a / b.",
+            mistakes.Paired(np.divide),
+            "A difference has a unit, a ratio has none.",
+        ),
+        Wrong(
+            "without its sign",
+            "The size of each difference loses who was better: some pairs must cancel. Keep the sign.",
+            mistakes.Paired(lambda a, b: np.abs(a - b)),
+            "A difference has a sign.",
+        ),
+        Wrong(
+            "the median",
+            "The middle of the interval is the mean of the differences.",
+            mistakes.Paired(mean=np.median),
+            "Student's t is about the mean.",
+        ),
+        Wrong(
+            "half of the range",
+            "From the smallest to the largest difference is not a 95 % interval of the mean.",
+            mistakes.Paired(half=lambda d: (d.max() - d.min()) / 2.0),
+            "The range grows with n, the interval of the mean shrinks.",
+        ),
     ),
     variants=(variants.paired_by_scipy, variants.paired_by_hand),
 )
@@ -643,6 +932,42 @@ VERDICTS = Problem(
             "scipy.stats.t.ppf(0.975, n - 1).",
             mistakes.VerdictsBy(mistakes.t_of_five),
             "A number in a program should say where it comes from.",
+        ),
+        Wrong(
+            "other words: true and false",
+            "The words that are asked for are 'holds', 'does not hold' and 'undecided'.",
+            mistakes.Said((True, False, None)),
+            "Read what form an answer should have.",
+        ),
+        Wrong(
+            "nothing is undecided: it holds or it does not",
+            "Where the interval holds zero, nothing is known: the verdict is 'undecided', not 'does not hold'.",
+            mistakes.Said(("holds", "does not hold", "does not hold")),
+            "No evidence for is not evidence against.",
+        ),
+        Wrong(
+            "what speaks against is undecided",
+            "An interval that lies below zero is an answer too: 'does not hold'.",
+            mistakes.Said(("holds", "undecided", "undecided")),
+            "An interval has two sides.",
+        ),
+        Wrong(
+            "it holds whenever it is decided",
+            "The sign of the mean decides: above zero 'holds', below zero 'does not hold'.",
+            mistakes.Said(("holds", "holds", "undecided")),
+            "An interval has two sides.",
+        ),
+        Wrong(
+            "all pairs must agree",
+            "You ask whether all differences have one sign. The mean may be sure although one pair is against it.",
+            mistakes.Said(sure=lambda d: not d.min() < 0.0 < d.max()),
+            "An interval is about the mean.",
+        ),
+        Wrong(
+            "capital letters",
+            "The words are written small: 'holds', 'does not hold', 'undecided'.",
+            mistakes.Said(("Holds", "Does not hold", "Undecided")),
+            "Read what form an answer should have.",
         ),
     ),
     variants=(variants.verdicts_by_comprehension,),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -509,3 +510,139 @@ def axis_by_axis_fit(force: Any, displacement: Any) -> Any:
     """A line for each axis by itself."""
     F, x = np.asarray(force), np.asarray(displacement)
     return np.diag([np.polyfit(x[:, k], F[:, k], 1)[0] for k in range(3)])
+
+
+@dataclass(frozen=True)
+class TipTerms:
+    """Another torque of the impedance's terms.
+
+    Attributes:
+        law: The torque, of J, the tip's inertia, acceleration wanted, D de, K e, C dq, g and model,
+            state and target.
+    """
+
+    law: Callable[..., Any]
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        model: lk.Model,
+        *,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq = state.q, state.dq
+        J, e = model.tip_jacobian(q), lk.se3.pose_error(target.pose, model.pose(q))
+        a = target.dtwist - model.tip_jacobian_rate(q, dq) @ dq
+        De, Ke = damping * (target.twist - J @ dq), stiffness * e
+        L, C, g = model.operational_inertia(q), model.coriolis(q, dq) @ dq, model.gravity(q)
+        return lk.JointTorque(self.law(J, L, a, De, Ke, C, g, model.mass_matrix(q)))
+
+
+@dataclass(frozen=True)
+class ShapedTerms:
+    """Another torque of the shaped impedance's terms.
+
+    Attributes:
+        law: The torque, of J, the tip's inertia, the wanted one, the acceleration wanted, J' dq,
+            D de, K e, the wrench, C dq and g.
+        tool: Which errors are in the tool's axes: 1 the turn, 2 both.
+    """
+
+    law: Callable[..., Any]
+    tool: int = 0
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.PoseSample,
+        wrench: Any,
+        model: lk.Model,
+        *,
+        inertia: Any,
+        stiffness: Any,
+        damping: Any,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq = state.q, state.dq
+        J, e = model.tip_jacobian(q), lk.se3.pose_error(target.pose, model.pose(q))
+        R_tw = model.pose(q)[:3, :3].T
+        place = R_tw @ e[:3] if self.tool == 2 else e[:3]
+        e = np.concatenate([place, R_tw @ e[3:] if self.tool else e[3:]])
+        drift = model.tip_jacobian_rate(q, dq) @ dq
+        De, Ke = damping * (target.twist - J @ dq), stiffness * e
+        L, C, g = model.operational_inertia(q), model.coriolis(q, dq) @ dq, model.gravity(q)
+        F = np.asarray(wrench)
+        return lk.JointTorque(self.law(J, L, inertia, target.dtwist, drift, De, Ke, F, C, g))
+
+
+def shaped(J: Any, L: Any, M: Any, a: Any, drift: Any, P: Any, F: Any, C: Any, g: Any) -> Any:
+    """The right torque, of the pull P = D de + K e."""
+    return J.T @ (L @ (a + np.linalg.inv(M) @ (P + F) - drift) - F) + C + g
+
+
+@dataclass(frozen=True)
+class FitOf:
+    """Another fit.
+
+    Attributes:
+        of: K, of force and displacement, each of shape (n, 3).
+    """
+
+    of: Callable[[Any, Any], Any]
+
+    def __call__(self, force: Any, displacement: Any) -> Any:
+        """The matrix."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(self.of(np.asarray(force), np.asarray(displacement)))
+
+
+def solved(x: Any, F: Any) -> Any:
+    """K of F = K x, without an offset."""
+    return np.linalg.lstsq(x, F, rcond=None)[0].T
+
+
+def about(x: Any) -> Any:
+    """Without its mean."""
+    return x - x.mean(axis=0)
+
+
+@dataclass(frozen=True)
+class MassesOf:
+    """Another matrix of M and J.
+
+    Attributes:
+        of: Of both.
+    """
+
+    of: Callable[[Any, Any], Any]
+
+    def __call__(self, M: Any, J: Any) -> Any:
+        """The matrix."""
+        return np.asarray(self.of(np.asarray(M), np.asarray(J)))
+
+
+def root(A: Any) -> Any:
+    """The symmetric root."""
+    w, V = np.linalg.eigh(A)
+    return V * np.sqrt(w) @ V.T
+
+
+@dataclass(frozen=True)
+class Hanging:
+    """Another sum of the mass's forces.
+
+    Attributes:
+        of: The acceleration, of the hand's, damper's and spring's force, the mass and the target's.
+    """
+
+    of: Callable[..., float]
+
+    def __call__(
+        self, state: Any, target: Any, force: float, *, m: float, b: float, k: float
+    ) -> float:
+        """The acceleration."""
+        (x, dx), (x_d, dx_d, ddx_d) = state, target
+        return float(self.of(force, b * (dx_d - dx), k * (x_d - x), m, ddx_d))

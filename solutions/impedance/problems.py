@@ -196,6 +196,48 @@ MSD = Problem(
             mistakes.OneMass(power=0.0),
             "Units tell: N and m/s².",
         ),
+        Wrong(
+            "springs and force beside the mass",
+            "The bracket is missing: force, damper and spring are all divided by the mass.",
+            mistakes.Hanging(lambda f, d, s, m, a: a + f + d + s / m),
+            "A force divided by a mass is an acceleration.",
+        ),
+        Wrong(
+            "only the force divided by the mass",
+            "The bracket is missing: damper and spring are divided by the mass as well.",
+            mistakes.Hanging(lambda f, d, s, m, a: a + f / m + d + s),
+            "A force divided by a mass is an acceleration.",
+        ),
+        Wrong(
+            "the hand's force not divided by the mass",
+            "The hand's force is a force as the spring's is: divide it by the mass too.",
+            mistakes.Hanging(lambda f, d, s, m, a: a + f + (d + s) / m),
+            "A force divided by a mass is an acceleration.",
+        ),
+        Wrong(
+            "multiplied by the mass",
+            "A force is divided by the mass to give an acceleration.",
+            mistakes.Hanging(lambda f, d, s, m, a: a + (f + d + s) * m),
+            "A force divided by a mass is an acceleration.",
+        ),
+        Wrong(
+            "half of the spring",
+            "The one half belongs to the spring's energy. Its force is k times the way.",
+            mistakes.Hanging(lambda f, d, s, m, a: a + (f + d + 0.5 * s) / m),
+            "A force is the slope of an energy.",
+        ),
+        Wrong(
+            "no damper",
+            "The damper is missing: b times the difference of the speeds.",
+            mistakes.Hanging(lambda f, d, s, m, a: a + (f + s) / m),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "no spring",
+            "The spring is missing: k times the difference of the places.",
+            mistakes.Hanging(lambda f, d, s, m, a: a + (f + d) / m),
+            "Each term has a task; say it.",
+        ),
     ),
     variants=(variants.msd_by_error, variants.Mass()),
 )
@@ -300,6 +342,46 @@ OPERATIONAL_INERTIA = Problem(
             "1 / A divides each number; the inverse of a matrix is np.linalg.inv.",
             mistakes.numbers_turned_over,
             "1 / A is not A⁻¹.",
+        ),
+        Wrong(
+            "the mass matrix left out",
+            "The inverse of J Jᵀ knows nothing of masses: J M⁻¹ Jᵀ is what a wrench sets in motion.",
+            mistakes.MassesOf(lambda M, J: np.linalg.inv(J @ J.T)),
+            "Say what each factor does to a wrench.",
+        ),
+        Wrong(
+            "M⁻¹ twice",
+            "M is inverted once between J and Jᵀ.",
+            mistakes.MassesOf(lambda M, J: np.linalg.inv(J @ np.linalg.inv(M @ M) @ J.T)),
+            "Say what each factor does to a wrench.",
+        ),
+        Wrong(
+            "a root",
+            "The roots of the right eigenvalues stand here. The matrix itself is asked for.",
+            mistakes.MassesOf(
+                lambda M, J: mistakes.root(np.linalg.inv(J @ np.linalg.inv(M) @ J.T))
+            ),
+            "Units: kg and kg m².",
+        ),
+        Wrong(
+            "J M⁻¹ with a pseudo-inverse",
+            "The right factor is Jᵀ: a wrench at the tip becomes torques by the transpose.",
+            mistakes.MassesOf(lambda M, J: J @ np.linalg.inv(M) @ np.linalg.pinv(J)),
+            "Forces go through the transpose.",
+        ),
+        Wrong(
+            "pseudo-inverses and M⁻¹",
+            "Either invert the whole J M⁻¹ Jᵀ, or nothing of it.",
+            mistakes.MassesOf(
+                lambda M, J: np.linalg.pinv(J).T @ np.linalg.inv(M) @ np.linalg.pinv(J)
+            ),
+            "Say what each factor does to a wrench.",
+        ),
+        Wrong(
+            "below zero",
+            "An inertia is positive.",
+            mistakes.MassesOf(lambda M, J: -answers.operational_inertia(M, J)),
+            "An inertia is positive.",
         ),
     ),
     variants=(variants.inertia_by_inverse, variants.inertia_by_root),
@@ -526,6 +608,74 @@ WORKSPACE_IMPEDANCE = Problem(
             mistakes.TipLaw(turn=0.0),
             "A gain of zero hides a wrong sign.",
         ),
+        Wrong(
+            "the weight twice",
+            "The weight comes once. `Model.bias` holds it already.",
+            mistakes.TipLaw(weight=2.0),
+            "Ask of each term who else does it.",
+        ),
+        Wrong(
+            "half of the weight",
+            "model.gravity is the whole weight.",
+            mistakes.TipLaw(weight=0.5),
+            "Take a model's term as it is.",
+        ),
+        Wrong(
+            "no springs",
+            "The springs are missing: nothing pulls the tip back.",
+            mistakes.TipLaw(e=0.0),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "no dampers",
+            "The dampers are missing: the tip swings about its target.",
+            mistakes.TipLaw(de=0.0),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "the turn reversed",
+            "The error of orientation has the other sign: it drives the hand away. The turn goes from the tip to the target.",
+            mistakes.TipLaw(turn=-1.0),
+            "One convention for the whole course: target minus actual.",
+        ),
+        Wrong(
+            "the Coriolis torques reversed",
+            "C q̇ is added: the arm needs it, whatever the law.",
+            mistakes.TipLaw(coriolis=-1.0),
+            "The law is the equation of motion, and springs.",
+        ),
+        Wrong(
+            "J̇ q̇ twice",
+            "The acceleration that comes by itself is taken off once.",
+            mistakes.TipLaw(drift=2.0),
+            "Differentiate V = J q̇ with the product rule.",
+        ),
+        Wrong(
+            "the springs inside the inertia",
+            "The springs are a wrench already: beside the tip's inertia, not behind it.",
+            mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ (a + K) + D) + C + g),
+            "Units: K e is a wrench.",
+        ),
+        Wrong(
+            "the dampers inside the inertia",
+            "The dampers are a wrench already: beside the tip's inertia, not behind it.",
+            mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ (a + D) + K) + C + g),
+            "Units: D ė is a wrench.",
+        ),
+        Wrong(
+            "J M Jᵀ for the inertia at the tip",
+            "The tip's inertia is (J M⁻¹ Jᵀ)⁻¹, model.operational_inertia. J M Jᵀ is another matrix.",
+            mistakes.TipTerms(
+                lambda J, L, a, D, K, C, g, M: J.T @ (J @ M @ J.T @ a + D + K) + C + g
+            ),
+            "Say what each factor does to a wrench.",
+        ),
+        Wrong(
+            "the weight through the Jacobian",
+            "The weight is a torque at the joints already: it does not go through the tip.",
+            mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ a + D + K + J @ g) + C),
+            "A torque is not a wrench.",
+        ),
     ),
     variants=(
         variants.impedance_by_terms,
@@ -693,6 +843,140 @@ SHAPED_IMPEDANCE = Problem(
             mistakes.ShapedLaw(pinv=True),
             "Jᵀ maps forces, J⁺ maps speeds.",
         ),
+        Wrong(
+            "the springs reversed",
+            "The springs push away: the error is target minus actual.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D - K, F, C, g)
+            ),
+            "One convention for the whole course: target minus actual.",
+        ),
+        Wrong(
+            "the dampers reversed",
+            "The dampers drive on: the error of the twist is target minus actual.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, K - D, F, C, g)
+            ),
+            "One convention for the whole course: target minus actual.",
+        ),
+        Wrong(
+            "no springs",
+            "The springs are missing: nothing pulls the tip back.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D, F, C, g)
+            ),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "no dampers",
+            "The dampers are missing: the tip swings about its target.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, K, F, C, g)
+            ),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "the turn in the tool's axes",
+            "The error of orientation is in the tool's axes; Jacobian and stiffness are in the world's.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D + K, F, C, g),
+                tool=1,
+            ),
+            "Error and Jacobian in the same axes.",
+        ),
+        Wrong(
+            "the error in the tool's axes",
+            "The error is in the tool's axes; Jacobian and stiffness are in the world's.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(J, L, M, a, v, D + K, F, C, g),
+                tool=2,
+            ),
+            "Error and Jacobian in the same axes.",
+        ),
+        Wrong(
+            "the wanted inertia not inverted",
+            "Forces are divided by the wanted inertia: its inverse times the pull.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: (
+                    J.T @ (L @ (a + M @ (D + K + F) - v) - F) + C + g
+                )
+            ),
+            "A force divided by an inertia is an acceleration.",
+        ),
+        Wrong(
+            "the ratio of the inertias upside down",
+            "The arm's own inertia stands outside, the wanted one is inverted inside. Yours are exchanged.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: (
+                    J.T @ (M @ (a + np.linalg.inv(L) @ (D + K + F) - v) - F) + C + g
+                )
+            ),
+            "Say which inertia the arm has, and which it should show.",
+        ),
+        Wrong(
+            "only the diagonal of the wanted inertia",
+            "The wanted inertia is a matrix: invert it whole.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: mistakes.shaped(
+                    J, L, np.diag(np.diag(M)), a, v, D + K, F, C, g
+                )
+            ),
+            "1/diag(M) is not the inverse of M.",
+        ),
+        Wrong(
+            "no inertia at the tip",
+            "An acceleration goes through the Jacobian where a wrench belongs: the tip's own inertia is missing.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: (
+                    J.T @ (a + np.linalg.inv(M) @ (D + K + F) - v - F) + C + g
+                )
+            ),
+            "Units: an acceleration is not a wrench.",
+        ),
+        Wrong(
+            "the inverse of the tip's inertia",
+            "The tip's inertia makes a wrench of an acceleration; its inverse does the opposite.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: (
+                    J.T @ (np.linalg.inv(L) @ (a + np.linalg.inv(M) @ (D + K + F) - v) - F) + C + g
+                )
+            ),
+            "Units: an acceleration is not a wrench.",
+        ),
+        Wrong(
+            "the target's acceleration divided by the inertia",
+            "The target's acceleration is one already: it stands outside the inverse.",
+            mistakes.ShapedTerms(
+                lambda J, L, M, a, v, D, K, F, C, g: (
+                    J.T @ (L @ (np.linalg.inv(M) @ (a + D + K + F) - v) - F) + C + g
+                )
+            ),
+            "Units: divide forces, not accelerations.",
+        ),
+        Wrong(
+            "the weight twice",
+            "The weight comes once. `Model.bias` holds it already.",
+            mistakes.ShapedLaw(weight=2.0),
+            "Ask of each term who else does it.",
+        ),
+        Wrong(
+            "the weight taken off",
+            "Gravity pulls down, and the motors hold against it: model.gravity is added.",
+            mistakes.ShapedLaw(weight=-1.0),
+            "model.gravity is what must be held.",
+        ),
+        Wrong(
+            "the Coriolis torques reversed",
+            "C q̇ is added: the arm needs it, whatever the law.",
+            mistakes.ShapedLaw(coriolis=-1.0),
+            "The law is the equation of motion, and springs.",
+        ),
+        Wrong(
+            "J̇ q̇ with the other sign",
+            "The acceleration that comes by itself is taken off.",
+            mistakes.ShapedLaw(drift=-1.0),
+            "Differentiate V = J q̇ with the product rule.",
+        ),
     ),
     variants=(variants.shaped_by_factor, variants.shaped_by_pseudo_inverse),
 )
@@ -834,6 +1118,86 @@ APPARENT_STIFFNESS = Problem(
             "all nine numbers together.",
             mistakes.axis_by_axis_fit,
             "K is a matrix: one fit for all.",
+        ),
+        Wrong(
+            "from the first push on",
+            "Everything is measured from the first push, whose noise then goes into all others. Measure from the mean.",
+            mistakes.FitOf(lambda F, x: mistakes.solved(x - x[0], F - F[0])),
+            "A fit's line goes through the mean.",
+        ),
+        Wrong(
+            "only the force about its mean",
+            "The displacement has an offset too: take the mean off both.",
+            mistakes.FitOf(lambda F, x: mistakes.solved(x, mistakes.about(F))),
+            "A fit's line goes through the mean.",
+        ),
+        Wrong(
+            "one mean for all axes",
+            "Each axis has its own mean: mean(axis=0).",
+            mistakes.FitOf(lambda F, x: mistakes.solved(x - x.mean(), F - F.mean())),
+            "Say along which axis a mean goes.",
+        ),
+        Wrong(
+            "differences of neighbours",
+            "Differences lose most of what the pushes tell, and double the noise. Fit all pushes at once.",
+            mistakes.FitOf(lambda F, x: mistakes.solved(np.diff(x, axis=0), np.diff(F, axis=0))),
+            "A fit uses all data.",
+        ),
+        Wrong(
+            "three pushes only",
+            "Three pushes are just enough for a matrix without offset, and hold all of the noise. Fit all pushes.",
+            mistakes.FitOf(lambda F, x: mistakes.solved(x[:3], F[:3])),
+            "A fit uses all data.",
+        ),
+        Wrong(
+            "a ratio of means",
+            "Means of force and displacement are mostly offset. Fit how one changes with the other.",
+            mistakes.FitOf(lambda F, x: np.diag(F.mean(axis=0) / x.mean(axis=0))),
+            "A stiffness is a slope.",
+        ),
+        Wrong(
+            "each push divided, and the mean",
+            "Ratios of small numbers are mostly noise, and an offset spoils them. Fit all pushes at once.",
+            mistakes.FitOf(lambda F, x: np.nanmean(F[:, :, None] / x[:, None, :], axis=0)),
+            "A stiffness is a slope.",
+        ),
+        Wrong(
+            "a covariance",
+            "A covariance of force and displacement is not yet a slope: multiply it by the inverse covariance of the displacement.",
+            mistakes.FitOf(lambda F, x: np.cov(F.T, x.T)[:3, 3:]),
+            "Slope: covariance by variance.",
+        ),
+        Wrong(
+            "covariances in the wrong order",
+            "K = cov(F, x) cov(x, x)⁻¹, in this order: matrices do not commute.",
+            mistakes.FitOf(lambda F, x: np.linalg.inv(np.cov(x.T)) @ np.cov(F.T, x.T)[:3, 3:]),
+            "Matrices do not commute.",
+        ),
+        Wrong(
+            "the offset taken for a column",
+            "With a column of ones the fit has four unknowns in each row; yours returns the ones' share with K.",
+            mistakes.FitOf(
+                lambda F, x: (
+                    np.linalg.lstsq(np.column_stack([np.ones(len(x)), x]), F, rcond=None)[0][:3].T
+                )
+            ),
+            "Say which row of a solution belongs to which unknown.",
+        ),
+        Wrong(
+            "sizes of forces",
+            "A stiffness may couple axes with a minus: keep the signs.",
+            mistakes.FitOf(
+                lambda F, x: np.abs(mistakes.solved(mistakes.about(x), mistakes.about(F)))
+            ),
+            "A stiffness has a sign.",
+        ),
+        Wrong(
+            "half of the matrix",
+            "What is below the diagonal is left out.",
+            mistakes.FitOf(
+                lambda F, x: np.triu(mistakes.solved(mistakes.about(x), mistakes.about(F)))
+            ),
+            "A matrix has nine numbers.",
         ),
     ),
     variants=(variants.stiffness_with_ones, variants.stiffness_by_covariances),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -164,3 +165,180 @@ def all_signs_plus(mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Arra
     return np.asarray(
         0.5 * sum(np.einsum(e, D, dq) for e in ("ijk,k->ij", "ikj,k->ij", "jki,k->ij"))
     )
+
+
+def origin_before(axes: Any, origins: Any, tip: Any) -> Array:
+    """The origin of the joint before."""
+    return _columns(axes, tip - np.roll(np.asarray(origins), 1, axis=0))
+
+
+def distance_for_product(axes: Any, origins: Any, tip: Any) -> Array:
+    """The axis times the distance, where a cross product belongs."""
+    arms = tip - np.asarray(origins)
+    along = np.linalg.norm(arms, axis=1)[:, None] * np.asarray(axes)
+    return np.vstack([along.T, np.transpose(axes)])
+
+
+def product_by_element(axes: Any, origins: Any, tip: Any) -> Array:
+    """The product element by element, where a cross product belongs."""
+    along = np.asarray(axes) * (tip - np.asarray(origins))
+    return np.vstack([along.T, np.transpose(axes)])
+
+
+def unit_arms(axes: Any, origins: Any, tip: Any) -> Array:
+    """The moment arms made one long."""
+    arms = tip - np.asarray(origins)
+    return _columns(axes, arms / np.linalg.norm(arms, axis=1)[:, None])
+
+
+def vertical_axes(axes: Any, origins: Any, tip: Any) -> Array:
+    """Every joint turns about the vertical in the linear rows."""
+    J = _columns(np.tile([0.0, 0.0, 1.0], (7, 1)), tip - np.asarray(origins))
+    return np.vstack([J[:3], np.transpose(axes)])
+
+
+def joints_reversed(axes: Any, origins: Any, tip: Any) -> Array:
+    """The columns from hand to base."""
+    return _columns(axes, tip - np.asarray(origins))[:, ::-1]
+
+
+@dataclass(frozen=True)
+class Kinetic:
+    """The mass matrix with its parts weighed.
+
+    Attributes:
+        power: Of the masses.
+        inertia: In the world's axes, of that in the link's and R.
+        mass: Whether the inertia is multiplied with the mass.
+        linear: Of the linear part.
+        angular: Of the angular part.
+        whole: Whether the mass goes with all six rows.
+    """
+
+    power: float = 1.0
+    inertia: Callable[[Array, Array], Array] = lambda I_l, R: R @ I_l @ R.T
+    mass: bool = False
+    linear: float = 1.0
+    angular: float = 1.0
+    whole: bool = False
+
+    def __call__(self, masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
+        """The matrix."""
+        M = np.zeros((7, 7))
+        for m, I_l, R, J in zip(masses, inertias, rotations, com_jacobians, strict=True):
+            turn = J[3:].T @ self.inertia(np.asarray(I_l), np.asarray(R)) @ J[3:]
+            M += self.linear * m**self.power * J[:3].T @ J[:3]
+            M += self.angular * turn * (m if self.mass else 1.0)
+            M += m * J[3:].T @ J[3:] if self.whole else 0.0
+        return M
+
+
+def last_link_only(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
+    """The last link for the sum of all."""
+    return mass_matrix(masses[-1:], inertias[-1:], rotations[-1:], com_jacobians[-1:])
+
+
+def beside_left_out(masses: Any, inertias: Any, rotations: Any, com_jacobians: Any) -> Array:
+    """The diagonal alone."""
+    return np.diag(np.diag(mass_matrix(masses, inertias, rotations, com_jacobians)))
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Gravity by another row, or with other masses.
+
+    Attributes:
+        row: Of each Jacobian.
+        mass: What each weighs, of its mass and all masses.
+        g: The acceleration of gravity.
+        size: Whether the sign is lost.
+        last: Before which link it ends.
+    """
+
+    row: Callable[[Array], Array] = lambda J: J[2]
+    mass: Callable[[float, Any], float] = lambda m, masses: m
+    g: float = 9.81
+    size: bool = False
+    last: int | None = None
+
+    def __call__(self, masses: Any, com_jacobians: Any) -> Array:
+        """The torques."""
+        parts = [
+            self.g * self.mass(m, masses) * self.row(np.asarray(J))
+            for m, J in zip(masses, com_jacobians, strict=True)
+        ][: self.last]
+        total = np.sum(np.abs(parts) if self.size else parts, axis=0)
+        return np.asarray(total)
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Christoffel's symbols with other terms, or other differences.
+
+    Attributes:
+        terms: Weights of dM_ij/dq_k, dM_ik/dq_j and dM_jk/dq_i.
+        h: Step of the differences.
+        along: Which speed they are multiplied with: of k, j or i.
+    """
+
+    terms: tuple[float, float, float] = (1.0, 1.0, -1.0)
+    h: float = 1e-5
+    along: str = "k"
+
+    def __call__(self, mass_matrix: Callable[[Any], Array], q: Any, dq: Any) -> Array:
+        """The matrix."""
+        h = self.h
+        slopes = [(mass_matrix(q + d) - mass_matrix(q - d)) / (2.0 * h) for d in h * np.eye(7)]
+        D = np.stack(slopes, axis=2)
+        a, b, c = self.terms
+        gamma = 0.5 * (a * D + b * D.transpose(0, 2, 1) + c * D.transpose(2, 1, 0))
+        return np.asarray(np.einsum(f"ijk,{self.along}->ij", gamma, dq))
+
+
+@dataclass(frozen=True)
+class Balance:
+    """The power balance with its parts weighed: 1 is right, 0 left out, -1 reversed.
+
+    Attributes:
+        kinetic: Of the kinetic energy.
+        potential: Of the potential energy.
+        power: Of the motors' power.
+        growth: The energy's growth, of the energy and the times.
+        by: What the torques are multiplied with, of the log.
+    """
+
+    kinetic: float = 1.0
+    potential: float = 1.0
+    power: float = 1.0
+    growth: Callable[[Array, Array], Array] = lambda energy, t: np.gradient(energy, t)
+    by: Callable[[lk.Log], Array] = lambda log: log.dq
+
+    def __call__(self, log: lk.Log, model: lk.Model) -> Array:
+        """The balance."""
+        energy = np.array(
+            [
+                self.kinetic * model.kinetic_energy(q, dq)
+                + self.potential * model.potential_energy(q)
+                for q, dq in zip(log.q, log.dq, strict=True)
+            ]
+        )
+        power = np.sum(log.tau * self.by(log), axis=1)
+        return np.asarray(self.growth(energy, log.t) - self.power * power)
+
+
+def mean_power(log: lk.Log, model: lk.Model) -> Array:
+    """The joints' powers averaged, not added."""
+    return Balance(power=1.0 / 7.0)(log, model)
+
+
+def sizes_of_power(log: lk.Log, model: lk.Model) -> Array:
+    """The powers of the joints without their signs."""
+    lost = np.abs(log.tau * log.dq) - log.tau * log.dq
+    return np.asarray(power_balance(log, model) - lost.sum(axis=1))
+
+
+def as_energies(log: lk.Log, model: lk.Model) -> Array:
+    """Energies for powers: the growth since the start without the work since the start."""
+    dt = float(log.t[1] - log.t[0])
+    work = np.cumsum(np.sum(log.tau * log.dq, axis=1)) * dt
+    return Balance(power=0.0, growth=lambda energy, t: energy - energy[0])(log, model) - work

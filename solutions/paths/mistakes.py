@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from math import atan2, cos, pi, sin, sqrt
 from typing import Any
 
@@ -236,3 +237,237 @@ def starts_anew_after_the_end(durations: Sequence[float], t: float) -> tuple[int
             return index, t
         t -= duration
     return len(durations) - 1, t
+
+
+@dataclass(frozen=True)
+class Bang:
+    """Bang-bang with its parts weighed: 1 is right, 0 left out, -1 reversed.
+
+    Attributes:
+        a: Of the acceleration 4 / T^2.
+        power: Of T in it.
+        half: Of the one halves in s.
+        ds: Of the speed while braking.
+        dds: Of the acceleration while braking.
+        before: Whether it rests before the start.
+        after: Whether it rests after the end.
+        end: Where it rests then.
+        left: Seconds that are left, of t and T.
+        brake: (s, ds, dds) while braking, of t, T and a; None takes the right ones.
+    """
+
+    a: float = 1.0
+    power: float = 2.0
+    half: float = 1.0
+    ds: float = 1.0
+    dds: float = 1.0
+    before: bool = True
+    after: bool = True
+    end: float = 1.0
+    left: Callable[[float, float], float] = lambda t, T: T - t
+    brake: Callable[[float, float, float], tuple[float, float, float]] | None = None
+
+    def __call__(self, t: float, duration: float) -> tuple[float, float, float]:
+        """The motion at t."""
+        T, a = duration, 4.0 * self.a / duration**self.power
+        if t < 0.0 and self.before:
+            return 0.0, 0.0, 0.0
+        if t >= T and self.after:
+            return self.end, 0.0, 0.0
+        if t < T / 2.0:
+            return self.half * a * t**2 / 2.0, a * t, a
+        if self.brake:
+            return self.brake(t, T, a)
+        left = self.left(t, T)
+        return 1.0 - self.half * a * left**2 / 2.0, self.ds * a * left, -self.dds * a
+
+
+def from_rest_in_the_middle(t: float, T: float, a: float) -> tuple[float, float, float]:
+    """Brakes as if it had no speed in the middle."""
+    since = t - T / 2.0
+    return 0.5 - a * since**2 / 2.0, -a * since, -a
+
+
+def speed_of_the_middle_kept(t: float, T: float, a: float) -> tuple[float, float, float]:
+    """The speed of the middle, and nothing taken off it."""
+    since = t - T / 2.0
+    return 0.5 + a * T / 2.0 * since - a * since**2 / 2.0, a * T / 2.0, -a
+
+
+def half_the_way_lost(t: float, T: float, a: float) -> tuple[float, float, float]:
+    """The way of the second half alone."""
+    since = t - T / 2.0
+    return a * T / 2.0 * since - a * since**2 / 2.0, a * (T - t), -a
+
+
+@dataclass(frozen=True)
+class Ramps:
+    """The trapezoid with its parts weighed: 1 is right, 0 left out, -1 reversed.
+
+    Attributes:
+        ramp: Of the ramp in the duration.
+        offset: Of half the ramp, by which the cruise is late.
+        half: Of the one half in the ramps' way.
+        ds: Of the speed while braking.
+        dds: Of the acceleration while braking.
+        top: Of the peak speed of a short way.
+        cruise: Acceleration while cruising, as a share of a_max.
+        brakes: Whether it brakes at all.
+    """
+
+    ramp: float = 1.0
+    offset: float = 1.0
+    half: float = 1.0
+    ds: float = 1.0
+    dds: float = 1.0
+    top: float = 1.0
+    cruise: float = 0.0
+    brakes: bool = True
+
+    def __call__(
+        self, t: float, distance: float, v_max: float, a_max: float
+    ) -> tuple[float, float, float]:
+        """The motion at t."""
+        d, a = distance, a_max
+        v = min(v_max, self.top * sqrt(d * a))
+        ramp = v / a
+        T = d / v + self.ramp * ramp
+        if t < 0.0:
+            return 0.0, 0.0, 0.0
+        if t >= T:
+            return 1.0, 0.0, 0.0
+        if t < ramp:
+            way, speed, acc = self.half * a * t**2 / 2.0, a * t, a
+        elif t < T - ramp or not self.brakes:
+            way, speed, acc = v * (t - self.offset * ramp / 2.0), v, self.cruise * a
+        else:
+            left = T - t
+            way = d - self.half * a * left**2 / 2.0
+            speed, acc = self.ds * a * left, -self.dds * a
+        return way / d, speed / d, acc / d
+
+
+@dataclass(frozen=True)
+class Spoke:
+    """The circle by angles, with its parts weighed: 1 is right, 0 left out, -1 reversed.
+
+    Attributes:
+        start: Of the start's angle.
+        rates: Of the start's angle in the derivatives.
+        turn: Of the 2 pi.
+        radius: Of the radius.
+        power: Of the radius.
+        centre: Of the centre.
+        about_start: Whether it goes round the start.
+        mirrored: Whether sine and cosine change places.
+    """
+
+    start: float = 1.0
+    rates: float = 1.0
+    turn: float = 1.0
+    radius: float = 1.0
+    power: float = 1.0
+    centre: float = 1.0
+    about_start: bool = False
+    mirrored: bool = False
+
+    def __call__(self, s: float, start: Any, centre: Any) -> lk.Sample:
+        """The point and its derivatives."""
+        x, y = start[0] - centre[0], start[1] - centre[1]
+        r, yaw, w = (
+            self.radius * float(np.hypot(x, y)) ** self.power,
+            atan2(y, x),
+            2.0 * pi * self.turn,
+        )
+
+        def spoke(angle: float) -> np.ndarray:
+            out = [cos(angle), sin(angle)]
+            return np.asarray(r * np.array([*(out[::-1] if self.mirrored else out), 0.0]))
+
+        at, rates = w * s + self.start * yaw, w * s + self.rates * yaw
+        c = start if self.about_start else self.centre * np.asarray(centre)
+        on, out = spoke(rates), spoke(rates)
+        quarter = np.array([out[1], -out[0], 0.0] if self.mirrored else [-out[1], out[0], 0.0])
+        return lk.Sample(np.array([c[0], c[1], start[2]]) + spoke(at), w * quarter, -w * w * on)
+
+
+@dataclass(frozen=True)
+class Chained:
+    """The chain rule with its parts weighed: 1 is right, 0 left out, -1 reversed.
+
+    Attributes:
+        bend: Of ddx ds^2.
+        along: Of dx dds.
+        velocity: Power of ds in the velocity.
+        late: Of dx ds in the acceleration, which does not belong there.
+        cross: Of ddx dds, which does not belong there.
+        plain: Whether the acceleration is the path's.
+        dds_first: Whether ds and dds change places.
+    """
+
+    bend: float = 1.0
+    along: float = 1.0
+    velocity: float = 1.0
+    late: float = 0.0
+    cross: float = 0.0
+    plain: bool = False
+    dds_first: bool = False
+
+    def __call__(self, path: Path, scaling: Scaling, t: float) -> lk.Sample:
+        """The sample at t."""
+        s, ds, dds = scaling(t)
+        ds, dds = (dds, ds) if self.dds_first else (ds, dds)
+        x, dx, ddx = path(s)
+        a = self.bend * ddx * ds**2 + self.along * dx * dds + self.late * dx * ds
+        a = ddx if self.plain else a + self.cross * ddx * dds
+        return lk.Sample(x, dx * ds**self.velocity, a)
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Segments in a row, with other ends.
+
+    Attributes:
+        joint: Whether the earlier one is on where two meet.
+        local: What is given of the time, of t, when it began and how long it lasts.
+        after: (index, local_time) after the end, of n, t and the last duration; None is right.
+        before: The same before the start.
+        first: The index of the first one.
+        swapped: Whether the two answers change places.
+    """
+
+    joint: bool = False
+    local: Callable[[float, float, float], float] = lambda t, begun, d: t - begun
+    after: Callable[[int, float, float], tuple[int, float]] | None = None
+    before: Callable[[int, float, float], tuple[int, float]] | None = None
+    first: int = 0
+    swapped: bool = False
+
+    def __call__(self, durations: Sequence[float], t: float) -> Any:
+        """Which one, and for how long."""
+        n, begun, found = len(durations), 0.0, (0, t)
+        if t < 0.0 and self.before:
+            return self.before(n, t, durations[0])
+        for k, d in enumerate(durations):
+            if t < begun + d or (self.joint and t <= begun + d) or k == n - 1:
+                found = k + self.first, self.local(t, begun, d)
+                break
+            begun += d
+        if t >= sum(durations) and self.after:
+            found = self.after(n, t, durations[-1])
+        return found[::-1] if self.swapped else found
+
+
+def the_start(theta: float, duration: float) -> float:
+    """The start, where the printed formula is right."""
+    return 0.0
+
+
+def an_angle(theta: float, duration: float) -> float:
+    """The angle, where a time is asked for."""
+    return theta
+
+
+def a_time_in_the_first_half(theta: float, duration: float) -> float:
+    """A time in the first half, where the formula is right."""
+    return 0.25 * duration

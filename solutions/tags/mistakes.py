@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -401,3 +402,108 @@ def noise_on_the_diagonal(
     F = np.kron([[1.0, age], [0.0, 1.0]], np.eye(3))
     Q = accel_noise * np.kron(np.diag([age**3 / 3.0, age]), np.eye(3))
     return F @ mean, F @ covariance @ F.T + Q
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The right pose of other pixels or another camera, or something made of it.
+
+    Attributes:
+        pixels: What is made of them.
+        K: What is made of the camera's matrix.
+        pose: What is made of the pose.
+    """
+
+    pixels: Callable[[Array], Array] = lambda pixels: pixels
+    K: Callable[[Array], Array] = lambda K: K
+    pose: Callable[[Array], Array] = lambda T: T
+
+    def __call__(self, pixels: Any, K: Any, size: float) -> Array:
+        """The pose."""
+        seen = np.ascontiguousarray(self.pixels(np.array(pixels, dtype=float)))
+        return self.pose(tag_pose(seen, self.K(np.array(K)), size))
+
+
+@dataclass(frozen=True)
+class Quality:
+    """Mean and covariance of other errors, or other numbers of the right ones.
+
+    Attributes:
+        scale: Of place and turn.
+        centre: The first answer, of the errors.
+        spread: The second one, of the errors.
+        tag: Whether the place is in the tag's axes.
+        turn: The turn, of both rotations.
+    """
+
+    scale: tuple[float, float] = (1.0, 1.0)
+    centre: Callable[[Array], Any] = lambda e: e.mean(axis=0)
+    spread: Callable[[Array], Any] = lambda e: np.cov(e.T)
+    tag: bool = False
+    turn: Callable[[Array, Array], Array] = lambda R, S: se3.rotation_log(R @ S.T)
+
+    def __call__(self, estimates: Any, truth: Any) -> tuple[Array, Array]:
+        """Mean and covariance."""
+        errors = []
+        for T in estimates:
+            place = truth[:3, 3] - T[:3, 3]
+            place = T[:3, :3].T @ place if self.tag else place
+            turn = self.turn(truth[:3, :3], T[:3, :3])
+            errors.append(np.concatenate([self.scale[0] * place, self.scale[1] * turn]))
+        e = np.array(errors)
+        return np.asarray(self.centre(e)), np.asarray(self.spread(e))
+
+
+@dataclass(frozen=True)
+class Ends:
+    """The blend between other ends, or with another end.
+
+    Attributes:
+        ends: Reference and goal, of both.
+        late: What comes after the end, of the goal, t and the duration; None is right.
+        made: What is made of a sample before the end, with t, reference, goal and duration.
+    """
+
+    ends: Callable[[Sample, Sample], tuple[Sample, Sample]] = lambda a, b: (a, b)
+    late: Callable[[Sample, float, float], Sample] | None = None
+    made: Callable[[Sample, float, Sample, Sample, float], Sample] = lambda x, t, a, b, T: x
+
+    def __call__(self, t: float, reference: Sample, goal: Sample, duration: float) -> Sample:
+        """The sample at t."""
+        a, b = self.ends(reference, goal)
+        if t > duration:
+            return self.late(b, t, duration) if self.late else blend(t, a, b, duration)
+        return self.made(blend(t, a, b, duration), t, a, b, duration)
+
+
+def crossfade(x: Sample, t: float, a: Sample, b: Sample, T: float) -> Sample:
+    """Both motions go on and are mixed with a smooth weight."""
+    s = t / T
+    w = 10.0 * s**3 - 15.0 * s**4 + 6.0 * s**5
+    return Sample(*((1.0 - w) * p + w * q for p, q in zip(a, b, strict=True)))
+
+
+@dataclass(frozen=True)
+class Carried:
+    """The belief carried on with another F, mean or order.
+
+    Attributes:
+        F: Of the age, shape (2, 2).
+        mean: Whether the mean is moved.
+        noise: Of Q.
+        order: Of F P F^T and Q: "P F", "Q first" or "no F".
+    """
+
+    F: Callable[[float], Any] = lambda age: [[1.0, age], [0.0, 1.0]]
+    mean: bool = True
+    noise: float = 1.0
+    order: str = ""
+
+    def __call__(
+        self, mean: Any, covariance: Any, age: float, accel_noise: float
+    ) -> tuple[Array, Array]:
+        """The belief then."""
+        F, P = np.kron(self.F(age), np.eye(3)), np.asarray(covariance)
+        Q = self.noise * carry_forward(mean, np.zeros((6, 6)), age, accel_noise)[1]
+        P = {"Q first": F @ (P + Q) @ F.T, "no F": P + Q}.get(self.order, F @ P @ F.T + Q)
+        return F @ mean if self.mean else np.array(mean), P

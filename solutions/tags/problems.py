@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from labkit import Sample
+from labkit import Sample, se3
 from labkit.course import Close
 from labkit.course.problem import Problem, Trial, Wrong, call
 
@@ -196,6 +196,54 @@ TAG_POSE = Problem(
             mistakes.rotation_transposed,
             "R_cm takes directions of the tag to the camera.",
         ),
+        Wrong(
+            "no rotation",
+            "The rotation is left as the identity: cv2.Rodrigues makes a matrix of the rotation vector.",
+            mistakes.Seen(pose=lambda T: se3.pose(np.eye(3), T[:3, 3])),
+            "A pose has two parts.",
+        ),
+        Wrong(
+            "no translation",
+            "The translation is left at zero: it is the second vector that OpenCV gives.",
+            mistakes.Seen(pose=lambda T: se3.pose(T[:3, :3], np.zeros(3))),
+            "A pose has two parts.",
+        ),
+        Wrong(
+            "the translation with a minus",
+            "OpenCV gives where the tag is in the camera's frame: take it as it is.",
+            mistakes.Seen(pose=lambda T: se3.pose(T[:3, :3], -T[:3, 3])),
+            "z is in front of the camera: it is above zero.",
+        ),
+        Wrong(
+            "millimetres",
+            "The translation has the unit of the corners, which is metres.",
+            mistakes.Seen(pose=lambda T: se3.pose(T[:3, :3], 1000.0 * T[:3, 3])),
+            "Say the unit of every number.",
+        ),
+        Wrong(
+            "u and v exchanged",
+            "A pixel is (u, v): along the row first, then down. Yours has the two exchanged.",
+            mistakes.Seen(pixels=lambda p: p[:, ::-1]),
+            "u along x, v along y.",
+        ),
+        Wrong(
+            "the pixels one corner late",
+            "The first pixel belongs to the first corner. Yours begins with another one, so that the tag is turned by 90 degrees.",
+            mistakes.Seen(pixels=lambda p: np.roll(p, 1, axis=0)),
+            "Say which pixel belongs to which corner.",
+        ),
+        Wrong(
+            "the pixels one corner early",
+            "The first pixel belongs to the first corner. Yours begins with another one, so that the tag is turned by 90 degrees.",
+            mistakes.Seen(pixels=lambda p: np.roll(p, -1, axis=0)),
+            "Say which pixel belongs to which corner.",
+        ),
+        Wrong(
+            "the principal point taken off twice",
+            "The camera's matrix takes the principal point off already: give the pixels as they are.",
+            mistakes.Seen(pixels=lambda p: p - np.array([320.0, 240.0])),
+            "Say who does which step.",
+        ),
     ),
     variants=(variants.pose_by_iteration,),
 )
@@ -310,6 +358,66 @@ QUALITY = Problem(
             "Give them in the camera's.",
             mistakes.everything_in_the_tag,
             "Which axes does an error speak of?",
+        ),
+        Wrong(
+            "about zero, with n - 1",
+            "The covariance is about the mean: take the mean off each error first. np.cov does.",
+            mistakes.Quality(spread=lambda e: e.T @ e / (len(e) - 1)),
+            "Bias and spread are two things.",
+        ),
+        Wrong(
+            "degrees",
+            "The turn is in radians here.",
+            mistakes.Quality((1.0, 180.0 / np.pi)),
+            "Say the unit of every number.",
+        ),
+        Wrong(
+            "millimetres",
+            "The place is in metres here.",
+            mistakes.Quality((1000.0, 1.0)),
+            "Say the unit of every number.",
+        ),
+        Wrong(
+            "correlations",
+            "np.corrcoef divides by the deviations. A covariance has units.",
+            mistakes.Quality(spread=lambda e: np.corrcoef(e.T)),
+            "A correlation has no size.",
+        ),
+        Wrong(
+            "a median",
+            "The bias is the mean of the errors.",
+            mistakes.Quality(centre=lambda e: np.median(e, axis=0)),
+            "Mean and median are two things.",
+        ),
+        Wrong(
+            "an RMS for the mean",
+            "An RMS has no sign, and the spread is in it. The bias is the mean.",
+            mistakes.Quality(centre=lambda e: np.sqrt((e**2).mean(axis=0))),
+            "Bias and spread are two things.",
+        ),
+        Wrong(
+            "the mean of sizes",
+            "Errors of opposite sign cancel in a bias: keep the signs.",
+            mistakes.Quality(centre=lambda e: np.abs(e).mean(axis=0)),
+            "A bias has a sign.",
+        ),
+        Wrong(
+            "the sum of the errors",
+            "The bias is the mean: divide by their number.",
+            mistakes.Quality(centre=lambda e: e.sum(axis=0)),
+            "A mean does not grow with n.",
+        ),
+        Wrong(
+            "no transpose",
+            "R_truth R_estimate is not a turn between the two. Undo the estimate with its transpose.",
+            mistakes.Quality(turn=lambda R, S: se3.rotation_log(R @ S)),
+            "Orientations are compared by R Sᵀ.",
+        ),
+        Wrong(
+            "the place in the tag's axes",
+            "The error of position is asked for in the camera's axes.",
+            mistakes.Quality(tag=True),
+            "Every vector has axes.",
         ),
     ),
     variants=(variants.quality_by_loops,),
@@ -472,6 +580,76 @@ BLEND = Problem(
             mistakes.three_alone,
             "Read the shape in the docstring; then try another n.",
         ),
+        Wrong(
+            "reference and goal exchanged",
+            "The blend begins at the reference and ends at the goal. Yours goes the other way.",
+            mistakes.Ends(lambda a, b: (b, a)),
+            "Put t = 0 into every reference.",
+        ),
+        Wrong(
+            "a crossfade",
+            "Two motions mixed with a smooth weight: the derivatives of the weight are missing, so that velocity and place do not fit together.",
+            mistakes.Ends(made=mistakes.crossfade),
+            "Check that the velocity is the slope of the place.",
+        ),
+        Wrong(
+            "counts from the start after the end",
+            "After the end the goal has moved for t - duration, not for t.",
+            mistakes.Ends(
+                late=lambda b, t, T: Sample(
+                    b.position + b.velocity * t, b.velocity, 0.0 * b.velocity
+                )
+            ),
+            "Say for each time from where it is counted.",
+        ),
+        Wrong(
+            "stands still after the end",
+            "After the end the goal moves on with its velocity, and the reference with it.",
+            mistakes.Ends(
+                late=lambda b, t, T: Sample(b.position, 0.0 * b.velocity, 0.0 * b.velocity)
+            ),
+            "A moving goal does not wait.",
+        ),
+        Wrong(
+            "no velocity",
+            "The velocity is not filled in before the end.",
+            mistakes.Ends(
+                made=lambda x, t, a, b, T: Sample(x.position, 0.0 * x.velocity, x.acceleration)
+            ),
+            "Check that the velocity is the slope of the place.",
+        ),
+        Wrong(
+            "no acceleration",
+            "The acceleration is not filled in before the end.",
+            mistakes.Ends(
+                made=lambda x, t, a, b, T: Sample(x.position, x.velocity, 0.0 * x.velocity)
+            ),
+            "Check that the acceleration is the slope of the velocity.",
+        ),
+        Wrong(
+            "the velocity not divided by the duration",
+            "The velocity is by t/duration: by t it is divided by the duration.",
+            mistakes.Ends(
+                made=lambda x, t, a, b, T: Sample(x.position, x.velocity * T, x.acceleration)
+            ),
+            "A derivative has a variable; say it aloud.",
+        ),
+        Wrong(
+            "the acceleration not divided by the duration",
+            "The acceleration is by t/duration: by t it is divided by the duration squared.",
+            mistakes.Ends(
+                made=lambda x, t, a, b, T: Sample(x.position, x.velocity, x.acceleration * T**2)
+            ),
+            "A derivative has a variable; say it aloud.",
+        ),
+        Wrong(
+            "the acceleration divided by the duration once",
+            "The acceleration is the second derivative by t/duration: divide by the duration squared.",
+            mistakes.Ends(
+                made=lambda x, t, a, b, T: Sample(x.position, x.velocity, x.acceleration * T)
+            ),
+            "A derivative has a variable; say it aloud.",
+        ),
     ),
     variants=(variants.blend_by_bernstein,),
 )
@@ -584,6 +762,90 @@ PREDICT = Problem(
             "Carry the mean forward by `age`, from the picture to now.",
             mistakes.back_in_time,
             "Say when each number is of.",
+        ),
+        Wrong(
+            "the mean not moved",
+            "The mean moves as well: the place goes on with the velocity, F m.",
+            mistakes.Carried(mean=False),
+            "Mean and covariance both move.",
+        ),
+        Wrong(
+            "the noise before the motion",
+            "The pushes come during the step: Q is added after F P Fᵀ.",
+            mistakes.Carried(order="Q first"),
+            "F P Fᵀ + Q.",
+        ),
+        Wrong(
+            "the covariance not moved",
+            "The covariance moves with F: what is unknown of the velocity becomes unknown of the place.",
+            mistakes.Carried(order="no F"),
+            "F P Fᵀ + Q.",
+        ),
+        Wrong(
+            "the noise taken off",
+            "Pushes make the belief less sure: Q is added.",
+            mistakes.Carried(noise=-1.0),
+            "Time adds doubt.",
+        ),
+        Wrong(
+            "the noise twice",
+            "Q is added once.",
+            mistakes.Carried(noise=2.0),
+            "F P Fᵀ + Q.",
+        ),
+        Wrong(
+            "the velocity moved by the place",
+            "F has the age in its upper right block: the place moves by the velocity.",
+            mistakes.Carried(lambda age: [[1.0, 0.0], [age, 1.0]]),
+            "The velocity moves the place.",
+        ),
+        Wrong(
+            "the age squared in F",
+            "The place moves by velocity times age.",
+            mistakes.Carried(lambda age: [[1.0, age**2 / 2.0], [0.0, 1.0]]),
+            "The velocity moves the place.",
+        ),
+        Wrong(
+            "a third where a half belongs",
+            "The corner of the place is age³/3: ∫ (age - s)² ds.",
+            mistakes.Predicted(((3.0, 0.5), (2.0, 0.5), (1.0, 1.0))),
+            "Integrate the push's effect.",
+        ),
+        Wrong(
+            "no third",
+            "The corner of the place is age³/3: ∫ (age - s)² ds.",
+            mistakes.Predicted(((3.0, 1.0), (2.0, 0.5), (1.0, 1.0))),
+            "Integrate the push's effect.",
+        ),
+        Wrong(
+            "no half beside the diagonal",
+            "Beside the diagonal is age²/2: ∫ (age - s) ds.",
+            mistakes.Predicted(((3.0, 1.0 / 3.0), (2.0, 1.0), (1.0, 1.0))),
+            "Integrate the push's effect.",
+        ),
+        Wrong(
+            "age² for the place's age³",
+            "The corner of the place is age³/3: ∫ (age - s)² ds.",
+            mistakes.Predicted(((2.0, 1.0 / 3.0), (2.0, 0.5), (1.0, 1.0))),
+            "Integrate the push's effect.",
+        ),
+        Wrong(
+            "age² for the velocity's age",
+            "The corner of the velocity is age, once.",
+            mistakes.Predicted(((3.0, 1.0 / 3.0), (2.0, 0.5), (2.0, 1.0))),
+            "Integrate the push's effect.",
+        ),
+        Wrong(
+            "place and velocity exchanged in Q",
+            "The place's corner has age³/3 and the velocity's has age.",
+            mistakes.Predicted(((1.0, 1.0), (2.0, 0.5), (3.0, 1.0 / 3.0))),
+            "Integrate the push's effect.",
+        ),
+        Wrong(
+            "a minus beside the diagonal",
+            "A push forward makes the velocity larger and the place farther: both grow together.",
+            mistakes.Predicted(((3.0, 1.0 / 3.0), (2.0, -0.5), (1.0, 1.0))),
+            "Say what two numbers do together.",
         ),
     ),
     variants=(variants.predict_by_exponential,),

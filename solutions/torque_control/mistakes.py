@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -446,3 +447,139 @@ def the_reports_gains(model: lk.Model) -> Any:
     """Table 1 of the report: they were tuned with friction to hide in."""
     kp = 8.0 * np.array([1.0, 1.0, 1.5, 1.5, 1.0, 1.0, 1.0])
     return kp, 5.0 * np.array([2.0, 2.0, 1.0, 1.0, 0.8, 0.3, 0.3])
+
+
+class Terms(NamedTuple):
+    """What a torque law is made of; g is nought where the arm compensates."""
+
+    M: Any
+    C: Any
+    g: Any
+    e: Any
+    de: Any
+    kp: Any
+    kd: Any
+    state: lk.State
+    target: lk.Sample
+    model: lk.Model
+
+    @property
+    def motion(self) -> Any:
+        """M ddq_d + C dq_d."""
+        return self.M @ self.target.acceleration + self.C @ self.target.velocity
+
+    @property
+    def wish(self) -> Any:
+        """The acceleration that lets the error die out."""
+        return self.target.acceleration + self.kp * self.e + self.kd * self.de
+
+    @property
+    def drift(self) -> Any:
+        """C dq."""
+        return self.C @ self.state.dq
+
+    @property
+    def weight_there(self) -> Any:
+        """The weight at the target's angles."""
+        return self.model.gravity(self.target.position) * bool(np.any(self.g))
+
+    @property
+    def pull(self) -> Any:
+        """Springs and dampers."""
+        return self.kp * self.e + self.kd * self.de
+
+
+@dataclass(frozen=True)
+class TorqueBy:
+    """A law of the model's terms.
+
+    Attributes:
+        law: The torque, of a `Terms`.
+    """
+
+    law: Callable[[Terms], Any]
+
+    def __call__(
+        self,
+        state: lk.State,
+        target: lk.Sample,
+        model: lk.Model,
+        *,
+        kp: Any,
+        kd: Any,
+        arm_compensates: bool,
+    ) -> lk.JointTorque:
+        """The torque."""
+        q, dq = state.q, state.dq
+        g = model.gravity(q) * (not arm_compensates)
+        M, C = model.mass_matrix(q), model.coriolis(q, dq)
+        e, de = target.position - q, target.velocity - dq
+        return lk.JointTorque(self.law(Terms(M, C, g, e, de, kp, kd, state, target, model)))
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Another number of torques and model.
+
+    Attributes:
+        of: Of both, each of shape (poses, joints).
+    """
+
+    of: Callable[[Any, Any], Any]
+
+    def __call__(self, tau_hold: Any, gravity_model: Any) -> float:
+        """The number."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(self.of(np.asarray(tau_hold), np.asarray(gravity_model)))
+
+
+@dataclass(frozen=True)
+class Stepped:
+    """One period with another free motion or another kick.
+
+    Attributes:
+        free: The free motion, of dt.
+        kick: What a torque does to angle and speed, of dt and the inertia.
+    """
+
+    free: Callable[[float], Any] = lambda dt: [[1.0, dt], [0.0, 1.0]]
+    kick: Callable[[float, float], Any] = lambda dt, inertia: [
+        dt**2 / 2.0 / inertia,
+        dt / inertia,
+    ]
+
+    def __call__(self, inertia: float, kp: float, kd: float, dt: float) -> Any:
+        """The matrix."""
+        return np.asarray(self.free(dt)) - np.outer(self.kick(dt, inertia), [kp, kd])
+
+
+@dataclass(frozen=True)
+class GainsOf:
+    """Other gains of frequency and damping ratio.
+
+    Attributes:
+        of: (kp, kd), of the angular frequency and the damping ratio.
+    """
+
+    of: Callable[[Any, Any], tuple[Any, Any]]
+
+    def __call__(self, frequency: Any, damping_ratio: Any) -> tuple[Any, Any]:
+        """The gains."""
+        return self.of(2.0 * np.pi * np.asarray(frequency), np.asarray(damping_ratio))
+
+
+@dataclass(frozen=True)
+class PullOnly:
+    """The right step with other gains.
+
+    Attributes:
+        p: Of kp.
+        d: Of kd.
+    """
+
+    p: float
+    d: float
+
+    def __call__(self, inertia: float, kp: float, kd: float, dt: float) -> Any:
+        """The matrix."""
+        return right.sampled_joint(inertia, self.p * kp, self.d * kd, dt)

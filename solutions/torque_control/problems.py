@@ -240,6 +240,147 @@ AUGMENTED_PD = Problem(
             mistakes.AugmentedLaw(swapped=True),
             "Units tell: N m/rad, N m s/rad.",
         ),
+        Wrong(
+            "no springs",
+            "kp times the error of the angles is missing: nothing pulls the arm back.",
+            mistakes.AugmentedLaw(e=0.0),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "no dampers",
+            "kd times the error of the speeds is missing: the arm swings about its target.",
+            mistakes.AugmentedLaw(de=0.0),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "the Coriolis torques reversed",
+            "C q̇_d is added: it is what the motion takes.",
+            mistakes.AugmentedLaw(coriolis=-1.0),
+            "The law is the equation of motion, and springs.",
+        ),
+        Wrong(
+            "half of the Coriolis torques",
+            "model.coriolis holds its one half already.",
+            mistakes.AugmentedLaw(coriolis=0.5),
+            "Take a model's term as it is.",
+        ),
+        Wrong(
+            "C transposed",
+            "C q̇_d is a matrix times a vector: C @ dq_d. Yours is C.T @ dq_d.",
+            mistakes.TorqueBy(
+                lambda x: (
+                    x.motion - x.C @ x.target.velocity + x.C.T @ x.target.velocity + x.pull + x.g
+                )
+            ),
+            "dq @ C is not C @ dq.",
+        ),
+        Wrong(
+            "the inertia's torque reversed",
+            "M q̈_d is added: it is what the motion takes.",
+            mistakes.TorqueBy(
+                lambda x: x.motion - 2.0 * x.M @ x.target.acceleration + x.pull + x.g
+            ),
+            "The law is the equation of motion, and springs.",
+        ),
+        Wrong(
+            "C times the error of the speeds",
+            "In this law C is multiplied with the target's speed.",
+            mistakes.TorqueBy(lambda x: x.M @ x.target.acceleration + x.C @ x.de + x.pull + x.g),
+            "The law is the equation of motion along the target, and springs.",
+        ),
+        Wrong(
+            "M times a speed",
+            "M is multiplied with the target's acceleration, not with its velocity.",
+            mistakes.TorqueBy(
+                lambda x: x.M @ x.target.velocity + x.C @ x.target.velocity + x.pull + x.g
+            ),
+            "Units: M times an acceleration is a torque.",
+        ),
+        Wrong(
+            "the springs inside M",
+            "In this law the gains do not multiply M: kp e is a torque.",
+            mistakes.TorqueBy(lambda x: x.motion + x.M @ (x.kp * x.e) + x.kd * x.de + x.g),
+            "Units: say whether kp e is a torque or an acceleration.",
+        ),
+        Wrong(
+            "the dampers inside M",
+            "In this law the gains do not multiply M: kd ė is a torque.",
+            mistakes.TorqueBy(lambda x: x.motion + x.kp * x.e + x.M @ (x.kd * x.de) + x.g),
+            "Units: say whether kp e is a torque or an acceleration.",
+        ),
+        Wrong(
+            "the weight where the target is",
+            "The arm is heavy where it is, not where it should be: model.gravity(state.q).",
+            mistakes.TorqueBy(lambda x: x.motion + x.pull + x.weight_there),
+            "The model is asked at the arm's own angles.",
+        ),
+        Wrong(
+            "the mass matrix where the target is",
+            "M is that of the arm where it is: model.mass_matrix(state.q).",
+            mistakes.TorqueBy(
+                lambda x: (
+                    x.motion
+                    + (x.model.mass_matrix(x.target.position) - x.M) @ x.target.acceleration
+                    + x.pull
+                    + x.g
+                )
+            ),
+            "The model is asked at the arm's own angles.",
+        ),
+        Wrong(
+            "C where the target is",
+            "C is that of the arm where it is: model.coriolis(state.q, state.dq).",
+            mistakes.TorqueBy(
+                lambda x: (
+                    x.motion
+                    + (x.model.coriolis(x.target.position, x.state.dq) - x.C) @ x.target.velocity
+                    + x.pull
+                    + x.g
+                )
+            ),
+            "The model is asked at the arm's own angles.",
+        ),
+        Wrong(
+            "the weight twice",
+            "Where the law carries the weight, it carries it once.",
+            mistakes.AugmentedLaw(weight=2.0),
+            "Ask of each term who else does it.",
+        ),
+        Wrong(
+            "half of the weight",
+            "Where the law carries the weight, it carries all of it.",
+            mistakes.AugmentedLaw(weight=0.5),
+            "Take a model's term as it is.",
+        ),
+        Wrong(
+            "the weight inside M",
+            "model.gravity is a torque already; M times it is not one.",
+            mistakes.TorqueBy(lambda x: x.motion + x.pull + x.M @ x.g),
+            "Units: M times an acceleration is a torque.",
+        ),
+        Wrong(
+            "the bias for C",
+            "`Model.bias` holds C q̇ and g together: the weight comes once too often, and C has the arm's own speed.",
+            mistakes.TorqueBy(
+                lambda x: (
+                    x.motion
+                    - x.C @ x.target.velocity
+                    + x.drift
+                    + x.model.gravity(x.state.q)
+                    + x.pull
+                    + x.g
+                )
+            ),
+            "Ask of each term who else does it.",
+        ),
+        Wrong(
+            "a scalar product for the gains",
+            "np.dot and @ add the seven joints to one number. * multiplies each joint by its own gain.",
+            mistakes.TorqueBy(
+                lambda x: x.motion + np.dot(x.kp * np.ones(7), x.e) + x.kd * x.de + x.g
+            ),
+            "Gains go joint by joint.",
+        ),
     ),
     variants=(variants.augmented_by_newton_euler, variants.augmented_in_a_list),
 )
@@ -383,6 +524,152 @@ COMPUTED_TORQUE = Problem(
             mistakes.ComputedLaw(swapped=True),
             "Units tell: kp is in 1/s², kd in 1/s.",
         ),
+        Wrong(
+            "no springs",
+            "kp times the error of the angles is missing: nothing pulls the arm back.",
+            mistakes.ComputedLaw(e=0.0),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "no dampers",
+            "kd times the error of the speeds is missing: the arm swings about its target.",
+            mistakes.ComputedLaw(de=0.0),
+            "Each term has a task; say it.",
+        ),
+        Wrong(
+            "damps the motion, not the error",
+            "kd multiplies the arm's own speed: it brakes where the target moves on. The error of the speeds is target minus actual.",
+            mistakes.TorqueBy(lambda x: x.M @ (x.wish - x.kd * x.target.velocity) + x.drift + x.g),
+            "A damper is tied to the target, not to the room.",
+        ),
+        Wrong(
+            "the Coriolis torques reversed",
+            "C q̇ is added: the arm needs it, whatever the law.",
+            mistakes.ComputedLaw(coriolis=-1.0),
+            "The law is the equation of motion with another acceleration.",
+        ),
+        Wrong(
+            "half of the Coriolis torques",
+            "model.coriolis holds its one half already.",
+            mistakes.ComputedLaw(coriolis=0.5),
+            "Take a model's term as it is.",
+        ),
+        Wrong(
+            "the Coriolis torques twice",
+            "C q̇ comes once.",
+            mistakes.ComputedLaw(coriolis=2.0),
+            "Take a model's term as it is.",
+        ),
+        Wrong(
+            "C times the error of the speeds",
+            "In this law C is multiplied with the arm's own speed.",
+            mistakes.TorqueBy(lambda x: x.M @ x.wish + x.C @ x.de + x.g),
+            "The law is the equation of motion with another acceleration.",
+        ),
+        Wrong(
+            "C transposed",
+            "C q̇ is a matrix times a vector: C @ dq. Yours is C.T @ dq.",
+            mistakes.TorqueBy(lambda x: x.M @ x.wish + x.C.T @ x.state.dq + x.g),
+            "dq @ C is not C @ dq.",
+        ),
+        Wrong(
+            "the springs outside M",
+            "kp e is an acceleration in this law: it stands inside the bracket that M multiplies.",
+            mistakes.TorqueBy(lambda x: x.M @ (x.wish - x.kp * x.e) + x.kp * x.e + x.drift + x.g),
+            "Units: say whether kp e is a torque or an acceleration.",
+        ),
+        Wrong(
+            "the dampers outside M",
+            "kd ė is an acceleration in this law: it stands inside the bracket that M multiplies.",
+            mistakes.TorqueBy(lambda x: x.M @ (x.wish - x.kd * x.de) + x.kd * x.de + x.drift + x.g),
+            "Units: say whether kp e is a torque or an acceleration.",
+        ),
+        Wrong(
+            "the target's acceleration outside M",
+            "M multiplies the whole acceleration, the target's too.",
+            mistakes.TorqueBy(
+                lambda x: (
+                    x.M @ (x.wish - x.target.acceleration) + x.target.acceleration + x.drift + x.g
+                )
+            ),
+            "Units: an acceleration is not a torque.",
+        ),
+        Wrong(
+            "the target's acceleration reversed",
+            "The target's acceleration is added: it is what the arm should do without any error.",
+            mistakes.TorqueBy(
+                lambda x: x.M @ (x.wish - 2.0 * x.target.acceleration) + x.drift + x.g
+            ),
+            "With no error, the law is the equation of motion.",
+        ),
+        Wrong(
+            "the weight inside M",
+            "model.gravity is a torque already; M times it is not one.",
+            mistakes.TorqueBy(lambda x: x.M @ (x.wish + x.g) + x.drift),
+            "Units: M times an acceleration is a torque.",
+        ),
+        Wrong(
+            "the weight where the target is",
+            "The arm is heavy where it is, not where it should be: model.gravity(state.q).",
+            mistakes.TorqueBy(lambda x: x.M @ x.wish + x.drift + x.weight_there),
+            "The model is asked at the arm's own angles.",
+        ),
+        Wrong(
+            "the mass matrix where the target is",
+            "M is that of the arm where it is: model.mass_matrix(state.q).",
+            mistakes.TorqueBy(
+                lambda x: x.model.mass_matrix(x.target.position) @ x.wish + x.drift + x.g
+            ),
+            "The model is asked at the arm's own angles.",
+        ),
+        Wrong(
+            "C where the target is",
+            "C is that of the arm where it is: model.coriolis(state.q, state.dq).",
+            mistakes.TorqueBy(
+                lambda x: (
+                    x.M @ x.wish
+                    + x.model.coriolis(x.target.position, x.state.dq) @ x.state.dq
+                    + x.g
+                )
+            ),
+            "The model is asked at the arm's own angles.",
+        ),
+        Wrong(
+            "the weight taken off",
+            "Gravity pulls down, and the motors hold against it: model.gravity is added.",
+            mistakes.TorqueBy(lambda x: x.M @ x.wish + x.drift - x.g),
+            "model.gravity is what must be held.",
+        ),
+        Wrong(
+            "half of the weight",
+            "Where the law carries the weight, it carries all of it.",
+            mistakes.TorqueBy(lambda x: x.M @ x.wish + x.drift + 0.5 * x.g),
+            "Take a model's term as it is.",
+        ),
+        Wrong(
+            "only the diagonal of M",
+            "The joints shake one another: what is beside the diagonal of M belongs to the law.",
+            mistakes.TorqueBy(lambda x: np.diag(x.M) * x.wish + x.drift + x.g),
+            "A mass matrix couples the joints.",
+        ),
+        Wrong(
+            "M twice",
+            "M comes once: M times an acceleration is a torque.",
+            mistakes.ComputedLaw(power=2),
+            "Units: M times an acceleration is a torque.",
+        ),
+        Wrong(
+            "a scalar product for the gains",
+            "np.dot and @ add the seven joints to one number. * multiplies each joint by its own gain.",
+            mistakes.TorqueBy(
+                lambda x: (
+                    x.M @ (x.target.acceleration + np.dot(x.kp * np.ones(7), x.e) + x.kd * x.de)
+                    + x.drift
+                    + x.g
+                )
+            ),
+            "Gains go joint by joint.",
+        ),
     ),
     variants=(variants.computed_by_newton_euler, variants.computed_by_bias),
 )
@@ -467,6 +754,29 @@ GAINS_FOR = Problem(
             "You used kp in the place of ω. kd = 2 ζ ω, and ω is the root of kp.",
             mistakes.stiffness_for_frequency,
             "Units tell: kd is in 1/s.",
+        ),
+        Wrong(
+            "π for 2π",
+            "Once round is 2π: ω = 2π f. Yours is half of it.",
+            mistakes.GainsOf(lambda w, z: ((w / 2.0) ** 2, z * w)),
+            "ω = 2π f.",
+        ),
+        Wrong(
+            "2ω for ω²",
+            "kp is the square of ω, not twice of it.",
+            mistakes.GainsOf(lambda w, z: (2.0 * w, 2.0 * z * w)),
+            "ω² is ω times ω.",
+        ),
+        Wrong(
+            "the damped frequency",
+            "The frequency is the natural one, ω itself. Yours makes the damped swing have it, ω √(1 - ζ²).",
+            mistakes.GainsOf(
+                lambda w, z: (
+                    w**2 / (1.0 - np.minimum(z, 0.999) ** 2),
+                    2.0 * z * w / np.sqrt(1.0 - np.minimum(z, 0.999) ** 2),
+                )
+            ),
+            "Natural frequency: that of the springs without dampers.",
         ),
     ),
     variants=(variants.gains_by_roots,),
@@ -586,6 +896,66 @@ SAMPLED_JOINT = Problem(
             "never does.",
             mistakes.implicit_step,
             "A stable formula does not make a stable arm.",
+        ),
+        Wrong(
+            "the kick's rows exchanged",
+            "A held torque moves the angle by dt²/2 and the speed by dt. Yours has the two exchanged.",
+            mistakes.Stepped(kick=lambda dt, i: [dt / i, dt**2 / 2.0 / i]),
+            "Angle: dt²/2. Speed: dt.",
+        ),
+        Wrong(
+            "the free motion stands still",
+            "Without a torque the angle goes on with its speed: the upper right number is dt.",
+            mistakes.Stepped(lambda dt: np.eye(2)),
+            "A joint without torque keeps its speed.",
+        ),
+        Wrong(
+            "the torque moves the angle only",
+            "A torque changes the speed as well, by dt/inertia.",
+            mistakes.Stepped(kick=lambda dt, i: [dt**2 / 2.0 / i, 0.0]),
+            "Integrate once for the speed, twice for the angle.",
+        ),
+        Wrong(
+            "dt² for the speed too",
+            "A constant acceleration changes the speed by a dt, with dt once.",
+            mistakes.Stepped(kick=lambda dt, i: [dt**2 / 2.0 / i, dt**2 / i]),
+            "Integrate once for the speed, twice for the angle.",
+        ),
+        Wrong(
+            "the inertia for the speed alone",
+            "The angle's kick is divided by the inertia as well.",
+            mistakes.Stepped(kick=lambda dt, i: [dt**2 / 2.0, dt / i]),
+            "A torque divided by the inertia is an acceleration.",
+        ),
+        Wrong(
+            "the inertia for the angle alone",
+            "The speed's kick is divided by the inertia as well.",
+            mistakes.Stepped(kick=lambda dt, i: [dt**2 / 2.0 / i, dt]),
+            "A torque divided by the inertia is an acceleration.",
+        ),
+        Wrong(
+            "no free motion",
+            "The state before the step is lost: to the kick comes the free motion [[1, dt], [0, 1]].",
+            mistakes.Stepped(lambda dt: np.zeros((2, 2))),
+            "A joint without torque keeps its speed.",
+        ),
+        Wrong(
+            "the speed does not last",
+            "The lower right number begins with 1: a joint without torque keeps its speed.",
+            mistakes.Stepped(lambda dt: [[1.0, dt], [0.0, 0.0]]),
+            "A joint without torque keeps its speed.",
+        ),
+        Wrong(
+            "only the damper",
+            "kp is left out: the springs pull as well.",
+            mistakes.PullOnly(0.0, 1.0),
+            "tau = -kp q - kd dq.",
+        ),
+        Wrong(
+            "only the spring",
+            "kd is left out: the dampers brake as well.",
+            mistakes.PullOnly(1.0, 0.0),
+            "tau = -kp q - kd dq.",
         ),
     ),
     variants=(variants.held_by_exponential, variants.held_in_lists),
@@ -713,6 +1083,72 @@ GRAVITY_FACTOR = Problem(
             "This is how far the factor is from 1. Give the factor itself.",
             mistakes.what_is_missing,
             "1 is right; 0 leaves gravity out.",
+        ),
+        Wrong(
+            "one pose alone",
+            "All poses count; this is the factor of the first one.",
+            mistakes.Fit(lambda t, g: np.sum(t[0] * g[0]) / np.sum(g[0] ** 2)),
+            "More data, less noise.",
+        ),
+        Wrong(
+            "the last pose alone",
+            "All poses count; this is the factor of the last one.",
+            mistakes.Fit(lambda t, g: np.sum(t[-1] * g[-1]) / np.sum(g[-1] ** 2)),
+            "More data, less noise.",
+        ),
+        Wrong(
+            "a median of ratios",
+            "Ratios of small numbers are mostly noise, and a median of them too. Least squares weighs by size.",
+            mistakes.Fit(lambda t, g: np.nanmedian(t / g)),
+            "Divide sums, do not average ratios.",
+        ),
+        Wrong(
+            "a correlation",
+            "A correlation has no size: it says how well a factor explains, not which.",
+            mistakes.Fit(lambda t, g: np.corrcoef(t.ravel(), g.ravel())[0, 1]),
+            "A correlation is not a slope.",
+        ),
+        Wrong(
+            "no denominator",
+            "Σ τ g is not yet a factor: divide it by Σ g².",
+            mistakes.Fit(lambda t, g: np.sum(t * g)),
+            "Units: a factor has none.",
+        ),
+        Wrong(
+            "a ratio of the largest",
+            "Two single numbers decide here. Least squares uses all.",
+            mistakes.Fit(lambda t, g: np.abs(t).max() / np.abs(g).max()),
+            "More data, less noise.",
+        ),
+        Wrong(
+            "a ratio of the mean sizes",
+            "Sizes add noise that would cancel. Least squares: Σ τ g / Σ g².",
+            mistakes.Fit(lambda t, g: np.abs(t).mean() / np.abs(g).mean()),
+            "Keep the signs.",
+        ),
+        Wrong(
+            "products without their signs",
+            "|τ g| adds noise that would cancel: keep the signs.",
+            mistakes.Fit(lambda t, g: np.abs(t * g).sum() / np.sum(g**2)),
+            "Keep the signs.",
+        ),
+        Wrong(
+            "a difference for the factor",
+            "The mean of τ - g is a torque. A factor has no unit.",
+            mistakes.Fit(lambda t, g: np.mean(t - g)),
+            "Units: a factor has none.",
+        ),
+        Wrong(
+            "in percent",
+            "The factor itself is asked for, not a hundred times it.",
+            mistakes.Fit(lambda t, g: 100.0 * np.sum(t * g) / np.sum(g**2)),
+            "Say the unit of every number.",
+        ),
+        Wrong(
+            "what is left over",
+            "This is the residual. The factor that makes it smallest is asked for.",
+            mistakes.Fit(lambda t, g: np.sum((t - g * np.sum(t * g) / np.sum(g**2)) ** 2)),
+            "Residual and fit are two things.",
         ),
     ),
     variants=(variants.factor_by_lstsq,),

@@ -316,3 +316,135 @@ def the_rest(J: Any, dq_wish: Any) -> Array:
 def all_of_it(J: Any, dq_wish: Any) -> Array:
     """The wish as it is."""
     return np.array(dq_wish)
+
+
+@dataclass(frozen=True)
+class Fed:
+    """The joint law with other inputs.
+
+    Attributes:
+        law: The speed, of feed-forward, e, de, kp, kd, state and target.
+    """
+
+    law: Callable[..., Any]
+
+    def __call__(self, state: lk.State, target: lk.Sample, *, kp: Any, kd: Any) -> lk.JointVelocity:
+        """The command."""
+        e, de = target.position - state.q, target.velocity - state.dq
+        return lk.JointVelocity(self.law(target.velocity, e, de, kp, kd, state, target))
+
+
+@dataclass(frozen=True)
+class Rate:
+    """Another formula for the rate.
+
+    Attributes:
+        of: Of kp and kd.
+    """
+
+    of: Callable[[float, float], float]
+
+    def __call__(self, kp: float, kd: float) -> float:
+        """The rate."""
+        return float(self.of(kp, kd))
+
+
+@dataclass(frozen=True)
+class BySingularValues:
+    """An inverse with other factors in the place of s / (s^2 + damping).
+
+    Attributes:
+        factor: Of s and the damping.
+    """
+
+    factor: Callable[[Array, float], Array]
+
+    def __call__(self, J: Any, damping: float) -> Array:
+        """The inverse."""
+        U, s, Vt = np.linalg.svd(np.asarray(J), full_matrices=False)
+        return np.asarray(Vt.T @ (self.factor(s, damping)[:, None] * U.T))
+
+
+@dataclass(frozen=True)
+class TwistLaw:
+    """The workspace law with its parts weighed: 1 is right, 0 left out, -1 reversed.
+
+    Attributes:
+        tool: Whether the error of position is in the tool's axes.
+        turn_first: Whether the turn comes before the place.
+        gain: Power of kp.
+        feed: Weights of the target's velocity and angular velocity.
+        on_all: Whether kp is on the feed-forward too.
+        inverse: The inverse, of J and the damping.
+        turn: The error of orientation, of (R_wd, R_wt).
+        twist_in_tool: Whether the target's twist is turned into the tool's axes.
+    """
+
+    tool: bool = False
+    turn_first: bool = False
+    gain: float = 1.0
+    feed: tuple[float, float] = (1.0, 1.0)
+    on_all: bool = False
+    inverse: Callable[[Array, float], Array] = damped_inverse
+    turn: Callable[[Array, Array], Array] = lk.se3.orientation_error
+    twist_in_tool: bool = False
+
+    def __call__(
+        self, state: lk.State, target: lk.PoseSample, model: lk.Model, *, kp: Any, damping: float
+    ) -> lk.JointVelocity:
+        """The command."""
+        T_wt, J, K = model.pose(state.q), model.tip_jacobian(state.q), kp**self.gain
+        place = target.pose[:3, 3] - T_wt[:3, 3]
+        place = T_wt[:3, :3].T @ place if self.tool else place
+        e = np.concatenate([place, self.turn(target.pose[:3, :3], T_wt[:3, :3])])
+        e = np.roll(e, 3) if self.turn_first else e
+        V = np.repeat(self.feed, 3) * target.twist
+        if self.twist_in_tool:
+            V = np.concatenate([T_wt[:3, :3].T @ V[:3], T_wt[:3, :3].T @ V[3:]])
+        V = (kp * V if self.on_all else V) + K * e
+        return lk.JointVelocity(self.inverse(J, damping) @ V)
+
+
+def twice_the_quaternion(R_wd: Array, R_wt: Array) -> Array:
+    """The axis times 2 sin(angle / 2)."""
+    turn = lk.se3.orientation_error(R_wd, R_wt)
+    angle = float(np.linalg.norm(turn))
+    return turn / angle * 2.0 * np.sin(angle / 2.0) if angle else turn
+
+
+def matrices_subtracted(R_wd: Array, R_wt: Array) -> Array:
+    """The skew part of a difference of matrices."""
+    return lk.se3.vee(R_wd - R_wt)
+
+
+def euler_of_the_turn(R_wd: Array, R_wt: Array) -> Array:
+    """Roll, pitch and yaw of the turn."""
+    return np.asarray(euler_subtracted(R_wd @ R_wt.T, np.eye(3)))
+
+
+def no_inverse(J: Array, damping: float) -> Array:
+    """J^T (J J^T + damping), without the inverse."""
+    return np.asarray(J.T @ (J @ J.T + damping * np.eye(len(J))))
+
+
+def place_alone(J: Any, dq_wish: Any) -> Array:
+    """Holds the place of the tip and lets it turn."""
+    return np.asarray(dq_wish - np.linalg.pinv(J[:3]) @ (J[:3] @ dq_wish))
+
+
+def a_column_of_v(J: Any, dq_wish: Any) -> Array:
+    """The last column of V^T where its last row belongs."""
+    n = np.linalg.svd(np.asarray(J))[2][:, -1]
+    return np.asarray(n * (n @ dq_wish))
+
+
+def length_for_component(J: Any, dq_wish: Any) -> Array:
+    """The null vector with the length of the wish."""
+    n = np.linalg.svd(np.asarray(J))[2][-1]
+    return np.asarray(n * np.linalg.norm(dq_wish))
+
+
+def two_freedoms(J: Any, dq_wish: Any) -> Array:
+    """The last two singular vectors, as if two freedoms were left."""
+    N = np.linalg.svd(np.asarray(J))[2][-2:]
+    return np.asarray(N.T @ (N @ dq_wish))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from math import atan2, hypot
 from typing import Any
 
@@ -146,3 +148,55 @@ def zero_by_zero(R_wd: Any, R_wt: Any) -> Array:
     with np.errstate(invalid="ignore"):
         angle = np.arccos((np.trace(E) - 1.0) / 2.0)
         return np.asarray(angle / np.sin(angle) * lk.se3.vee(E))
+
+
+def without_its_sign(target: lk.Sample, state: lk.State) -> Array:
+    """The size of the error."""
+    return np.abs(target.position - state.q)
+
+
+def no_error(target: lk.Sample, state: lk.State) -> Array:
+    """The target itself."""
+    return np.array(target.position)
+
+
+@dataclass(frozen=True)
+class TurnOf:
+    """The right rotation, read in another way.
+
+    Attributes:
+        angle: What is made of the angle; the axis is right.
+    """
+
+    angle: Callable[[float], float]
+
+    def __call__(self, R_wd: Any, R_wt: Any) -> Array:
+        """The vector."""
+        turn = lk.se3.rotation_log(R_wd @ R_wt.T)
+        angle = float(np.linalg.norm(turn))
+        return turn / angle * self.angle(angle) if angle else turn
+
+
+def euler_of_the_turn(R_wd: Any, R_wt: Any) -> Array:
+    """Roll, pitch and yaw of the right rotation."""
+    return _euler(R_wd @ R_wt.T)
+
+
+def one_axis_alone(R_wd: Any, R_wt: Any) -> Array:
+    """The cross product of the x axes alone."""
+    return np.cross(R_wt[:, 0], R_wd[:, 0])
+
+
+def half_the_cross_products(R_wd: Any, R_wt: Any) -> Array:
+    """All three cross products without their one half."""
+    return 2.0 * lk.se3.vee(R_wd @ R_wt.T)
+
+
+def minus_the_pose(T_ab: Any) -> Array:
+    """Every number with the other sign."""
+    return -np.asarray(T_ab)
+
+
+def translation_subtracted(T_ab: Any, p_b: Any) -> Array:
+    """The way between the origins taken off."""
+    return np.asarray(T_ab[:3, :3] @ p_b - T_ab[:3, 3])

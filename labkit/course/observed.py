@@ -1,0 +1,135 @@
+"""Observed causes: what a wrong answer does to the numbers, where no known mistake gives them.
+
+Each sentence says what is seen on all public calls, so it is true by construction: every number has
+the other sign, the answer stays the same without an argument, it is right as soon as one is zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from time import monotonic
+from typing import Any
+
+import numpy as np
+
+from .marking import Tried
+from .probes import arrays, exchanges, variations
+from .question import Call, Case, Question
+from .relations import Parts, all_near, factor, related, same_form
+from .verdict import Misconception, Outcome, Verdict
+
+Function = Callable[..., Any]
+LONGEST = 3.0
+"""Seconds that are spent on asking a function again."""
+
+
+def explained(question: Question, verdict: Verdict, tried: Tried, function: Function) -> Verdict:
+    """The verdict on a wrong answer with what is seen of it, unless it is a known mistake.
+
+    Args:
+        question: The question.
+        verdict: What came of it.
+        tried: What came back from the public cases.
+        function: The student's, which is asked again with one argument changed.
+    """
+    if verdict.mistake or verdict.outcome not in (Outcome.WRONG, Outcome.ERROR):
+        return verdict
+    says = cause(question, tried.answers, function)
+    return replace(verdict, mistake=Misconception("", says)) if says else verdict
+
+
+def cause(question: Question, answers: Mapping[Case, Any], function: Function) -> str:
+    """What is seen of a wrong answer, in a sentence; "" if nothing that tells much."""
+    calls = [call for call in question.calls if isinstance(call, Call) and call in answers]
+    if not calls or len(calls) < len(question.calls) or not question.arguments:
+        return ""
+    given = [arrays(answers[call]) for call in calls]
+    expected = [arrays(call.expected) for call in calls]
+    if not any(expected):
+        return ""
+    alike = all(map(same_form, given, expected))
+    found = related(question, calls, given, expected) if alike else ""
+    found = found or _exchanged(question, calls, function)
+    return found or _probed(question, calls, given if alike else [], function)
+
+
+def _exchanged(question: Question, calls: Sequence[Call], function: Function) -> str:
+    """What has to be exchanged in its arguments to make the function right."""
+    changed = [dict(exchanges(call, question.arguments)) for call in calls]
+    for label in changed[0]:
+        if all(
+            label in one and _right(question, _ask(one[label], function), call.expected)
+            for one, call in zip(changed, calls, strict=True)
+        ):
+            return f"Your function is right in every call if {label} before it is called."
+    return ""
+
+
+def _right(question: Question, answer: Any, expected: Any) -> bool:
+    try:
+        return question.judge(answer, expected) is None
+    except Exception:  # there is no end to what an answer can be
+        return False
+
+
+def _ask(call: Call, function: Function) -> Any:
+    try:
+        return call.ask(function)
+    except Exception:
+        return None
+
+
+def _probed(
+    question: Question, calls: Sequence[Call], given: list[Parts], function: Function
+) -> str:
+    """What the answer does where one argument is changed, and the right one does not do."""
+    changed = [dict(variations(call, question.arguments)) for call in calls]
+    expected = [arrays(call.expected) for call in calls]
+    stays, moves, shares, places = [], [], [], []
+    until = monotonic() + LONGEST
+    for probe in question.probes:
+        if monotonic() > until:
+            break
+        asked = [_ask(one[probe.label], function) for one in changed]
+        found, right = [arrays(x) for x in asked], [arrays(x) for x in probe.answers]
+        if not all(map(same_form, found, right)):
+            continue
+        same, should = (
+            bool(given) and all(map(all_near, found, given)),
+            all(map(all_near, right, expected)),
+        )
+        if same and not should:
+            stays.append(probe.label)
+        if given and should and not same:
+            moves.append(probe.label)
+        if not should and all(map(lambda x, y: _right(question, x, y), asked, probe.answers)):
+            if given and (says := _share(given, expected, right)):
+                shares.append(says.format(probe.label.split("`")[1], probe.label))
+            elif probe.tells:
+                places.append(probe.label)
+    if shares:
+        return shares[0]
+    if stays:
+        return f"Your answer stays the same if {' or if '.join(stays[:3])}; the right one does not."
+    if moves:
+        return f"Your answer changes if {' or if '.join(moves[:3])}; the right one does not."
+    if places:
+        return f"Your answer is right as soon as {' or as soon as '.join(places[:2])}: look there."
+    return ""
+
+
+_SHARES = {
+    -1.0: "What `{}` adds to your answer has the other sign: if {}, it is right.",
+    2.0: "What `{}` adds to your answer is there twice: if {}, it is right.",
+    0.5: "What `{}` adds to your answer is half of what it should be: if {}, it is right.",
+}
+
+
+def _share(given: list[Parts], expected: list[Parts], right: list[Parts]) -> str:
+    """By what factor that is wrong which an argument adds to the answer, in words."""
+    g, e, r = (
+        np.concatenate([x.ravel() for parts in z for x in parts]) for z in (given, expected, right)
+    )
+    times = factor(g - r, e - r)
+    return next((says for value, says in _SHARES.items() if abs(times - value) < 1e-6), "")

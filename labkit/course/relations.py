@@ -1,0 +1,173 @@
+"""Relations: what the numbers of a wrong answer are to the right ones, in every call alike."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import permutations
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+
+from ..shapes import Array
+from .probes import arguments
+from .question import Call, Question
+
+Parts = list[Array]
+"""An answer, part by part."""
+
+_FACTORS = {
+    "2": 2.0,
+    "π": pi,
+    "2π": 2.0 * pi,
+    "4π²": 4.0 * pi**2,
+    "√2": 2.0**0.5,
+    "√3": 3.0**0.5,
+    "1000": 1e3,
+    "9.81": 9.81,
+    "180/π (degrees for radians)": degrees(1.0),
+    "9.8/9.81": 9.8 / 9.81,
+    "10/9.81": 10.0 / 9.81,
+}
+"""Factors that have a cause, in words."""
+_POWERS = {
+    "multiplied by `{}`": 1.0,
+    "multiplied by `{}` squared": 2.0,
+    "divided by `{}`": -1.0,
+    "divided by `{}` squared": -2.0,
+    "multiplied by the root of `{}`": 0.5,
+    "divided by the root of `{}`": -0.5,
+}
+
+
+def same_form(a: Parts, b: Parts) -> bool:
+    """Whether two answers have one form, and the first is made of finite numbers."""
+    pairs = zip(a, b, strict=False)
+    return len(a) == len(b) and all(x.shape == y.shape and np.isfinite(x).all() for x, y in pairs)
+
+
+def _near(a: Array, b: Array) -> bool:
+    scale = max(float(np.abs(b).max(initial=0.0)), 1e-3)
+    return bool(np.allclose(a, b, rtol=1e-6, atol=1e-8 * scale))
+
+
+def all_near(a: Sequence[Array], b: Sequence[Array]) -> bool:
+    """Whether two lists of arrays hold the same numbers, but for rounding."""
+    return all(map(_near, a, b))
+
+
+def related(
+    question: Question, calls: Sequence[Call], given: list[Parts], expected: list[Parts]
+) -> str:
+    """How the one wrong part of an answer, or all of it, is related to the right one."""
+    parts: list[tuple[Sequence[Array], Sequence[Array]]] = list(
+        zip(zip(*given, strict=True), zip(*expected, strict=True), strict=True)
+    )
+    wrong = [k for k, (a, b) in enumerate(parts) if not all_near(a, b)]
+    names = getattr(question.judge, "parts", ()) or getattr(calls[0].expected, "_fields", ())
+    what, rest = "your answer", ""
+    if not wrong:
+        return ""
+    if _only_at_rest(given, expected):
+        return "Your answer is wrong only where nothing moves: before the start or after the end."
+    if len(parts) > len(wrong) == 1 and len(names) == len(parts):
+        what, rest = f"your `{names[wrong[0]]}`", ", and the rest is right"
+    elif len(parts) > 1:
+        parts = [(_joined(given, wrong), _joined(expected, wrong))]
+        wrong = [0]
+    by_name = [arguments(call, question.arguments) for call in calls]
+    says = next(_relations(*parts[wrong[0]], by_name), "")
+    return f"In every call {what} {says}{rest}." if says else ""
+
+
+def _joined(answers: list[Parts], which: list[int]) -> list[Array]:
+    return [np.concatenate([np.ravel(parts[k]) for k in which]) for parts in answers]
+
+
+def _only_at_rest(given: list[Parts], expected: list[Parts]) -> bool:
+    """Whether all calls with a wrong answer are at rest, and others are not."""
+    still = [len(e) == 3 and not any(x.any() for x in e[1:]) for e in expected]
+    right = [all_near(g, e) for g, e in zip(given, expected, strict=True)]
+    return all(a or b for a, b in zip(still, right, strict=True)) and not all(still)
+
+
+def _relations(
+    a: Sequence[Array], b: Sequence[Array], given: Sequence[Mapping[str, Any]]
+) -> Iterator[str]:
+    if not any(x.any() for x in b):
+        return
+    if not any(x.any() for x in a):
+        yield "is zero"
+    if all_near(a, [-x for x in b]):
+        yield "has the other sign"
+    for name in given[0]:
+        x = [g[name] for g in given]
+        if all(
+            isinstance(y, np.ndarray) and y.shape == z.shape for y, z in zip(x, a, strict=True)
+        ) and all_near(a, x):
+            yield f"is `{name}` itself"
+    if len({x.shape for x in b}) == 1 and b[0].ndim:
+        yield from _matrices(a, b) if b[0].ndim == 2 else ()
+        yield from _rows(a, b)
+    told = [(factor(x, y), g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
+    if len(told) > 1 and all(times for times, _ in told):
+        yield from _factors(np.array([times for times, _ in told]), [g for _, g in told])
+
+
+def _matrices(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
+    if b[0].shape[0] == b[0].shape[1]:
+        if all_near(a, [x.T for x in b]):
+            yield "is the transpose of what it should be"
+        if all(np.linalg.cond(x) < 1e9 for x in b) and all_near(
+            a, [np.asarray(np.linalg.inv(x), dtype=float) for x in b]
+        ):
+            yield "is the inverse of what it should be"
+        if all_near(a, [np.diag(np.diag(x)) for x in b]):
+            yield "has zeros beside the diagonal, and on it, it is right"
+    rows = range(len(b[0]))
+    for order in permutations(rows) if len(rows) <= 6 else ():
+        if order != tuple(rows) and all_near(a, [x[list(order)] for x in b]):
+            yield f"has the right rows in another order ({', '.join(map(str, order))})"
+
+
+def _rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
+    """Where only some components are wrong, and those in one way."""
+    for axis, kind in enumerate(("row", "column") if b[0].ndim == 2 else ("component",)):
+        wrong = [
+            k
+            for k in range(b[0].shape[axis])
+            if not all_near([np.take(x, [k], axis) for x in a], [np.take(x, [k], axis) for x in b])
+        ]
+        if not 0 < len(wrong) < b[0].shape[axis]:
+            continue
+        c, d = ([np.take(x, wrong, axis) for x in z] for z in (a, b))
+        which = f"{kind}{'s' * (len(wrong) > 1)} {', '.join(map(str, wrong))}"
+        be, have = ("are", "have") if len(wrong) > 1 else ("is", "has")
+        if not any(x.any() for x in c):
+            yield f"is right but for {which}, which {be} zero"
+        if all_near(c, [-x for x in d]):
+            yield f"is right but for {which}, which {have} the other sign"
+
+
+def factor(a: Array, b: Array) -> float:
+    """What all numbers of b are multiplied by to give a; 0 if there is no such factor."""
+    size = float(np.vdot(b, b))
+    times = float(np.vdot(b, a)) / size if size else 0.0
+    return times if _near(a, times * b) else 0.0
+
+
+def _factors(factors: Array, given: Sequence[Mapping[str, Any]]) -> Iterator[str]:
+    for words, value in _FACTORS.items():
+        if np.allclose(factors, value, rtol=1e-6):
+            yield f"is {words} times what it should be"
+        if np.allclose(factors, 1.0 / value, rtol=1e-6):
+            yield f"is what it should be, divided by {words}"
+    if np.ptp(factors) > 1e-6 * np.abs(factors).max():
+        for name in given[0]:
+            x = [g[name] for g in given]
+            if all(isinstance(y, float | int) and y > 0 for y in x):
+                for words, power in _POWERS.items():
+                    if np.allclose(factors, np.power(x, power), rtol=1e-6):
+                        yield f"is what it should be, {words.format(name)}"
+    else:
+        yield f"is {factors[0]:.5g} times what it should be"

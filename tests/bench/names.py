@@ -1,0 +1,109 @@
+"""How many wrong answers the checks call by their names, on answers that the names never saw.
+
+`build/names.tsv` lists each wrong answer with its author's sentence and with what the student is
+told, so that somebody can judge whether it fits.
+"""
+
+import linecache
+import re
+from collections import Counter
+from pathlib import Path
+
+from labkit.course import student
+from labkit.course.messages import tell
+from labkit.course.verdict import Kind, Outcome
+from tests.answers import TOPICS, read
+
+ROOT = Path(__file__).parents[2]
+OUT = ROOT / "build/names.tsv"
+BEFORE = "import control\nimport cv2\nimport numpy as np\nimport labkit as lk\nfrom math import *\n"
+
+
+def desks():
+    """The desk of each notebook, by its topic."""
+    files = sorted((ROOT / "assignments").glob("*/checks.json"))
+    return {file.parent.name.partition("_")[2]: student.Desk.beside(file.parent) for file in files}
+
+
+def function_of(question, source):
+    """The function that a cell's text defines, where a notebook's imports ran before it."""
+    file = f"<{question} {abs(hash(source))}>"
+    linecache.cache[file] = (len(source), None, source.splitlines(True), file)
+    cell = {}
+    exec(BEFORE, cell)
+    exec(compile(source, file, "exec"), cell)
+    return cell[question]
+
+
+def told(desk, answer):
+    """The verdict of the real check on an answer, and the text that a student reads."""
+    try:
+        function = function_of(answer.question, answer.source)
+    except Exception as error:
+        return None, f"the cell stops: {type(error).__name__}: {error}"
+    verdict, printed, _ = desk.verdict(answer.question, function)
+    return verdict, tell(desk.question(answer.question), verdict, printed)
+
+
+FORM = (Kind.TYPE, Kind.PARTS, Kind.KEY, Kind.NOTHING, Kind.CHANGED, Kind.REFUSED)
+"""Differences whose sentence says what is wrong: another type or shape, nothing, NaN."""
+PLACE = re.compile("right as soon as|is [-0-9.e+]+ times what")
+"""Sentences that say where to look, but not what is wrong; these do not count as names."""
+NAMED = ("known", "observed", "form")
+
+
+def name_of(verdict):
+    """How a verdict knows the mistake, and the sentence; "numbers" where it only shows these."""
+    if verdict.mistake is not None:
+        known = verdict.mistake.name
+        how = "known" if known else "place" if PLACE.search(verdict.mistake.says) else "observed"
+        return how, f"{known}: {verdict.mistake.says}".strip(": ")
+    for test in verdict.tests:
+        if test.difference is not None:
+            kind = test.difference.kind
+            if kind in FORM or kind is Kind.RAISED:
+                how = "form" if kind in FORM else "raised"
+                return how, str(test.difference.found or kind)
+    return "numbers", ""
+
+
+def measure_answers(answers, out=OUT):
+    """Check answers, write the table, and count: {question: Counter}."""
+    found, counts, lines = desks(), {}, []
+    for answer in answers:
+        count = counts.setdefault(f"{answer.topic}/{answer.question}", Counter())
+        verdict, text = told(found[answer.topic], answer)
+        right = verdict is not None and verdict.outcome is Outcome.RIGHT
+        if answer.right:
+            count["right"] += 1
+            count["right_refused"] += not right
+            how, name = ("refused" if not right else "accepted"), ""
+        else:
+            how, name = name_of(verdict) if verdict else ("raised", text)
+            count["wrong"] += 1
+            how = "accepted" if right else how
+            count["named"] += how in NAMED
+            count[f"by_{how}"] += 1
+            count["accepted_wrong"] += right
+        row = (f"{answer.topic}/{answer.question}", str(answer.right), answer.says, how, name, text)
+        lines.append("\t".join(" ".join(x.split()) for x in row))
+    out.parent.mkdir(exist_ok=True)
+    head = "question\tright\tauthor says\thow\tname\ttext"
+    out.write_text("\n".join([head, *lines]) + "\n", encoding="utf-8")
+    return counts
+
+
+def measure():
+    """Wrong answers that are named, wrong ones that pass, right ones that do not."""
+    answers = [answer for topic in TOPICS for answer in read(topic)]
+    counts = measure_answers([answer for answer in answers if answer.held or answer.right])
+    total = sum(counts.values(), Counter())
+    figures = {
+        "named_share": total["named"] / total["wrong"],
+        "wrong_answers": total["wrong"],
+        "accepted_wrong": total["accepted_wrong"],
+        "right_answers": total["right"],
+        "right_refused": total["right_refused"],
+    }
+    shares = {f"named_{q}": count["named"] / max(count["wrong"], 1) for q, count in counts.items()}
+    return figures | shares

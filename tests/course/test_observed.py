@@ -1,0 +1,71 @@
+"""What is seen of a wrong answer that no known mistake gives."""
+
+import numpy as np
+import pytest
+
+import labkit as lk
+from labkit.course import mark
+from labkit.course.marking import try_public
+from labkit.course.observed import explained
+from labkit.course.problem import Problem, Trial, call
+
+
+def law(state, target, *, kp, kd):
+    """A joint law with two terms."""
+    return kp * (target.position - state.q) + kd * (target.velocity - state.dq)
+
+
+def states(seed):
+    """A call of the law at random numbers."""
+    q, dq, p, v, a = np.random.default_rng(seed).normal(size=(5, 3))
+    return call(lk.State(0.0, q, dq), lk.Sample(p, v, a), kp=2.0 + seed, kd=0.3)
+
+
+LAW = Problem("law", 1, "Give it.", law, (Trial("any", (states(1), states(2)), weight=1.0),))
+SCALED = Problem(
+    "scaled",
+    1,
+    "Give it.",
+    lambda x, d: np.array([x, x * x]) / d,
+    (Trial("any", (call(2.0, 3.0), call(5.0, 7.0)), weight=1.0),),
+)
+
+
+def seen(problem, function):
+    """What a student reads of an answer."""
+    question = problem.question(1).public()
+    tried = try_public(question, function)
+    mistake = explained(question, mark(question, function, tried), tried, function).mistake
+    return mistake.says if mistake else ""
+
+
+@pytest.mark.parametrize(
+    "function, says",
+    [
+        (lambda state, target, *, kp, kd: -law(state, target, kp=kp, kd=kd), "has the other sign"),
+        (
+            lambda state, target, *, kp, kd: law(state, target, kp=kd, kd=kp),
+            "`kp` and `kd` are exc",
+        ),
+        (lambda state, target, *, kp, kd: kp * (target.position - state.q), "stays the same if"),
+        (
+            lambda state, target, *, kp, kd: law(state, target, kp=kp, kd=kd) + target.acceleration,
+            "changes if `target.acceleration` is 0",
+        ),
+        (lambda state, target, *, kp, kd: law(state, target, kp=kp, kd=-kd), "has the other sign:"),
+    ],
+)
+def test_the_cause_is_seen_in_the_numbers(function, says):
+    """A sign, exchanged gains, a lost term and one too many are told, each in its sentence."""
+    assert says in seen(LAW, function)
+
+
+def test_a_factor_that_is_an_argument_is_told():
+    """An answer that is not divided by an argument is told so."""
+    assert "multiplied by `d`" in seen(SCALED, lambda x, d: np.array([x, x * x]))
+
+
+def test_nothing_is_said_of_what_is_not_seen():
+    """Of an answer without any relation to the right one nothing is said, nor of a right one."""
+    assert seen(SCALED, lambda x, d: np.array([np.cos(x + d), 1.3])) == ""
+    assert seen(SCALED, lambda x, d: np.array([x, x * x]) / d) == ""
