@@ -14,11 +14,13 @@ from book_pages import ROOT
 from handmade import put
 
 from labkit.course.layout import Course
+from labkit.grader.gradebook import open_gradebook
 from labkit.grader.rules import FILE, read_rules
 from labkit.grader.term import PERSONAL_FILES
 from solutions.paths import answers
 from tests.synthetic.inline import inline
 
+WHY = "why_twice_the_time"
 SHELL = re.compile(r"```shell\n(.*?)```", re.DOTALL)
 
 
@@ -29,26 +31,41 @@ def shown(page):
     return [words for line in lines if (words := shlex.split(line, comments=True))]
 
 
-def works(words, folder):
-    """Type it; labkit's own word for success is exit code 0."""
+def typed(words, folder):
+    """Type it, and wait until it is done."""
     module = ["-m", "labkit"] if words[0] == "labkit" else []
     command = [sys.executable, *module, *words[1:]]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True,
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True,
                           check=False)  # fmt: skip
+
+
+def works(words, folder):
+    """Type it; labkit's own word for success is exit code 0."""
+    done = typed(words, folder)
     assert done.returncode == 0, (words, done.stdout[-1500:], done.stderr[-1500:])
     return done.stdout
 
 
+def mark_by_hand(course, student, points):
+    """Mark the why of notebook 01, as somebody does in formgrader."""
+    with open_gradebook(Course(course)) as book:
+        grade = book.find_grade(WHY, "01_paths", "01_paths", student)
+        assert grade.needs_manual_grade
+        grade.manual_score, grade.needs_manual_grade = points, False
+        book.db.commit()
+
+
 @pytest.mark.slow
 def test_every_command_of_the_instructors_guide_works(tmp_path):
-    """From a clone to a graded class, as the page says."""
+    """From a clone to a class that is graded and marked by hand, as the page says."""
     course = tmp_path / "course"
     subprocess.run(["git", "clone", "--quiet", ROOT, course], check=True, capture_output=True)
     (course / "downloads").mkdir()
     notebook = json.loads((ROOT / "assignments/01_paths/01_paths.ipynb").read_text())
     for function in (answers.bang_bang, answers.trapezoid, answers.compose):
         put(notebook, function.__name__, inline(function, function.__name__))
+    put(notebook, WHY, "The speed doubles, because the same way takes half the time.")
     with zipfile.ZipFile(course / "downloads/moodle.zip", "w") as archive:
         name = "Ada Lovelace_101_assignsubmission_file/01_paths.ipynb"
         archive.writestr(name, json.dumps(notebook))
@@ -61,6 +78,10 @@ def test_every_command_of_the_instructors_guide_works(tmp_path):
                      "grade", "explain", "defence", "feedback", "export", "class-report",
                      "export-course"}  # fmt: skip
     for words in commands:
+        if words[:2] == ["labkit", "feedback"]:  # the guide has said: first mark by hand
+            assert "by hand" in (refused := typed(words, course)).stderr, refused
+            assert refused.returncode == 2
+            mark_by_hand(course, "Ada-Lovelace", 1.5)
         works(words, course)
     assert len(list((course / "results/01_paths").glob("*.json"))) == 1
     assert len(list((course / "feedback").glob("*/01_paths/01_paths.html"))) == 1
