@@ -40,7 +40,8 @@ c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
 c.GenerateFeedback.exporter_class = "labkit.grader.feedback_exporter.StudentPage"
 
 # Students' code never runs in nbgrader's own process: a submission is brought into the release's
-# form and graded in a sandbox.
+# form and graded in a sandbox.  A folder with a bad name is named and left out first.
+c.Autograde.exporter_class = "labkit.grader.autograde.FitNames"
 c.Autograde.pre_convert_hook = "labkit.grader.autograde.unlink_foreign"
 c.Autograde.sanitize_preprocessors = [
     "labkit.grader.autograde.Repair",

@@ -22,7 +22,6 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 PIECES = ("open", "stiffness", "age", "singular")
-OFFER = "Load the live arm (4 MB, from this book's folder)"
 SETTINGS = ("controller", "path")
 WITHOUT = "On paper and without JavaScript, the recorded runs and the text tell the same."
 
@@ -56,8 +55,7 @@ class LiveArm(SphinxDirective):
         data = json.dumps({"piece": piece, **own, "settings": settings}).replace("<", "\\u003c")
         root = "../" * self.env.docname.count("/") + "_static/live/"
         html = (
-            f'<figure class="lk-live" role="group" aria-label="{escape(title)}" '
-            f'data-offer="{escape(OFFER)}">'
+            f'<figure class="lk-live" role="group" aria-label="{escape(title)}">'
             f'<script type="application/json">{data}</script>'
             f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div></figure>'
             f'<script defer src="{root}boot.js"></script>'

@@ -249,7 +249,7 @@ def check_yourself() -> HTML:
             [
                 ("Twenty more seeds on the line", "They only sharpen the mean of one task."),
                 ("Four new paths with five seeds each", "It makes seven tasks of three."),
-                ("Seven more seeds on each path", "The spread between the paths stays as it is."),
+                ("Six more seeds on each path", "The spread between the paths stays as it is."),
             ],
             1,
         ),

@@ -206,9 +206,11 @@ def servoing() -> HTML:
         x=[ends["image"], ends["pose, goal measured"], ends["pose, goal shown"]],
     )
     numbers({"servo_image": ends["image"], "servo_pose": ends["pose, goal measured"]}, ".2g")
-    ax.set(xlabel="time [s]", ylabel="distance from the goal [mm]", ylim=(1e-2, 300))
+    ax.set(xlabel="time [s]", ylabel="distance from the goal [mm]", ylim=(1e-3, 300))
     ax.legend(fontsize="small")
-    told = "; ".join(f"{way}: {end:.2g} mm" for way, end in ends.items())
+    told = "; ".join(
+        f"{way.replace('measured', 'in metres')}: {end:.2g} mm" for way, end in ends.items()
+    )
     return figure(
         "Distance of the hand's camera from its goal, the focal length believed 20 % too long.",
         f"Three falling curves on a logarithmic scale. At the end {told}.",

@@ -100,7 +100,7 @@ def report() -> None:
 
 
 def plant() -> None:
-    """Of the page on what is true of the arm."""
+    """Of the page on what is known of the arm."""
     model = lk.Model("left", lk.BAXTER)
     q = np.array(model.robot.ready)
     inertia = float(model.mass_matrix(q)[0, 0])
@@ -111,7 +111,7 @@ def plant() -> None:
     dry = lk.BAXTER.stiction[0]
     _is("A spring of 8 N m/rad against dry friction of 1 N m may stop 0.125 rad from its target",
         (8.0, 1.0, 0.125), (min(springs), dry, dry / min(springs)))  # fmt: skip
-    _is("225 1/s² times 2.1 kg m²", (225.0, 2.1), (225.0, inertia), 0.05)
+    _is("225 1/s² times 2.17 kg m²", (225.0, 2.17), (225.0, inertia), 0.01)
     _is("even under the report's own $K_p$ = 3 1/s", 3.0, KP)
     _is("about 60 times as stiff at the shoulder", 60.0, 225.0 * inertia / 8.0, 0.1)
     swing = math.sqrt(SPRINGS["joint_stiffness"][0] / inertia)

@@ -104,6 +104,20 @@ def planar() -> None:
     values, axes = np.linalg.eigh(L)
     D = 2.0 * math.sqrt(spring) * (axes * np.sqrt(values)) @ axes.T
     numbers({"planar_dx": D[0, 0], "planar_dy": D[1, 1], "planar_dxy": D[0, 1]}, ".3g")
+    poles = [_poles(L, spring, x) for x in (np.diag(np.diag(D)), D)]
+    claim(
+        "one pair of poles would be complex, with a damping ratio of 0.90; with it both pairs are "
+        "critically damped",
+        lambda least: np.allclose(least, (0.90, 1.0), rtol=5e-3),
+        least=[float(np.min(-x.real / np.abs(x))) for x in poles],
+    )
+
+
+def _poles(L: np.ndarray, spring: float, D: np.ndarray) -> np.ndarray:
+    """Of a mass matrix on equal springs with a damping matrix."""
+    zero, one = np.zeros_like(L), np.eye(len(L))
+    A = np.block([[zero, one], [-spring * np.linalg.inv(L), -np.linalg.solve(L, D)]])
+    return np.linalg.eigvals(A)
 
 
 def one_mass_by_hand() -> None:

@@ -236,11 +236,11 @@ def check_yourself() -> HTML:
     """The quiz of the chapter."""
     return quiz(
         Question(
-            "The gripper points down and turns about the vertical, its tip at rest. Which Jacobian "
-            "has non-zero linear rows in the twist it gives?",
+            "The gripper points down and turns about the vertical, its tip at rest and not above "
+            "the world's origin. Which Jacobian gives a twist whose linear part is not zero?",
             [
                 ("The tip Jacobian", "Its linear rows are the velocity of the tip, which is zero."),
-                ("The body Jacobian", "Same velocity, other axes: still zero."),
+                ("The body Jacobian", "It gives the same velocity in other axes: still zero."),
                 (
                     "The spatial Jacobian",
                     "It gives the velocity of the point of the turning body that passes "

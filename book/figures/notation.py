@@ -53,7 +53,7 @@ SYMBOLS = (
     Symbol("omega", r"\omega", "angular velocity of a body, or frequency", "", "rad/s"),
     Symbol("F", "F = (f, m)", "wrench at the tip: force, then moment"),
     Symbol("K", "K", "stiffness at the tip", "", "N/m"),
-    Symbol("B", "B", "damping at the tip", "", "N s/m"),
+    Symbol("D", "D", "damping at the tip", "", "N s/m"),
     Symbol("T", "T", "duration, or sampling time", "", "s"),
     Symbol("Kp", "K_p", "gain on the error"),
     Symbol("Kd", "K_d", "gain on the error's rate"),

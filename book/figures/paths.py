@@ -183,7 +183,7 @@ def _shapes() -> None:
     numbers({name: float(x) for name, x in small.items()}, ".1g")
     numbers({"ff_most": float(without.max()), "bump_second": float(-late.min())}, ".2g")
     claim(
-        "Behind and ahead cancel in the first half and add up in the second",
+        "In the first half one error is behind and the other ahead, and they cancel; in the second",
         lambda first, second, lag, age: (
             0.0 < first < 0.8 * lag and second > 1.3 * lag > 0.0 and age > 0.0
         ),

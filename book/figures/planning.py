@@ -118,7 +118,7 @@ def syllabi() -> HTML:
 def numbers_told() -> None:
     """What marking costs, and which points are for what, for the prose."""
     whole = sum(MINUTES.values())
-    number("marking_minutes", whole, ".0f")
+    number("marking_minutes", whole, ".1f")
     number("marking_hours", whole * CLASS / 60.0, ".0f")
     number("defence_minutes", DEFENCE - MINUTES[TALK], ".1f")
     functions = sum(p.points for name in NOTEBOOKS for p in COURSE.problems(name))

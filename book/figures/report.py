@@ -186,4 +186,15 @@ def impedance() -> None:
     holds(abs(stiffness / 300.0 - 1.0) < 0.02, "the arm is as stiff as commanded, sensor or not")
     rigid, soft = (row["Kp"] for row in report_gains.kept()["procedure"])
     numbers({"procedure_rigid": rigid, "procedure_soft": soft}, ".2g")
+    halved = [
+        next(step[2] for step in row["steps"] if step[3] == "half of that")
+        for row in report_gains.kept()["procedure"]
+    ]
+    number("left_rigid", halved[0], ".2g")
+    claim(
+        "and the second does not swing at all: the rule's quarter is found on neither",
+        lambda rigid, soft: rigid > 0.4 and soft == 0.0,
+        rigid=halved[0],
+        soft=halved[1],
+    )
     numbers({"felt": stiffness, "moved_mm": 1e3 * moved[1]})

@@ -124,7 +124,9 @@ def loop() -> HTML:
                       "edgecolor": FRAME})  # fmt: skip
     for x in (1.0, 3.6):
         ax.plot(x, 1.0, "o", markersize=13, markerfacecolor="none", markeredgecolor=FRAME)
-        ax.text(x, 1.0, "+" if x > 2 else "−", ha="center", va="center", fontsize="small")
+        ax.text(x, 1.0, "Σ", ha="center", va="center", fontsize="x-small")
+    for x, y, sign in ((0.68, 0.72, "+"), (1.22, 0.42, "−"), (3.22, 0.72, "+"), (3.38, 1.5, "+")):
+        ax.text(x, y, sign, ha="center", va="center", fontsize="small")
     for start, end in (
         ((0.0, 1.0), (0.78, 1.0)), ((1.22, 1.0), (1.9, 1.0)), ((2.7, 1.0), (3.38, 1.0)),
         ((3.82, 1.0), (4.45, 1.0)), ((6.15, 1.0), (7.1, 1.0)), ((7.9, 1.0), (9.2, 1.0)),

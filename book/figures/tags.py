@@ -291,7 +291,7 @@ def trust() -> HTML:
     found = {name: consistency(setup, PICTURES, seed=5) for name, setup in SETUPS.items()}
     refused = ("blur 2 px", "smear 6 px", "corner 30 %")
     claim(
-        "refuses them all",
+        "the detector refuses every picture",
         lambda right, wrong: max(wrong) == 0.0 < 0.7 < min(right),
         right=[found[name][0] for name in found if name not in refused],
         wrong=[found[name][0] for name in refused],
@@ -328,9 +328,13 @@ def check_yourself() -> HTML:
     """The quiz of the chapter."""
     return quiz(
         Question(
-            "A program reports tags 1.25 times too far, always. What is the first thing to check?",
+            "A program reports tags 1.25 times too far, always, and the focal length has been "
+            "checked. What should be checked next?",
             [
-                ("The focal length", "Possible too, but look at the size first."),
+                (
+                    "The distortion of the lens",
+                    "That bends lines. It does not scale all distances alike.",
+                ),
                 (
                     "Whether the size includes the white border",
                     "A square taken for larger appears farther, by the same factor.",
@@ -340,7 +344,7 @@ def check_yourself() -> HTML:
             1,
         ),
         Question(
-            "The hand camera sees the tag. Which pose of the camera belongs into "
+            "The hand camera sees the tag. Which pose of the camera belongs in "
             r"\(T_{wm} = T_{wc} T_{cm}\)?",
             [
                 ("The one when the result arrives", "The hand has moved since the exposure."),

@@ -363,7 +363,9 @@ def aims() -> HTML:
     numbers({"aim_stays": stays[0], "aim_straight": straight[0], "aim_bends": bends[0],
              "aim_turns": turning[0]}, ".2g")  # fmt: skip
     numbers({"aim_turns_noisy": turning[-1], "aim_straight_noisy": straight[-1]}, ".2g")
-    by_hand("at 0.1 m/s and 60 mm, 25 mm", 25.0, 1e3 * SPEED**2 * AHEAD**2 / (2 * RADIUS), 0.02)
+    by_hand(
+        "which is 25 mm at 0.1 m/s and 60 mm", 25.0, 1e3 * SPEED**2 * AHEAD**2 / (2 * RADIUS), 0.02
+    )
     by_hand(
         "With the same numbers this is 7.7 mm, less than a third",
         7.7,

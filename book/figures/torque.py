@@ -199,9 +199,9 @@ def check_yourself() -> HTML:
         Question(
             "In which law do the gains have the unit N m/rad?",
             [
-                ("Computed torque", "There they stand inside M and are 1/s²."),
+                ("Computed torque", "There M multiplies them, and their unit is 1/s²."),
                 ("Augmented PD", "It puts a spring at each joint."),
-                ("Both", "Inside M the gain is an acceleration for an angle."),
+                ("Both", "Where M multiplies a gain, the gain is an acceleration for an angle."),
             ],
             1,
         ),
@@ -216,12 +216,13 @@ def check_yourself() -> HTML:
             1,
         ),
         Question(
-            r"Which product does the augmented law need, and why?",
+            r"Which product does the augmented law need?",
             [
                 (r"\(C\,\dot q\)", "That belongs to computed torque, which cancels what is there."),
                 (
                     r"\(C\,\dot q_d\)",
-                    r"Then \(C\dot e\) remains and \(\dot M - 2C\) cancels it in the energy.",
+                    r"Then \(C\dot e\) remains, which cancels \(\tfrac12\dot M\dot e\) in the "
+                    "energy.",
                 ),
             ],
             1,

@@ -158,7 +158,7 @@ def ticks() -> None:
         kp, kd, inertia = random.uniform((1.0, 0.01, 0.001), (200.0, 5.0, 0.05))
         said = kd * h / inertia < 2.0 and kp * h / 2.0 < kd
         tried.append(said == (radius(inertia, kp, kd, h) < 1.0))
-    claim("together they are exact", lambda right: right == 400, right=float(sum(tried)))
+    claim("together they are sufficient", lambda right: right == 400, right=float(sum(tried)))
     step = np.array([[1.0, h], [0.0, 1.0]]) - np.outer((h * h / 2, h), (8.0, 1.5)) / 0.051
     x = [np.array([0.0, moving])]
     for _ in range(400):
@@ -212,7 +212,7 @@ def wrists() -> None:
     number("held_w1", 1e3 * lk.BAXTER.stiction[5] / (ON_CIRCLE * M[5, 5]), ".2g")
     number("wrist_times", off[5] / off[0], ".2g")
     claim(
-        "times as much as the shoulder",
+        "times the shoulder's",
         lambda shoulder, wrist: wrist > 10.0 * shoulder > 0.0,
         shoulder=float(off[0]),
         wrist=float(off[5]),

@@ -188,7 +188,7 @@ def unstable() -> None:
     lag, whole = lk.BAXTER.velocity_lag, lk.BAXTER.velocity_lag + DELAY
     zeta = [1.0 / (2.0 * np.sqrt(kp * whole)) for kp in (14.0, 30.0)]
     past = [100.0 * np.exp(-np.pi * z / np.sqrt(1.0 - z * z)) for z in zeta]
-    shows("Put in a lag of 41.5 ms, the 30 ms of the motors and, roughly, another 11.5 ms",
+    shows("Put in a lag of 41.5 ms: the 30 ms of the motors and, roughly, another 11.5 ms",
           (41.5, 30.0, 11.5), 1e3 * np.array((whole, lag, DELAY)))  # fmt: skip
     shows("which is 6.0 1/s", 6.0, 1.0 / (4.0 * whole), 0.01)
     shows("At 14 1/s the damping ratio is 0.66 and a second-order system overshoots by 6.5 %, at "
@@ -348,7 +348,7 @@ def circle_replay() -> HTML:
     shows("on the realistic arm, with $K_p = 5$ 1/s and without", 5.0, np.max(gain))
     found = {name: metrics.summary(log).rms_mm for name, log in runs.items()}
     claim(
-        "That they agree is no accident",
+        "That they agree is not an accident",
         lambda e: all(0.0 < x < 6.0 for x in e) and abs(e[0] - e[1]) < 0.1 * e[0],
         e=list(found.values()),
     )
@@ -395,7 +395,7 @@ def check_yourself() -> HTML:
             1,
         ),
         Question(
-            r"Why is \(I - J^T J\) no projector on the null space?",
+            r"Why is \(I - J^T J\) not a projector onto the null space?",
             [
                 ("It has the wrong size", "It is 7 by 7, as it should be."),
                 (

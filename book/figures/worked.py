@@ -217,7 +217,7 @@ def velocity() -> None:
     left = {kd: 0.1 * exp(-3.0 / (1.0 + kd)) for kd in (0.0, 0.6)}
     shows("and the joint starts 0.1 rad away", (0.0050, 0.0153), left.values(), 0.01)
     shows("which is 0.0050 rad", 0.0050, left[0.0], 0.01)
-    shows("0.0153 rad are left: three times as much", (0.0153, 3.0),
+    shows("0.0153 rad is left: three times as much", (0.0153, 3.0),
           (left[0.6], left[0.6] / left[0.0]), 0.03)  # fmt: skip
     _swing()
     crossing, lag = 4.95, lk.BAXTER.velocity_lag

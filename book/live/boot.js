@@ -39,8 +39,9 @@ function start() {
     host.dataset.offered = "1";
     const button = document.createElement("button");
     const status = document.createElement("span");
-    Object.assign(button, { type: "button", className: "lk-load", textContent: host.dataset.offer });
+    Object.assign(button, { type: "button", className: "lk-load", textContent: "Load the live arm" });
     status.setAttribute("role", "status");
+    status.textContent = "4 MB, from this book’s folder";
     button.addEventListener("click", () => open(host, button, status));
     host.querySelector(".lk-offer").replaceChildren(button, status);
   }

@@ -86,10 +86,12 @@ export function corners({ h, svg, unique }) {
     const off = place(event).map((x, i) => image[k][i] - x);
     const follow = (e) => move(k, add(place(e), off));
     art.setPointerCapture(event.pointerId);
+    art.classList.add("lk-held");
     art.addEventListener("pointermove", follow);
-    for (const end of ["pointerup", "pointercancel"]) {
-      art.addEventListener(end, () => art.removeEventListener("pointermove", follow), { once: true });
-    }
+    art.addEventListener("lostpointercapture", () => {
+      art.classList.remove("lk-held");
+      art.removeEventListener("pointermove", follow);
+    }, { once: true });
   }
 
   function start(what) {

@@ -17,15 +17,10 @@ export class Drawing extends Form {
     rig.around(this.inSight());
     Object.assign(rig.motion, this.config.view);
     rig.use("Motion");
-    const target = { move: (p) => {
-      if (this.settings.path !== "stay") return;
-      this.change({ place: p.map((x, k) => Math.max(-0.15, Math.min(0.15, x - READY.p[k]))) });
-    } };
-    hold(picture, () => this.sessions, {
-      target, spring: target,
-      wall: { move: (p) => { const at = p[0] - READY.p[0]; this.walldial.set(1000 * at); this.change({ wall: at }); } },
-      tag: { move: (p) => { for (const { chase } of this.sessions) chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); } },
-    }, () => this.pause(false));
+    const target = (p) => this.change({ place: p.map((x, k) => Math.max(-0.15, Math.min(0.15, x - READY.p[k]))) });
+    const wall = (p) => { const at = p[0] - READY.p[0]; this.walldial.set(1000 * at); this.change({ wall: at }); };
+    const tag = (p) => { for (const { chase } of this.sessions) chase.dragged = subtract(p, READY.p).map((x, k) => (k === 2 ? 0 : x + TAG.offset[k])); };
+    hold(picture, () => this.sessions, () => ({ wall, tag, ...(this.settings.path === "stay" && { target, spring: target }) }), () => this.pause(false));
     this.drawPath();
   }
 

@@ -9,13 +9,11 @@ const PUSH = 1; // how long a push by button lasts, in [s] of the arm's time
 
 export const AXES = { "+x": [1, 0, 0], "−x": [-1, 0, 0], "+y": [0, 1, 0], "−y": [0, -1, 0], "+z": [0, 0, 1], "−z": [0, 0, -1] };
 
-/** Let pointers take hold of the arm, or of `things` {name: {move(point), end()}}; calls `touched` as they do. */
+/** Let pointers take hold of the arm, or of `things()`, {name: move(point)}; calls `touched` as they do. */
 export function hold(picture, sessions, things, touched) {
   picture.grab((picked) => {
-    if (picked.thing) {
-      const thing = things[picked.thing];
-      return thing && { move: (event) => thing.move(picture.dragged(event, picked.at)), end: () => thing.end?.() };
-    }
+    const move = things()[picked.thing];
+    if (move) return { move: (event) => move(picture.dragged(event, picked.at)), end: () => {} };
     const hands = sessions().map((session) => ({ session, place: placeOn(session.arm.q, picked.link, picked.at) }));
     const release = () => hands.forEach(({ session, hand }) => { session.hands = session.hands.filter((other) => other !== hand); });
     return {
@@ -32,7 +30,7 @@ export function hold(picture, sessions, things, touched) {
       },
       end: () => { release(); touched(); },
     };
-  });
+  }, ({ thing }) => !thing || thing in things());
 }
 
 /** Push the tips of some sessions along an axis, for a second of their time. */

@@ -23,8 +23,9 @@ class Stiffness extends Panel {
     this.verdict = h("p", { class: "lk-kept", role: "status" });
     const weight = this.dial({ label: "Weight", unit: "kg", min: 0, max: 1, value: 0.3 }, (payload) => this.change({ payload }));
     this.walldial = this.dial({ label: "Wall at", unit: "mm", min: -40, max: 60, value: 0 }, (x) => this.change({ wall: x / 1000 }));
-    return [this.predicted.element, this.buttons(), this.fieldset("Stiffness", this.choose.element, this.gainbox),
-      h("div", { class: "lk-bars" }, this.bars.wall.element, this.bars.sag.element), this.verdict, this.numbers,
+    const results = this.predicted.behind("Once you have entered a number above, the force on the wall and the sag appear here and in the picture.",
+      h("div", { class: "lk-bars" }, this.bars.wall.element, this.bars.sag.element), this.verdict);
+    return [this.predicted.element, this.buttons(), this.fieldset("Stiffness", this.choose.element, this.gainbox), ...results, this.numbers,
       this.fieldset("Weight in the hand, wall", h("div", { class: "lk-dials" }, weight.element, this.walldial.element)), this.hands(), this.said];
   }
 
@@ -57,7 +58,13 @@ class Stiffness extends Panel {
   recompute() {} // what counts here is where the arm comes to rest
   settled() { return this.session.loop.t - (this.since ?? 0) > 2; }
 
+  /** Before the reader has said a number, no arrow tells the wall's force. */
+  drawNow(now) {
+    super.drawNow(this.predicted.said === null ? { ...now, forces: now.forces.filter((f) => f.name !== "wall") } : now);
+  }
+
   shown(now) {
+    if (this.predicted.said === null) { this.numbers.textContent = `t = ${now.t.toFixed(2)} s`; return; }
     const wall = now.forces.find((f) => f.name === "wall");
     this.wallForce = wall?.size ?? 0;
     this.sag = 1000 * now.off[2];

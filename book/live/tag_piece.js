@@ -44,7 +44,7 @@ class Age extends Panel {
     const { camera: now, tagSpeed } = this.settings;
     this.predicted = predictBox(h, {
       question: "The tag rides on a conveyor at 60 mm/s; what the camera says is 200 ms old. How far beside the tag does the hand aim?",
-      unit: "mm", commit: () => this.answer(), found: () => miss({ ...this.settings, ...SETTINGS }) });
+      unit: "mm", commit: () => this.change({ ...this.settings, ...SETTINGS }), found: () => miss({ ...this.settings, ...SETTINGS }) });
     const move = viewer.choice({ label: "The tag on", values: Object.values(MOVES), value: MOVES[this.settings.move],
       onchange: (label) => { this.release(); this.change({ move: Object.keys(MOVES).find((k) => MOVES[k] === label) }); } });
     const box = h("input", { type: "checkbox", onchange: () => camera({ predict: box.checked }) });
@@ -56,21 +56,14 @@ class Age extends Panel {
     const steps = Object.entries({ "left": [0, 0.02, 0], "right": [0, -0.02, 0], "away": [0.02, 0, 0], "near": [-0.02, 0, 0] });
     const keys = steps.map(([name, by]) => h("button", { type: "button", onclick: () => this.drag(add(this.session.chase.dragged ?? [0, 0, 0], by)) }, `${name} 2 cm`));
     this.table = h("table", { class: "lk-table" });
-    this.results = h("div", { hidden: true }, this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table));
-    this.veil = h("p", { class: "lk-kept" }, "Once you have entered a number above, the distance between the point aimed at and the tag appears here as a number, a curve and a table.");
+    const results = this.predicted.behind("Once you have entered a number above, the distance between the point aimed at and the tag appears here as a number, a curve and a table.",
+      this.curves.element, this.said, h("div", { class: "lk-scroll", tabindex: 0 }, this.table));
     return [this.predicted.element, this.buttons(), this.fieldset("The tag, which can be dragged", move.element, dials[3].element, h("div", { class: "lk-pushes" }, keys)),
       this.fieldset("The camera", h("div", { class: "lk-dials" }, dials.slice(0, 3).map((d) => d.element)), h("label", { class: "lk-check" }, box, "predict: go on as in the last two pictures")),
-      this.numbers, this.veil, this.results, corners(viewer)];
+      this.numbers, ...results, corners(viewer)];
   }
 
   showGains() {}
-
-  /** The reader has predicted: the question's own settings, and all that was held back. */
-  answer() {
-    this.veil.hidden = true;
-    this.results.hidden = false;
-    this.change({ ...this.settings, ...SETTINGS });
-  }
 
   /** The point over the tag and the tag itself, all along their path. */
   inSight() {

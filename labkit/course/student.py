@@ -5,6 +5,7 @@ The questions lie in a file ``checks.json`` beside the notebook.
 
 from __future__ import annotations
 
+import dis
 import inspect
 import json
 import linecache
@@ -117,7 +118,9 @@ class Desk:
 
     def leaning(self, name: str, function: Callable[..., Any]) -> tuple[str, ...]:
         """Other answers that a function calls by name, and that were tried and are not right."""
-        called = getattr(getattr(function, "__code__", None), "co_names", ())
+        code = getattr(function, "__code__", None)
+        steps = dis.get_instructions(code) if code else ()
+        called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
         seen = {other: verdict for other, (_, verdict) in self.seen.items() if other != name}
         return tuple(
             other for other in dict.fromkeys(called) if other in seen and not seen[other].right

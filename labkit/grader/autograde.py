@@ -1,8 +1,9 @@
 """Steps for nbgrader's own ``autograde``, so that it and formgrader's button are safe too.
 
-`unlink_foreign` comes before nbgrader copies what lies beside a notebook; `Repair` is the first of
-``Autograde.sanitize_preprocessors`` and brings a submission into the release's form; `Isolated`
-replaces nbgrader's ``Execute`` and runs nothing here.
+`FitNames` is made before nbgrader goes through the folders; `unlink_foreign` comes before it
+copies what lies beside a notebook; `Repair` is the first of ``Autograde.sanitize_preprocessors``
+and brings a submission into the release's form; `Isolated` replaces nbgrader's ``Execute`` and runs
+nothing here.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from nbconvert.exporters import NotebookExporter
+from nbgrader.converters.base import NbGraderException
 from nbgrader.preprocessors import NbGraderPreprocessor
 
 from ..course.bundle import Bundle
@@ -23,7 +26,33 @@ from .batch import GradeOptions, grade_aside
 from .each import for_student
 from .lock import exclusive_run
 from .results import Result, Results
-from .submission import Submission, is_name
+from .submission import Submission, is_name, unfit
+
+
+class FitNames(NotebookExporter):
+    """Has nbgrader leave out each folder whose name is not allowed, name it, and exit with 1.
+
+    nbgrader finds out whose a folder is by an expression that takes no line break, and ends where
+    it does not match: one such name would keep the whole class from being graded.
+    """
+
+    def __init__(self, parent: Any, **options: Any) -> None:
+        super().__init__(parent=parent, **options)  # type: ignore[no-untyped-call]
+        found, grade_all = parent.assignments, parent.convert_notebooks
+        names = {folder: Path(folder).parts[-2:] for folder in found}  # student, assignment
+        bad = [name for both in names.values() for name in both if not is_name(name)]
+        parent.assignments = {x: found[x] for x in found if all(map(is_name, names[x]))}
+
+        def grade_all_and_tell() -> None:
+            try:
+                grade_all()
+            finally:
+                for name in bad:
+                    parent.log.error("not graded: %s", unfit(name))
+            raise NbGraderException("some folders have names that are not allowed")
+
+        if bad:
+            parent.convert_notebooks = grade_all_and_tell
 
 
 class Isolated(NbGraderPreprocessor):  # type: ignore[misc]
@@ -72,8 +101,6 @@ def _foreign(folder: Path) -> list[Path]:
 def _check(course: Course, assignment: str, student: str) -> None:
     """Refuse a submission of which nbgrader must not copy anything."""
     folder = Submission.of(course, assignment, student).folder
-    if not is_name(student):
-        raise LabkitError(f"the name {student!a} is not allowed; rename the folder in submitted/")
     if folder.is_symlink() or folder.parent.is_symlink():
         raise LabkitError(f"the folder {folder} is a link; put the student's own files there")
     if _foreign(folder):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import time
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import Executor, as_completed
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, wait
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -31,6 +31,8 @@ MIN_ATTEMPTS = 5
 """Nothing is concluded from fewer than these."""
 MIN_FAILURES = 3
 """Two students who make one known mistake say nothing of a test."""
+EVERY = 15.0
+"""Seconds between two sentences on how far it is."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,7 @@ class GradeOptions:
         again: Whether to grade again what has a result that is up to date.
         lower: Whether the mark of an unchanged submission may fall.
         limits: What a submission may use, on a quick machine.
+        tell: Called every `EVERY` seconds with a sentence on how far it is.
     """
 
     jobs: int = 1
@@ -54,6 +57,7 @@ class GradeOptions:
     again: bool = False
     lower: bool = False
     limits: Limits = field(default_factory=Limits)
+    tell: Callable[[str], object] = lambda _: None
 
 
 @dataclass(frozen=True)
@@ -186,8 +190,17 @@ def _graded(
     key = bundle.data["hash"]
     tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
     whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-    for future in as_completed(whose):
-        yield for_student(whose[future], future.result, of_all=(NoIsolation,))
+    began = told = time.monotonic()
+    left = set(whose)
+    while left:
+        done, left = wait(left, EVERY, FIRST_COMPLETED)
+        for future in done:
+            yield for_student(whose[future], future.result, of_all=(NoIsolation,))
+        now, count = time.monotonic(), len(tasks) - len(left)
+        if left and now >= told + EVERY:
+            told, minutes = now, (now - began) * len(left) / max(1, count) / 60
+            rest = f", about {max(1, round(minutes))} min left" if count else ""
+            options.tell(f"{count} of {len(tasks)} graded{rest}")
 
 
 def _kept(

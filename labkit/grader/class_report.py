@@ -43,6 +43,7 @@ def report(
     called: Callable[[str], str],
     fewest: int = 1,
     asked: Sequence[Question] = (),
+    truths: Mapping[str, Any] | None = None,
 ) -> str:
     """The report, in Markdown.
 
@@ -52,7 +53,8 @@ def report(
         problems: By name, for what to say in the lecture.
         called: What a student is called in it: ``str``, or `pseudonyms`.
         fewest: No count of fewer students is said, from which somebody could tell who they are.
-        asked: The assignment's questions, for the outcomes and the predictions.
+        asked: The assignment's questions, for their texts, the outcomes and the predictions.
+        truths: By prediction, what would have been right.
     """
     marks = [mark for mark in marks if not mark.absent]
     counted = [mark for mark in marks if mark.result and (mark.lines or not mark.missing)]
@@ -77,7 +79,8 @@ def report(
         median=median,
         questions=(questions := list(_questions(graded))),
         can=list(_can(questions, asked)),
-        believed=list(_believed(graded, asked, fewest)),
+        texts={q.name: _brief(q) for q in asked},
+        believed=list(_believed(graded, asked, fewest, truths or {})),
         mistakes=list(_mistakes(graded, problems)),
         count=lambda n: f"<{fewest}" if 0 < n < fewest else n,
         tools=list(_tools(graded, who)),
@@ -143,20 +146,33 @@ def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_O
             yield _OutcomeRow(says, text, mean(shares[name] for name in names))
 
 
+class _Prediction(NamedTuple):
+    name: str
+    asks: str
+    truth: str
+    said: list[str]
+
+
 def _believed(
-    graded: Sequence[Result], asked: Sequence[Question], fewest: int
-) -> Iterator[tuple[str, str]]:
-    """For each prediction, what the class committed to, the commonest first."""
+    graded: Sequence[Result], asked: Sequence[Question], fewest: int, truths: Mapping[str, Any]
+) -> Iterator[_Prediction]:
+    """For each prediction, what is true and what the class committed to, the commonest first."""
     sources = [{q.verdict.name: q.source for q in result.questions} for result in graded]
     for question in asked:
         form = question.judge
         if isinstance(form, Form):
-            said = (_committed(source.get(question.name, "")) for source in sources)
-            counts = Counter(form.words(x) for x in said if not form.problem(x))
-            told = [f"{n} x {_as_text(words)}" for words, n in counts.most_common() if n >= fewest]
+            values = (_committed(source.get(question.name, "")) for source in sources)
+            counts = Counter(form.words(x) for x in values if not form.problem(x))
+            truth = form.words(truths[question.name]) if question.name in truths else ""
+            told = [
+                f"{n} x {_as_text(words)}{', which is true' * (words == truth)}"
+                for words, n in counts.most_common()
+                if n >= fewest
+            ]
             rest = len(sources) - sum(n for n in counts.values() if n >= fewest)
             others = f"{rest} others, fewer than {fewest} of them alike, or nothing"
-            yield question.name, "; ".join([*told, *[others] * bool(rest)])
+            said = [*told, *[others] * bool(rest)]
+            yield _Prediction(question.name, " ".join(question.asks.split()), truth, said)
 
 
 def _committed(source: str) -> Any:
@@ -228,6 +244,12 @@ def _shape(source: str) -> frozenset[str]:
         return frozenset()
     windows = ["".join(nodes[k : k + 5]) for k in range(len(nodes) - 4)]
     return frozenset(f"{w}{windows[:k].count(w)}" for k, w in enumerate(windows[:400]))
+
+
+def _brief(question: Question) -> str:
+    """What a question asks, in a cell of a table; predictions have a section of their own."""
+    is_prediction = isinstance(question.judge, Form)
+    return "see below" if is_prediction else " ".join(question.asks.split()).replace("|", r"\|")
 
 
 def _as_text(text: str) -> str:

@@ -109,7 +109,8 @@ def class_report(
         pseudonym = pseudonyms(course)
         called, fewest = str if names else pseudonym, 1 if names else FEWEST
         asked = Bundle.of(course, assignment).questions
-        write(report(assignment, marks, problems, called, fewest, asked), to)
+        truths = {p.name: p.truth for p in course.predictions(assignment)}
+        write(report(assignment, marks, problems, called, fewest, asked, truths), to)
         if jplag:
             written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
             print(f"{written} answers in {jplag}", file=sys.stderr)

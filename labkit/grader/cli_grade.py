@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -81,7 +82,8 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from .results import Result, Results
 
     diff, watching = how.pop("diff"), how.pop("watch")
-    options, said = GradeOptions(**how), sys.stderr if as_json else sys.stdout
+    said = sys.stderr if as_json else sys.stdout
+    options = GradeOptions(**how, tell=partial(print, file=sys.stderr, flush=True))
     with Failures() as failures:
         if watching:
             for one in failures.sift(watch(course, assignment, options), "not graded"):

@@ -35,6 +35,7 @@ from .each import Failed, for_student
 from .identity import lms_users
 from .mark import Mark
 from .marks import mark_of
+from .markup import markdown
 from .pages import file, policy, render, scripts
 from .peers import Review, reviews
 from .results import Result
@@ -107,6 +108,7 @@ def page(
         measures=measures,
         number_by_number=number_by_number,
         recorded_html=recorded_html,
+        markdown=lambda text: Markup(markdown({}, text)),
     )
 
 

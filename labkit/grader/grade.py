@@ -121,7 +121,7 @@ def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = 
 
 
 def _shortened(result: Result) -> Result:
-    """The same, cleaned, with no more of the student's texts than a result has room for."""
+    """The same, every text in it cleaned, with no more of the student's than there is room for."""
     budget, data = TextBudget(), record_data(result)
 
     def cut(x: Any, names: Collection[str], theirs: bool) -> Any:

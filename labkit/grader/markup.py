@@ -1,4 +1,4 @@
-"""Markdown and HTML of students on nbgrader's pages, which a teacher reads: nothing in it runs.
+"""Markdown and HTML of students on nbgrader's pages and on ours: nothing in it runs.
 
 ``nbgrader_config.py`` puts these filters in the place of nbconvert's own, for formgrader and for
 ``nbgrader generate_feedback``: their templates show Markdown as it is, whatever
@@ -22,7 +22,7 @@ _TAGS = (
 )
 _LINKS = ("http://", "https://", "mailto:", "#")
 """Others could lead to a page that was handed in."""
-_exporter = HTMLExporter()
+_exporter = HTMLExporter(exclude_anchor_links=True)
 
 
 @pass_context

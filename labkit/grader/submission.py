@@ -62,15 +62,16 @@ def students(course: Course, name: str) -> list[str]:
 
 def misnamed(course: Course, name: str) -> list[Failed]:
     """Folders whose name no database, page or terminal should be given; named in plain letters."""
-    return [
-        Failed(
-            plain_name(student),
-            "a folder in submitted/ has this name, in which a page would see markup or a terminal "
-            "commands; rename the folder and grade again",
-        )
-        for student in _folders(course, name)
-        if not is_name(student)
-    ]
+    return [unfit(student) for student in _folders(course, name) if not is_name(student)]
+
+
+def unfit(student: str) -> Failed:
+    """What is said of such a folder."""
+    return Failed(
+        plain_name(student),
+        "a folder in submitted/ has this name, in which a page would see markup or a terminal "
+        "commands; rename the folder and grade again",
+    )
 
 
 def is_name(student: str) -> bool:

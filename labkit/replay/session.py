@@ -65,14 +65,14 @@ class Session(Simulated):
         super().__init__(arm, rate)
         self.arm, self._dials, self._show = arm, dials, show
         self._law, self.around = Dialled(laws, dials), Surroundings(arm, target)
-        self._hand, self._pull = Hand(arm), Pull(arm)
+        self._hand, self._pull, self._thread = Hand(arm), Pull(arm), threading.Thread()
         self._usual, self._q0 = arm.plant, np.array(arm.truth().q)
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
-        self._thread = threading.Thread()
         self.logs: list[Log] = []
         self.state, self.note = "ready", ""
         self._keep = self._over = self._again = False
         self._steps_left, self._heard, self._held = 0, 0.0, 0.0
+        self._move = self._answered = 0  # the hand's moves, as the page counts them
         self._changes: list[Callable[[], Any]] = []
         self._watch = Watch(self.period, lambda note: show({"kind": "note", "note": note}))
         self._real = deque([(0.0, 0.0)], maxlen=30)
@@ -114,8 +114,7 @@ class Session(Simulated):
         if self._changes or self.state != "running":
             return
         self._over = self._again = False
-        self.plant = self.arm.plant
-        self._began = time.monotonic()
+        self.plant, self._began = self.arm.plant, time.monotonic()
         try:
             log = loop(self, self.around.target, self._law, LONGEST)
         except BaseException as error:
@@ -160,24 +159,24 @@ class Session(Simulated):
         if self._steps_left:
             self._steps_left -= 1
             self.state = "running" if self._steps_left else "paused"
-        self._obey()
+        self._pace(t)
+        self._obey()  # after the wait, so that the next tick has what came meanwhile
         while self.state == "paused" and not self._over:
             self._picture()
             self._obey(wait=True)
             self._began = time.monotonic() - t
-        self._pace(t)
         self._watch.begins(self._law.name)
         return (_OVER if self._over or self.state != "running" else k), t, cut
 
     def _pace(self, t: float) -> None:
         """Wait for the wall; a loop that is late by more than 0.1 s goes on from there."""
-        now = time.monotonic()
-        ahead = self._began + t - now
+        ahead = self._began + t - (now := time.monotonic())
         if ahead < -0.1:
             self._began = now - t
         if now - self._heard > ABSENT:
             self.state, self.note = "paused", "nobody looked for a minute"
-        if now - self._real[-1][0] > FRAME:
+        if self._move != self._answered or now - self._real[-1][0] > FRAME:
+            self._answered = self._move
             self._real.append((now, self.arm.world.t))
             self._picture()
         if ahead > 0.0:
@@ -218,6 +217,7 @@ class Session(Simulated):
 
     def _on_hand(self, message: dict[str, Any]) -> None:
         self._held = message["heard"]
+        self._move = message.get("move", self._move)
         point = message["link"], message["local"]
         if "force" in message:
             self._hand.push(*point, message["force"])
@@ -264,6 +264,7 @@ class Session(Simulated):
             "law": self._law.name,
             "pace": round((y - x) / (b - a), 3) if b > a else None,
             "kept": len(self.logs),
+            "move": self._move,
             **self.around.seen(),
             **self._hand.seen(),
         }

@@ -82,7 +82,8 @@ class Surroundings:
         found: dict[str, Any] = {}
         T_wd = self.wanted()
         if T_wd is not None:
-            found[TARGET] = _placed("target", T_wd)
+            fixed = not isinstance(self._latest, PoseSample)
+            found[TARGET] = _placed("target", T_wd) | {"fixed": fixed}
         for i, thing in enumerate(self._arm.world.things):
             if data := drawn_thing(thing):
                 found[f"thing {i}"] = data
@@ -91,6 +92,7 @@ class Surroundings:
             found["camera"] = _placed("camera", camera.T_wc) | {
                 "field": float(np.degrees(2.0 * np.arctan(lens.height / 2.0 / lens.fy))),
                 "ratio": lens.width / lens.height,
+                "fixed": True,  # it stands where its readings are made
             }
         shown: list[Any] = self._arm.world.shown
         for i, board in enumerate(shown):

@@ -639,11 +639,12 @@ predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.2
 # %% [markdown]
 # ## Feel it
 #
-# The same arm, in real time, under your own law. Press *Start* and drag the tip with the mouse: the arrow is
-# your force. By how much must 10 N move it, with K = 300 N/m? Change the stiffness and drag again. Then drag
-# the elbow: your law says nothing about it, so what holds it back? Push the tip against the wall and move the
-# wall. Finally choose *position mode* and pull as hard as you can. You can do all this without a mouse: below
-# the picture, choose where to push, how hard and along which axis.
+# The same arm, in real time, under your own law; below the picture it says so if a stand-in takes its place.
+# Press *Start* and drag the tip with the mouse: the arrow is your force. By how much must 10 N move the tip,
+# with K = 300 N/m? Change the stiffness and drag again. Then drag the elbow: your law says nothing about it, so
+# what holds it back? Push the tip against the wall and move the wall. Finally choose *position mode* and pull
+# as hard as you can, which is 60 N here: at which force does the arm give way, and what has it run out of? You
+# can do all this without a mouse: below the picture, choose where to push, how hard and along which axis.
 
 # %%
 def by_hand(state, target, stiffness):
@@ -653,11 +654,12 @@ def by_hand(state, target, stiffness):
 
 
 wall = lk.Wall(T_ready[:3, 3] + [0.06, 0.0, 0.0], normal=(-1.0, 0.0, 0.0), size=(0.3, 0.3))
+law = "your impedance" if my_workspace_impedance is workspace_impedance else "a stand-in, not your impedance"
 lk.live(
     lk.Arm("left", plant, q0=ready, world=lk.World(things=[wall])),
-    {"impedance": by_hand, "position mode": stiff},
+    {law: by_hand, "position mode": stiff},
     lk.Hold(T_ready, 1.0),
-    title="Your impedance",
+    title="An impedance in your hand",
     stiffness=(50.0, 1500.0, 300.0, "N/m"),
     payload=(0.0, 1.0),
     stiction=(0.0, 2.0),

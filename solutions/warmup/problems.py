@@ -284,8 +284,9 @@ ORIENTATION_ERROR = Problem(
         "one, then do the target. Which product of R_wd and R_wt does that?",
         "You look for the rotation E with E R_wt = R_wd, in world axes. Solve for E; a rotation's "
         "inverse is its transpose. Then lk.se3.rotation_log reads axis and angle from E.",
-        "Solve E R_wt = R_wd for E; the inverse of a rotation is its transpose. Check on a "
-        "turn of 0.1 rad on which side the transpose belongs.",
+        "Solve E R_wt = R_wd for E; the inverse of a rotation is its transpose. To see on "
+        "which side the transpose belongs, try two poses that are both tilted: for one that is not "
+        "turned at all, both products are the same.",
     ),
     wrong=(
         Wrong(

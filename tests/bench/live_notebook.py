@@ -204,7 +204,7 @@ def a_second(rows, column):
 
 
 def latency(page):
-    """Milliseconds from the mouse's first move to the first picture with a force."""
+    """Milliseconds from the mouse's first move to the first number of a force in the page."""
     x, y = press(page)
     page.wait_for_function(f"{LIVE}.seen.length && {LIVE}.seen.at(-1)[2] < 1")
     page.evaluate(f"{LIVE}.moved = null; {LIVE}.seen = []")

@@ -1,6 +1,7 @@
 """The live arm in the book, used by mouse, finger and keys, light, dark and small."""
 
 import json
+import re
 
 import pytest
 from test_pages import too_wide, violations
@@ -83,6 +84,37 @@ def test_a_mouse_pulls_the_hand_and_lets_it_go(live):
     page.wait_for_function(BACK)
 
 
+def test_the_cursor_says_what_can_be_taken_hold_of(live):
+    """A hand over the arm and over a tag's corner, closed while they are dragged, else an arrow."""
+    page = live("live")
+    canvas = page.locator("canvas.lk-canvas")
+
+    def cursor_is(name):
+        page.wait_for_function("([c, name]) => getComputedStyle(c).cursor === name",
+                               arg=[canvas.element_handle(), name])  # fmt: skip
+
+    choose(page, "Path", "stay")
+    page.wait_for_function(BACK)
+    x, y = tip_on_screen(page)
+    page.mouse.move(x, y)
+    cursor_is("grab")
+    page.mouse.down()
+    cursor_is("grabbing")
+    page.mouse.up()
+    box = canvas.bounding_box()
+    page.mouse.move(box["x"] + 8, box["y"] + 8)
+    cursor_is("default")
+    corners = live("live_age").locator(".lk-corners")
+    grip = corners.locator(".lk-grip").first
+    look = "e => getComputedStyle(e).cursor"
+    assert grip.evaluate(look) == "grab"
+    grip.hover()
+    corners.page.mouse.down()
+    assert corners.evaluate(look) == "grabbing"
+    corners.page.mouse.up()
+    assert corners.evaluate(look) != "grabbing"
+
+
 def test_a_finger_pulls_the_hand(live):
     """The same by touch."""
     page = live("live", phone=True, has_touch=True)
@@ -160,6 +192,22 @@ def test_no_single_stiffness_keeps_both_limits_and_two_do(live):
         type_into(page, name, value)
     settled()
     assert "Both limits are kept" in verdict.inner_text()
+
+
+def test_the_wall_tells_nothing_before_the_reader_has(live):
+    """Bars, numbers and the arrow of "Stiffness has a direction" wait for a prediction."""
+    page = live("live_stiffness", phone=True)
+    bars, readout = page.locator(".lk-bars"), page.locator(".lk-live .lk-readout")
+    page.wait_for_function("document.querySelector('.lk-live').live.now.t > 2.5")
+    assert bars.is_hidden()
+    assert re.fullmatch(r"t = [\d.]+ s", readout.inner_text())
+    forces = page.locator(".lk-tag:visible", has_text="N")
+    assert forces.count() == 0
+    page.keyboard.type("20")  # the box has the focus
+    page.keyboard.press("Enter")
+    bars.wait_for()
+    forces.wait_for()
+    assert "wall" in readout.inner_text()
 
 
 def test_the_tag_tells_nothing_before_the_reader_has(live):

@@ -74,13 +74,19 @@ def test_streams_work_again_afterwards(capfd):
 
 
 def test_an_answer_that_leans_on_a_wrong_one_is_told(capsys):
-    """Where a function calls another answer that is not right, that one is to be mended first."""
+    """Where a function calls another answer that is not right, that one is to be mended first.
+
+    A method of the same name, such as a model's, is not the student's answer.
+    """
     answers = {"square": square}
     exec("def double(x):\n    return square(x)\ndef again(x):\n    return double(x)", answers)
+    exec("def method(x):\n    return x.double(x)", answers)
     check("double", answers["double"])
     assert "it uses your" not in capsys.readouterr().out
     check("again", answers["again"])
     assert "It uses your double, not right yet: correct double first." in capsys.readouterr().out
+    assert notebook.desk().leaning("again", answers["again"]) == ("double",)
+    assert notebook.desk().leaning("again", answers["method"]) == ()
 
 
 def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):

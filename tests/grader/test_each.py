@@ -5,6 +5,9 @@ from __future__ import annotations
 import errno
 import json
 import os
+import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 
 import pytest
 from handmade import QUICK, add, hand_in
@@ -257,3 +260,23 @@ def test_two_who_fail_a_test_say_nothing_of_it(course):
     results = [result_of(course, f"s{k}", share=float(k > 2)) for k in range(6)]
     assert list(batch.common_failures(results))
     assert not list(batch.common_failures([*results[1:], result_of(course, "s6")]))
+
+
+@pytest.mark.parametrize("verb", ([], ["--json"], ["--diff"]))
+def test_a_long_wait_shows_signs_of_life(course, solved, capsys, monkeypatch, verb):
+    """How far it is is said on stderr now and then, also where nothing else is printed."""
+
+    def slowly(task):
+        time.sleep(0.3)
+        raise LabkitError("nothing is graded here")
+
+    for student in CLASS:
+        hand_in(course, NAME, student, solved)
+    monkeypatch.setattr(batch, "EVERY", 0.1)
+    monkeypatch.setattr(batch, "grade_submission", slowly)
+    monkeypatch.setattr(batch, "executor", lambda *_: nullcontext(ThreadPoolExecutor(1)))
+    main(["grade", NAME, "--course", str(course.root), *verb])
+    out, said = capsys.readouterr()
+    assert "0 of 3 graded\n" in said
+    assert "2 of 3 graded, about 1 min left\n" in said
+    assert "of 3 graded" not in out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -15,7 +16,12 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from labkit.__main__ import main
 from labkit.course.verdict import Outcome
+from labkit.grader.feedback import page
+from labkit.grader.gradebook import record
+from labkit.grader.mark import Line
+from labkit.grader.marks import mark_of
 from labkit.grader.markup import clean
+from labkit.grader.results import Results
 
 MARKDOWN = [
     "<script>alert(1)</script>",
@@ -161,3 +167,46 @@ def test_the_class_report_has_no_markup_of_students(course, capsys):
     assert main(["class-report", NAME, "--names", "--course", str(course.root)]) == 0
     said = capsys.readouterr().out
     assert r"\<script\>" in said and r"\[b\](javascript" in said
+
+
+@pytest.mark.parametrize("source", MARKDOWN, ids=range(len(MARKDOWN)))
+def test_a_report_on_its_authors_page_does_not_run(course, source):
+    """What a person marks is rendered on the student's own page, too, and nothing in it acts."""
+    result = result_of(course, "ada", written={"essay": source})
+    mark = mark_of(result)
+    mark = replace(mark, lines=(*mark.lines, Line("essay", 3.0, 2.0)))
+    body = page(result, mark).partition("<body>")[2]
+    assert Page(f'id="notebook-container"{body}').alive == []
+
+
+def test_a_report_on_its_authors_page_is_rendered(course):
+    """Headings, lists and tables of a report are what they are, and not their marks."""
+    text = "# Claim\n\n- **14 mm** of sag\n\n| a | b |\n|---|---|\n| 1 | 2 |"
+    result = result_of(course, "ada", written={"essay": text})
+    mark = mark_of(result)
+    shown = page(result, replace(mark, lines=(*mark.lines, Line("essay", 3.0, 2.0))))
+    assert "<h1>Claim</h1>" in shown and "<strong>14 mm</strong>" in shown and "<td>1</td>" in shown
+    assert "# Claim" not in shown
+
+
+def test_a_prediction_in_the_class_report_has_its_text_and_its_truth(course, capsys):
+    """A lecturer reads what was asked, what is true, and how many chose it."""
+    results = [result_of(course, f"s{number}") for number in range(12)]
+    values = ["a"] * 6 + ["b"] * 5 + ["c"]
+    where = [q.verdict.name for q in results[0].questions].index("peak_acceleration")
+    for result, value in zip(results, values, strict=True):
+        source = f"peak_acceleration = predict('peak_acceleration', {value!r})"
+        graded(course, changed(result, where, source=source), recorded=False)
+    record(course, NAME, list(Results(course, NAME)))
+    assert main(["class-report", NAME, "--course", str(course.root)]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    asked = next(k for k, line in enumerate(lines) if line.startswith("**`peak_acceleration`**"))
+    assert lines[asked].endswith("Which of them asks for the higher peak of acceleration?")
+    assert [line for line in lines[asked + 1 : asked + 8] if line] == [
+        "The truth: (b) the quintic.",
+        "- 6 x (a) bang-bang",
+        "- 5 x (b) the quintic, which is true",
+        "- 1 others, fewer than 5 of them alike, or nothing",
+    ]
+    row = next(line for line in lines if line.startswith("| bang_bang |"))
+    assert "| Give `(s, ds, dds)` at time `t` for a motion that speeds up" in row

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import time
+from contextlib import closing
 
 import pytest
 from handmade import FULL, QUICK, ROOT, add, cell_of, put, raw
@@ -13,6 +14,7 @@ from labkit.course.bundle import Bundle
 from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
 from labkit.course.layout import Course
 from labkit.course.messages import why
+from labkit.course.reply import Failed
 from labkit.errors import OutOfRange
 from labkit.grader import grade as checker
 from labkit.grader.grade import grade
@@ -20,7 +22,8 @@ from labkit.grader.plan import imports
 from labkit.grader.release import release
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
-from labkit.grader.sandbox.session import MAX_LOST, Session
+from labkit.grader.sandbox.parse import read
+from labkit.grader.sandbox.session import MAX_LOST, RemoteFunction, Session, Step
 
 LARGEST = 2_000_000  # bytes of a result
 
@@ -291,3 +294,26 @@ def test_what_cells_print_is_cleaned(solved, bundle, sandbox):
     (cell,) = grade(raw(solved), "ada", bundle, sandbox, QUICK).cells
     assert "\x1b" not in cell["output"] + cell["error"]
     (cell["output"] + cell["error"]).encode()
+
+
+def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundle, sandbox):
+    """No exception, of a cell or of an answer, forges a line or commands a terminal."""
+    fails = "raise ValueError('a\\n[1/1] zoe: 0 of 20\\x1b[2J\\ud800')"
+    question = next(q for q in bundle.questions if q.name == "circle")
+    answers = Step(1, f"def circle(*args):\n    {fails}", ("circle",))
+    with closing(Session(sandbox, [Step(0, fails), answers], QUICK)) as session:
+        session.start()
+        (cell,) = session.failed()
+        with pytest.raises(Failed) as failed:
+            RemoteFunction(question, session)()
+    line = "a [1/1] zoe: 0 of 20 [2J\ufffd"
+    assert cell["error"].startswith(line) and "\n" not in cell["error"]
+    assert str(failed.value).startswith(f"ValueError: {line}") and "\n" not in str(failed.value)
+
+
+def test_the_source_that_runs_is_the_one_that_is_read():
+    """What a cell's text hides from whoever reads it is gone before the cell runs."""
+    sources = ["x = '\u202e\x1b[2J'\r\n", ["# \ud800\r", "y = 1"]]
+    cells = [{"cell_type": "code", "source": source} for source in sources]
+    found = read(json.dumps({"nbformat": 4, "cells": cells}).encode())["cells"]
+    assert [cell["source"] for cell in found] == ["x = '[2J'\n", "# \ufffd\ny = 1"]

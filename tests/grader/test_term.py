@@ -183,8 +183,8 @@ def test_class_report(term, capsys):
     assert OUTCOMES["motion"] in told and "`bang_bang`" in told
     said = sum("twice_the_time" in r.text() and "predict(" in q.source for r in results
                for q in r.questions if q.verdict.name == "twice_the_time")  # fmt: skip
-    (believed,) = re.findall(r"^- `twice_the_time`: (.*)$", told, re.MULTILINE)
-    assert said > 0 and sum(map(int, re.findall(r"(\d+) (?:x|others)", believed))) == len(
+    believed = told.partition("**`twice_the_time`**")[2].partition("\n## ")[0]
+    assert said > 0 and sum(map(int, re.findall(r"^- (\d+) (?:x|others)", believed, re.M))) == len(
         [r for r in results if not r.rejected]
     )
     named = report(NAME, [mark_of(replace(r, rejected="x")) for r in results], problems, str)

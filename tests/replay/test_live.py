@@ -11,7 +11,7 @@ import labkit as lk
 from labkit.errors import Closed, OutOfRange, TypeMismatch, UnknownName
 from labkit.hand import STRONGEST, Hand
 from labkit.replay.dials import read_dials
-from labkit.replay.session import FRESH, Session
+from labkit.replay.session import FRAME, FRESH, Session
 
 READY = np.array(lk.robot("left").ready)
 T_READY = lk.Model("left").pose(READY)
@@ -131,6 +131,23 @@ def test_the_force_ends_when_nothing_is_heard(live):
     assert FRESH <= 0.2
 
 
+def test_a_move_of_the_hand_is_answered_after_the_next_tick(live):
+    """A picture with its force, which names the move, is sent at once, not when the next is due."""
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    to, gaps = np.array(T_READY[:3, 3]), []
+    for move in range(1, 11):
+        to = to + [0.0, 0.005, 0.0]
+        hand = {"kind": "hand", "link": 7, "local": [0, 0, 0], "to": to.tolist(), "move": move}
+        session.tell(hand)
+        answer = until(frames, lambda f, move=move: f["move"] == move)
+        assert np.linalg.norm(answer["force"]) > 0.1
+        before = [f for f in frames if f["t"] < answer["t"]]
+        gaps.append(answer["t"] - before[-1]["t"] if before else 0.0)
+        time.sleep(0.007 * move)
+    assert min(gaps[1:]) < FRAME - 0.006
+
+
 def test_dials_take_effect_and_a_kept_run_says_which(live):
     """A dial of the law and one of the plant: both are in the log of the run that is kept."""
     session, frames = live({"springs": springy}, factor=(0.5, 4.0, 1.0), payload=(0.0, 1.0))
@@ -242,6 +259,17 @@ def test_walls_bands_and_targets_are_moved(live):
     assert moved[1] > 0.005
     kinds = {name: thing["kind"] for name, thing in around.things().items()}
     assert kinds == {"target": "target", "thing 0": "face", "thing 1": "band"}
+
+
+@pytest.mark.parametrize(("goal", "fixed"), [(T_READY, False), (READY, True)])
+def test_the_page_is_told_which_target_cannot_be_dragged(live, goal, fixed):
+    """A target of poses can be moved; one of joint angles stays where it is."""
+    session, _ = live({"springs": springy}, target=lk.Hold(goal, 1.0))
+    session.around.target(0.0)
+    before = session.around.things()["target"]
+    assert before["fixed"] is fixed
+    session.around.move("target", T_READY[:3, 3] + [0.0, 0.1, 0.0])
+    assert (session.around.things()["target"] == before) is fixed
 
 
 def test_a_model_may_be_shared_by_threads():

@@ -52,6 +52,16 @@ def sent(page, kind):
     return [message for message in page.evaluate("sent") if message["kind"] == kind]
 
 
+SPOT = """(at) => {
+    const { picture } = document.querySelector("[data-ready]").labkit;
+    const box = picture.stage.canvas.getBoundingClientRect();
+    const p = picture.stage.camera.position.clone().set(...at ?? picture.frames.left_w1.p);
+    p.project(picture.stage.camera);
+    return [box.x + (p.x + 1) * box.width / 2, box.y + (1 - p.y) * box.height / 2];
+}"""
+CURSOR = "getComputedStyle(document.querySelector('canvas.lk-canvas')).cursor"
+
+
 def frame(data, **changes):
     return {**json.loads(data)["first"], **changes}
 
@@ -75,14 +85,7 @@ def test_keys_push_as_the_pointer_does(page):
 
 def test_a_pointer_on_the_arm_pulls_and_beside_it_turns_the_view(page):
     """Down on the hand it takes hold of it and pulls where it goes; on nothing it turns."""
-    spot = """(at) => {
-        const { picture } = document.querySelector("[data-ready]").labkit;
-        const box = picture.stage.canvas.getBoundingClientRect();
-        const p = picture.stage.camera.position.clone().set(...at ?? picture.frames.left_w1.p);
-        p.project(picture.stage.camera);
-        return [box.x + (p.x + 1) * box.width / 2, box.y + (1 - p.y) * box.height / 2];
-    }"""
-    x, y = page.evaluate(spot)
+    x, y = page.evaluate(SPOT)
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 60, y)
@@ -100,6 +103,56 @@ def test_a_pointer_on_the_arm_pulls_and_beside_it_turns_the_view(page):
     page.mouse.up()
     assert page.evaluate(f"{rig}.azimuth") != before
     assert len(sent(page, "hand")) == count
+
+
+def test_the_answer_to_a_move_is_drawn_before_all_else(page, data):
+    """A picture waits for the answer to the pointer, and is drawn as soon as that comes."""
+    drawn, quiet = page.evaluate(
+        """(frame) => {
+            const live = document.querySelector("[data-ready]").labkit, { stage } = live.picture;
+            const drawn = [];
+            for (const move of [0, 1]) {
+                const before = live.frames;
+                stage.hold();
+                tell({ ...frame, move });
+                drawn.push(live.frames - before);
+            }
+            return [drawn, stage.quiet];
+        }""",
+        frame(data),
+    )
+    assert drawn == [0, 1]
+    assert quiet == 0
+
+
+def test_the_cursor_says_what_can_be_taken_hold_of(page, data):
+    """A hand over link and wall, a closed one to drag, an arrow over what stays where it is."""
+
+    def cursor_is(name):
+        page.wait_for_function(f"{CURSOR} === '{name}'")
+
+    wall = json.loads(data)["first"]["things"]["thing 0"]["position"]
+    box = page.locator("canvas").first.bounding_box()
+    nothing = box["x"] + 10, box["y"] + 10
+    page.mouse.move(*nothing)
+    cursor_is("default")
+    page.mouse.move(*page.evaluate(SPOT))
+    cursor_is("grab")
+    page.mouse.down()
+    cursor_is("grabbing")
+    page.mouse.move(*nothing)
+    cursor_is("grabbing")
+    page.mouse.up()
+    page.mouse.move(nothing[0], nothing[1] + 5)
+    cursor_is("default")
+    corner = [wall[0], wall[1] - 0.1, wall[2] - 0.1]
+    page.mouse.move(*page.evaluate(SPOT, corner))
+    cursor_is("grab")
+    things = json.loads(data)["first"]["things"]
+    things["thing 0"]["fixed"] = True
+    page.evaluate("(f) => tell(f)", frame(data, things=things))
+    page.mouse.move(*page.evaluate(SPOT, [*corner[:2], corner[2] - 0.01]))
+    cursor_is("default")
 
 
 def test_buttons_and_dials_are_told_to_the_kernel(page):

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 from labkit.course.layout import Course
@@ -34,7 +35,7 @@ def main() -> int:
         print(f"what they deserve: {expected_file(course, args.assignment)}")
         return 0
     with Failures() as failures:
-        how = GradeOptions(jobs=workers())
+        how = GradeOptions(jobs=workers(), tell=partial(print, flush=True))
         steps = rehearse(course, args.assignment, args.rehearse, args.count, how)
         for sentence in failures.sift(steps, "failed"):
             print(sentence, flush=True)

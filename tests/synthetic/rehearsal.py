@@ -8,6 +8,7 @@ import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import LabkitError
@@ -38,8 +39,8 @@ def rehearse(
         course: Where the sources are; nothing is written there.
         name: The assignment.
         to: The folder; a course is made in it.
-        count: GradeOptions many students.
-        options: GradeOptions to grade.
+        count: How many students.
+        options: How to grade.
 
     Yields:
         What was done, a sentence each, with its time; and what failed for somebody.
@@ -75,7 +76,9 @@ def rehearse(
     size = sum(page.stat().st_size for page in pages) / 1e6
     yield clock.says(f"feedback: {len(pages)} pages, {size:.0f} MB", each=len(pages))
     problems = {p.name: p for p in stage.problems(name)}
-    write(stage.root / "report.md", report(name, marks, problems, str))
+    truths = {p.name: p.truth for p in stage.predictions(name)}
+    asked = Bundle.of(stage, name).questions
+    write(stage.root / "report.md", report(name, marks, problems, str, 1, asked, truths))
     yield clock.says(f"class report: report.md, {len(list(common_failures(results)))} to doubt")
     for layout in LAYOUTS_TO_TRY:
         write(stage.root / f"marks-{layout}.csv", as_csv(LAYOUTS[layout](name, marks)))
@@ -103,7 +106,7 @@ def _set_up(stage: Course, course: Course) -> None:
 
 
 class _Clock:
-    """GradeOptions long each step took."""
+    """How long each step took."""
 
     def __init__(self) -> None:
         self.last = time.perf_counter()

@@ -25,7 +25,8 @@ html[data-theme="dark"] .cell_output .text_html:has(.lk-embed) { /* the theme ma
 .lk-demo > .lk-player, .lk-explorer > .lk-player { margin: 0.6rem -0.75rem -0.75rem; border-width: 1px 0 0; border-radius: 0; }
 .lk-stage { position: relative; background: var(--lk-sky); }
 .lk-canvas { display: block; width: 100%; height: auto; aspect-ratio: 16 / 10; max-height: 480px; touch-action: pan-y; cursor: grab; }
-.lk-canvas.lk-grab { touch-action: none; }
+.lk-canvas.lk-grab { touch-action: none; cursor: default; }
+.lk-canvas.lk-over { cursor: grab; }
 .lk-inset { position: absolute; top: 0.5rem; right: 0.5rem; width: 30%; max-width: 220px; aspect-ratio: 1; border: 1px solid var(--lk-quiet); border-radius: 6px; pointer-events: none; }
 .lk-inset[hidden] { display: none; }
 .lk-canvas:active { cursor: grabbing; }

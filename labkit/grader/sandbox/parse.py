@@ -1,7 +1,7 @@
 """Read a stranger's notebook: its sources, and what each cell defines and uses.
 
-Outputs are dropped unread, so a notebook full of pictures is as welcome as any.  Text is cleaned
-here, where it enters: what runs is what an instructor reads.
+Outputs are dropped unread, so a notebook full of pictures is as welcome as any.  Sources are
+cleaned here, and not only with the rest of the result: what runs is what an instructor reads.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 from ...course.notebook import grade_id
 from ...course.source import look
-from .clean import clean_line, clean_text
+from .clean import clean_text
 from .tricks import tricks
 
 MOST_CELLS = 1000
@@ -74,13 +74,14 @@ def _cells(notebook: dict[str, Any]) -> Iterator[dict[str, Any]]:
         source = clean_text(source.replace("\r\n", "\n").replace("\r", "\n"))
         kind = "code" if cell.get("cell_type") == "code" else "text"
         yield {
-            "id": _text(cell.get("id")),
-            "grade_id": clean_line(grade_id(cell), 100),
+            "id": _name(cell.get("id")),
+            "grade_id": _name(grade_id(cell)),
             "type": kind,
             "source": source,
             **({**look(source), "tricks": tricks(source)} if kind == "code" else {}),
         }
 
 
-def _text(x: Any) -> str:
-    return clean_line(x, 100) if isinstance(x, str) else ""
+def _name(x: Any) -> str:
+    """A name of a cell's, which is compared with those of the release and shown to nobody."""
+    return x[:100] if isinstance(x, str) else ""

@@ -1,4 +1,8 @@
-"""A session: one submission's process in the sandbox, started again where it dies."""
+"""A session: one submission's process in the sandbox, started again where it dies.
+
+What an exception says becomes one clean line here: Gradescope and the cup show it before there is a
+result.  What cells print is shown with a result alone, and is cleaned with that.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,7 @@ from ... import errors
 from ...course.question import Question
 from ...course.reply import Failed, answer
 from ...course.serialize import encode
-from .clean import clean_line, clean_text
+from .clean import clean_line
 from .launch import Sandbox, SandboxProcess
 from .limits import REPLY, VALUES, Limits
 from .protocol import Disconnected, MessageTooLarge, ProtocolError, Timeout
@@ -197,7 +201,7 @@ class Session:
             if said.get("ran") == step.number:
                 kind = clean_line(str(said.get("kind", "")), 60)
                 error = clean_line(str(said.get("error", "")), 400)
-                output = clean_text(str(said.get("output", ""))[: min(20_000, self._output)])
+                output = str(said.get("output", ""))[: min(20_000, self._output)]
             else:
                 error = "it broke into the conversation with the grader"
         except Timeout:

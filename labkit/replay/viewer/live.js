@@ -13,7 +13,7 @@ const SHOWN = 10; // seconds of the curves
 export class LiveArm {
   /** link: {send(message), hear(f)}, the way to the kernel; without it the picture stands still. */
   constructor(host, data, robot, link) {
-    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, rows: [], frames: 0 });
+    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, moves: 0, rows: [], frames: 0 });
     this.element = h("div", { class: "lk-player lk-live", role: "group", "aria-label": data.title });
     this.stagebox = h("div", { class: "lk-stage" });
     this.note = h("p", { class: "lk-say", hidden: true });
@@ -35,7 +35,12 @@ export class LiveArm {
     }
     this.show(data.first);
     if (!link) this.say("This arm needs a running kernel: run the cell, or the whole notebook, again.");
-    else link.hear((message) => (message.kind === "frame" ? this.show(message) : this.told(message)));
+    else link.hear((message) => {
+      if (message.kind !== "frame") { this.told(message); return; }
+      const answer = message.move !== this.frame.move;
+      this.show(message);
+      if (answer && this.picture.works) this.picture.stage.release();
+    });
   }
 
   send(message) { this.link?.send(message); }
@@ -120,13 +125,12 @@ export class LiveArm {
     picture.stage.rig.use("Motion");
     picture.stage.drawn = () => { this.host.dataset.ready = "1"; this.frames++; };
     this.sight.alone.click();
-    if (this.link) picture.grab((picked, event) => this.grip(picked, event));
+    if (this.link) picture.grab((picked, event) => this.grip(picked, event), ({ thing }) => !this.things[thing]?.fixed);
   }
 
   /** A pointer takes hold of a link or a thing. */
   grip(picked, event) {
     const { picture } = this;
-    if (picked.thing === "camera") return null; // it stands where its readings are made
     const { at } = picked;
     if (picked.thing !== undefined) {
       const { position } = this.things[picked.thing];
@@ -140,8 +144,9 @@ export class LiveArm {
     this.release();
     this.take({ link: picked.link, local: picked.local, to: at });
     const move = (e) => {
-      this.held = { ...this.held, to: picture.dragged(e, at) };
+      this.held = { ...this.held, to: picture.dragged(e, at), move: (this.moves += 1) };
       this.send({ kind: "hand", ...this.held });
+      picture.stage.hold();
     };
     return { move, end: () => this.release() };
   }

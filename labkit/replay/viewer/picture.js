@@ -9,6 +9,7 @@ import { place, thing } from "./things.js";
 import { apply, subtract, transpose } from "./so3.js";
 
 const NEAR = 0.035; // metres from the tip within which a pointer means the tip
+const LOOK = 80; // ms between two looks at what lies under a pointer that holds nothing
 
 export class Picture {
   /** A picture inside `host`; `this.works` is false without WebGL, and then nothing else may be asked. */
@@ -177,14 +178,29 @@ export class Picture {
     return ray.intersectPlane(plane, new THREE.Vector3())?.toArray() ?? at;
   }
 
-  /** Give pointers to `take(picked, event)` first; it returns {move, end}, or nothing to turn the view. */
-  grab(take) {
-    this.stage.canvas.classList.add("lk-grab"); // a finger on it no longer scrolls the page
-    this.stage.rig.grab = (event) => {
-      if (event.button) return null;
+  /**
+   * Give pointers on what `free(picked)` says can be moved to `take(picked, event)`, which returns
+   * {move, end}; elsewhere they turn the view.  The cursor tells the two apart.
+   */
+  grab(take, free) {
+    const { canvas, rig } = this.stage;
+    const under = (event) => {
       const picked = this.pick(event);
+      return picked && free(picked) ? picked : null;
+    };
+    canvas.classList.add("lk-grab"); // a finger on it no longer scrolls the page
+    rig.grab = (event) => {
+      const picked = event.button ? null : under(event);
       return picked && take(picked, event);
     };
+    let latest;
+    canvas.addEventListener("pointermove", (event) => {
+      latest = event;
+      if (!event.buttons) this.looking ??= setTimeout(() => {
+        this.looking = null;
+        if (!latest.buttons) canvas.classList.toggle("lk-over", under(latest) !== null);
+      }, LOOK);
+    });
   }
 
   /** A frame with x, y and z marked by one, two and three rings, where {R, p} or [x, y, z] is. */
@@ -194,7 +210,10 @@ export class Picture {
     return mark;
   }
 
-  dispose() { this.stage.dispose(); }
+  dispose() {
+    clearTimeout(this.looking);
+    this.stage.dispose();
+  }
 }
 
 /** The number of the joint that an object turns with; -1 for none of this arm's. */

@@ -6,6 +6,7 @@ import { h } from "./dom.js";
 
 const HURRY = 0.55; // of the size, while a picture moves that the processor has to draw
 const CALM = 400; // ms without another picture, after which it is drawn in full
+const ANSWER = 40; // ms that a picture waits for an answer, where drawing would keep the page from hearing it
 
 let renderer; // undefined: not tried, null: this browser has no WebGL
 let card; // whether there is a graphics card
@@ -49,7 +50,7 @@ export class Stage {
     this.rig = new Rig(this.canvas, this.camera, () => this.draw());
     this.light();
     this.visible = true;
-    this.waiting = 0;
+    this.waiting = this.quiet = 0;
     this.labels = [];
     this.watch = [new ResizeObserver(() => this.draw()), new IntersectionObserver(([entry]) => {
       this.visible = entry.isIntersecting;
@@ -107,14 +108,29 @@ export class Stage {
   /** Ask for a frame; many calls make one. */
   draw() {
     if (!this.works || !this.visible || this.waiting) return;
-    this.waiting = requestAnimationFrame(() => { this.waiting = 0; this.paint(); });
+    this.waiting = requestAnimationFrame((now) => {
+      this.waiting = 0;
+      if (now < this.quiet) this.draw();
+      else this.paint();
+    });
+  }
+
+  /** While the processor draws, the page hears nothing: let the next picture wait for an answer, but not long. */
+  hold() { if (!card) this.quiet ||= performance.now() + ANSWER; }
+
+  /** The answer has come: draw it now. */
+  release() {
+    if (!this.quiet || !this.waiting) return;
+    cancelAnimationFrame(this.waiting);
+    this.waiting = 0;
+    this.paint();
   }
 
   paint() {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
     const now = performance.now(), hurried = !card && now - this.last < CALM;
-    this.last = now;
+    Object.assign(this, { last: now, quiet: 0 });
     clearTimeout(this.calm);
     if (hurried) this.calm = setTimeout(() => this.draw(), CALM);
     const fine = card ? Math.min(2, devicePixelRatio) : 1, drawn = hurried ? HURRY : fine;
