@@ -54,7 +54,7 @@ REPORT_MINUTES = REPORT_WORDS / WORDS_A_MINUTE + 0.5 + 6 * 0.4 + 1.5
 LONG_REPORT = 20.0
 """Minutes for a report of a person who takes more time."""
 MINUTES = {
-    "two whys of each student, of at most 80 words": 2 * WHY,
+    "two short 'why' answers of each student, of at most 80 words": 2 * WHY,
     "a report of four pages, at most 720 words, with its rubric": REPORT_MINUTES / TEAM,
     TALK: 10.0 / TEAM,
     "contested marks, with labkit explain": 0.3,
