@@ -39,7 +39,7 @@ def test_the_example_runs_and_tracks(capsys):
 
 
 def test_the_message_shown_is_what_the_check_says():
-    """The student's answer gets the message below it, line by line, in its order; … leaves some out."""
+    """The student's answer gets the message below it, in its order; … leaves lines out."""
     (shown,) = re.findall(r"```text\n(.*?)```", README, re.DOTALL)
     code, said = shown.split("\n\n")
     names = {"lk": labkit}
