@@ -2,7 +2,7 @@
 
 `make wheels` asks for each system and Python, through uv and for the versions in constraints.txt,
 writes the table to ``.ci/wheels.md`` and prints it. README and the guide for students show that
-table; a test compares the three, without a network.
+table, the guide without its last column; a test compares the three, without a network.
 """
 
 from __future__ import annotations

@@ -23,11 +23,16 @@ TEXTS = (
 )
 
 
+def rows():
+    """Each line of the table: an example, what to write instead, and the expression."""
+    found = re.findall(r"^\| (.+) \| (.+) \| `(.+)` \|$", STYLE.read_text(), re.MULTILINE)
+    assert len(found) > 10
+    return [(example, instead, pattern.replace("\\|", "|")) for example, instead, pattern in found]
+
+
 def words():
     """Each expression of the table, with what to write instead."""
-    rows = re.findall(r"^\| `(.+)` \| (.+) \|$", STYLE.read_text(), re.MULTILINE)
-    assert len(rows) > 10
-    return {pattern.replace("\\|", "|"): instead for pattern, instead in rows}
+    return {pattern: instead for _, instead, pattern in rows()}
 
 
 def texts():
@@ -48,6 +53,12 @@ def hits(text):
 def test_a_text_is_plain_english(path):
     """No expression of the list stands in the text."""
     assert list(hits((ROOT / path).read_text(encoding="utf-8"))) == []
+
+
+@pytest.mark.parametrize(("example", "instead", "pattern"), rows())
+def test_the_example_of_an_expression_has_it(example, instead, pattern):
+    """What the style page shows is what the test looks for."""
+    assert re.search(pattern, example)
 
 
 @pytest.mark.parametrize("text", ["That is no error.", "Whoever asks", "mend it", "five ways"])

@@ -39,7 +39,7 @@ def test_the_example_runs_and_tracks(capsys):
 
 
 def test_the_message_shown_is_what_the_check_says():
-    """The student's answer gets the message that stands below it, line by line, in its order."""
+    """The student's answer gets the message below it, in its order; … leaves lines out."""
     (shown,) = re.findall(r"```text\n(.*?)```", README, re.DOTALL)
     code, said = shown.split("\n\n")
     names = {"lk": labkit}
@@ -48,7 +48,7 @@ def test_the_message_shown_is_what_the_check_says():
     question = desk.question("joint_velocity_pd")
     told = iter(tell(question, mark(question, names[question.name])).splitlines())
     for line in said.splitlines():
-        assert line in told, line
+        assert line == "  …" or line in told, line
 
 
 def test_every_verb_exists():

@@ -127,7 +127,7 @@ def notebooks() -> HTML:
     core, whole, points = (sum(float(row[k]) for row in rows) for k in (2, 3, 5))
     return table(
         ("Notebook", "Students write", "Hours, core", "Hours, all", "Functions",
-         "Points"),
+         "Points for functions"),
         rows,
         f"{len(rows)} notebooks: {core:g} hours for the core and {whole:g} for everything; "
         f"{points:g} points for functions",

@@ -15,7 +15,11 @@ from .page import table
 
 BENCH = Path(__file__).parents[2] / "build/bench.json"
 MEASURED = {"grading_overhead_s": 0.16, "notebook_mb": 357.0, "notebook_s": 9.4}
-"""What ``make bench`` gave on two quiet cores."""
+"""What ``make bench`` gave on two quiet cores; the names are those that it prints.
+
+The table of costs is left out of the guide until the figures that ``python -m tests.bench costs``
+prints are here or in ``build/bench.json``.
+"""
 CLASSES, CORES = (40, 400, 10_000), (2, 8, 64)
 
 
@@ -49,22 +53,35 @@ ENDLESS = ("answer", "endless")
 """Of these only the time is measured, which limits decide."""
 
 
-def table_of_costs() -> HTML:
+def table_of_costs() -> HTML | None:
     """What submissions of different kinds cost, and how much of it is the students' own code."""
+    if not all(_known(f"cost_{key}_s") for _, key in COSTS):
+        return None
     parts = (("s", "{:.2g} s"), ("own_share", "{:.0%}"), ("per_minute", "{:.0f}"))
     parts += (("dask_per_minute", "{:.0f}"),)
     rows = [(words, *(_cost(key, *part) for part in parts)) for words, key in COSTS]
-    head = ("Submission", "a worker's time", "of it the student's code", "a minute", "through Dask")
+    head = (
+        "Submission",
+        "time of a worker",
+        "share of student code",
+        "submissions per minute",
+        "per minute with Dask",
+    )
     return table(head, rows, "What a submission costs, and how many two workers grade in a minute")
 
 
 def _cost(key: str, part: str, form: str) -> str:
-    """A figure of ``python -m tests.bench costs``, or that there is none."""
+    """A figure of ``python -m tests.bench costs``, or nothing where there is none."""
     name = f"cost_{key}_{part}"
     if key in ENDLESS and part != "s":
         return ""
-    known = MEASURED | (json.loads(BENCH.read_text()) if BENCH.exists() else {})
-    return form.format(known[name]) if known.get(name) is not None else "not measured"
+    found = _known(name)
+    return "" if found is None else form.format(found)
+
+
+def _known(name: str) -> float | None:
+    """A figure of the bench on this machine or, if there is none, on ours."""
+    return (MEASURED | (json.loads(BENCH.read_text()) if BENCH.exists() else {})).get(name)
 
 
 def kernel() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import nbformat
@@ -30,6 +31,13 @@ NEEDS = {
 """What a student should have done before."""
 HOURS = {name: hours(name) for name in (*NOTEBOOKS, REPORT)}
 """Of the core, and of everything; for the report, of each member of its team."""
+_CHAPTER = re.compile(r"\*\*Time\*\* (\d+) minutes, and about \d+ hours for notebook (\d\d)")
+READING = {
+    number: float(minutes) / 60.0
+    for path in sorted((COURSE.root / "book/chapters").glob("*.md"))
+    for minutes, number in _CHAPTER.findall(path.read_text())
+}
+"""Hours for the chapter of each notebook, as the chapter says."""
 CLASS, TEAM = 200, 3
 """Students, and how many of them write a report together, in the example of what marking costs."""
 TALK = "a talk about it: ten minutes with the team, one question to each"
@@ -43,8 +51,10 @@ REPORT_WORDS = 720.0
 """The most that the six parts of notebook 08 allow."""
 REPORT_MINUTES = REPORT_WORDS / WORDS_A_MINUTE + 0.5 + 6 * 0.4 + 1.5
 """Minutes for a report: its words, its figure, six rows of the rubric at 24 s, a comment."""
+LONG_REPORT = 20.0
+"""Minutes for a report of a person who takes more time."""
 MINUTES = {
-    "two whys of each student, of at most 80 words": 2 * WHY,
+    "two short 'why' answers of each student, of at most 80 words": 2 * WHY,
     "a report of four pages, at most 720 words, with its rubric": REPORT_MINUTES / TEAM,
     TALK: 10.0 / TEAM,
     "contested marks, with labkit explain": 0.3,
@@ -68,13 +78,14 @@ def planning() -> HTML:
         row = (f"{x:g}" for x in (core, whole, machine, hand))
         rows.append((name, *row, NEEDS[name]))
     totals = [sum(float(row[k]) for row in rows) for k in (1, 2, 3, 4)]
-    rows.append(("together", *(f"{x:g}" for x in totals), ""))
+    rows.append(("total", *(f"{x:g}" for x in totals), ""))
     return table(
         ("Notebook", "Hours, core", "Hours, all", "Points by machine",
-         "Points that a person may give", "Before it"),
+         "Points that a person may give", "Prerequisites"),
         rows,
-        "Hours are for a student who has basic numpy and has read the chapter. A person marks two "
-        "whys of each student; the other whys earn their points if they are written",
+        "Hours are the authors' estimate for a student who has basic numpy and has read the "
+        "chapter. A person marks two short texts of each student, which answer a 'why' question; "
+        "the other short 'why' answers earn their points if they are not blank",
     )  # fmt: skip
 
 
@@ -88,17 +99,19 @@ def _points(name: str) -> tuple[float, float]:
 
 
 def syllabi() -> HTML:
-    """Which notebooks fit into a term."""
+    """Which notebooks, and which chapters with them, fit into a term."""
     rows = []
     for weeks, numbers in TRACKS.items():
         taken = [both for name, both in HOURS.items() if name[:2] in numbers]
         core, whole = (sum(x) for x in zip(*taken, strict=True))
-        each = whole / float(weeks.split()[0])
+        read = sum(READING.get(number, 0.0) for number in numbers)
+        each = (whole + read) / float(weeks.split()[0])
         what = "all, and the report" if len(numbers) == len(HOURS) else ", ".join(numbers)
-        rows.append((weeks, what, f"{core:g}", f"{whole:g}", f"{each:.2g}"))
+        rows.append((weeks, what, f"{core:g}", f"{whole:g}", f"{read:.2g}", f"{each:.2g}"))
     return table(
-        ("You have", "Notebooks", "Hours, core", "Hours, all", "All, a week"), rows,
-        "Three syllabi; reading the chapters and talking about them comes on top",
+        ("You have", "Notebooks", "Hours, core", "Hours, all", "Hours for the chapters",
+         "Hours per week, all and chapters"), rows,
+        "Three syllabi, in hours that the authors estimate; discussions in class are not counted",
     )  # fmt: skip
 
 
@@ -113,8 +126,13 @@ def numbers_told() -> None:
     own_arm = sum(one.points for one in asked if isinstance(one, Identification))
     everything = sum(sum(_points(name)) for name in NOTEBOOKS)
     number("points_functions", functions, "g")
+    core = sum(p.points for name in NOTEBOOKS for p in COURSE.problems(name) if p.core)
+    number("points_core", core, "g")
     number("points_arm", own_arm, "g")
     number("points_whys", everything - functions - own_arm, "g")
+    number("reading_hours", sum(READING.values()), ".0f")
+    number("report_minutes", REPORT_MINUTES, ".1f")
+    number("long_report_minutes", (LONG_REPORT - REPORT_MINUTES) / TEAM, ".1f")
 
 
 def outcomes() -> HTML:
@@ -132,14 +150,15 @@ def marking() -> HTML:
     """What people do, in minutes for a student and in hours for a class."""
     rows = [(what, f"{m:.1f}", f"{m * CLASS / 60:.0f}") for what, m in MINUTES.items()]
     whole = sum(MINUTES.values())
-    rows.append(("together", f"{whole:.1f}", f"{whole * CLASS / 60:.0f}"))
+    rows.append(("total", f"{whole:.1f}", f"{whole * CLASS / 60:.0f}"))
     defended = whole - MINUTES[TALK] + DEFENCE
     rows.append(
         ("with a defence in place of the talk", f"{defended:.1f}", f"{defended * CLASS / 60:.0f}")
     )
     holds(max(whole, defended) < 10.0, "less than ten minutes for each student, defence or talk")
     return table(
-        ("By hand", "Minutes a student", f"Hours for {CLASS} students"),
+        ("By hand", "Minutes per student", f"Hours for {CLASS} students"),
         rows,
-        f"A whole term, reports by teams of {TEAM}; reading counted from the longest texts allowed",
+        f"A whole term, reports by teams of {TEAM}. All minutes are the authors' estimates; those "
+        "for reading follow from the longest texts allowed",
     )

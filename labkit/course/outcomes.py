@@ -5,10 +5,10 @@ from __future__ import annotations
 OUTCOMES = {
     "frames": "express points, poses and errors of orientation in named frames, and test them",
     "motion": "plan a motion within limits of speed and acceleration, and predict its peaks",
-    "model": "build an arm's Jacobian and dynamics, and prove them by energy and by experiment",
-    "control": "choose and write a control law, and its gains from a frequency and a margin",
+    "model": "build an arm's Jacobian and dynamics, and verify them by energy and experiment",
+    "control": "choose and write a control law, and set its gains from a frequency and a margin",
     "contact": "predict the rest force at a wall from a stiffness, and verify it within 10 %",
-    "sensing": "tell a sensor's bias, spread and age apart, and predict across the age",
+    "sensing": "tell a sensor's bias, spread and age apart, and predict ahead to make up for age",
     "experiment": "design an experiment that identifies a number or a fault of an arm",
     "evidence": "state a claim with a number, its unit and an interval, or that it is undecided",
 }

@@ -14,54 +14,76 @@ from book_pages import ROOT
 from handmade import put
 
 from labkit.course.layout import Course
+from labkit.grader.gradebook import open_gradebook
 from labkit.grader.rules import FILE, read_rules
 from labkit.grader.term import PERSONAL_FILES
 from solutions.paths import answers
 from tests.synthetic.inline import inline
 
-SHELL = re.compile(r"```shell\n(.*?)```", re.DOTALL)
+WHY = "why_twice_the_time"
+BY_HAND = "(marking-by-hand)="
+SHELL = re.compile(rf"```shell\n(.*?)```|^({re.escape(BY_HAND)})$", re.DOTALL | re.MULTILINE)
 
 
 def shown(page):
-    """The commands of a page, line by line, without their comments."""
+    """The commands of a page, line by line, without their comments, and where a person marks."""
     blocks = SHELL.findall((ROOT / f"book/{page}.md").read_text())
-    lines = [line for block in blocks for line in block.splitlines()]
+    lines = [line for command, label in blocks for line in (command or label).splitlines()]
     return [words for line in lines if (words := shlex.split(line, comments=True))]
+
+
+def typed(words, folder):
+    """Type it, and wait until it is done."""
+    module = ["-m", "labkit"] if words[0] == "labkit" else []
+    command = [sys.executable, *module, *words[1:]]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True,
+                          check=False)  # fmt: skip
 
 
 def works(words, folder):
     """Type it; labkit's own word for success is exit code 0."""
-    module = ["-m", "labkit"] if words[0] == "labkit" else []
-    command = [sys.executable, *module, *words[1:]]
-    environment = os.environ | {"PYTHONPATH": str(ROOT)}
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True,
-                          check=False)  # fmt: skip
+    done = typed(words, folder)
     assert done.returncode == 0, (words, done.stdout[-1500:], done.stderr[-1500:])
     return done.stdout
 
 
+def mark_by_hand(course, student, points):
+    """Mark the why of notebook 01, as somebody does in formgrader."""
+    with open_gradebook(Course(course)) as book:
+        grade = book.find_grade(WHY, "01_paths", "01_paths", student)
+        assert grade.needs_manual_grade
+        grade.manual_score, grade.needs_manual_grade = points, False
+        book.db.commit()
+
+
 @pytest.mark.slow
 def test_every_command_of_the_instructors_guide_works(tmp_path):
-    """From a clone to a graded class, as the page says."""
+    """From a clone to a class that is graded and marked by hand, as the page says."""
     course = tmp_path / "course"
     subprocess.run(["git", "clone", "--quiet", ROOT, course], check=True, capture_output=True)
     (course / "downloads").mkdir()
     notebook = json.loads((ROOT / "assignments/01_paths/01_paths.ipynb").read_text())
     for function in (answers.bang_bang, answers.trapezoid, answers.compose):
         put(notebook, function.__name__, inline(function, function.__name__))
+    put(notebook, WHY, "The speed doubles, because the same way takes half the time.")
     with zipfile.ZipFile(course / "downloads/moodle.zip", "w") as archive:
         name = "Ada Lovelace_101_assignsubmission_file/01_paths.ipynb"
         archive.writestr(name, json.dumps(notebook))
     people = "First name,Last name,Email address\nAda,Lovelace,ada@uni.org\nBob,Hope,bob@uni.org\n"
     (course / "downloads/participants.csv").write_text(people)
     commands = shown("instructor_guide")
-    assert {words[0] for words in commands} == {"labkit", "python"}
-    verbs = {words[1] for words in commands}
+    assert {words[0] for words in commands} == {"labkit", "python", BY_HAND}
+    verbs = {words[1] for words in commands if words != [BY_HAND]}
     assert verbs >= {"doctor", "term", "release", "student-bundle", "-m", "students", "collect",
                      "grade", "explain", "defence", "feedback", "export", "class-report",
                      "export-course"}  # fmt: skip
     for words in commands:
-        works(words, course)
+        if words == [BY_HAND]:
+            assert typed(["labkit", "feedback", "01_paths"], course).returncode == 2
+            mark_by_hand(course, "Ada-Lovelace", 1.5)
+        else:
+            works(words, course)
     assert len(list((course / "results/01_paths").glob("*.json"))) == 1
     assert len(list((course / "feedback").glob("*/01_paths/01_paths.html"))) == 1
     assert len(list((tmp_path / "rehearsal/results/01_paths").glob("*.json"))) == 8
