@@ -1,7 +1,7 @@
 """Observed causes: what a wrong answer does to the numbers, where no known mistake gives them.
 
 Each sentence says what is seen on all public calls, so it is true by construction: every number has
-the other sign, the answer stays the same without an argument, it is right as soon as one is zero.
+the other sign, the answer stays the same without an argument, what one argument adds comes twice.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def cause(question: Question, answers: Mapping[Case, Any], function: Function) -
     alike = all(map(same_form, given, expected))
     found = related(question, calls, given, expected) if alike else ""
     found = found or _exchanged(question, calls, function)
-    return found or _probed(question, calls, given if alike else [], function)
+    return found or (_probed(question, calls, given, function) if alike else "")
 
 
 def _exchanged(question: Question, calls: Sequence[Call], function: Function) -> str:
@@ -86,7 +86,7 @@ def _probed(
     """What the answer does where one argument is changed, and the right one does not do."""
     changed = [dict(variations(call, question.arguments)) for call in calls]
     expected = [arrays(call.expected) for call in calls]
-    stays, moves, shares, places = [], [], [], []
+    stays, moves, shares = [], [], []
     until = monotonic() + LONGEST
     for probe in question.probes:
         if monotonic() > until:
@@ -95,27 +95,20 @@ def _probed(
         found, right = [arrays(x) for x in asked], [arrays(x) for x in probe.answers]
         if not all(map(same_form, found, right)):
             continue
-        same, should = (
-            bool(given) and all(map(all_near, found, given)),
-            all(map(all_near, right, expected)),
-        )
+        same, should = all(map(all_near, found, given)), all(map(all_near, right, expected))
         if same and not should:
             stays.append(probe.label)
-        if given and should and not same:
+        if should and not same:
             moves.append(probe.label)
-        if not should and all(map(lambda x, y: _right(question, x, y), asked, probe.answers)):
-            if given and (says := _share(given, expected, right)):
-                shares.append(says.format(probe.label.split("`")[1], probe.label))
-            elif probe.tells:
-                places.append(probe.label)
+        repaired = all(map(lambda x, y: _right(question, x, y), asked, probe.answers))
+        if not should and repaired and (says := _share(given, expected, right)):
+            shares.append(says.format(probe.label.split("`")[1], probe.label))
     if shares:
         return shares[0]
     if stays:
         return f"Your answer stays the same if {' or if '.join(stays[:3])}; the right one does not."
     if moves:
         return f"Your answer changes if {' or if '.join(moves[:3])}; the right one does not."
-    if places:
-        return f"Your answer is right as soon as {' or as soon as '.join(places[:2])}: look there."
     return ""
 
 

@@ -1,8 +1,8 @@
 """Probes: the public calls of a question with one thing in them changed.
 
 The release asks the answer what is right then, and a check asks the student's function the same. So
-a wrong answer that nobody knows yet can still be told where it goes wrong: it does not change with
-a velocity, say, or it is right as soon as that velocity is zero.
+of a wrong answer that nobody knows yet something can still be said: it does not change with a
+velocity, say, or what the velocity adds to it has the other sign.
 """
 
 from __future__ import annotations
@@ -21,15 +21,11 @@ from ..shapes import Array
 from ..trajectory import PoseSample, Sample
 from .question import Call, Probe, Question
 
-TELLS = 0.5
-"""A probe where more of the known mistakes than this share are right tells nothing."""
-
 
 def probed(
     question: Question,
     answer: Callable[..., Any],
     expected: Callable[..., Any],
-    wrong: Sequence[Callable[..., Any]],
 ) -> tuple[Probe, ...]:
     """What is right on each probe.
 
@@ -37,7 +33,6 @@ def probed(
         question: With its public calls; of any other kind of question nothing is probed.
         answer: The reference, for the names of its arguments.
         expected: What to compare with, a function of the same arguments.
-        wrong: Known mistakes.
 
     Returns:
         A probe for each thing that can be changed in every call, if all answers are numbers then.
@@ -53,8 +48,7 @@ def probed(
             answers = _asked(asked, expected)
             parts = [arrays(one) for one in answers]
             if all(parts) and all(np.isfinite(x).all() for one in parts for x in one):
-                right = sum(_mended(question, asked, answers, function) for function in wrong)
-                found.append(Probe(label, answers, right <= TELLS * len(wrong)))
+                found.append(Probe(label, answers))
     return tuple(found)
 
 
@@ -68,20 +62,6 @@ def _asked(calls: Sequence[Call], function: Callable[..., Any]) -> tuple[Any, ..
             except Exception:
                 answers.append(None)
     return tuple(answers)
-
-
-def _mended(
-    question: Question,
-    calls: Sequence[Call],
-    answers: Sequence[Any],
-    function: Callable[..., Any],
-) -> bool:
-    """Whether a known mistake gives the right answers to changed calls."""
-    try:
-        given = _asked(calls, function)
-        return all(question.judge(a, b) is None for a, b in zip(given, answers, strict=True))
-    except Exception:
-        return False
 
 
 def arrays(answer: Any) -> list[Array]:

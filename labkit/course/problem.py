@@ -123,8 +123,7 @@ class Problem:
             outcomes=self.outcomes,
         )
         mistakes = (Mistake(w.name, w.says, fingerprint(plain, w.function)) for w in self.wrong)
-        wrong = [w.function for w in self.wrong]
-        probes = probed(plain, self.answer, self.expected or self.answer, wrong)
+        probes = probed(plain, self.answer, self.expected or self.answer)
         names = tuple(signature(self.answer).parameters) if callable(self.answer) else ()
         return replace(plain, mistakes=tuple(mistakes), arguments=names, probes=probes)
 

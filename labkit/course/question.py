@@ -238,12 +238,10 @@ class Probe:
     Attributes:
         label: What is changed, such as "`kd` is 0".
         answers: The right answer to each call, in order.
-        tells: Whether few of the known mistakes are right there.
     """
 
     label: str
     answers: tuple[Any, ...]
-    tells: bool = True
 
 
 @dataclass(frozen=True, eq=False)

@@ -886,9 +886,9 @@ VERDICTS = Problem(
         ),
         Wrong(
             "an interval too narrow",
-            "You decide a claim that five seeds do not settle. Take Student's t for both sides "
-            "(0.975, n - 1) and the deviation with n - 1; 1.96, or five wins of five, is not "
-            "enough.",
+            "You decide a claim that five seeds do not settle. Check each factor: Student's t for "
+            "both sides (0.975, n - 1), where 1.96 is too small; the deviation with n - 1; and if "
+            "you compare squares, the squares of both.",
             mistakes.VerdictsBy(mistakes.normal_quantile),
             "Five seeds are not many.",
         ),

@@ -605,8 +605,9 @@ POWER_BALANCE = Problem(
             "Say in words what a positive number means.",
         ),
         Wrong(
-            "per row, not per second",
-            "The slope is per row of the log, not per second. Give np.gradient the times as well.",
+            "a slope that is not per second",
+            "The energy seems hardly to grow, so its slope is not per second. Give np.gradient the "
+            "log's times as well, in seconds.",
             mistakes.steps_not_seconds,
             "J and W differ by seconds.",
         ),

@@ -824,7 +824,8 @@ WITNESS = Problem(
         ),
         Wrong(
             "the start",
-            "At the start the printed formula is right: theta is 0, as it should be. Look for a time at which the formula changes its branch.",
+            "At the start the printed formula is right: the angle is theta, as it should be. Look "
+            "for a time at which the formula changes its branch.",
             mistakes.the_start,
             "A counterexample is a place where the formula is wrong.",
         ),

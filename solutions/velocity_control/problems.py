@@ -634,7 +634,8 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "position and turn both reversed",
-            "All six numbers have the wrong sign. Take target minus actual.",
+            "The feedback has the wrong sign in all six numbers. The error is target minus actual, "
+            "and kp times the error is added to the target's twist.",
             mistakes.WorkspaceLaw(place=-1.0, turn=mistakes.turned_back),
             "One sign for every error.",
         ),

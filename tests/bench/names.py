@@ -47,8 +47,8 @@ def told(desk, answer):
 
 FORM = (Kind.TYPE, Kind.PARTS, Kind.KEY, Kind.NOTHING, Kind.CHANGED, Kind.REFUSED)
 """Differences whose sentence says what is wrong: another type or shape, nothing, NaN."""
-PLACE = re.compile("right as soon as|is [-0-9.e+]+ times what")
-"""Sentences that say where to look, but not what is wrong; these do not count as names."""
+FACTOR = re.compile("is [-0-9.e+]+ times what")
+"""A sentence that says by how much an answer is off, but not why; it does not count as a name."""
 NAMED = ("known", "observed", "form")
 
 
@@ -56,7 +56,7 @@ def name_of(verdict):
     """How a verdict knows the mistake, and the sentence; "numbers" where it only shows these."""
     if verdict.mistake is not None:
         known = verdict.mistake.name
-        how = "known" if known else "place" if PLACE.search(verdict.mistake.says) else "observed"
+        how = "known" if known else "factor" if FACTOR.search(verdict.mistake.says) else "observed"
         return how, f"{known}: {verdict.mistake.says}".strip(": ")
     for test in verdict.tests:
         if test.difference is not None:
