@@ -14,6 +14,7 @@ from typing import Any
 
 from labkit.course.source import names_defined
 
+LAMBDA = "<lambda>"
 Key = tuple[str, str]
 """A definition, its module and its name there."""
 
@@ -50,8 +51,9 @@ def inline(function: Callable[..., Any], name: str) -> str:
             heads.append(ast.unparse(part.node))
             names[key] = key[1]
         else:
-            twins = sum(key[1] == other for _, other in names)
-            names[key] = f"_{key[1]}" + (f"_{twins + 1}" if twins else "")
+            plain = key[1].lstrip("_")  # a class would hide a name with two of them
+            twins = sum(plain == other.lstrip("_") for _, other in names)
+            names[key] = f"_{plain}" + (f"_{twins + 1}" if twins else "")
     bodies = []
     for key, part in parts.items():
         if not isinstance(part.node, ast.Import | ast.ImportFrom):
@@ -71,6 +73,11 @@ def _definition(value: Any, package: str) -> Any:
     return thing if thing.__module__.partition(".")[0] == package else None
 
 
+def _elsewhere(value: Any) -> str:
+    """The module of a function that is not of the course, such as numpy's; else ""."""
+    return value.__module__ if callable(value) and hasattr(value, "__name__") else ""
+
+
 def _made_with(value: Any) -> dict[str, Any]:
     """What an instance was made with: its attributes that are parameters of its class."""
     parameters = {} if inspect.isfunction(value) else inspect.signature(type(value)).parameters
@@ -83,11 +90,15 @@ def _take_value(value: Any, package: str, parts: dict[Key, _Part]) -> None:
     if thing is not None:
         module = inspect.getmodule(thing)
         assert module is not None
-        _take(thing.__name__, module, parts)
+        if thing.__name__ == LAMBDA:
+            name = ast.Name(_key(thing)[1], ast.Store())
+            node = ast.Assign([name], _lambda(thing))
+            _take_node(_key(thing), ast.fix_missing_locations(node), module, parts)
+        else:
+            _take(thing.__name__, module, parts)
         for inner in _made_with(value).values():
             _take_value(inner, package, parts)
-    elif inspect.isfunction(value):
-        home = value.__module__
+    elif home := _elsewhere(value):
         parts[home, home] = _Part(ast.Import([ast.alias(home)]))
 
 
@@ -95,9 +106,9 @@ def _written(value: Any, package: str, names: Mapping[Key, str]) -> str:
     """A value as an expression."""
     thing = _definition(value, package)
     if thing is None:
-        home = value.__module__ if inspect.isfunction(value) else ""
+        home = _elsewhere(value)
         return f"{names[home, home]}.{value.__name__}" if home else repr(value)
-    made = names[thing.__module__, thing.__name__]
+    made = names[_key(thing)]
     inner = (f"{name}={_written(x, package, names)}" for name, x in _made_with(value).items())
     return made if inspect.isfunction(value) else f"{made}({', '.join(inner)})"
 
@@ -111,11 +122,17 @@ def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
     if home is not None:
         return _take(_called_there(node, name), home, parts)
     key = (module.__name__, name)
-    if key in parts:
-        return key
+    if key not in parts:
+        _take_node(key, node, module, parts)
+    return key
+
+
+def _take_node(key: Key, node: ast.stmt, module: ModuleType, parts: dict[Key, _Part]) -> None:
+    """Collect a definition, what it needs first."""
+    name = key[1]
     part = parts[key] = _Part(node)  # before its needs: a function may call itself
     if isinstance(node, ast.Import | ast.ImportFrom):
-        return key
+        return
     inner = [x for x in ast.walk(node) if isinstance(x, ast.ImportFrom) and _home(x, module)]
     for used in dict.fromkeys(_used(node)):
         place = next((x for x in inner if used in names_defined(x)), None)
@@ -130,7 +147,26 @@ def _take(name: str, module: ModuleType, parts: dict[Key, _Part]) -> Key | None:
         elif used != name and (found := _take(there, source, parts)) is not None:
             part.means[used] = found
     parts[key] = parts.pop(key)
-    return key
+
+
+def _key(thing: Any) -> Key:
+    """A definition's module and name; a function without a name is called after its line."""
+    line = f"lambda_{thing.__code__.co_firstlineno}" if thing.__name__ == LAMBDA else ""
+    return thing.__module__, line or thing.__name__
+
+
+def _lambda(function: Any) -> ast.Lambda:
+    """The text of a function without a name: of those on its line, the one with its parameters."""
+    code, module = function.__code__, inspect.getmodule(function)
+    assert module is not None
+    (found,) = (
+        x
+        for x in ast.walk(_tree(module))
+        if isinstance(x, ast.Lambda)
+        and x.lineno == code.co_firstlineno
+        and [a.arg for a in x.args.args] == list(code.co_varnames[: code.co_argcount])
+    )
+    return found
 
 
 @cache
