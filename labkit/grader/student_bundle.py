@@ -90,7 +90,7 @@ def student_folder(
         text = (top / "assignments" / name / f"{name}.ipynb").read_text(encoding="utf-8")
         if leak := next((word for word in FORBIDDEN if word in text), None):
             raise LabkitError(f"{name} holds {leak!r}; first run: labkit release {name}")
-    for path in (course.root / STUDENT).iterdir():
+    for path in filter(Path.is_file, (course.root / STUDENT).iterdir()):
         place = top / PLACES.get(path.name, path.name)
         place.parent.mkdir(exist_ok=True)
         shutil.copy(path, place)

@@ -373,12 +373,6 @@ ORIENTATION_ERROR = Problem(
             "Try a formula where the error is zero: there the arm should spend its life.",
         ),
         Wrong(
-            "twice the quaternion's vector",
-            "2 sin(θ/2) times the axis is close to the turn for small angles only. The angle itself is asked for.",
-            mistakes.TurnOf(lambda angle: 2.0 * np.sin(angle / 2.0)),
-            "sin x and x agree only for small x.",
-        ),
-        Wrong(
             "the quaternion's vector",
             "sin(θ/2) times the axis is the vector part of the quaternion. The rotation vector is angle times axis.",
             mistakes.TurnOf(lambda angle: np.sin(angle / 2.0)),

@@ -94,4 +94,4 @@ def test_nbgrader_and_labkit_agree(course, solved, capsys):
     assert "no mark: bob: handed in and not graded" in err
     assert main(["grade", NAME, "--course", str(course.root)]) == 0
     out = capsys.readouterr().out
-    assert "ada: 22 of 22 (as before)" in out and "by hand, 2 points more" in out
+    assert "ada: 22 of 22 (as before)" in out and "not included: 2 points" in out

@@ -164,7 +164,7 @@ def test_the_public_file_is_small_and_valid():
     """What lies beside the notebook is one line of JSON without a hidden case."""
     for name in COURSE.names():
         path = COURSE.release / name / "checks.json"
-        assert path.stat().st_size < 300_000
+        assert path.stat().st_size < 500_000
         data = json.loads(path.read_text(encoding="utf-8"))
         assert data["assignment"] == name
         questions = map(read_question, data["questions"])
