@@ -450,7 +450,7 @@ def the_reports_gains(model: lk.Model) -> Any:
 
 
 class Terms(NamedTuple):
-    """What a torque law is made of; g is nought where the arm compensates."""
+    """What a torque law is made of; g is zero where the arm compensates for gravity."""
 
     M: Any
     C: Any
