@@ -285,10 +285,18 @@ plt.axhline(1e3 * 10.0 / K[1], color="0.5", linestyle=":", label="10 N / K")
 plt.xlabel("time [s]")
 plt.ylabel("displacement along y [mm]")
 plt.legend(frameon=False)
-at_two = {name: np.interp(1.99, log.t, displacement(log)[:, 1]) for name, log in pushed.items()}
+
+
+def after_two_seconds(log):
+    """The displacement along y in words, if the run lasted so long."""
+    if log.t[-1] < 1.99:
+        return f"stopped at {log.t[-1]:.2f} s"
+    return f"{np.interp(1.99, log.t, displacement(log)[:, 1]):.1f} mm"
+
+
 lk.plotting.show(
-    "The tip under a push of 10 N along y (grey). After 2 s it has gone "
-    + ", ".join(f"{x:.1f} mm ({name})" for name, x in at_two.items())
+    "The tip under a push of 10 N along y (grey). Displacement after 2 s: "
+    + ", ".join(f"{after_two_seconds(log)} ({name})" for name, log in pushed.items())
     + f"; 10 N / K is {1e4 / K[1]:.1f} mm."
 )
 

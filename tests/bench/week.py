@@ -104,7 +104,7 @@ def measure():
         waited = all_waited(time.monotonic() + PATIENCE)
         hand_in("alone", len(plan))
         alone = all_waited(time.monotonic() + PATIENCE)[-1]
-        watching.end(signal.SIGINT)
+        watching.end(signal.SIGTERM)
         own = Results(course, ASSIGNMENT).get("alone").seconds["student"]
         marks = {result.score for result in Results(course, ASSIGNMENT)}
     if len(marks) != 1:
