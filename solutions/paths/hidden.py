@@ -51,9 +51,10 @@ def trapezoid_long(random: Random) -> Iterator[Call]:
 
 
 def trapezoid_short(random: Random) -> Iterator[Call]:
-    """Ways too short to reach v_max, one of a centimetre."""
-    for d in (0.01, *random.uniform(0.02, 0.08, 2)):
+    """Ways too short to reach v_max: one of a centimetre, one on which a single ramp has room."""
+    for share in (None, random.uniform(0.05, 0.4), random.uniform(0.6, 0.9)):
         v, a = random.uniform(0.5, 0.8), random.uniform(0.5, 2.0)
+        d = 0.01 if share is None else share * v * v / a
         T = 2.0 * np.sqrt(d / a)
         for x in random.uniform(0.02, 0.98, 3):
             yield call(x * T, d, v, a)
@@ -61,7 +62,7 @@ def trapezoid_short(random: Random) -> Iterator[Call]:
 
 def trapezoid_all(random: Random) -> Iterator[Call]:
     """Whole motions, long and short, and what lies outside them."""
-    for d in (random.uniform(0.4, 0.9), random.uniform(0.02, 0.05)):
+    for d in (random.uniform(0.4, 0.9), random.uniform(0.06, 0.09)):
         for t in np.linspace(-0.4, 6.0, 12):
             yield call(t, d, 0.25, 0.6)
 

@@ -311,6 +311,7 @@ class Ramps:
         ds: Of the speed while braking.
         dds: Of the acceleration while braking.
         top: Of the peak speed of a short way.
+        reach: Of the shortest way on which v_max is reached.
         cruise: Acceleration while cruising, as a share of a_max.
         brakes: Whether it brakes at all.
     """
@@ -321,6 +322,7 @@ class Ramps:
     ds: float = 1.0
     dds: float = 1.0
     top: float = 1.0
+    reach: float = 1.0
     cruise: float = 0.0
     brakes: bool = True
 
@@ -329,7 +331,7 @@ class Ramps:
     ) -> tuple[float, float, float]:
         """The motion at t."""
         d, a = distance, a_max
-        v = min(v_max, self.top * sqrt(d * a))
+        v = v_max if d >= self.reach * v_max**2 / a else self.top * sqrt(d * a)
         ramp = v / a
         T = d / v + self.ramp * ramp
         if t < 0.0:

@@ -192,8 +192,8 @@ TRAPEZOID = Problem(
             weight=0.0,
         ),
         Trial(
-            "a way too short to reach v_max: 0.03 m",
-            tuple(call(t, 0.03, 0.2, 0.4) for t in (0.1, 0.3, 0.5)),
+            "ways too short to reach v_max: 0.03 m and 0.08 m",
+            (*(call(t, 0.03, 0.2, 0.4) for t in (0.1, 0.3, 0.5)), call(0.5, 0.08, 0.2, 0.4)),
             hidden.trapezoid_short,
             "a move of one centimetre",
         ),
@@ -201,7 +201,7 @@ TRAPEZOID = Problem(
             "whole motions",
             (
                 *(call(float(t), 0.3, 0.2, 0.4) for t in np.linspace(-0.3, 2.5, 8)),
-                *(call(float(t), 0.03, 0.2, 0.4) for t in np.linspace(-0.1, 0.8, 8)),
+                *(call(float(t), 0.08, 0.2, 0.4) for t in np.linspace(-0.1, 1.2, 8)),
             ),
             hidden.trapezoid_all,
             "times outside the motion",
@@ -245,6 +245,13 @@ TRAPEZOID = Problem(
             "speed up, and half to brake: √(distance·a_max).",
             mistakes.speeds_up_all_the_way,
             "A triangle has two halves.",
+        ),
+        Wrong(
+            "one ramp taken for two",
+            "v_max**2/(2 a_max) is the way of one ramp. To speed up to v_max and brake again takes "
+            "twice that, so that a way shorter than v_max**2/a_max is a triangle.",
+            mistakes.Ramps(reach=0.5),
+            "Both ramps need room.",
         ),
         Wrong(
             "a duration of distance/v",
