@@ -69,14 +69,15 @@ def related(
     if not wrong:
         return ""
     if _only_at_rest(given, expected):
-        return "Your answer is wrong only where nothing moves: before the start or after the end."
-    if len(parts) > len(wrong) == 1 and len(names) == len(parts):
-        what, rest = f"your `{names[wrong[0]]}`", ", and the rest is right"
-    elif len(parts) > 1:
-        parts = [(_joined(given, wrong), _joined(expected, wrong))]
-        wrong = [0]
+        return "Your answer is wrong only where nothing moves: before the start or from the end on."
+    if len(parts) > len(wrong):
+        known = len(names) == len(parts)
+        named = [f"your `{names[k]}`" for k in wrong] if known else ["what is wrong of your answer"]
+        what = "each of " * (len(named) > 1) + " and ".join(named)
+        rest = ", and the rest is right"
     by_name = [arguments(call, question.arguments) for call in calls]
-    says = next(_relations(*parts[wrong[0]], by_name), "")
+    a, b = parts[wrong[0]] if len(wrong) == 1 else (_joined(x, wrong) for x in (given, expected))
+    says = next(_relations(a, b, by_name, joined=len(wrong) > 1), "")
     return f"In every call {what} {says}{rest}." if says else ""
 
 
@@ -92,7 +93,7 @@ def _only_at_rest(given: list[Parts], expected: list[Parts]) -> bool:
 
 
 def _relations(
-    a: Sequence[Array], b: Sequence[Array], given: Sequence[Mapping[str, Any]]
+    a: Sequence[Array], b: Sequence[Array], given: Sequence[Mapping[str, Any]], joined: bool
 ) -> Iterator[str]:
     if not any(x.any() for x in b):
         return
@@ -106,7 +107,7 @@ def _relations(
             isinstance(y, np.ndarray) and y.shape == z.shape for y, z in zip(x, a, strict=True)
         ) and all_near(a, x):
             yield f"is `{name}` itself"
-    if len({x.shape for x in b}) == 1 and b[0].ndim:
+    if len({x.shape for x in b}) == 1 and b[0].ndim and not joined:
         yield from _matrices(a, b) if b[0].ndim == 2 else ()
         yield from _rows(a, b)
     told = [(factor(x, y), g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]

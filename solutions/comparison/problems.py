@@ -908,7 +908,8 @@ VERDICTS = Problem(
         ),
         Wrong(
             "every claim undecided",
-            "Undecided is right only where the interval holds 0. Where it does not, say which way.",
+            "Of all claims that are tried here you say undecided. This is right only where the "
+            "interval of the differences, pair by pair, holds 0. Where it does not, say which way.",
             mistakes.never_decided,
             "Undecided is a result, not a way out.",
         ),

@@ -1,19 +1,21 @@
 """Plausible answers, right and wrong, to measure how many mistakes a check names, and how surely.
 
-One author wrote them from the notebooks' stubs and the model answers, and had read neither the
+Their authors wrote them from the notebooks' stubs and the model answers, and had read neither the
 known mistakes nor the judges.  So they stand for answers that nobody has foreseen: never add a
 known mistake because it is here, or the measure is worth nothing.  Whoever improves the naming may
-look at the wrong answers that are not `held`, and at no others.
+look at the wrong answers that are not `held`, and at no others: those in ``second`` are all held.
 
 There is a file for each notebook.  A line `# %% question wrong: what is wrong`, or `# %% question
 right: how it is written`, stands above a whole answer cell of a notebook with `np` and `lk`.
 """
 
 import re
+from collections.abc import Iterator
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
+HERE = Path(__file__).parent
 _HEAD = re.compile(r"^# %% (\w+) (right|wrong): (.+)\n", re.M)
 
 
@@ -25,6 +27,7 @@ class Answer(NamedTuple):
     right: bool
     says: str
     source: str
+    second: bool
 
     @property
     def held(self) -> bool:
@@ -32,17 +35,18 @@ class Answer(NamedTuple):
 
         With this number in front, the hash holds back about half of each question's wrong answers.
         """
-        return sha256(f"1774{self.source}".encode()).digest()[0] % 2 == 1
+        return self.second or sha256(f"1774{self.source}".encode()).digest()[0] % 2 == 1
 
 
 def read(topic: str) -> tuple[Answer, ...]:
     """The answers to one notebook, such as ``read("warmup")``."""
-    text = (Path(__file__).parent / f"{topic}.txt").read_text(encoding="utf-8")
-    cells = iter(_HEAD.split(text)[1:])
-    return tuple(
-        Answer(topic, question, verdict == "right", says, source.strip() + "\n")
-        for question, verdict, says, source in zip(cells, cells, cells, cells, strict=True)
-    )
+    return (*_read(topic, HERE, second=False), *_read(topic, HERE / "second", second=True))
 
 
-TOPICS = tuple(sorted(path.stem for path in Path(__file__).parent.glob("*.txt")))
+def _read(topic: str, folder: Path, second: bool) -> Iterator[Answer]:
+    cells = iter(_HEAD.split((folder / f"{topic}.txt").read_text(encoding="utf-8"))[1:])
+    for question, verdict, says, source in zip(cells, cells, cells, cells, strict=True):
+        yield Answer(topic, question, verdict == "right", says, source.strip() + "\n", second)
+
+
+TOPICS = tuple(sorted(path.stem for path in HERE.glob("*.txt")))

@@ -5,6 +5,7 @@ import pytest
 
 import labkit as lk
 from labkit.course import mark
+from labkit.course.judges import Close
 from labkit.course.marking import try_public
 from labkit.course.observed import explained
 from labkit.course.problem import Problem, Trial, call
@@ -63,6 +64,22 @@ def test_the_cause_is_seen_in_the_numbers(function, says):
 def test_a_factor_that_is_an_argument_is_told():
     """An answer that is not divided by an argument is told so."""
     assert "multiplied by `d`" in seen(SCALED, lambda x, d: np.array([x, x * x]))
+
+
+def test_only_the_wrong_parts_of_an_answer_are_spoken_of():
+    """Of three parts two are wrong by a factor: these are named, and the rest is called right."""
+    parts = Problem(
+        "parts",
+        1,
+        "Give it.",
+        lambda x, d: (x, x / d, x * x / d),
+        (Trial("any", (call(2.0, 3.0), call(5.0, 7.0)), weight=1.0),),
+        judge=Close(parts=("s", "ds", "dds")),
+    )
+    says = seen(parts, lambda x, d: (x, x, x * x))
+    assert "each of your `ds` and your `dds`" in says and "the rest is right" in says
+    assert "multiplied by `d`" in says
+    assert "your `ds` has the other sign, and" in seen(parts, lambda x, d: (x, -x / d, x * x / d))
 
 
 def test_nothing_is_said_of_what_is_not_seen():
