@@ -19,7 +19,7 @@ from labkit.control import springs
 from labkit.course import Call, Close, Loop, Question, Test, Tuned
 from labkit.course.judges import AtMost
 from labkit.course.marking import mark, try_public
-from labkit.course.verdict import Outcome
+from labkit.course.verdict import Misconception, Outcome
 from labkit.grader import seen
 from labkit.grader.drawing import curve, side_by_side
 from labkit.grader.feedback import MEASURES, page
@@ -184,6 +184,15 @@ def test_nothing_hidden_is_in_the_page(result):
     motion = json.loads(result.questions[0].runs[0]["motion"])
     asked = READY + 0.1
     assert np.abs(unpack(motion["ghosts"]["the target"])[-1] - asked).max() < 1e-3
+
+
+def test_the_tests_are_folded_where_the_mistake_is_named(result):
+    """Where a sentence says what is wrong, the numbers wait; elsewhere they are all there is."""
+    assert "<details open><summary>1 of 1 tests failed</summary>" in page(result)
+    first, *rest = result.questions
+    named = replace(first.verdict, mistake=Misconception("too soft", "Pull harder."))
+    told = page(replace(result, questions=(replace(first, verdict=named), *rest)))
+    assert "<details><summary>1 of 1 tests failed</summary>" in told
 
 
 def test_policy_names_each_script_and_nothing_else(result):
