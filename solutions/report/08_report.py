@@ -158,9 +158,13 @@ predict("exemplar_two", truth=([1, 2, 3, 4, 5, 6], [3, 3, 3, 3, 2, 3]))
 # have; whatever goes beyond that number is not read. The text of a section goes into its cell, and your runs and your figure
 # into code cells that you add below the cell of section 2.
 #
-# An interval needs runs that differ. Here the seed draws the noise of the sensors and the late ticks alone: a law that
-# does not look at the state does the same for every seed, and then you must vary something else, such as the pose or
-# the start, and say what.
+# An interval needs runs that differ. The seed draws the noise of the measured joint speeds and of the torques that the
+# arm feels, and which ticks come late; the joint angles have no noise. So a law that uses angles alone does almost the
+# same for every seed. Then vary something else, such as the pose or the start, and say what.
+#
+# Look at each run before you count it. A wall stands a few centimetres ahead of the tip in the ready pose, so another
+# pose can start in the wall: `lk.metrics.felt_wrench(log)` shows its force. And where a limit of speed or torque cut a
+# command, `log.saturated` is true.
 
 # %%
 HANDLE = "demo"  # in a course: the name that your instructor gave you
