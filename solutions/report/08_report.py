@@ -177,7 +177,7 @@ mine = lk.my_arm(HANDLE)
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | no claim that a run could refute | a claim, and a prediction without a number or a reason | a refutable claim and a number with its unit, from a model that is named | as before, and the number is for *this* arm, from values that you identified yourselves |
+# | no claim that a run could refute | a claim, and a prediction without a number or a reason | a refutable claim and a number with its unit, from a model that is named | as before, and the number is for *this* arm, and the values that decide it are those that you identified yourselves |
 #
 # ### BEGIN SOLUTION
 # Our arm carries 0.33 kg. With kp = 40 1/s² computed torque should sag by 14 mm, from e = M⁻¹ Jᵀ F / kp with our payload.
@@ -190,7 +190,7 @@ mine = lk.my_arm(HANDLE)
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | no figure, or nobody could repeat it | a figure without units, or settings are missing | axes, units, settings; the prediction is drawn in the figure | as before, and even without the text a reader can tell the runs from the prediction, and whether they agree |
+# | no figure, or nobody could repeat it | a figure without units, or settings are missing | axes, units, settings; the prediction is drawn in the figure | as before, and even without the text a reader can tell the runs from the prediction, and whether runs and prediction agree |
 #
 # ### BEGIN SOLUTION
 # Five seeds, lk.Hold at the ready pose for 3 s, rate 200 Hz; the figure shows the sag over time and our 14 mm as a dashed line.
@@ -240,11 +240,11 @@ mine = lk.my_arm(HANDLE)
 # %% [markdown] task="writing_and_shares" points=3
 # ## 6. Writing, and who did what
 #
-# Up to 80 words on who did what, in a sentence for each member. Marked together with the whole: order, plain sentences, four pages.
+# Up to 80 words on who did what, in a sentence for each member. Marked together with the whole: order, plain sentences, four pages without the code.
 #
 # | 0 | 1 | 2 | 3 |
 # |---|---|---|---|
-# | cannot be followed | can be followed with an effort | clear and in order; a share for each member | as before, no section is too long, and none says a thing twice |
+# | cannot be followed | can be followed with an effort | clear and in order; a share for each member | as before, no section is too long, and none repeats itself |
 #
 # ### BEGIN SOLUTION
 # A. identified the payload, B. wrote the law and the figure, C. found the failure and wrote sections 3 to 5.
