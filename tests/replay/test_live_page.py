@@ -1,14 +1,12 @@
 """The live arm's page without a kernel: what keys and pointer say, and what is told to them."""
 
 import json
-from pathlib import Path
 
 import pytest
+from accessibility import violations
 from figures.embed import shared_files
 
 import labkit as lk
-
-ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture(scope="module")
@@ -200,6 +198,4 @@ def test_without_a_kernel_it_says_so(chromium, data):
 
 def test_a_live_page_breaks_no_rule_of_access(page):
     """No finding of axe's in the live arm's controls."""
-    page.evaluate((ROOT / "tests/vendor/axe.min.js").read_text())
-    found = page.evaluate("axe.run('#a', {preload: false})")
-    assert [(v["id"], v["nodes"][0]["html"][:200]) for v in found["violations"]] == []
+    assert violations(page, "#a") == []
