@@ -98,6 +98,27 @@ def hangs() -> HTML:
              "joint_stiffness, most", "encoder_offset, most"}  # fmt: skip
     over = {n for c in claims if c.startswith("built-in") for n in turned[c]}
     holds(over == named, "the ranking of the built-in method turns with these four numbers alone")
+    by = dict(zip(claims, base, strict=True))
+    torque_too = "built-in method over joint torque"
+    claim(
+        "with the least stiction joint torque control is better than the built-in method too",
+        lambda d, usual: d < -SMALL < SMALL < usual,
+        d=assumptions.difference(rows, torque_too, assumption="stiction, least"),
+        usual=by[torque_too],
+    )
+    velocity = [f"built-in method over {space} velocity" for space in ("joint", "workspace")]
+    claim(
+        "with the largest encoder_offset the velocity controllers lose their lead",
+        lambda usual, d: max(usual) < -SMALL < min(d),
+        usual=[by[c] for c in velocity],
+        d=[assumptions.difference(rows, c, assumption="encoder_offset, most") for c in velocity],
+    )
+    springs = pick(rows, way=assumptions.BASELINE, assumption="joint_stiffness, most")
+    claim(
+        "with the springs in the joints the built-in method is lost",
+        lambda lost: min(lost) > 0.5,
+        lost=[float(bool(row["failed"])) for row in springs],
+    )
     claim(
         "One verdict stands whatever is assumed",
         lambda least: least > 3.0,
