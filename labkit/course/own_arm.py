@@ -194,8 +194,8 @@ def _unsealed(handle: str) -> OwnArm:
     files = [place / FILE for place in (folder, *folder.parents[:2]) if (place / FILE).exists()]
     if not files:
         raise LabkitError(
-            f"there is no {FILE} here or in the two folders above; your instructor hands it out with "
-            f"the notebooks of your course. To practise, take lk.my_arm({DEMO!r})"
+            f"there is no {FILE} here or in the two folders above; your instructor hands it out "
+            f"with the notebooks of your course. To practise, take lk.my_arm({DEMO!r})"
         )
     arms = json.loads(files[0].read_text(encoding="utf-8"))
     text = arms.get(_hashed(handle))
