@@ -76,6 +76,10 @@ def html_files(book):
 
 def test_internal_links_and_downloads_lead_somewhere(book):
     pages = {p: BeautifulSoup(p.read_text(), "html.parser") for p in html_files(book)}
+    places = {
+        path: {tag.get(key) for key in ("id", "name") for tag in page.find_all(attrs={key: True})}
+        for path, page in pages.items()
+    }
     broken = []
     for path, page in pages.items():
         for link in page.select("[href], [src]"):
@@ -85,12 +89,7 @@ def test_internal_links_and_downloads_lead_somewhere(book):
             target = (path.parent / unquote(address.split("?")[0])).resolve() if address else path
             if target.is_dir() or not target.exists():
                 broken.append(f"{path.name}: {address}")
-            elif (
-                place
-                and target in pages
-                and not pages[target].find(id=unquote(place))
-                and not (pages[target].find(attrs={"name": unquote(place)}))
-            ):
+            elif place and unquote(place) not in places.get(target, {unquote(place)}):
                 broken.append(f"{path.name}: {address}#{place}")
     assert broken == []
 
