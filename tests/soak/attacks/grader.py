@@ -145,7 +145,7 @@ def _own_text(notebook):
 
 def _failing(notebook):
     """Cells that all fail with a name that nobody knows, each for long."""
-    source = "x = sum(range(2 * 10**5))\nnobody_knows"
+    source = "x = sum(range(10**6))\nnobody_knows"
     notebook["cells"] += [code_cell(f"{source}  # {k}", f"own-{k}") for k in range(900)]
     return notebook
 
@@ -201,7 +201,7 @@ FILES = {
     "a text of two million emoji": Attack("fills", shape=_own_text),
     "900 cells that fail": Attack("hangs", shape=_failing),
     "900 cells that lean on one another": Attack("fills", shape=_chained),
-    "a line that is long to read": Attack("hangs", ("%lsmagic\n" + "x." * 8_000 + "a ?",)),
+    "a line that is long to read": Attack("hangs", ("%lsmagic\n" + "x." * 30_000 + "a ?",)),
     "20,000 lines of magic": Attack("hangs", shape=_magics),
     "480,000 statements": Attack("fills", shape=_statements),
     "pictures": Attack("fills", shape=_pictures),
