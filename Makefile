@@ -28,9 +28,10 @@ test: for-tests .venv/.dev browser lint types test-313 ## everything: style, typ
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --dist loadgroup
 
 test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, a report card
-	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags
-	@$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/notebooks/test_always_runs.py -k "all or none"
-	@$(SECOND)/python -m labkit report-card --draws 1 --to build/report-card-313
+	@$(SECOND)/python -m labkit report-card --draws 1 --to build/report-card-313 & card=$$!; \
+	$(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/test_*.py tests/sim tests/tags \
+	&& $(SECOND)/python -m pytest -q -n 2 $(ON_SECOND) tests/notebooks/test_always_runs.py -k "all or none"; \
+	tests=$$?; wait $$card && exit $$tests
 
 wheels: .venv/.dev ## on which systems pip can install what a student needs
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/wheels.py
