@@ -23,7 +23,7 @@ from sphinx.util.docutils import SphinxDirective
 
 PIECES = ("open", "stiffness", "age", "singular")
 SETTINGS = ("controller", "path")
-WITHOUT = "On paper and without JavaScript, the recorded runs and the text tell the same."
+WITHOUT = "In print, or without JavaScript, the recorded runs and the text show the same thing."
 
 
 def names(text: str) -> list[str]:

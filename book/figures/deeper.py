@@ -38,8 +38,8 @@ def friction() -> HTML:
     shows("late and at 100 Hz", 100.0, lk.BAXTER.state_rate)
     fastest = float(np.median([np.abs(speed).max() for speed in found.speed[:4]]))
     share = true * fastest / (true * fastest + true_dry[1])
-    shows("because even at 0.3 rad/s, as fast as they swing, it is only a sixth of the friction",
-          (0.3, 1.0 / 6.0), (fastest, share), 0.06)  # fmt: skip
+    shows("because even at 0.3 rad/s, as fast as they swing, it is only about a sixth of the "
+          "friction", (0.3, 1.0 / 6.0), (fastest, share), 0.06)  # fmt: skip
     step, rate = 1.0 / lk.BAXTER.state_rate, five(model, lk.BAXTER)["joint torque"].rate
     shows("a cubic fitted to 21 neighbouring angles", 21.0, identification.WINDOW)
     shows("over the same 0.2 s", 0.2, (identification.WINDOW - 1) * step)

@@ -163,8 +163,8 @@ def _said(dials: Sequence[Dial], at: Sequence[int]) -> str:
 
 
 DEMOS = {
-    "scaling": "Live: four time scalings of the same way in the same time, with way, speed and"
-    " acceleration plotted against time and their numbers in a table.",
+    "scaling": "Live: four time scalings of the same distance in the same time, with position,"
+    " speed and acceleration plotted against time and their numbers in a table.",
     "jacobian": "Live: Baxter's arm with a slider for each joint; the tip's pose, the Jacobian as a"
     " table and its chosen column as arrows, and the manipulability.",
     "rotation": "Live: two orientations by roll, pitch and yaw; the error between them by the"

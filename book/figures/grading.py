@@ -49,7 +49,9 @@ def table_of_effort() -> HTML:
     glue("memory", f"{Limits().memory}", display=False)
     rows = [(f"{n:,}", *(_said(n * seconds / cores) for cores in CORES)) for n in CLASSES]
     head = ("Submissions", *(f"{cores} cores" for cores in CORES))
-    return table(head, rows, "Time to grade a class, where hardly anything is to be computed")
+    return table(
+        head, rows, "Time to grade a class with notebook 00, which has almost nothing to compute"
+    )
 
 
 COSTS = (

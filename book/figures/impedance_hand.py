@@ -141,7 +141,7 @@ def one_mass_by_hand() -> None:
 
 
 def felt_inertia() -> HTML:
-    """The inertia at Baxter's tip, in the upright plane, for a free and for a guided hand."""
+    """The inertia at Baxter's tip, in the vertical plane, for a free and for a guided hand."""
     model = lk.Model("left", lk.IDEAL)
     q = np.array(model.robot.ready)
     L = np.array(model.operational_inertia(q))
@@ -173,7 +173,7 @@ def felt_inertia() -> HTML:
         guided=L[0, 0],
     )
     return figure(
-        "The inertia at the ready arm's tip by direction, in the upright plane of x and z: the "
+        "The inertia at the ready arm's tip by direction, in the vertical plane of x and z: the "
         "distance of the curve from the middle, in kg.",
         f"Two closed curves. Free, the tip feels like {1 / mobility[0, 0]:.2g} kg "
         f"along x and {1 / mobility[2, 2]:.2g} kg along z. With everything else held, "

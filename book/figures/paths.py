@@ -79,8 +79,8 @@ def scalings() -> HTML:
     )
     axes[0].legend(ncols=2, fontsize="small", loc="upper left")
     return figure(
-        "Four time scalings of the same way in the same time. Only the quintic starts and ends "
-        "without a jump of the acceleration.",
+        "Four time scalings of the same distance in the same time. Only the quintic starts and "
+        "ends without a jump of the acceleration.",
         f"Three panels over two seconds: s, its speed and its acceleration. Peaks: {told}.",
     )
 

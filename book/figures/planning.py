@@ -38,6 +38,8 @@ READING = {
     for minutes, number in _CHAPTER.findall(path.read_text())
 }
 """Hours for the chapter of each notebook, as the chapter says."""
+ON_THE_MODEL = ("04", "05")
+"""Notebooks whose chapters use the equations of the chapter on the model."""
 CLASS, TEAM = 200, 3
 """Students, and how many of them write a report together, in the example of what marking costs."""
 TALK = "a talk about it: ten minutes with the team, one question to each"
@@ -104,7 +106,8 @@ def syllabi() -> HTML:
     for weeks, numbers in TRACKS.items():
         taken = [both for name, both in HOURS.items() if name[:2] in numbers]
         core, whole = (sum(x) for x in zip(*taken, strict=True))
-        read = sum(READING.get(number, 0.0) for number in numbers)
+        chapters = {*numbers, *("02" for number in numbers if number in ON_THE_MODEL)}
+        read = sum(READING.get(number, 0.0) for number in chapters)
         each = (whole + read) / float(weeks.split()[0])
         what = "all, and the report" if len(numbers) == len(HOURS) else ", ".join(numbers)
         rows.append((weeks, what, f"{core:g}", f"{whole:g}", f"{read:.2g}", f"{each:.2g}"))

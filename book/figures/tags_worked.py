@@ -389,7 +389,7 @@ def aims() -> HTML:
 
 def question() -> None:
     """How fast the tag of the task goes round: a quintic's peak is 15/8 of its mean."""
-    by_hand("a circle of 12 cm", 0.12, 2.0 * RADIUS)
+    by_hand("a circle 12 cm across", 0.12, 2.0 * RADIUS)
     by_hand("The hand is to stay 20 cm above the tag", 0.2, OFFSET[2])
     by_hand("With 30 % of the readings lost at random", 0.3, LOST)
     dials = inspect.signature(TagStream).parameters

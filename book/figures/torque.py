@@ -91,6 +91,7 @@ def sampled() -> HTML:
         "bare_200": radius(bare, REPORT_KP, REPORT_KD, 1 / RATES[0]),
         "bare_1000": radius(bare, REPORT_KP, REPORT_KD, 1 / RATES[1]),
         "real_200": radius(real, REPORT_KP, REPORT_KD, 1 / RATES[0]),
+        "bare_c": REPORT_KD / (RATES[1] * bare),
     }
     shows("At 200 Hz its spectral radius is", 200.0, RATES[0])
     shows("kg m² and at 200 Hz the radius is", 200.0, RATES[0])

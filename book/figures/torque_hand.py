@@ -139,7 +139,7 @@ def ticks() -> None:
         (8.0, 1.5, 200.0),
         (REPORT_KP, REPORT_KD, rate),
     )
-    shows("at its target but moving at 1 rad/s", 1.0, moving)
+    shows("start at its target with a speed of 1 rad/s", 1.0, moving)
     a, c = REPORT_KP * h**2 / (2.0 * I), REPORT_KD * h / I
     trace, det = 2.0 - a - c, 1.0 + a - c
     numbers({"tick_a": a, "tick_c": c, "tick_trace": trace, "tick_det": det}, ".3g")
