@@ -101,6 +101,8 @@ class Session(Simulated):
         try:
             while self.state != "closed":
                 self._one_run()
+            self.note = "ended: the arm is free for other cells, and Start begins again"
+            self._picture()
         finally:
             self.arm.become(self._usual)
             self.arm.world.owner = None
@@ -171,16 +173,14 @@ class Session(Simulated):
     def _pace(self, t: float) -> None:
         """Wait for the wall; a loop that is late by more than 0.1 s goes on from there."""
         ahead = self._began + t - (now := time.monotonic())
-        if ahead < -0.1:
-            self._began = now - t
+        self._began = now - t if ahead < -0.1 else self._began
         if now - self._heard > ABSENT:
             self.state, self.note = "paused", "nobody looked for a minute"
         if self._move != self._answered or now - self._real[-1][0] > FRAME:
             self._answered = self._move
             self._real.append((now, self.arm.world.t))
             self._picture()
-        if ahead > 0.0:
-            time.sleep(ahead)
+        time.sleep(max(0.0, ahead))
 
     def _obey(self, wait: bool = False) -> None:
         """Do what the page asked for; with `wait`, wait for something."""

@@ -208,7 +208,7 @@ def workspace_impedance(state, target, model, *, stiffness, damping):
         target: lk.PoseSample(pose, twist, dtwist): T_wd, shape (4, 4), the twist (v, w) and its
             rate, shape (6,) each, world axes.
         model: lk.Model, with pose(q), tip_jacobian(q), tip_jacobian_rate(q, dq),
-            operational_inertia(q), coriolis(q, dq) and gravity(q).
+            operational_inertia(q), coriolis(q, dq) of shape (7, 7), and gravity(q).
         stiffness: K of x, y, z and the three rotations, shape (6,), in [N/m] and [N m/rad].
         damping: D, shape (6,), in [N s/m] and [N m s/rad].
 
@@ -663,7 +663,7 @@ def by_hand(state, target, stiffness):
 
 wall = lk.Wall(T_ready[:3, 3] + [0.06, 0.0, 0.0], normal=(-1.0, 0.0, 0.0), size=(0.3, 0.3))
 law = "your impedance" if my_workspace_impedance is workspace_impedance else "a stand-in, not your impedance"
-lk.live(
+view = lk.live(
     lk.Arm("left", plant, q0=ready, world=lk.World(things=[wall])),
     {law: by_hand, "position mode": stiff},
     lk.Hold(T_ready, 1.0),
@@ -672,6 +672,7 @@ lk.live(
     payload=(0.0, 1.0),
     stiction=(0.0, 2.0),
 )
+view
 
 # %% [markdown]
 # ## Hand in

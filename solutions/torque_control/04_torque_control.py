@@ -109,7 +109,7 @@ def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
     Args:
         state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
         target: lk.Sample(position, velocity, acceleration) of the joints, shape (7,) each.
-        model: lk.Model, with mass_matrix(q), coriolis(q, dq) and gravity(q).
+        model: lk.Model, with mass_matrix(q), coriolis(q, dq) of shape (7, 7), and gravity(q).
         kp: Springs, shape (7,) or one number, in [N m/rad].
         kd: Dampers, shape (7,) or one number, in [N m s/rad].
         arm_compensates: Whether the arm carries its own weight.
@@ -217,7 +217,7 @@ def computed_torque(state, target, model, *, kp, kd, arm_compensates):
     Args:
         state: lk.State(t, q, dq), angles in [rad] and speeds in [rad/s], shape (7,) each.
         target: lk.Sample(position, velocity, acceleration) of the joints, shape (7,) each.
-        model: lk.Model, with mass_matrix(q), coriolis(q, dq), gravity(q) and
+        model: lk.Model, with mass_matrix(q), coriolis(q, dq) of shape (7, 7), gravity(q) and
             inverse_dynamics(q, dq, ddq) = M ddq + C dq + g.
         kp: Gains, shape (7,) or one number, in [1/s^2].
         kd: Gains, shape (7,) or one number, in [1/s].
@@ -717,10 +717,11 @@ def pulled(state, target, factor):
     return lk.control.springs(factor**2 * kp, factor * kd)(state, target)
 
 
-lk.live(
+view = lk.live(
     lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), {"springs": pulled, "computed torque": ct}, circle,
     title="Torque control", factor=(0.3, 2.0, 1.0), payload=(0.0, 1.0), stiction=(0.0, 1.0),
 )
+view
 
 # %% [markdown]
 # ## Hand in

@@ -507,10 +507,11 @@ def circling(state, target, kp):
     return with_gains(kp, 0.0)(state, target)
 
 
-lk.live(
+view = lk.live(
     lk.Arm("left", lk.BAXTER, q0=q0), circling, joints, title="Velocity control", kp=(0.0, 30.0, 5.0),
     state_delay=(0.0, 0.1), payload=(0.0, 1.0),
 )
+view
 
 # %% [markdown]
 # ## Hand in

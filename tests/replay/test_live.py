@@ -229,6 +229,22 @@ def test_two_laws_pause_step_and_reset(live):
     np.testing.assert_allclose(back["q"], READY, atol=1e-5)
 
 
+@pytest.mark.parametrize("first", [None, "pause"])
+def test_stop_is_told_and_start_begins_again(live, first):
+    """Stopped while it runs or while it pauses, it says that it ended, and can be started anew."""
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    until(frames, lambda f: f["t"] > 0.02)
+    if first:
+        session.tell({"kind": first})
+    session.tell({"kind": "close"})
+    assert "Start begins again" in until(frames, lambda f: f["state"] == "closed")["note"]
+    session.close()
+    frames.clear()
+    session.tell({"kind": "go"})
+    assert until(frames, lambda f: f["state"] == "running")["note"] == ""
+
+
 def test_other_cells_are_told_while_the_arm_is_live(live):
     """One thread owns the simulator; when it ends the arm is everybody's again."""
     session, frames = live({"springs": springy})
