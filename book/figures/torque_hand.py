@@ -166,7 +166,7 @@ def ticks() -> None:
     q = [float(one[0]) for one in x]
     numbers({"bump_mrad": 1e3 * max(q), "bump_ticks": int(np.argmax(q))}, ".2g")
     claim(
-        "is at its target at first and leaves it before it returns",
+        "It leaves the target before it returns",
         lambda first, most, last: first == 0.0 and most > 0.02 and 0.0 < last < 1e-3 * most,
         first=q[0],
         most=max(q),
