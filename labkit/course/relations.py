@@ -71,9 +71,9 @@ def related(
     if _only_at_rest(given, expected):
         return "Your answer is wrong only where nothing moves: before the start or from the end on."
     if len(parts) > len(wrong):
-        known = len(names) == len(parts)
-        named = [f"your `{names[k]}`" for k in wrong] if known else ["what is wrong of your answer"]
-        what = "each of " * (len(named) > 1) + " and ".join(named)
+        what = "the wrong part of your answer"
+        if len(names) == len(parts):
+            what = "each of " * (len(wrong) > 1) + " and ".join(f"your `{names[k]}`" for k in wrong)
         rest = ", and the rest is right"
     by_name = [arguments(call, question.arguments) for call in calls]
     a, b = parts[wrong[0]] if len(wrong) == 1 else (_joined(x, wrong) for x in (given, expected))

@@ -157,9 +157,9 @@ def number_by_number(found: Mapping[str, Any]) -> Picture:
     expected, given = found["expected"], found["given"]
     apart = [abs(a - b) for a, b in zip(expected, given, strict=True)]
     worst = max(range(len(apart)), key=apart.__getitem__)
-    which = f"Of {found['of']} numbers, number {worst + 1} is farthest off: expected"
-    which = which if found["of"] > 1 else "Expected"
-    alt = f"{which} {expected[worst]:.4g}, yours {given[worst]:.4g}."
+    first = f"Of {found['of']} numbers, number {worst + 1} is farthest off: expected"
+    alt = f"{first if found['of'] > 1 else 'Expected'} {expected[worst]:.4g}, "
+    alt += f"yours {given[worst]:.4g}."
     some = "" if found["of"] == len(given) else f" The first {len(given)} are shown."
     return Picture(side_by_side(expected, given, alt), alt + some)
 

@@ -101,7 +101,6 @@ class Session(Simulated):
         try:
             while self.state != "closed":
                 self._one_run()
-            self.note = "ended: the arm is free for other cells, and Start begins again"
             self._picture()
         finally:
             self.arm.become(self._usual)
@@ -173,7 +172,8 @@ class Session(Simulated):
     def _pace(self, t: float) -> None:
         """Wait for the wall; a loop that is late by more than 0.1 s goes on from there."""
         ahead = self._began + t - (now := time.monotonic())
-        self._began = now - t if ahead < -0.1 else self._began
+        if ahead < -0.1:
+            self._began = now - t
         if now - self._heard > ABSENT:
             self.state, self.note = "paused", "nobody looked for a minute"
         if self._move != self._answered or now - self._real[-1][0] > FRAME:
@@ -213,7 +213,7 @@ class Session(Simulated):
         self._keep = self._over = self.state in ("running", "paused")
 
     def _on_close(self, message: dict[str, Any]) -> None:
-        self.state = "closed"
+        self.state, self.note = "closed", "ended: other cells can use the arm; Start begins again"
 
     def _on_hand(self, message: dict[str, Any]) -> None:
         self._held = message["heard"]
