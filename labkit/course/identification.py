@@ -66,7 +66,12 @@ class Identification:
         points = f"{self.points:g} point{'' if self.points == 1 else 's'}"
         where = "core" if self.core else "extension"
         hint = f'- Stuck? `hint("{self.name}", 1)`.' if self.hints else ""
-        form = f"- Write {self.form}. Type values, not a calculation: the cell is not run again."
+        near = ""
+        if isinstance(self.judge, Measured):
+            near = f" It counts if it is off by at most {self.judge.tolerance:g} {self.judge.unit}."
+        form = (
+            f"- Write {self.form}.{near} Type values, not a calculation: the cell is not run again."
+        )
         head = f"**Find out: `{self.name}`** · {points} · {where}"
         return "\n".join([head, "", self.asks, "", form, *filter(None, [hint])])
 

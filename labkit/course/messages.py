@@ -39,7 +39,7 @@ def head(verdict: Verdict) -> str:
     says = "committed" if committed else HEADS[verdict.outcome]
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
-    elif _waits(verdict):
+    elif waits(verdict):
         return f"{verdict.name}: a possible answer. When it is marked, it earns {points} if it is \
 true of your own arm."
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
@@ -47,7 +47,7 @@ true of your own arm."
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
 
 
-def _waits(verdict: Verdict) -> bool:
+def waits(verdict: Verdict) -> bool:
     """Whether nothing can be said before it is marked: only there is the student's arm known."""
     right = verdict.outcome is Outcome.RIGHT and not verdict.complete
     return right and any(test.name == OWN_ARM for test in verdict.tests)
@@ -119,7 +119,7 @@ def message(
         case Outcome.NOT_ATTEMPTED:
             helps.append(f"To do: {question.asks}")
         case Outcome.RIGHT:
-            helps += [] if verdict.complete or _waits(verdict) else _unseen(question)
+            helps += [] if verdict.complete or waits(verdict) else _unseen(question)
         case Outcome.NOT_COUNTED:
             helps.append("You may use it elsewhere in the notebook; here, write it yourself.")
         case _:

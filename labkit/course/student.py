@@ -22,7 +22,7 @@ from .advice import line_of
 from .calling import heard
 from .card import card
 from .marking import Evidence, mark, not_counted, try_public
-from .messages import HEADS, Message, message, wrapped
+from .messages import HEADS, Message, message, waits, wrapped
 from .notebook import verdict_metadata
 from .observed import explained
 from .question import Question
@@ -286,7 +286,8 @@ def _say(says: Message, verdict: Verdict, found: Evidence | None) -> None:
         return
     from IPython.display import display
 
-    shown = card(says, verdict.outcome, found and _picture(found))
+    outcome = Outcome.NOT_TRIED if waits(verdict) else verdict.outcome
+    shown = card(says, outcome, found and _picture(found))
     display(shown, metadata=verdict_metadata(verdict), raw=True)
 
 

@@ -79,3 +79,11 @@ def test_a_number_of_ones_own_arm_is_not_called_right_where_the_arm_is_not_known
     assert says.startswith("m: a possible answer. When it is marked, it earns 3 points if it is")
     assert "right" not in says
     assert "not yet right" in tell(asked, mark(asked, lambda: 7.0))
+
+
+def test_how_near_a_measured_number_has_to_be_is_said_above_its_cell():
+    """A student knows when to stop measuring."""
+    asked = Identification(
+        "m", "?", Measured("payload", "kg", 0.0, 3.0, 0.01), 0.3, "a number", 3.0
+    )
+    assert "It counts if it is off by at most 0.01 kg." in asked.brief()
