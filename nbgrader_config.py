@@ -23,13 +23,13 @@ c.Execute.timeout = 120
 # What students wrote is shown to teachers without anything in it that runs.
 c.HTMLExporter.sanitize_html = True
 c.HTMLExporter.filters = {
-    "markdown2html": "labkit.grader.markup.markdown",
-    "clean_html": "labkit.grader.markup.clean",
+    "markdown2html": "labkit.grader.nbgrader.markup.markdown",
+    "clean_html": "labkit.grader.nbgrader.markup.clean",
 }
 
 # Nor does a name of theirs give commands to the terminal.
 c.Application.logging_config = {
-    "formatters": {"console": {"class": "labkit.grader.plain_log.PlainFormatter"}}
+    "formatters": {"console": {"class": "labkit.grader.nbgrader.plain_log.PlainFormatter"}}
 }
 
 # When work is due and what late work loses stands in course.toml; name a class of your own instead,
@@ -37,14 +37,14 @@ c.Application.logging_config = {
 c.AssignLatePenalties.plugin_class = "labkit.grader.rules.CourseRules"
 
 # formgrader's button and nbgrader's command write the pages that `labkit feedback` writes.
-c.GenerateFeedback.exporter_class = "labkit.grader.feedback_exporter.StudentPage"
+c.GenerateFeedback.exporter_class = "labkit.grader.feedback.exporter.StudentPage"
 
 # Students' code never runs in nbgrader's own process: a submission is brought into the release's
 # form and graded in a sandbox.  A folder with a bad name is named and left out first.
-c.Autograde.exporter_class = "labkit.grader.autograde.FitNames"
-c.Autograde.pre_convert_hook = "labkit.grader.autograde.unlink_foreign"
+c.Autograde.exporter_class = "labkit.grader.nbgrader.autograde.FitNames"
+c.Autograde.pre_convert_hook = "labkit.grader.nbgrader.autograde.unlink_foreign"
 c.Autograde.sanitize_preprocessors = [
-    "labkit.grader.autograde.Repair",
+    "labkit.grader.nbgrader.autograde.Repair",
     "nbgrader.preprocessors.ClearOutput",
     "nbgrader.preprocessors.DeduplicateIds",
     "nbgrader.preprocessors.OverwriteKernelspec",
@@ -52,7 +52,7 @@ c.Autograde.sanitize_preprocessors = [
     "nbgrader.preprocessors.CheckCellMetadata",
 ]
 c.Autograde.autograde_preprocessors = [
-    "labkit.grader.autograde.Isolated",
+    "labkit.grader.nbgrader.autograde.Isolated",
     "nbgrader.preprocessors.LimitOutput",
     "nbgrader.preprocessors.SaveAutoGrades",
     "nbgrader.preprocessors.AssignLatePenalties",

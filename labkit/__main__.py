@@ -33,10 +33,10 @@ def program() -> click.Group:
     commands: list[click.Command] = [submit_check, merge]
     examples = EXAMPLES
     if find_spec("labkit.grader"):
-        from .grader import cli, cli_author, cli_course, cli_export, cli_grade, cli_term
+        from .grader.commands import authors, course, export, grading, pages, term
 
-        grading = (cli_course, cli_term, cli_author, cli_grade, cli, cli_export)
-        commands += [one for module in grading for one in module.COMMANDS]
+        by_time = (course, term, authors, grading, pages, export)
+        commands += [one for module in by_time for one in module.COMMANDS]
         examples += EXAMPLES_FOR_INSTRUCTORS
     group = click.Group(
         "labkit",

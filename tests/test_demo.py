@@ -9,7 +9,11 @@ import demo
 import pytest
 
 from labkit.course.verdict import Outcome, Verdict
-from labkit.grader.results import Answer, Result, Results
+from labkit.grader.grading.results import (
+    Answer,
+    Result,
+    Results,
+)
 
 
 @pytest.fixture

@@ -98,11 +98,16 @@ ORDER = [
 ]
 """Lab and course from the ground up; each module imports from sets before its own alone."""
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}
+FOLDERS = [
+    *("sandbox", "", "grading", "nbgrader", "students", "marks", "peers", "feedback"),
+    *("defence", "cup", "terms", "gradescope", "commands"),
+]
+"""The grader's folders from the ground up; "" is `labkit/grader` itself, which all others share."""
 UPSTAIRS = {"grader", "__main__"}
 """The grader and the command line, which neither lab nor course knows."""
 # What simulates, what knows the equations, what draws and what sees.
 MODEL = {"kinematics", "model", "urdf"}
-DRAW = {"plotting", "replay", "grader.drawing", "course.reveal"}
+DRAW = {"plotting", "replay", "grader.feedback.drawing", "course.reveal"}
 SEE = {
     "tags.rendering",
     "tags.tag",
@@ -195,6 +200,26 @@ def test_no_modules_import_each_other_in_a_circle():
         found = {place(name.partition(".")[2]) for name, _ in imported(path) if "labkit." in name}
         below[module(path)] = found - {module(path), "labkit", "grader", "course"}
     graphlib.TopologicalSorter(below).prepare()
+
+
+GRADER = [path for path in FILES if names(path)[0] == "grader"]
+
+
+def folder(name):
+    """The folder of one of the grader's modules: "marks" of "grader.marks.table"."""
+    first = f"{name}.".split(".")[1]
+    return first if first in FOLDERS else ""
+
+
+@pytest.mark.parametrize("path", GRADER, ids=lambda p: str(p.relative_to(LABKIT)))
+def test_the_graders_folders_import_one_way(path):
+    """Each module of the grader imports from its own folder and from folders below it alone."""
+    here = FOLDERS.index(folder(module(path)))
+    for name, line in imported(path):
+        root, _, rest = name.partition(".")
+        if root == "labkit" and place(rest).startswith("grader."):
+            below = folder(place(rest))
+            assert FOLDERS.index(below) <= here, f"{where(path, line)}: may not import {below}"
 
 
 def test_the_order_names_modules_that_exist():

@@ -35,7 +35,7 @@ WIDE, HIGH, LEFT = 84, 30, 8
 
 def imported(name: str) -> set[str]:
     """The modules of labkit that a module imports when it is loaded or later."""
-    files = [HOME / f"{name}.py"] if (HOME / f"{name}.py").exists() else (HOME / name).glob("*.py")
+    files = [HOME / f"{name}.py"] if (HOME / f"{name}.py").exists() else (HOME / name).rglob("*.py")
     return {found for path in files for found in _named(path)} - {name}
 
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from labkit.errors import LabkitError, OutOfRange, UnknownName
-from labkit.grader.executor import dask_client
+from labkit.grader.grading.executor import dask_client
 from labkit.shapes import as_number
 
 Cell = Mapping[str, Any]

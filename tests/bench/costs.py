@@ -4,9 +4,13 @@ import json
 import time
 from contextlib import contextmanager
 
-from labkit.grader.batch import GradeOptions, grade_class, workers
-from labkit.grader.release import release
+from labkit.grader.grading.batch import (
+    GradeOptions,
+    grade_class,
+    workers,
+)
 from labkit.grader.submission import students
+from labkit.grader.terms.release import release
 
 from .courses import fresh_course
 

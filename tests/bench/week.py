@@ -11,8 +11,8 @@ import sys
 import time
 from datetime import timedelta
 
-from labkit.grader.release import release
-from labkit.grader.results import Results, digest
+from labkit.grader.grading.results import Results, digest
+from labkit.grader.terms.release import release
 
 from .courses import ROOT, fresh_course
 

@@ -14,9 +14,9 @@ from book_pages import ROOT
 from handmade import put
 
 from labkit.course.layout import Course
-from labkit.grader.gradebook import open_gradebook
+from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import FILE, read_rules
-from labkit.grader.term import PERSONAL_FILES
+from labkit.grader.terms.term import PERSONAL_FILES
 from solutions.paths import answers
 from tests.synthetic.inline import inline
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 from handmade import ROOT
 
-from labkit.grader import gradescope_zip
-from labkit.grader.gradescope import PLACE
+from labkit.grader.gradescope import setup_zip as gradescope_zip
+from labkit.grader.gradescope.run import PLACE
 from labkit.grader.sandbox.cgroup import Group
 
 GIVEN = {"memory": 768 * 2**20, "processor": 50_000}

@@ -11,8 +11,8 @@ from handmade import ROOT
 
 from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
-from labkit.grader.release import release
 from labkit.grader.sandbox.launch import Sandbox
+from labkit.grader.terms.release import release
 
 SEED = 7
 

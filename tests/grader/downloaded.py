@@ -11,7 +11,7 @@ from pathlib import Path
 from handmade import ROOT
 
 from labkit.course.layout import Course
-from labkit.grader.exchange import read_time
+from labkit.grader.timestamp import read_time
 
 NAME = "01_paths"
 MOODLE = "{}_{}_assignsubmission_file"

@@ -15,14 +15,18 @@ from labkit.course.layout import Course
 from labkit.course.merge import merge
 from labkit.course.notebook import read_cells
 from labkit.errors import LabkitError
-from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
-from labkit.grader.class_report import report
-from labkit.grader.feedback import page
-from labkit.grader.gradebook import open_gradebook, record
-from labkit.grader.marks import mark_of
+from labkit.grader.feedback.class_report import report
+from labkit.grader.feedback.page import page
+from labkit.grader.grading.batch import (
+    GradedSubmission,
+    GradeOptions,
+    grade_class,
+)
+from labkit.grader.grading.results import Results
+from labkit.grader.marks.table import mark_of
+from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.nbgrader_api import nbgrader_api
-from labkit.grader.release import release
-from labkit.grader.results import Results
+from labkit.grader.terms.release import release
 
 pytestmark = pytest.mark.slow  # whole classes are graded
 

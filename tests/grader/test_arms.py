@@ -12,8 +12,8 @@ from labkit.course import my_arm
 from labkit.course.bundle import Bundle
 from labkit.course.own_arm import FILE, HANDLES, Arms
 from labkit.errors import LabkitError
-from labkit.grader.release import release
-from labkit.grader.student_bundle import remarks
+from labkit.grader.terms.release import release
+from labkit.grader.terms.student_bundle import remarks
 
 NAME = "05_impedance"
 CLASS = "Login,First name,Last name,Team\nada,Ada,L,one\nbob,Bob,M,one\neve,Eve,N,\n"

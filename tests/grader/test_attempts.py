@@ -14,11 +14,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from labkit.errors import LabkitError
-from labkit.grader.attempts import attempts, install
-from labkit.grader.collect import collect
-from labkit.grader.exchange import SECRET
-from labkit.grader.gradebook import timestamp
-from labkit.grader.roster import FILE as ROSTER
+from labkit.grader.nbgrader.gradebook import timestamp
+from labkit.grader.students.attempts import attempts, install
+from labkit.grader.students.collect import collect
+from labkit.grader.students.exchange import SECRET
+from labkit.grader.students.roster import FILE as ROSTER
 
 ADA = ("Ada Lovelace", 101)
 
@@ -220,7 +220,7 @@ def test_a_collection_that_was_stopped_is_made_good(bare, tmp_path, monkeypatch)
     take(bare, shown(tmp_path / "1.zip", 1, (f"{NAME}.ipynb", "first")))
     new = shown(tmp_path / "2.zip", 2, (f"{NAME}.ipynb", "second"))
     with monkeypatch.context() as patch:
-        patch.setattr("labkit.grader.collect.install", lambda *_: 1 / 0)
+        patch.setattr("labkit.grader.students.collect.install", lambda *_: 1 / 0)
         assert take(bare, new) == ["Ada-Lovelace: not taken; ZeroDivisionError: division by zero"]
     assert counting(bare) == {"Ada-Lovelace": "first"}
     take(bare, new)

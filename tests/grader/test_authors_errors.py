@@ -11,7 +11,7 @@ from handmade import ROOT
 from labkit.course.layout import Course
 from labkit.course.problem import Problem, Trial, call
 from labkit.errors import LabkitError
-from labkit.grader import release
+from labkit.grader.terms import release
 
 NAME = "01_paths"
 

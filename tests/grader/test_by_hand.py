@@ -16,11 +16,11 @@ from made import NAME, notebook_of, result_of
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
-from labkit.grader.gradebook import open_gradebook, record
-from labkit.grader.plan import plan
-from labkit.grader.release import release
-from labkit.grader.results import Results
+from labkit.grader.grading.plan import plan
+from labkit.grader.grading.results import Results
+from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.sandbox.parse import read
+from labkit.grader.terms.release import release
 
 
 @pytest.fixture(scope="module")

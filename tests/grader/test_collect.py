@@ -28,15 +28,23 @@ from test_platforms import FILES, TEXTS
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.class_list import read_list
-from labkit.grader.collect import collect
-from labkit.grader.enrol import enrol, keep_numbers, settle
-from labkit.grader.exchange import SECRET
-from labkit.grader.identity import FILE, all_lms_users, lms_users
-from labkit.grader.platforms import LmsUser
-from labkit.grader.roster import FILE as ROSTER
-from labkit.grader.roster import read_roster, save_roster
 from labkit.grader.sandbox.limits import Limits
+from labkit.grader.students.class_list import read_list
+from labkit.grader.students.collect import collect
+from labkit.grader.students.enrol import (
+    enrol,
+    keep_numbers,
+    settle,
+)
+from labkit.grader.students.exchange import SECRET
+from labkit.grader.students.identity import (
+    FILE,
+    all_lms_users,
+    lms_users,
+)
+from labkit.grader.students.platforms import LmsUser
+from labkit.grader.students.roster import FILE as ROSTER
+from labkit.grader.students.roster import read_roster, save_roster
 
 NOBODY = 64990
 """A user number that this machine does not know."""
@@ -360,7 +368,7 @@ def test_a_secret_that_is_a_link_is_not_followed(bare, tmp_path):
 
 def test_collect_waits_for_nothing_and_follows_nobody(bare, tmp_path, monkeypatch):
     """A pipe, a link or a huge file costs its own student, in words."""
-    monkeypatch.setattr("labkit.grader.exchange.Limits", lambda: Limits(notebook=1))
+    monkeypatch.setattr("labkit.grader.students.exchange.Limits", lambda: Limits(notebook=1))
     folders = [handed_in(tmp_path / "in", who, "x") for who in ("ada", "bob", "carl")]
     pipe, link, huge = (folder / f"{NAME}.ipynb" for folder in folders)
     pipe.unlink()
@@ -457,7 +465,7 @@ def test_an_entry_that_lies_is_named(bare, tmp_path, changes, words):
 
 def test_a_bomb_is_not_unpacked(bare, tmp_path, monkeypatch):
     """However small it says it is, and however small it is packed."""
-    monkeypatch.setattr("labkit.grader.platforms.Limits", lambda: Limits(notebook=1))
+    monkeypatch.setattr("labkit.grader.students.platforms.Limits", lambda: Limits(notebook=1))
     path = tmp_path / "1.zip"
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(ADA, b" " * 2**22)
@@ -582,7 +590,7 @@ def test_two_do_not_collect_at_once(bare, tmp_path):
 
 def test_names_and_work_go_with_the_term(bare, tmp_path):
     """The roster, the numbers and the attempts are ignored by git, and archived."""
-    from labkit.grader.term import archive
+    from labkit.grader.terms.term import archive
 
     roster(bare, "bob,Bob,,,,,")
     take(bare, zipped(tmp_path / "1.zip", [BOB]))

@@ -19,9 +19,13 @@ from handmade import FULL, add, hand_in, nbgrader
 from plain_nbgrader import pack_hidden
 
 from labkit.course.notebook import kind
-from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
-from labkit.grader.feedback import page
-from labkit.grader.gradebook import open_gradebook
+from labkit.grader.feedback.page import page
+from labkit.grader.grading.batch import (
+    GradedSubmission,
+    GradeOptions,
+    grade_class,
+)
+from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.submission import students
 

@@ -13,13 +13,25 @@ from labkit import Sample, State
 from labkit.__main__ import main
 from labkit.course.baxter_cup import MARKS, PUBLIC_SEEDS
 from labkit.course.layout import CUP
-from labkit.grader import cup
-from labkit.grader.cup import A_DAY, SEEDS, Entry, entries, latest, play, seeds
-from labkit.grader.cup_table import as_text, give_bonus, page
-from labkit.grader.export import of_term
-from labkit.grader.marks import marks_of
+from labkit.grader.cup import entries as cup
+from labkit.grader.cup.entries import (
+    A_DAY,
+    SEEDS,
+    Entry,
+    entries,
+    latest,
+    play,
+    seeds,
+)
+from labkit.grader.cup.table import (
+    as_text,
+    give_bonus,
+    page,
+)
+from labkit.grader.grading.worker import TRIES
+from labkit.grader.marks.export import of_term
+from labkit.grader.marks.table import marks_of
 from labkit.grader.sandbox.launch import SandboxLost
-from labkit.grader.worker import TRIES
 
 HONEST = """
 import labkit as lk

@@ -18,13 +18,17 @@ from labkit.__main__ import main
 from labkit.course.layout import DEFENCE
 from labkit.course.marking import try_public
 from labkit.course.question import Loop
-from labkit.grader.defence import ASKED, Asked, draw
-from labkit.grader.defence_mark import await_mark, give_mark
-from labkit.grader.defence_page import write_page
-from labkit.grader.gradebook import record
-from labkit.grader.marks import marks_of
+from labkit.grader.defence.draw import (
+    ASKED,
+    Asked,
+    draw,
+)
+from labkit.grader.defence.mark import await_mark, give_mark
+from labkit.grader.defence.page import write_page
+from labkit.grader.grading.results import Results
+from labkit.grader.marks.table import marks_of
+from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.nbgrader_api import nbgrader_api
-from labkit.grader.results import Results
 
 
 def accepted(course, student, notebook):

@@ -9,7 +9,7 @@ import pytest
 from handmade import ROOT
 
 from labkit.course.layout import Course
-from labkit.grader.edits import edits, shown
+from labkit.grader.defence.edits import edits, shown
 
 LAW = '''import numpy as np
 

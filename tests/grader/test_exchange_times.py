@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from labkit.__main__ import main
-from labkit.grader import exchange_times
-from labkit.grader.attempts import attempts
-from labkit.grader.collect import collect
-from labkit.grader.exchange_times import SLACK, Times
 from labkit.grader.rules import read_rules
+from labkit.grader.students import exchange_times
+from labkit.grader.students.attempts import attempts
+from labkit.grader.students.collect import collect
+from labkit.grader.students.exchange_times import SLACK, Times
 
 STATED, WRITTEN = "2026-03-01 10:00:00 UTC", "2026-03-03 09:12:00 UTC"
 HOURS = st.floats(0.0, 3600.0 * 24)

@@ -17,14 +17,18 @@ from processes import below, child, running, wait_until_gone
 
 from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError
-from labkit.grader import executor as pools
-from labkit.grader import worker
-from labkit.grader.executor import LocalExecutor, executor
+from labkit.grader.grading import executor as pools
+from labkit.grader.grading import worker
+from labkit.grader.grading.executor import LocalExecutor, executor
+from labkit.grader.grading.worker import (
+    Task,
+    close_sandbox,
+    grade_submission,
+)
 from labkit.grader.sandbox import cgroup
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation, NoIsolation
 from labkit.grader.submission import Submission
-from labkit.grader.worker import Task, close_sandbox, grade_submission
 
 NAME = "01_paths"
 

@@ -20,12 +20,12 @@ from labkit.course import Call, Close, Loop, Question, Test, Tuned
 from labkit.course.judges import AtMost
 from labkit.course.marking import mark, try_public
 from labkit.course.verdict import Misconception, Outcome
-from labkit.grader import seen
-from labkit.grader.drawing import curve, side_by_side
-from labkit.grader.feedback import MEASURES, page
-from labkit.grader.grade import _answer
-from labkit.grader.plan import Plan
-from labkit.grader.results import Result
+from labkit.grader.feedback.drawing import curve, side_by_side
+from labkit.grader.feedback.page import MEASURES, page
+from labkit.grader.grading import seen
+from labkit.grader.grading.grade import _answer
+from labkit.grader.grading.plan import Plan
+from labkit.grader.grading.results import Result
 from labkit.metrics import Summary
 from labkit.replay.motion import unpack
 

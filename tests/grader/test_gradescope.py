@@ -20,14 +20,15 @@ from made import NAME, WHY, result_of
 from labkit.course.bundle import Bundle
 from labkit.course.cli import FOR_INSTRUCTORS
 from labkit.course.own_arm import HANDLES, Arms
-from labkit.grader import gradescope, gradescope_zip
-from labkit.grader.class_list import Student
-from labkit.grader.gradescope import report
-from labkit.grader.roster import Roster
+from labkit.grader.gradescope import run as gradescope
+from labkit.grader.gradescope import setup_zip as gradescope_zip
+from labkit.grader.gradescope.run import report
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation, NoIsolation
+from labkit.grader.students.class_list import Student
+from labkit.grader.students.roster import Roster
 
 DAEMON = """
 import os, signal

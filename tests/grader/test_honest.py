@@ -10,7 +10,7 @@ from labkit.course.layout import Course
 from labkit.course.solved import inlined
 from labkit.course.source import look
 from labkit.course.withheld import withheld_tools
-from labkit.grader.plan import plan
+from labkit.grader.grading.plan import plan
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.tricks import tricks
 from tests.synthetic import Draft, kinds

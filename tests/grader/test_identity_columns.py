@@ -7,10 +7,15 @@ import io
 
 import pytest
 
-from labkit.grader.class_list import Student
-from labkit.grader.export import LAYOUTS, as_csv, left_out, remarks
-from labkit.grader.mark import Mark
-from labkit.grader.platforms import LmsUser
+from labkit.grader.marks.export import (
+    LAYOUTS,
+    as_csv,
+    left_out,
+    remarks,
+)
+from labkit.grader.marks.mark import Mark
+from labkit.grader.students.class_list import Student
+from labkit.grader.students.platforms import LmsUser
 
 ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")
 

@@ -10,7 +10,7 @@ from made import NAME, handed_in
 from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader import lock
-from labkit.grader.batch import GradeOptions, grade_class
+from labkit.grader.grading.batch import GradeOptions, grade_class
 from labkit.grader.lock import WHOLE, exclusive_run
 
 SHARDS = [WHOLE, (1, 2), (2, 2), (1, 3)]

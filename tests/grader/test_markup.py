@@ -16,13 +16,13 @@ from traitlets.config.loader import PyFileConfigLoader
 
 from labkit.__main__ import main
 from labkit.course.verdict import Outcome
-from labkit.grader.class_report import report
-from labkit.grader.feedback import page
-from labkit.grader.gradebook import record
-from labkit.grader.mark import Line
-from labkit.grader.marks import mark_of
-from labkit.grader.markup import clean
-from labkit.grader.results import Results
+from labkit.grader.feedback.class_report import report
+from labkit.grader.feedback.page import page
+from labkit.grader.grading.results import Results
+from labkit.grader.marks.mark import Line
+from labkit.grader.marks.table import mark_of
+from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.nbgrader.markup import clean
 
 MARKDOWN = [
     "<script>alert(1)</script>",

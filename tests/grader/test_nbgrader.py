@@ -10,8 +10,8 @@ from controls import CONTROLS
 from handmade import FULL, cell_of, hand_in, nbgrader
 
 from labkit.__main__ import main
-from labkit.grader.gradebook import open_gradebook
-from labkit.grader.results import Results
+from labkit.grader.grading.results import Results
+from labkit.grader.nbgrader.gradebook import open_gradebook
 
 NAME = "01_paths"
 

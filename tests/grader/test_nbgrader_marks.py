@@ -11,7 +11,7 @@ from plain_nbgrader import grade_with_nbgrader, pack_hidden
 
 from labkit.course.layout import Course
 from labkit.course.solved import inlined
-from labkit.grader.release import release
+from labkit.grader.terms.release import release
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"

@@ -15,15 +15,21 @@ from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import UnknownName
-from labkit.grader import term
-from labkit.grader.class_list import Student
-from labkit.grader.gradebook import open_gradebook
-from labkit.grader.identity import remember
-from labkit.grader.platforms import LmsUser
+from labkit.grader import seeds
+from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.pseudonyms import pseudonyms
-from labkit.grader.release import FORBIDDEN
-from labkit.grader.roster import Roster, read_roster, save_roster, tell_gradebook
-from labkit.grader.student_bundle import export_course
+from labkit.grader.students.class_list import Student
+from labkit.grader.students.identity import remember
+from labkit.grader.students.platforms import LmsUser
+from labkit.grader.students.roster import (
+    Roster,
+    read_roster,
+    save_roster,
+    tell_gradebook,
+)
+from labkit.grader.terms import term
+from labkit.grader.terms.release import FORBIDDEN
+from labkit.grader.terms.student_bundle import export_course
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -38,7 +44,7 @@ def test_a_term_has_a_seed_of_its_own_and_a_record(course):
     """A new term draws a seed that is not the public one, and keeps each bundle's hash."""
     record = term.new_term(course, None, ("01_paths",))
     bundle = json.loads((course.bundle / "01_paths.json").read_text())
-    assert record["seed"] == bundle["seed"] == term.seed_of(course) != PUBLIC_SEED
+    assert record["seed"] == bundle["seed"] == seeds.seed_of(course) != PUBLIC_SEED
     assert record["bundles"] == {"01_paths": bundle["hash"]}
 
 
@@ -48,9 +54,9 @@ def test_a_correction_keeps_the_seed(course):
     for more, seed in (([], PUBLIC_SEED), (["--seed", "41"], 41), ([], 41)):
         assert main([*arguments, *more]) == 0
         assert Bundle.of(course, "01_paths").data["seed"] == seed
-    assert term.seed_for(course, "02_model") == PUBLIC_SEED
+    assert seeds.seed_for(course, "02_model") == PUBLIC_SEED
     term.new_term(course, 43, ("02_model",))
-    assert term.seed_for(course, "01_paths") == 43, "not the last term's, which was seen"
+    assert seeds.seed_for(course, "01_paths") == 43, "not the last term's, which was seen"
 
 
 def test_a_public_seed_is_said_to_be_public(course, capsys):
@@ -188,7 +194,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert main(words) == 0
     assert "archived" not in capsys.readouterr().out
     record = course.term.read_text()
-    seed = str(term.seed_of(course))
+    seed = str(seeds.seed_of(course))
     save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
     hand_in = course.submitted / "ada/00_warmup/00_warmup.ipynb"
     result = course.results / "00_warmup/ada.json"
@@ -205,7 +211,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     (old,) = term.archives(course)
     assert "archived: 2 students, 1 submission, 1 graded mark" in said
     assert f"course_private/{old.folder.name}; to return" in said
-    assert str(term.seed_of(course)) not in said, "the terminal may be projected"
+    assert str(seeds.seed_of(course)) not in said, "the terminal may be projected"
     assert said.count("then type: labkit release 00_warmup\n") == 1
     back = dict(re.findall(r"[(;] ?([\w., ]+) to ([\w/ ]+?)(?=[;)])", said))
     kept = {name for names in back for name in names.split(", ")}
@@ -216,7 +222,7 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
             now = folder / name
             shutil.rmtree(now) if now.is_dir() else now.unlink(missing_ok=True)
             shutil.move(old.folder / name, now)
-    assert hand_in.exists() and result.exists() and str(term.seed_of(course)) == seed
+    assert hand_in.exists() and result.exists() and str(seeds.seed_of(course)) == seed
     assert len(read_roster(course).students) == 2
 
 
@@ -244,7 +250,7 @@ def test_a_release_that_fails_leaves_the_new_seed(course, monkeypatch):
     monkeypatch.setattr(term, "release", fails)
     with pytest.raises(LabkitError, match="could not make it"):
         term.new_term(course, 41)
-    assert term.seed_of(course) == 41
+    assert seeds.seed_of(course) == 41
 
 
 @pytest.mark.parametrize("text", ["", "{}", "[1]", '{"seed": "secret"}'])
@@ -254,7 +260,7 @@ def test_a_damaged_record_is_a_sentence(course, text):
     file.parent.mkdir()
     file.write_text(text)
     with pytest.raises(LabkitError, match="holds no seed; restore it"):
-        term.seed_of(course)
+        seeds.seed_of(course)
 
 
 def test_the_students_repository_holds_no_answer(tmp_path):

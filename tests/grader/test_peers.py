@@ -18,13 +18,18 @@ from labkit.course.bundle import Bundle
 from labkit.course.marking import all_alike
 from labkit.course.verdict import Outcome
 from labkit.errors import LabkitError
-from labkit.grader.class_list import Student
-from labkit.grader.grade import rejection
-from labkit.grader.gradebook import record
-from labkit.grader.marks import marks_of
-from labkit.grader.peers import handed_out, readers, sheet_of, without_names
-from labkit.grader.release import release
-from labkit.grader.results import Answer, Results
+from labkit.grader.grading.grade import rejection
+from labkit.grader.grading.results import Answer, Results
+from labkit.grader.marks.table import marks_of
+from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.peers.readers import (
+    handed_out,
+    readers,
+    sheet_of,
+    without_names,
+)
+from labkit.grader.students.class_list import Student
+from labkit.grader.terms.release import release
 
 NAME = "08_report"
 PNG = "iVBORw0KGgo="

@@ -7,7 +7,7 @@ from downloaded import canvas_writes, moodle_writes
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from labkit.grader.platforms import readings
+from labkit.grader.students.platforms import readings
 
 PIECES = st.sampled_from(
     [

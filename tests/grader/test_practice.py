@@ -13,8 +13,8 @@ from handmade import ROOT, cell_of, put
 
 from labkit.__main__ import main
 from labkit.course import hand_in
-from labkit.grader.release import release
-from labkit.grader.student_bundle import PICTURE, _start_here
+from labkit.grader.terms.release import release
+from labkit.grader.terms.student_bundle import PICTURE, _start_here
 
 NAME = "00_warmup"
 

@@ -11,8 +11,8 @@ from handmade import ROOT
 
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.batch import GradeOptions
-from labkit.grader.results import Results
+from labkit.grader.grading.batch import GradeOptions
+from labkit.grader.grading.results import Results
 from tests.synthetic import expected_file
 from tests.synthetic.__main__ import main
 from tests.synthetic.rehearsal import rehearse

@@ -17,7 +17,7 @@ from labkit.course.problem import _none
 from labkit.course.refusals import refusals, stand_ins
 from labkit.course.solved import inlined, solution_notebook
 from labkit.errors import LabkitError
-from labkit.grader.release import FORBIDDEN, release
+from labkit.grader.terms.release import FORBIDDEN, release
 
 COURSE = Course.here(Path(__file__))
 NAME = "00_warmup"
@@ -130,7 +130,7 @@ def test_a_students_environment_is_told_what_an_instructors_has(monkeypatch, cap
     def missing(*args):
         raise ModuleNotFoundError("No module named 'nbgrader'", name="nbgrader.apps")
 
-    monkeypatch.setattr("labkit.grader.release.release", missing)
+    monkeypatch.setattr("labkit.grader.terms.release.release", missing)
     assert main(["release", NAME, "--course", str(COURSE.root)]) == 2
     said = "labkit release: nbgrader is missing; type: pip install 'labkit[instructor]'\n"
     assert capsys.readouterr().err == said
@@ -152,7 +152,7 @@ def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
             raise LabkitError("the first cell says 24 points")
         return f"{name} is made"
 
-    monkeypatch.setattr("labkit.grader.release.release", release)
+    monkeypatch.setattr("labkit.grader.terms.release.release", release)
     words = ["00_warmup", "01_paths", "08_report", "--course", str(COURSE.root), "--seed", "7"]
     assert main(["release", *words]) == 2
     said = capsys.readouterr()

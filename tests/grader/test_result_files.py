@@ -23,9 +23,9 @@ from labkit.grader import atomic as module
 from labkit.grader.atomic import write
 from labkit.grader.clean import clean_data
 from labkit.grader.each import Failed
-from labkit.grader.grade import grade
-from labkit.grader.results import Result, Results
-from labkit.grader.standing import standing
+from labkit.grader.grading.grade import grade
+from labkit.grader.grading.results import Result, Results
+from labkit.grader.grading.standing import standing
 
 WRONG = {
     "hashes {}": {"hashes": {}},

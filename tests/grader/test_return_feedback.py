@@ -8,7 +8,7 @@ import pytest
 from handmade import hand_in, nbgrader, raw
 
 from labkit.__main__ import main
-from labkit.grader.exchange import SECRET
+from labkit.grader.students.exchange import SECRET
 
 NAME = "01_paths"
 

@@ -11,9 +11,14 @@ from made import NAME, graded, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.attempts import Seen, install, keep, that_counts
-from labkit.grader.gradebook import open_gradebook
+from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import Late, read_rules
+from labkit.grader.students.attempts import (
+    Seen,
+    install,
+    keep,
+    that_counts,
+)
 
 RULES = f"""
 name = "Robot control, winter 2026"

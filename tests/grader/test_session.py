@@ -16,14 +16,14 @@ from labkit.course.layout import Course
 from labkit.course.messages import why
 from labkit.course.reply import Failed
 from labkit.errors import OutOfRange
-from labkit.grader import grade as checker
-from labkit.grader.grade import grade
-from labkit.grader.plan import imports
-from labkit.grader.release import release
+from labkit.grader.grading import grade as checker
+from labkit.grader.grading.grade import grade
+from labkit.grader.grading.plan import imports
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import REPLY, VALUES, Limits, TextBudget, slowness
 from labkit.grader.sandbox.parse import read
 from labkit.grader.sandbox.session import MAX_LOST, RemoteFunction, Session, Step
+from labkit.grader.terms.release import release
 
 LARGEST = 2_000_000  # bytes of a result
 

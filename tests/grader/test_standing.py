@@ -11,11 +11,11 @@ import pytest
 from made import NAME, graded, handed_in, notebook_of, result_of
 
 from labkit.__main__ import main
-from labkit.grader.export import LAYOUTS
-from labkit.grader.gradebook import open_gradebook
-from labkit.grader.identity import remember
-from labkit.grader.platforms import LmsUser
-from labkit.grader.results import Results
+from labkit.grader.grading.results import Results
+from labkit.grader.marks.export import LAYOUTS
+from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.students.identity import remember
+from labkit.grader.students.platforms import LmsUser
 
 GRADE = f"type: labkit grade {NAME} --student ada"
 

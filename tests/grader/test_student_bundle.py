@@ -11,7 +11,7 @@ import zipfile
 import pytest
 from handmade import ROOT
 
-from labkit.grader.student_bundle import student_bundle
+from labkit.grader.terms.student_bundle import student_bundle
 
 ALONE = """
 import sys

@@ -17,19 +17,27 @@ from labkit.__main__ import main
 from labkit.course.outcomes import OUTCOMES
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
-from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
-from labkit.grader.changes import changes
-from labkit.grader.class_report import report
-from labkit.grader.export import LAYOUTS, as_csv, left_out
-from labkit.grader.feedback import page
-from labkit.grader.gradebook import record
-from labkit.grader.mark import Line, Mark
-from labkit.grader.marks import mark_of, marks_of
-from labkit.grader.platforms import LmsUser
+from labkit.grader.feedback.class_report import report
+from labkit.grader.feedback.page import page
+from labkit.grader.grading.batch import (
+    GradedSubmission,
+    GradeOptions,
+    grade_class,
+)
+from labkit.grader.grading.changes import changes
+from labkit.grader.grading.results import Results
+from labkit.grader.marks.export import (
+    LAYOUTS,
+    as_csv,
+    left_out,
+)
+from labkit.grader.marks.mark import Line, Mark
+from labkit.grader.marks.table import mark_of, marks_of
+from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.pseudonyms import pseudonyms
-from labkit.grader.results import Results
+from labkit.grader.students.platforms import LmsUser
 from labkit.grader.submission import students
-from labkit.grader.term import archive
+from labkit.grader.terms.term import archive
 from tests.synthetic import make_class
 
 pytestmark = pytest.mark.slow  # whole classes are graded
@@ -160,7 +168,9 @@ def test_grade_says_first_and_never_lowers_unasked(course, monkeypatch):
     assert {r.student: r.score for r in Results(course, NAME)} == {
         s: r.score for s, r in before.items()
     }
-    monkeypatch.setattr("labkit.grader.batch.grade_aside", lambda *_: iter(()))  # no more work
+    monkeypatch.setattr(
+        "labkit.grader.grading.batch.grade_aside", lambda *_: iter(())
+    )  # no more work
     again = list(grade_class(course, NAME, who, how))
     kept = {one.result.student for one in again if one.says.startswith("kept")}
     assert kept == {m.after.student for m in moved if m.by < 0} and len(again) == len(moved)

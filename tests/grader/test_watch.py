@@ -5,8 +5,8 @@ from __future__ import annotations
 from handmade import hand_in
 from made import NAME, notebook_of, result_of
 
-from labkit.grader import batch
-from labkit.grader.batch import GradeOptions, watch
+from labkit.grader.grading import batch
+from labkit.grader.grading.batch import GradeOptions, watch
 
 
 def test_each_notebook_is_graded_once_as_it_comes(course, monkeypatch):

@@ -9,8 +9,8 @@ from handmade import hand_in
 from made import NAME, WHY, notebook_of, result_of
 
 from labkit.__main__ import main
-from labkit.grader.gradebook import open_gradebook, record
-from labkit.grader.results import Results
+from labkit.grader.grading.results import Results
+from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.whys import DRAWN, drawn
 
 WHYS = [f"why_{k}" for k in range(8)]

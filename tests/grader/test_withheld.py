@@ -10,10 +10,10 @@ from ways import WAYS, Way
 
 from labkit.course.bundle import Bundle
 from labkit.course.verdict import Outcome
-from labkit.grader.class_report import report
-from labkit.grader.feedback import page
-from labkit.grader.grade import grade
-from labkit.grader.marks import mark_of
+from labkit.grader.feedback.class_report import report
+from labkit.grader.feedback.page import page
+from labkit.grader.grading.grade import grade
+from labkit.grader.marks.table import mark_of
 
 pytestmark = pytest.mark.slow  # a sandbox for each way
 

@@ -16,7 +16,7 @@ from labkit.course import question_data
 from labkit.course.layout import Course
 from labkit.course.notebook import source_notebook
 from labkit.course.serialize import encode
-from labkit.grader.release import FORBIDDEN, release
+from labkit.grader.terms.release import FORBIDDEN, release
 
 COURSE = Course.here(Path(__file__))
 NAMES = COURSE.names()

@@ -26,8 +26,8 @@ from typing import Any
 import psutil
 
 import labkit
-from labkit.grader import batch
-from labkit.grader.executor import LocalExecutor
+from labkit.grader.grading import batch
+from labkit.grader.grading.executor import LocalExecutor
 
 IDLE = 60.0
 """Seconds in which a command, what it started and the worker compute next to nothing, and none of

@@ -10,7 +10,7 @@ from soak.attacks.place import release_into
 from soak.commands import worker
 
 from labkit.course.layout import Course
-from labkit.grader import batch
+from labkit.grader.grading import batch
 
 
 @pytest.fixture(scope="session")

@@ -13,7 +13,7 @@ from typing import Any
 
 import nbformat
 
-from labkit.grader.export import IDENTITIES
+from labkit.grader.marks.export import IDENTITIES
 
 from .classes import HONEST, NAME
 from .commands import Ended

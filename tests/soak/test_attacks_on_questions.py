@@ -10,8 +10,12 @@ from soak.attacks.attack import code_cell
 from soak.attacks.place import ROOT
 
 from labkit.course.layout import Course
-from labkit.grader.batch import GradedSubmission, GradeOptions, grade_class
-from labkit.grader.release import release
+from labkit.grader.grading.batch import (
+    GradedSubmission,
+    GradeOptions,
+    grade_class,
+)
+from labkit.grader.terms.release import release
 
 pytestmark = pytest.mark.soak
 CASES = Course(ROOT).names()

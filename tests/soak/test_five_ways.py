@@ -16,9 +16,9 @@ from soak.attacks.place import full_marks
 
 from labkit.__main__ import main
 from labkit.course.layout import Course
-from labkit.grader.gradebook import open_gradebook, record
-from labkit.grader.release import release
-from labkit.grader.results import Results
+from labkit.grader.grading.results import Results
+from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.terms.release import release
 
 FIRST, SECOND = (2026, 3, 1, 12, 0, 0), (2026, 3, 3, 12, 0, 0)
 WHEN = {FIRST: "2026-03-01 12:00", SECOND: "2026-03-03 12:00"}

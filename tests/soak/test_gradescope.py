@@ -15,13 +15,13 @@ from handmade import ROOT, add, put, raw
 
 from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
-from labkit.grader.grade import grade
-from labkit.grader.release import release
+from labkit.grader.grading.grade import grade
 from labkit.grader.sandbox import mounts
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation
+from labkit.grader.terms.release import release
 
 from .classes import notebook
 

@@ -19,7 +19,7 @@ from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
 from labkit.course.notebook import manifest, source_notebook, verdict_in
 from labkit.course.withheld import find
-from labkit.grader.grade import grade
+from labkit.grader.grading.grade import grade
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
 from tests.synthetic.inline import inline

@@ -24,7 +24,7 @@ from labkit.course.problem import Problem
 from labkit.course.question import Question
 from labkit.errors import LabkitError
 from labkit.grader.atomic import write
-from labkit.grader.results import Results
+from labkit.grader.grading.results import Results
 
 from . import kinds
 from .inline import inline

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from labkit.course.layout import Course
 from labkit.course.seed import PUBLIC_SEED
-from labkit.grader.batch import GradeOptions, workers
 from labkit.grader.each import Failures
+from labkit.grader.grading.batch import GradeOptions, workers
 
 from . import expected_file, make_class
 from .rehearsal import rehearse

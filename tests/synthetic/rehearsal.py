@@ -13,17 +13,21 @@ from labkit.course.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import LabkitError
 from labkit.grader.atomic import write
-from labkit.grader.batch import GradeOptions, common_failures, grade_class
-from labkit.grader.class_report import report
-from labkit.grader.collect import collect
 from labkit.grader.each import Failed, Failures
-from labkit.grader.export import LAYOUTS, as_csv
-from labkit.grader.feedback import write_feedback
-from labkit.grader.gradebook import record
-from labkit.grader.marks import marks_of
-from labkit.grader.release import release
-from labkit.grader.standing import standing
+from labkit.grader.feedback.class_report import report
+from labkit.grader.feedback.page import write_feedback
+from labkit.grader.grading.batch import (
+    GradeOptions,
+    common_failures,
+    grade_class,
+)
+from labkit.grader.grading.standing import standing
+from labkit.grader.marks.export import LAYOUTS, as_csv
+from labkit.grader.marks.table import marks_of
+from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.students.collect import collect
 from labkit.grader.submission import students
+from labkit.grader.terms.release import release
 
 from . import differences, make_class
 

@@ -22,7 +22,7 @@ from soak.attacks.undefended import COMMANDS, started
 from labkit.__main__ import main
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.batch import GradeOptions, grade_class
+from labkit.grader.grading.batch import GradeOptions, grade_class
 from labkit.grader.sandbox.limits import Limits
 
 LIMITS = Limits(cell=2.0, call=1.0, question=8.0, wall=40.0)

@@ -20,7 +20,7 @@ from soak.attacks.others import VICTIM
 
 from labkit.course.layout import Course
 from labkit.course.notebook import about, grade_id, kind
-from labkit.grader.release import release
+from labkit.grader.terms.release import release
 
 NAME = "01_paths"
 ROOT = Path(__file__).parents[3]
@@ -158,7 +158,7 @@ def _plant(course: Course) -> None:
 
 
 def _name_in_the_gradebook(course: Course) -> None:
-    from labkit.grader.gradebook import open_gradebook
+    from labkit.grader.nbgrader.gradebook import open_gradebook
 
     with open_gradebook(course) as book:
         book.update_or_create_student(VICTIM, first_name=CANARY)

@@ -1,0 +1,1 @@
+"""What an instructor types: labkit's verbs, by the time of the term when they are used."""

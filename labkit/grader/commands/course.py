@@ -1,0 +1,229 @@
+"""Commands before grading: the machine, notebooks for students, roster, hand-ins."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import wraps
+from pathlib import Path
+from typing import Any
+from zoneinfo import ZoneInfo
+
+import click
+
+from ...course.cli import PATH, verb
+from ...course.layout import CUP, Course
+from ...errors import LabkitError
+
+SEED = click.IntRange(min=0)
+
+
+def of_course(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command the option ``--course`` and hand it the course."""
+
+    @click.option(
+        "--course",
+        type=PATH,
+        metavar="DIR",
+        help="Folder of the course; by default the one you are in.",
+    )
+    @wraps(command)
+    def on_course(course: Path | None, **given: Any) -> int:
+        return command(course=Course.here(course), **given)
+
+    return on_course
+
+
+def of_assignment(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command an assignment's name; the course must have an assignment of that name."""
+
+    @click.argument("assignment")
+    @of_course
+    @wraps(command)
+    def on_assignment(course: Course, assignment: str, **given: Any) -> int:
+        if assignment != CUP:
+            course.notebook_source(assignment)
+        return command(course=course, assignment=assignment, **given)
+
+    return on_assignment
+
+
+names = click.argument("names", nargs=-1, metavar="[NAME]...")
+
+
+@verb("01_paths --seed 7")
+@names
+@click.option(
+    "--seed",
+    type=SEED,
+    help="Seed of the hidden cases; by default the term's, or the last one used.",
+)
+@of_course
+def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
+    """Make the students' notebooks.
+
+    Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made. One that
+    is refused stops none of the others; the reasons come at the end, with exit code 2.
+    """
+    from ..seeds import public_warning, seed_for
+    from ..terms.release import release
+
+    names = names or course.names()
+    for name in names:
+        course.notebook_source(name)
+    seeds: set[int] = set()
+    refused: list[str] = []
+    for name in names:
+        used = seed_for(course, name) if seed is None else seed
+        try:
+            print(release(course, name, used), flush=True)
+            seeds.add(used)
+        except LabkitError as error:
+            refused.append(str(error) if name in str(error) else f"{name}: {error}")
+    if refused:
+        raise LabkitError("\n".join(refused))
+    print("tried: known mistakes, stand-ins, public cases from memory; more by: labkit report-card")
+    for warning in filter(None, map(public_warning, seeds)):
+        print(warning)
+    print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
+    return 0
+
+
+@verb("00_warmup 01_paths --to week1.zip")
+@names
+@click.option(
+    "--to",
+    type=PATH,
+    metavar="FILE",
+    help="The zip to write; dist/baxter-lab.zip by default.",
+)
+@click.option(
+    "--book",
+    metavar="ADDRESS",
+    help="Link to the book at ADDRESS; by default the zip holds the book, if it was built.",
+)
+@of_course
+def student_bundle(
+    course: Course, names: tuple[str, ...], to: Path | None, book: str | None
+) -> int:
+    """Write the zip that students unpack and start.
+
+    Without a NAME the zip holds every assignment that was released.
+    """
+    from ..terms.student_bundle import remarks, student_bundle
+
+    path = student_bundle(course, names, to or course.root / "dist" / "baxter-lab.zip", book)
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+    for says in remarks(course, names or course.names()):
+        print(says, file=sys.stderr)
+    return 0
+
+
+@verb("import participants.csv")
+@click.argument("action", type=click.Choice(["import"]), metavar="import")
+@click.argument("file", type=PATH, metavar="FILE.csv")
+@click.option(
+    "--assignment",
+    metavar="NAME",
+    help="FILE is Moodle's grading worksheet of this assignment: it has the students' numbers.",
+)
+@of_course
+def students(course: Course, action: str, file: Path, assignment: str | None) -> int:
+    """Import a list of students into the roster.
+
+    The list comes from Moodle or Canvas, or is any table with a row for each student.
+
+    Exit code: 0 if the list was imported, 1 if it was but a student's work is in two folders
+    (named at the end), 2 if the list was not imported.
+    """
+    from ..students.enrol import import_list
+
+    taken = import_list(course, file, assignment)
+    print("\n".join(taken.told))
+    for sentence in (*taken.left, *taken.alike):
+        print(sentence, file=sys.stderr)
+    return 1 if taken.left else 0
+
+
+@verb("01_paths moodle.zip")
+@of_assignment
+@click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
+@click.option(
+    "--unverified",
+    is_flag=True,
+    help="Exchange: also take hand-ins of users whom this machine does not know.",
+)
+@click.option(
+    "--named",
+    metavar="PATTERN",
+    help="How to find the student in a file's path: 'paths-{student}/*.ipynb'.",
+)
+@click.option(
+    "--at",
+    metavar="TIME",
+    help="Time of the download or clone; counts as the hand-in time of files without their own.",
+)
+@click.option(
+    "--peer-review",
+    is_flag=True,
+    help="Collect the sheets that students filled in, with their reviews of others' reports.",
+)
+def collect(
+    course: Course,
+    assignment: str,
+    sources: tuple[Path, ...],
+    unverified: bool,
+    named: str | None,
+    at: str | None,
+    peer_review: bool,
+) -> int:
+    """Collect what students handed in, from any platform.
+
+    A source is a zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange. Clones
+    of GitHub Classroom, and any other folder or zip of files, need --named. Every notebook that
+    was handed in is kept, in attempts/.
+
+    Exit code: 0 if everything was collected, 1 if a file was not collected or its owner is not
+    certain (named at the end), 2 if nothing could be collected.
+    """
+    from ..peers.readers import sheet_of
+    from ..rules import read_rules
+    from ..students.collect import collect
+    from ..timestamp import read_time
+
+    assignment = sheet_of(assignment) if peer_review else assignment
+    when = read_time(at, ZoneInfo(read_rules(course).zone)) if at else None
+    if at and when is None:
+        raise LabkitError(f"{at!r} is not a time; write 2026-11-02 23:59")
+    doubtful = []
+    try:
+        for source in sources:
+            for taken in collect(
+                course, assignment, source, unverified=unverified, named=named, at=when
+            ):
+                if taken.fine:
+                    print(taken, flush=True)
+                else:
+                    doubtful.append(taken)
+    finally:
+        for taken in doubtful:
+            print(taken, file=sys.stderr)
+    return 1 if doubtful else 0
+
+
+@verb("")
+def doctor() -> int:
+    """Check whether this machine can grade safely.
+
+    The sandbox is tried from inside. Each missing part is named with the command that installs it.
+    """
+    from ..doctor import examine
+
+    bad = False
+    for finding in examine():
+        print(finding, flush=True)
+        bad |= finding.needed and not finding.fine
+    return 1 if bad else 0
+
+
+COMMANDS = (doctor, release, student_bundle, students, collect)

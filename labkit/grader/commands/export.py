@@ -1,0 +1,179 @@
+"""The command that writes tables of marks, what other platforms take, and the cup's board."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from ...course.cli import verb
+from ...course.layout import (
+    CUP,
+    UNRELEASED,
+    Course,
+)
+from ...errors import LabkitError
+from ..each import Failed, Failures
+from .course import of_course
+from .pages import (
+    nobody,
+    tell,
+    to_file,
+    write,
+)
+
+if TYPE_CHECKING:
+    from ..marks.mark import Mark
+
+TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
+"""Layouts of marks."""
+QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
+"""Layouts of the concept test."""
+Form = Literal["a", "b"]
+"""Of the concept test."""
+
+
+@verb("01_paths --to marks.csv")
+@click.argument("assignment", required=False)
+@of_course
+@click.option(
+    "--layout",
+    type=click.Choice([*TABLES, *QUIZZES, "gradescope", "cup"]),
+    default="questions",
+    help="moodle: for Moodle's gradebook; moodle-worksheet: for the assignment's page in Moodle; "
+    "paper, moodle-quiz, canvas-quiz: the concept test instead of marks; gradescope: the zip with "
+    "which Gradescope grades ASSIGNMENT itself; cup: the board of the Baxter Cup, after the new "
+    "entries were run in the sandbox, at most three of a handle in a day.",
+)
+@click.option("--form", type=click.Choice(["a", "b"]), help="Which form of the concept test.")
+@click.option(
+    "--final", is_flag=True, help="Cup: run on the seeds of the final, and give the bonus for it."
+)
+@click.option(
+    "--column", metavar="NAME", help="The platform's name of the assignment: 'Paths (4711)'."
+)
+@click.option(
+    "--absent-zero",
+    is_flag=True,
+    help="Write 0, not an empty cell, for a student who handed in nothing.",
+)
+@to_file
+def export(
+    course: Course,
+    assignment: str | None,
+    layout: str,
+    form: Form | None,
+    final: bool,
+    column: str | None,
+    absent_zero: bool,
+    to: Path | None,
+) -> int:
+    """Write marks, the concept test, or the board of the cup.
+
+    The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
+    was graded, and the total with the weights of course.toml.
+    """
+    from ..marks.export import (
+        LAYOUTS,
+        as_csv,
+        of_term,
+        remarks,
+    )
+    from ..marks.table import marks_of
+    from ..rules import read_rules
+
+    if layout == "gradescope":
+        return _autograder(course, assignment, to)
+    if layout in QUIZZES:
+        return _concept_test(course, layout, form, assignment, to)
+    if form:
+        raise LabkitError(f"--form is of the concept test: --layout {', '.join(QUIZZES)}")
+    if layout == "cup" and assignment is None:
+        return _board(course, final, to)
+    if final or layout == "cup":
+        raise LabkitError("for the cup's board type: labkit export --layout cup [--final]")
+
+    def read(name: str) -> list[Mark]:
+        if name not in UNRELEASED:
+            course.notebook_source(name)
+        found = list(marks_of(course, name))
+        if all(mark.absent for mark in found):
+            return []
+        return [replace(m, raw=0.0) if absent_zero and m.absent else m for m in found]
+
+    if assignment is None:
+        rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
+        names += UNRELEASED
+        term = {name: marks for name in names if (marks := read(name))}
+        if not term:
+            raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
+        for name, marks in term.items():
+            tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
+        write(as_csv(of_term(term, {name: rules.weight(name) for name in term})), to)
+        return int(any(mark.missing for marks in term.values() for mark in marks))
+    marks = read(assignment)
+    if not marks:
+        raise nobody(assignment, None)
+    tell(remarks(layout, marks), sys.stderr)
+    write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
+    return int(any(mark.missing for mark in marks))
+
+
+def _concept_test(
+    course: Course, layout: str, form: Form | None, assignment: str | None, to: Path | None
+) -> int:
+    """Write a form of the concept test."""
+    from ..terms.concepts import LAYOUTS
+
+    if to is None or form is None or assignment:
+        raise LabkitError(f"type: labkit export --layout {layout} --form a --to FILE")
+    to.write_bytes(LAYOUTS[layout](course, form))
+    print(f"written: {to}")
+    return 0
+
+
+def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
+    """Write the zip for Gradescope; name those whose own arm it cannot tell."""
+    from ..gradescope.setup_zip import autograder
+
+    if assignment is None or to is None:
+        raise LabkitError("name ASSIGNMENT, and the zip to write: --to FILE")
+    with Failures() as failures:
+        unknown = autograder(course, assignment, to)
+        why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
+        failures.add("not known to Gradescope", [Failed(x.id, why) for x in unknown])
+        print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
+    return failures.code
+
+
+def _board(course: Course, final: bool, to: Path | None) -> int:
+    """Run the new entries of the cup and print the board; write it as a page too."""
+    from ..cup.entries import latest, play
+    from ..cup.table import (
+        as_text,
+        give_bonus,
+        page,
+    )
+    from ..seeds import public_warning, seed_of
+    from ..submission import misnamed
+
+    with Failures() as failures:
+        failures.add("not run", misnamed(course, CUP))
+        played = play(course, datetime.now(UTC).date(), final)
+        for entry in failures.sift(played, "not run"):
+            print(f"run: {entry.handle}", flush=True)
+        found = latest(course, final)
+        tell(as_text(found), sys.stdout)
+        if to is not None:
+            write(page(course, found, final), to)
+        if final:
+            give_bonus(course, found)
+        tell(filter(None, [public_warning(seed_of(course))]), sys.stderr)
+    return failures.code
+
+
+COMMANDS = (export,)

@@ -1,0 +1,219 @@
+"""Commands that run students' code: grade it, explain a mark."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from ...course.cli import verb
+from ...course.layout import Course
+from ...errors import LabkitError
+from ..each import Failures
+from .course import of_assignment, of_course
+from .pages import one_student, tell
+
+if TYPE_CHECKING:
+    from ..grading.batch import GradedSubmission
+
+jobs = click.option(
+    "--jobs",
+    type=click.IntRange(min=1),
+    metavar="N",
+    default=lambda: len(os.sched_getaffinity(0)),
+    help="Number of workers; one for each core by default.",
+)
+
+
+def _shard(text: str) -> tuple[int, int]:
+    first, _, last = text.partition("/")
+    if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
+        raise click.BadParameter(f"{text} is not a part; write 1/4, 2/4, 3/4 or 4/4")
+    return int(first), int(last)
+
+
+@verb("01_paths --student ada")
+@of_assignment
+@one_student
+@jobs
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object a line, for programs.")
+@click.option("--again", is_flag=True, help="Also grade what is already graded.")
+@click.option("--diff", is_flag=True, help="Change no mark; list the marks that would change.")
+@click.option("--watch", is_flag=True, help="Keep grading new hand-ins until you press Ctrl-C.")
+@click.option(
+    "--lower",
+    is_flag=True,
+    help="After a test has changed, also record marks that become lower.",
+)
+@click.option(
+    "--dask",
+    metavar="ADDRESS",
+    help="Address of a Dask scheduler whose workers share this folder.",
+)
+@click.option(
+    "--shard",
+    type=_shard,
+    default="1/1",
+    metavar="i/n",
+    help="Grade only the i-th of n parts of the class.",
+)
+@click.option(
+    "--unsafe-no-isolation",
+    "isolated",
+    flag_value=False,
+    default=True,
+    help="Without a sandbox: students' code can then read and delete your files.",
+)
+def grade(course: Course, assignment: str, student: str | None, as_json: bool, **how: Any) -> int:
+    """Grade every submission that is not graded yet.
+
+    Each submission is graded in a sandbox of its own. After you have changed a test and released
+    the assignment, all submissions are graded again. No mark is lowered unless you add --lower.
+    """
+    from ..grading.batch import (
+        GradeOptions,
+        common_failures,
+        grade_class,
+        watch,
+    )
+    from ..grading.changes import changes, summary
+    from ..grading.results import Result, Results
+    from ..lock import WHOLE, exclusive_run
+    from ..nbgrader.gradebook import record
+
+    diff, watching = how.pop("diff"), how.pop("watch")
+    said = sys.stderr if as_json else sys.stdout
+    options = GradeOptions(**how, tell=partial(print, file=sys.stderr, flush=True))
+    with Failures() as failures:
+        if watching:
+            for one in failures.sift(watch(course, assignment, options), "not graded"):
+                print(_line(one, as_json), flush=True)
+                recorded = record(course, assignment, [one.result])
+                tell(failures.sift(recorded, "not in the gradebook"), said)
+        who = _handed_in(course, assignment, student, failures)
+        if diff:
+            with exclusive_run(Results(course, assignment).folder):
+                found = changes(course, assignment, who, options)
+                tell(summary(list(failures.sift(found, "not graded"))), sys.stdout)
+            tell(_on_top(course, assignment), sys.stdout)
+            return failures.code
+        graded: list[Result] = []
+        done = failures.sift(grade_class(course, assignment, who, options), "not graded")
+        for number, one in enumerate(done, start=1):
+            graded.append(one.result)
+            print(_line(one, as_json, f"[{number}/{len(who)}] "), flush=True)
+        if options.shard == WHOLE:
+            recorded = record(course, assignment, graded)
+            tell(failures.sift(recorded, "not in the gradebook"), said)
+            everybody = graded if student else list(Results(course, assignment))
+            tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
+        if graded and not as_json:
+            tell(_on_top(course, assignment), sys.stdout)
+            print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
+    return failures.code
+
+
+def _on_top(course: Course, assignment: str) -> Iterator[str]:
+    """What the points that are printed leave out."""
+    from ...course.bundle import Bundle
+
+    if by_hand := Bundle.of(course, assignment).by_hand:
+        yield f"not included: {by_hand:g} points that are marked by hand"
+
+
+def _line(one: GradedSubmission, as_json: bool, number: str = "") -> str:
+    """The line that is printed for a graded submission."""
+    from ...course.serialize import record_data
+
+    says = f" ({one.says})" if one.says else ""
+    return json.dumps(record_data(one.result)) if as_json else f"{number}{one.result}{says}"
+
+
+@verb("ada bang_bang")
+@click.argument("student")
+@click.argument("question")
+@click.option(
+    "--assignment",
+    metavar="NAME",
+    help="Needed if several assignments have a QUESTION of that name.",
+)
+@of_course
+def explain(course: Course, student: str, question: str, assignment: str | None) -> int:
+    """Explain the mark of an answer, with its numbers.
+
+    The answer runs once more in the sandbox. You see what the student may be shown, and then,
+    for you alone, the hidden case that decided the mark. Numbers and runs are written to a page.
+    """
+    from ..feedback.explain import explain
+
+    print(explain(course, student, question, assignment))
+    return 0
+
+
+def _points(ctx: click.Context, option: click.Parameter, text: str | None) -> list[int] | None:
+    if text is None:
+        return None
+    words = text.split(",")
+    if not all(word.strip().isdecimal() for word in words):
+        raise click.BadParameter(f"{text} is not a mark; write whole numbers, such as 2,3,1")
+    return [int(word) for word in words]
+
+
+@verb("ada --mark 2,3,1")
+@click.argument("student")
+@click.option(
+    "--mark",
+    metavar="A,B,C",
+    callback=_points,
+    help="After the defence: the points of each question, from 0 to 3.",
+)
+@of_course
+def defence(course: Course, student: str, mark: list[int] | None) -> int:
+    """Print the page of a student's oral examination.
+
+    It asks about three functions of theirs that were accepted, each with a mistake put into it.
+    The second side has the answers. Which functions and mistakes follows from the term's seed.
+    """
+    from ..defence.draw import draw
+    from ..defence.mark import await_mark, give_mark
+    from ..defence.page import write_page
+    from ..seeds import public_warning, seed_of
+
+    if mark is not None:
+        give_mark(course, student, mark)
+        print(f"{student}: {sum(mark)} points for the defence")
+        return 0
+    asked = draw(course, student)
+    path = write_page(course, student, asked)
+    await_mark(course, student, asked)
+    print(f"{', '.join(one.of.question.name for one in asked)}: {path}")
+    if public_warning(seed_of(course)):
+        print("drawn with the public seed, so anyone can know it; begin a term: labkit term new")
+    return 0
+
+
+def _handed_in(
+    course: Course, assignment: str, student: str | None, failures: Failures
+) -> list[str]:
+    """The students who handed in, or the one asked for; folders with unfit names are failures."""
+    from ..submission import (
+        misnamed,
+        none_of,
+        students,
+    )
+
+    found = students(course, assignment)
+    who = [student] if student else found
+    if student is None:
+        failures.add("not graded", misnamed(course, assignment))
+    if set(who) - set(found) or not (who or failures.code):
+        raise LabkitError(none_of(course, assignment, student))
+    return who
+
+
+COMMANDS = (grade, explain, defence)

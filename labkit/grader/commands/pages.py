@@ -1,0 +1,158 @@
+"""Commands for graded work: feedback pages and a report on the class."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, TextIO
+
+import click
+
+from ...course.cli import PATH, verb
+from ...course.layout import Course
+from ...errors import LabkitError
+from ..each import Failed, Failures
+from .course import of_assignment
+
+if TYPE_CHECKING:
+    from ..marks.mark import Mark
+
+one_student = click.option("--student", metavar="S", help="Only this student.")
+to_file = click.option(
+    "--to", type=PATH, metavar="FILE", help="Write to FILE instead of the screen."
+)
+
+
+@verb("01_paths --student ada")
+@of_assignment
+@one_student
+@click.option(
+    "--moodle", type=PATH, metavar="ZIP", help="Also write a zip of feedback files for Moodle."
+)
+@click.option(
+    "--unmarked", is_flag=True, help="Write the pages before all answers are marked by hand."
+)
+@click.option(
+    "--peer-review",
+    is_flag=True,
+    help="Instead of pages, write a sheet for each student with two reports of others to review.",
+)
+def feedback(
+    course: Course,
+    assignment: str,
+    student: str | None,
+    moodle: Path | None,
+    unmarked: bool,
+    peer_review: bool,
+) -> int:
+    """Write a feedback page for each student.
+
+    Some answers are marked by hand, in formgrader. No page is written until they are all marked;
+    --unmarked writes the pages before. What readers said of a report is on its authors' page.
+    """
+    from ..feedback.page import moodle_zip, write_feedback
+    from ..marks.table import marks_of
+    from ..peers.readers import reviews
+    from ..peers.sheet import hand_out
+    from ..students.exchange import for_exchange
+
+    with Failures() as failures:
+        if peer_review:
+            tell(failures.sift(hand_out(course, assignment), "no sheet"), sys.stdout)
+            return failures.code
+        everybody = [mark for mark in marks_of(course, assignment) if not mark.absent]
+        if not unmarked:
+            _wait_for_marks(everybody)
+        marks = [mark for mark in everybody if student in {None, mark.student}]
+        if not marks:
+            raise nobody(assignment, student)
+        pages = write_feedback(course, assignment, marks)
+        made = list(failures.sift(pages, "no page"))
+        size = sum(path.stat().st_size for path in made) / 1e6
+        print(f"pages in {course.root / 'feedback'}: {len(made)}, {size:.1f} MB")
+        sent = for_exchange(course, assignment, made)
+        if any(list(failures.sift(sent, "not for the exchange"))):
+            print(f"back to the exchange: nbgrader release_feedback {assignment}")
+        if moodle:
+            count = moodle_zip(course, assignment, made, moodle)
+            size = moodle.stat().st_size / 1e6
+            print(f"for Moodle, {count} of {len(made)}, {size:.1f} MB: {moodle}")
+        tell((f"review missing: {says}" for says in reviews(course, assignment)[1]), sys.stdout)
+    return failures.code
+
+
+@verb("01_paths --names")
+@of_assignment
+@click.option("--names", is_flag=True, help="Show real names; for your eyes only.")
+@to_file
+@click.option("--jplag", type=PATH, metavar="DIR", help="Also write the answers to DIR, for JPlag.")
+def class_report(
+    course: Course, assignment: str, names: bool, to: Path | None, jplag: Path | None
+) -> int:
+    """Report what the class got right and wrong.
+
+    The report counts mistakes by their names. Students have pseudonyms unless you add --names.
+    """
+    from ...course.bundle import Bundle
+    from ..feedback.class_report import (
+        FEWEST,
+        for_jplag,
+        report,
+    )
+    from ..marks.table import marks_of
+    from ..pseudonyms import pseudonyms
+
+    with Failures() as failures:
+        marks = [mark for mark in marks_of(course, assignment) if not mark.author]
+        if not any(mark.result for mark in marks):
+            raise nobody(assignment, None, next((m.missing for m in marks if m.missing), ""))
+        out = [mark for mark in marks if mark.missing and not mark.lines]
+        failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
+        problems = {p.name: p for p in course.problems(assignment)}
+        pseudonym = pseudonyms(course)
+        called, fewest = str if names else pseudonym, 1 if names else FEWEST
+        asked = Bundle.of(course, assignment).questions
+        truths = {p.name: p.truth for p in course.predictions(assignment)}
+        write(report(assignment, marks, problems, called, fewest, asked, truths), to)
+        if jplag:
+            written = for_jplag([m.result for m in marks if m.result], jplag, pseudonym)
+            print(f"{written} answers in {jplag}", file=sys.stderr)
+    return failures.code
+
+
+def _wait_for_marks(marks: Iterable[Mark]) -> None:
+    """Raise a LabkitError if a person still has something to mark."""
+    open_ones = [mark for mark in marks if mark.open and not mark.author]
+    waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
+    if waiting:
+        some = ", ".join(waiting[:5]) + (", ..." if len(waiting) > 5 else "")
+        raise LabkitError(
+            f"{some}: these answers wait for a mark by hand, {len(waiting)} students in all; give "
+            "it in formgrader, or add --unmarked to write the pages without these marks"
+        )
+
+
+def nobody(assignment: str, student: str | None, why: str = "") -> LabkitError:
+    """The error where nothing is graded yet, or ``why`` no result can be read."""
+    who = f"{student} is not" if student else "nobody is"
+    why = why or f"type: labkit grade {assignment}"
+    return LabkitError(f"{who} graded in {assignment}; {why}")
+
+
+def tell(sentences: Iterable[str], where: TextIO) -> None:
+    """Print sentences as they come."""
+    for sentence in sentences:
+        print(sentence, file=where, flush=True)
+
+
+def write(text: str, where: Path | None) -> None:
+    """Write a text to a file or, without one, to the screen."""
+    if where is None:
+        sys.stdout.write(text)
+    else:
+        where.write_text(text, encoding="utf-8")
+        print(f"written: {where}")
+
+
+COMMANDS = (feedback, class_report)

@@ -1,0 +1,121 @@
+"""The command that begins, lists and forgets terms."""
+
+from __future__ import annotations
+
+import sys
+
+import click
+
+from ...course.cli import verb
+from ...course.layout import Course
+from ...errors import LabkitError
+from .course import (
+    SEED,
+    names,
+    of_course,
+)
+from .pages import tell
+
+
+@verb("new 01_paths")
+@click.argument("action", type=click.Choice(["new", "list", "forget"]), metavar="new|list|forget")
+@names
+@click.option(
+    "--seed",
+    type=SEED,
+    help="new: seed of the hidden cases; drawn at random by default.",
+)
+@click.option(
+    "--student",
+    metavar="S",
+    help="forget: everything of one student, in all terms.",
+)
+@click.option(
+    "--older",
+    type=click.FloatRange(0),
+    metavar="YEARS",
+    help="forget: terms that ended at least YEARS years ago.",
+)
+@click.option(
+    "--yes",
+    is_flag=True,
+    help="new: end a term that has students or marks; forget: delete, instead of only listing "
+    "what would be deleted.",
+)
+@of_course
+def term(
+    course: Course,
+    action: str,
+    names: tuple[str, ...],
+    seed: int | None,
+    student: str | None,
+    older: float | None,
+    yes: bool,
+) -> int:
+    """Begin a term, list terms, delete old records.
+
+    \b
+    new     archives the last term and releases each NAME, or all assignments,
+            with a new seed; refuses, without --yes, if the last term has
+            students, submissions or marks
+    list    lists the terms that are stored
+    forget  lists what it would delete: terms that ended some YEARS ago, or
+            everything of one student; with --yes it deletes them
+
+    The law may say how long marks must be kept.
+    """  # noqa: D301
+    from ..terms.forget import (
+        entries_of,
+        forget,
+        left_by_hand,
+        places_of,
+        unknown,
+    )
+    from ..terms.term import (
+        about,
+        archives,
+        new_term,
+        old_rules,
+        refuse_running,
+        running,
+        way_back,
+    )
+
+    if action == "new":
+        if not yes:
+            refuse_running(course)
+        there = running(course)
+        record = new_term(course, seed, names)
+        if record["archived"]:
+            print(f"archived: {there or 'files without students'}")
+            print(way_back(course, record["archived"]))
+        print(f"a new term begins, released: {', '.join(record['bundles'])}")
+        print("its secret seed is in course_private/term.json; keep a copy")
+        tell(filter(None, [old_rules(course)]), sys.stdout)
+    elif action == "list":
+        print("\n".join(about(course)))
+    else:
+        if (student is None) == (older is None):
+            raise LabkitError("say what to forget: --older YEARS, or --student NAME")
+        entries, by_hand = [], []
+        if student is None:
+            found = [one.folder for one in archives(course, older or 0.0)]
+        else:
+            found, entries = places_of(course, student), entries_of(course, student)
+            if not (found or entries):
+                raise unknown(course, student)
+            by_hand = list(left_by_hand(course, student))
+        if yes:
+            forget(course, found, entries, student or "")
+        done, changed = ("deleted", "no more in") if yes else ("would go", "would go from")
+        tell((f"{done}: {path.relative_to(course.root)}" for path in found), sys.stdout)
+        tell((f"{changed} {path.relative_to(course.root)}" for path in entries), sys.stdout)
+        tell(by_hand, sys.stdout)
+        if not found and student is None:
+            print("there is nothing to forget")
+        elif not yes:
+            print("nothing is deleted yet; add --yes")
+    return 0
+
+
+COMMANDS = (term,)

@@ -1,0 +1,1 @@
+"""The Baxter Cup: entries run in the sandbox, and their table."""

@@ -1,0 +1,222 @@
+"""The Baxter Cup: entries run in the sandbox, on seeds of the term that no entry can read.
+
+An entry is a notebook that calls `labkit.course.cup` with its controller.  The arm, the tour and
+the seeds stay in this process; the sandbox is only asked for one command after another.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing, suppress
+from dataclasses import dataclass, replace
+from datetime import date
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ...control import Command, State
+from ...course.baxter_cup import (
+    MARKS,
+    CupRun,
+    cup_run,
+)
+from ...course.judges import Close
+from ...course.layout import CUP, Course
+from ...course.own_arm import Arms
+from ...course.question import Question
+from ...course.serialize import read_record, record_data
+from ...errors import LabkitError
+from ...run import Controller
+from ...trajectory import AnySample
+from ..atomic import write
+from ..clean import clean_line
+from ..each import Failed, for_student
+from ..grading.grade import parse
+from ..grading.results import digest
+from ..grading.seen import fitting, motion
+from ..grading.worker import in_sandbox
+from ..sandbox.launch import Sandbox
+from ..sandbox.limits import Limits, slowness
+from ..sandbox.mounts import NoIsolation
+from ..sandbox.protocol import Disconnected
+from ..sandbox.session import (
+    RemoteFunction,
+    Session,
+    Step,
+)
+from ..seeds import seed_of
+from ..submission import Submission, students
+from ..whys import rank
+
+FOLDER = "cup"
+"""In ``results/``, where each student has a file of entries."""
+SEEDS = 3
+"""Runs of an entry, on the board as in the final."""
+A_DAY = 3
+"""So many entries of a handle are run on the board in one day."""
+LIMITS = Limits(question=60.0, wall=200.0)
+"""A run asks a controller 3,000 times; it may take 60 s for all its answers."""
+_LAW, _BY_POSE = (Question(name, 0.0, "", Close(), ()) for name in ("cup_law", "cup_by_pose"))
+_ENTER = f"""
+from dataclasses import replace
+from labkit import BAXTER, Model
+from labkit.course import cup
+if not hasattr(cup, "make"):
+    raise NameError("the notebook calls cup(...) nowhere")
+{_LAW.name} = cup.make(Model("left", replace(BAXTER, name="cup")))
+{_BY_POSE.name} = cup.workspace
+"""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What came of one notebook.
+
+    Attributes:
+        student: Who handed it in.
+        handle: By which the table knows the student, or the team.
+        notebook: Hash of the file.
+        day: On which it was run, as in 2026-11-22.
+        final: Whether it was run on the seeds of the final.
+        scores: In [mm] on each seed; None where the arm did not reach the end.
+        why: Why a run has no score; empty if all have one.
+        motion: The first run, as the viewer reads it; empty in all but the last entry.
+    """
+
+    student: str
+    handle: str
+    notebook: str
+    day: str
+    final: bool
+    scores: tuple[float | None, ...] = ()
+    why: str = ""
+    motion: str = ""
+
+    @property
+    def score(self) -> float:
+        """The mean of all runs, in [mm]; infinite if one has no score."""
+        known = [x for x in self.scores if x is not None]
+        return float(np.mean(known)) if len(known) == SEEDS else np.inf
+
+    @property
+    def beaten(self) -> int:
+        """The number of published marks that it beats."""
+        return sum(self.score < mark for mark in marks().values())
+
+
+def marks() -> Mapping[str, float]:
+    """The published marks, in [mm], the lowest first."""
+    means = {name: float(np.mean(scores)) for name, scores in MARKS.items()}
+    return dict(sorted(means.items(), key=lambda pair: pair[1]))
+
+
+def seeds(course: Course, final: bool) -> tuple[int, ...]:
+    """The seeds of the board or of the final, by HMAC under the term's secret."""
+    draw = partial(rank, seed_of(course), "final" if final else "board")
+    return tuple(int.from_bytes(draw(f"{CUP}/{k}")[:4], "big") for k in range(SEEDS))
+
+
+def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failed]:
+    """Run each notebook that was not run yet; of a handle at most `A_DAY` on the board in a day.
+
+    Yields:
+        Each entry that was run, or why one was not.
+
+    Raises:
+        NoIsolation: No sandbox can be made here.
+    """
+    had = Counter(x.handle for x in entries(course) if x.day == str(today) and not x.final)
+    handles = Arms.of(course.root).handles
+    limits = LIMITS.scaled(slowness())
+    for student in students(course, CUP):
+        data, _, why = Submission.of(course, CUP, student).read(limits.notebook)
+        handle = handles.get(student, student)
+        new = Entry(student, handle, digest(data), str(today), final, why=why)
+        past = of_student(course, student)
+        if any((x.notebook, x.final) == (new.notebook, final) for x in past):
+            continue
+        if not final and had[handle] >= A_DAY:
+            yield Failed(student, f"{handle} had {A_DAY} runs today; type the same tomorrow")
+            continue
+        run = partial(_run, new, data, limits, seeds(course, final))
+        step = partial(in_sandbox, run, course, ("labkit", "numpy"))
+        done = new if why else for_student(student, step, (NoIsolation,))
+        if not isinstance(done, Failed):
+            had[handle] += 1
+            _keep(course, [*(replace(x, motion="") for x in past), done])
+        yield done
+
+
+def entries(course: Course) -> Iterator[Entry]:
+    """All that was run this term."""
+    for path in sorted((course.results / FOLDER).glob("*.json")):
+        yield from of_student(course, path.stem)
+
+
+def of_student(course: Course, student: str) -> list[Entry]:
+    """A student's entries, the last one at the end."""
+    path = _path(course, student)
+    try:
+        return read_record(list[Entry], json.loads(path.read_text(encoding="utf-8")))
+    except FileNotFoundError:
+        return []
+    except (LabkitError, ValueError) as error:
+        raise LabkitError(
+            f"{path} is damaged ({error}); restore it, or delete it, and its entries run again"
+        ) from None
+
+
+def latest(course: Course, final: bool) -> list[Entry]:
+    """The last entry of each handle on the board or in the final, the best first."""
+    last = {x.handle: x for x in entries(course) if x.final is final}
+    return sorted(last.values(), key=lambda x: (x.score, x.handle))
+
+
+def _run(new: Entry, data: bytes, limits: Limits, on: Sequence[int], sandbox: Sandbox) -> Entry:
+    """The entry with what came of it on some seeds."""
+    cells = parse(data, sandbox, limits)
+    if isinstance(cells, str):
+        return replace(new, why=cells)
+    steps = [Step(k, x["source"]) for k, x in enumerate(cells) if x["type"] == "code"]
+    steps.append(Step(len(cells), _ENTER, (_LAW.name, _BY_POSE.name)))
+    runs: list[CupRun] = []
+    with closing(Session(sandbox, steps, limits)) as session:
+        try:
+            with suppress(Disconnected):
+                session.start()
+            by_pose = RemoteFunction(_BY_POSE, session)() is True
+            session.close_question()
+            for seed in on:
+                runs.append(cup_run(lambda _: _controller(session), seed, by_pose))
+                session.close_question()  # the next run begins with a fresh controller
+            why = "" if np.isfinite([x.score for x in runs]).all() else "the arm ran away"
+        except NoIsolation:
+            raise
+        except LabkitError as error:
+            cell = next((x["error"] for x in session.failed()), "")
+            why = clean_line(cell or str(error))
+    scores = tuple(round(x.score, 2) if np.isfinite(x.score) else None for x in runs)
+    shown = motion(runs[0].log, f"The cup: {new.handle}") if runs else None
+    return replace(new, scores=scores, why=why, motion=fitting(shown) if shown else "")
+
+
+def _controller(session: Session) -> Controller:
+    """The entry's controller, asked in its sandbox."""
+    law = RemoteFunction(_LAW, session)
+
+    def controller(state: State, target: AnySample) -> Command:
+        command: Command = law(state, target)  # `run` refuses what is not one
+        return command
+
+    return controller
+
+
+def _keep(course: Course, all_of_them: Sequence[Entry]) -> None:
+    write(_path(course, all_of_them[0].student), json.dumps(record_data(all_of_them), indent=1))
+
+
+def _path(course: Course, student: str) -> Path:
+    return course.results / FOLDER / f"{student}.json"

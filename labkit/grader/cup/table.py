@@ -1,0 +1,69 @@
+"""The cup's table by handle: as text, as a page with replays, and as a bonus in the gradebook."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+
+from ...course.layout import CUP, Course
+from ...course.own_arm import Arms
+from ...replay import recorded_html
+from ..nbgrader.gradebook import open_gradebook
+from ..nbgrader.unreleased import enter
+from ..pages import (
+    file,
+    policy,
+    render,
+    scripts,
+)
+from ..rules import read_rules
+from .entries import Entry, marks
+
+BONUS = "marks_beaten"
+"""What the gradebook calls it."""
+
+
+def lines(found: Sequence[Entry]) -> Iterator[tuple[float, str, Entry | None]]:
+    """Entries and published marks: score in [mm], name, and the entry; the best first."""
+    everyone = [(mark, f"mark: {name}", None) for name, mark in marks().items()]
+    yield from sorted(
+        [*everyone, *((x.score, x.handle, x) for x in found)], key=lambda line: line[:2]
+    )
+
+
+def as_text(found: Sequence[Entry]) -> Iterator[str]:
+    """A line for each entry and mark."""
+    for score, name, entry in lines(found):
+        said = f"; {entry.why}" if entry and entry.why else ""
+        yield f"{score:8.1f} mm  {name}{said}"
+
+
+def page(course: Course, found: Sequence[Entry], final: bool) -> str:
+    """The table as one file, with a replay of each entry's first run."""
+    code, style = scripts(), file("feedback.css")
+    return render(
+        "cup.html.j2",
+        course=read_rules(course).name,
+        title="The Baxter Cup: " + ("the final" if final else "the board"),
+        lines=list(lines(found)),
+        most=len(marks()),
+        style=style,
+        scripts=code,
+        policy=policy(style, code),
+        motion_of=lambda entry: json.loads(entry.motion or "null"),
+        recorded_html=recorded_html,
+    )
+
+
+def give_bonus(course: Course, found: Sequence[Entry]) -> None:
+    """Write the number of marks that an entry beats as extra credit of all who have its handle."""
+    handles = Arms.of(course.root).handles
+    with open_gradebook(course) as book:
+        for entry in found:
+            text = "\n".join(as_text([entry]))
+            team = {who for who, handle in handles.items() if handle == entry.handle}
+            for student in sorted(team | {entry.student}):
+                for grade in enter(course, book, CUP, student, {BONUS: f"```text\n{text}\n```"}, 0):
+                    grade.auto_score, grade.extra_credit = 0.0, float(entry.beaten)
+                    grade.needs_manual_grade = False
+        book.db.commit()

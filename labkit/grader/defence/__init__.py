@@ -1,0 +1,1 @@
+"""An oral examination on a student's own code, with a mistake put into it."""

@@ -1,0 +1,258 @@
+"""The defence: three of a student's own accepted functions, each with a mistake put into it.
+
+The questions are drawn under the term's seed, so each student has their own, and has them again
+when the page is printed again.  A mistake is taken only if the question's checks reject the
+function with it; where the question lets an arm run, the arm must run worse than allowed.
+"""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
+
+from ...course.bundle import Bundle
+from ...course.layout import Course
+from ...course.marking import (
+    Tried,
+    recognise,
+    try_public,
+)
+from ...course.question import (
+    Call,
+    Loop,
+    Question,
+    Tuned,
+)
+from ...course.verdict import Misconception, Outcome
+from ...errors import LabkitError
+from ..each import Failed
+from ..grading import seen
+from ..grading.grade import parse
+from ..grading.plan import (
+    Plan,
+    imports,
+    plan,
+)
+from ..grading.results import (
+    Answer,
+    Numbers,
+    Run,
+)
+from ..grading.standing import standing
+from ..grading.worker import in_sandbox
+from ..sandbox.launch import Sandbox
+from ..sandbox.limits import Limits, slowness
+from ..sandbox.session import RemoteFunction, Session
+from ..seeds import seed_of
+from ..students.roster import read_roster
+from ..submission import Submission
+from ..whys import rank
+from .edits import (
+    Edit,
+    edits,
+    shown,
+)
+
+ASKED = 3
+"""Questions of one defence."""
+FULL = 3
+"""Points of each."""
+LONG = 24
+"""Functions of more lines are asked about only if there are no shorter ones."""
+TRIES = 3
+"""So many mistakes of a function are tried, to find one that students are known to make."""
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """An answer that counts in full.
+
+    Attributes:
+        bundle: Of its assignment, as it is for this student.
+        question: What was asked.
+        answer: What came of it.
+        right: The names of all answers in this notebook that count in full.
+    """
+
+    bundle: Bundle
+    question: Question
+    answer: Answer
+    right: tuple[str, ...]
+
+    @property
+    def assignment(self) -> str:
+        """In which assignment."""
+        return str(self.bundle.data["assignment"])
+
+    @property
+    def drives(self) -> bool:
+        """Whether an arm runs with it."""
+        return any(isinstance(c, Loop | Tuned) for t in self.question.tests for c in t.cases)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One question of a defence.
+
+    Attributes:
+        of: The answer that it is about.
+        edit: The mistake.
+        lines: The function with the mistake in it, without docstrings.
+        at: Which of these lines has the mistake, from 1.
+        run: What the arm does now, if one runs.
+        own: What the arm did with the answer as it was handed in.
+        numbers: Otherwise, what is returned now beside what is expected.
+        known: The known mistake that answers alike, if there is one.
+    """
+
+    of: Accepted
+    edit: Edit
+    lines: tuple[str, ...]
+    at: int
+    run: Run | None
+    own: Run | None
+    numbers: Numbers | None
+    known: Misconception | None
+
+    @property
+    def given(self) -> str:
+        """What the law is given in its run besides state and target, such as "(kp=40.0)"."""
+        tests = [t for t in self.of.question.tests if self.run and t.name == self.run["test"]]
+        loops = [case for test in tests for case in test.cases if isinstance(case, Loop)]
+        return Call((), loops[0].kwargs).shown("") if loops and loops[0].kwargs else ""
+
+
+def draw(course: Course, student: str) -> tuple[Asked, ...]:
+    """The questions of a student's defence.
+
+    Raises:
+        LabkitError: Nobody has this name, or too few of the student's answers can be asked about.
+        NoIsolation: No sandbox can be made here.
+    """
+    answers, missing = accepted(course, student)
+    secret = partial(rank, seed_of(course), student)
+
+    def order(one: Accepted) -> tuple[bool, bool, bytes]:
+        long = len(shown(one.answer.source)) > LONG
+        return not one.drives, long, secret(f"defence/{one.assignment}/{one.question.name}")
+
+    asked: tuple[Asked, ...] = ()
+    if len(answers) >= ASKED:
+        modules = {name: None for one in answers for name in imports(one.bundle.data["cells"])}
+        limits = Limits().scaled(slowness())
+
+        def drawn(sandbox: Sandbox) -> tuple[Asked, ...]:
+            found = (_ask(course, student, x, sandbox, limits) for x in sorted(answers, key=order))
+            return tuple(islice(filter(None, found), ASKED))
+
+        asked = in_sandbox(drawn, course, tuple(modules))
+    if len(asked) < ASKED:
+        why = "".join(f"; {sentence}" for sentence in missing)
+        raise LabkitError(
+            f"{ASKED} accepted answers that a mistake can be put into are needed, and {student} "
+            f"has {len(asked) if asked else len(answers)}{why}"
+        )
+    return asked
+
+
+def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
+    """The answers of a student that count in full, and why work that was handed in has no result.
+
+    Raises:
+        LabkitError: The student is not in the roster, and nothing of theirs is here.
+    """
+    found: list[Accepted] = []
+    missing: list[str] = []
+    known = read_roster(course).get(student) is not None
+    for name in sorted(path.stem for path in course.bundle.glob("*.json")):
+        for result in standing(course, name, student):
+            known = True
+            if isinstance(result, Failed):
+                missing.append(f"{name}: {result.why}")
+                continue
+            answers = {q.verdict.name: q for q in result.questions if q.verdict.right}
+            bundle = Bundle.of(course, name).of_student(student)
+            found += [
+                Accepted(bundle, question, answers[question.name], tuple(answers))
+                for question in bundle.questions
+                if question.name in answers and edits(answers[question.name].source)
+            ]
+    if not known:
+        raise LabkitError(
+            f"there is no student {student!r}: not in the roster, and nothing of theirs is in "
+            "submitted/ or results/; give the name of the student's folder"
+        )
+    return found, missing
+
+
+def _ask(
+    course: Course, student: str, one: Accepted, sandbox: Sandbox, limits: Limits
+) -> Asked | None:
+    """A question about an answer: with a mistake that is known if one is found, else with another.
+
+    None if no mistake changes what the checks say.
+    """
+    data, _, why = Submission.of(course, one.assignment, student).read(limits.notebook)
+    if why:
+        raise LabkitError(f"{one.assignment}: {why}")
+    cells = parse(data, sandbox, limits)
+    if isinstance(cells, str):
+        raise LabkitError(f"{one.assignment}: {cells}")
+    todo = plan(cells, one.bundle.data["cells"])
+    source = todo.source(one.question.name)
+    secret = partial(rank, seed_of(course), student)
+    mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.line}/{e.now}"))
+    found = (_with(edit, one, source, todo, sandbox, limits) for edit in mistakes[:TRIES])
+    first: Asked | None = None
+    for asked in filter(None, found):
+        if asked.known:
+            return asked
+        first = first or asked
+    return first
+
+
+def _with(
+    edit: Edit, one: Accepted, source: str, todo: Plan, sandbox: Sandbox, limits: Limits
+) -> Asked | None:
+    """A question with this mistake; None if the checks accept it, or it only raises an error."""
+    question = one.question
+    place = todo.places[question.name]
+    steps = [
+        replace(step, source=edit.put_into(source)) if step.number == place else step
+        for step in todo.steps
+    ]
+    with closing(Session(sandbox, steps, limits)) as session:
+        session.right = [name for name in one.right if name != question.name]
+        function = RemoteFunction(question, session)
+        tried = try_public(question, function)
+        function.session.close_question()
+    if tried.outcome is not Outcome.WRONG:
+        return None
+    run, numbers = _worst(question, tried), seen.numbers(question, tried)
+    if run is None and (one.drives or numbers is None):
+        return None
+    lines = edit.put_into(source).split("\n")
+    there = shown(source)
+    return Asked(
+        one,
+        edit,
+        tuple(lines[k - 1] for k in there),
+        there.index(edit.line) + 1,
+        run,
+        next((x for x in one.answer.runs if run and x["test"] == run["test"]), None),
+        None if run else numbers,
+        _known(question, tried),
+    )
+
+
+def _worst(question: Question, tried: Tried) -> Run | None:
+    """The first public run that is not as good as it must be."""
+    failed = {x.name for x in tried.results if x.outcome in (Outcome.WRONG, Outcome.ERROR)}
+    return next((run for run in seen.runs(question, tried) if run["test"] in failed), None)
+
+
+def _known(question: Question, tried: Tried) -> Misconception | None:
+    found = recognise(question, [tried.answers.get(call) for call in question.calls])
+    return found and Misconception(found.name, found.says)

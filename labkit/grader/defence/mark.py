@@ -1,0 +1,66 @@
+"""The mark of a defence in nbgrader's gradebook: an assignment that only a person marks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from nbgrader.api import MissingEntry
+
+from ...course.layout import DEFENCE, Course
+from ...errors import LabkitError
+from ..nbgrader.autograded_notebook import as_typed
+from ..nbgrader.gradebook import open_gradebook
+from ..nbgrader.unreleased import enter
+from .draw import (
+    ASKED,
+    FULL,
+    Asked,
+)
+
+LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
+"""What the gradebook calls the questions."""
+
+
+def await_mark(course: Course, student: str, asked: Sequence[Asked]) -> None:
+    """Let a defence wait for its mark, in formgrader too; a mark that was given stays."""
+    texts = dict.fromkeys(LINES, "") | {LINES[k]: _text(k, one) for k, one in enumerate(asked)}
+    with open_gradebook(course) as book:
+        for grade in enter(course, book, DEFENCE, student, texts, FULL):
+            grade.needs_manual_grade = grade.manual_score is None
+        book.db.commit()
+
+
+def give_mark(course: Course, student: str, points: Sequence[int]) -> None:
+    """Write the points of a defence that was held, one number for each question.
+
+    Raises:
+        LabkitError: There is another number of them, one is too high, or no page was printed.
+    """
+    if len(points) != ASKED or not all(0 <= x <= FULL for x in points):
+        raise LabkitError(
+            f"{','.join(map(str, points))} is not a mark; give {ASKED} whole numbers from 0 to "
+            f"{FULL}, such as --mark 2,3,1"
+        )
+    with open_gradebook(course) as book:
+        try:
+            submission = book.find_submission(DEFENCE, student)
+        except MissingEntry:
+            raise LabkitError(
+                f"no page was printed for {student}; type: labkit defence {student}"
+            ) from None
+        for grade in _grades(submission):
+            grade.manual_score = float(points[LINES.index(grade.name)])
+            grade.needs_manual_grade = False
+        book.db.commit()
+
+
+def _grades(submission: Any) -> list[Any]:
+    return [grade for notebook in submission.notebooks for grade in notebook.grades]
+
+
+def _text(number: int, one: Asked) -> str:
+    """A question as formgrader shows it."""
+    head = f"**{number + 1} · {one.of.question.name}**, line {one.at}: {one.edit.says}"
+    change = f"handed in: {one.edit.was.strip()}\nnow:       {one.edit.now.strip()}"
+    return "\n\n".join((head, as_typed(change, "text"), as_typed("\n".join(one.lines), "python")))

@@ -1,0 +1,82 @@
+"""The page of a defence: a side for the student, and one with the answers for the examiner."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from ...course.layout import Course
+from ...replay import recorded_html
+from ..atomic import write
+from ..feedback.page import (
+    error_over_time,
+    measures,
+    number_by_number,
+)
+from ..pages import (
+    file,
+    policy,
+    render,
+    scripts,
+)
+from ..rules import read_rules
+from .draw import (
+    ASKED,
+    FULL,
+    Asked,
+)
+
+RUBRIC = (
+    "says which line was changed, and what stood there",
+    "says what the arm will do, or what is returned, before the answer is shown",
+    "explains the picture by the line: which term, which sign, which frame",
+)
+"""A point for each."""
+WIDTH, ROOM = 95, 400.0
+"""Characters in a line of code in print; the height that is left for all lines, in [pt] of type."""
+
+
+def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
+    """Write the page of a student, and return its file."""
+    style = file("feedback.css") + file("defence.css") + _print_size(asked)
+    replays = any(one.run and one.run["motion"] for one in asked)
+    code = scripts() if replays else ()
+    page = render(
+        "defence.html.j2",
+        student=student,
+        course=read_rules(course).name,
+        asked=asked,
+        rubric=RUBRIC,
+        full=FULL,
+        command=f"labkit defence {shlex.quote(student)} --mark {','.join(['?'] * ASKED)}",
+        style=style,
+        scripts=code,
+        policy=policy(style, code),
+        motion_of=lambda run: json.loads(run["motion"] or "null"),
+        error_over_time=error_over_time,
+        rows=rows,
+        number_by_number=number_by_number,
+        recorded_html=recorded_html,
+    )
+    path = course.build / "defence" / f"{student}.html"
+    write(path, page)
+    return path
+
+
+def _print_size(asked: Sequence[Asked]) -> str:
+    """The size of code in print with which all three functions fit one side of A4."""
+    lines = sum(1 + len(line) // WIDTH for one in asked for line in one.lines)
+    return f"@media print {{ .code {{ font-size: {min(8.0, ROOM / lines):.2f}pt }} }}"
+
+
+def rows(one: Asked) -> Iterator[tuple[str, str, str, str]]:
+    """Each measure that has a limit: its words, now, as handed in, at most."""
+    now, own = (
+        {} if run is None else {x.words: x for x in measures(run)} for run in (one.run, one.own)
+    )
+    for words, row in (own | now).items():
+        if row.limit:
+            found, was = (t[words].value if words in t else "none" for t in (now, own))
+            yield words, found, was, row.limit

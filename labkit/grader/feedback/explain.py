@@ -1,0 +1,162 @@
+"""Explain: why one answer has its mark, with the numbers of the hidden case that decided.
+
+The answer runs once more in a sandbox, and the hidden cases with it; what comes of that is for the
+instructor alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+from ...course.bundle import Bundle
+from ...course.layout import Course
+from ...course.messages import summary, wrapped
+from ...course.question import Question
+from ...course.verdict import Verdict
+from ...errors import LabkitError, UnknownName
+from ..atomic import write
+from ..grading.grade import grade
+from ..grading.plan import imports
+from ..grading.results import Result
+from ..grading.worker import in_sandbox
+from ..marks.mark import Line, Mark
+from ..marks.table import marks_of
+from ..sandbox.launch import Sandbox
+from ..sandbox.limits import Limits, slowness
+from ..submission import Submission, none_of
+from .page import page
+
+_ALONE = "all cases are laid open here, so this page is for teachers and not for students"
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why an answer has its mark.
+
+    Attributes:
+        mark: Of the whole submission.
+        line: Of this question.
+        told: The verdict that the student has seen.
+        found: The verdict with hidden cases laid open.
+        source: The student's answer.
+        page: With the numbers and runs, for the instructor.
+    """
+
+    mark: Mark
+    line: Line
+    told: Verdict
+    found: Verdict
+    source: str
+    page: Path
+
+    def __str__(self) -> str:
+        return "\n".join(self._lines())
+
+    def _lines(self) -> Iterator[str]:
+        given = "not marked" if self.line.score is None else f"{self.line.score:g}"
+        origin = f" ({self.line.origin})" if self.line.origin else ""
+        yield f"{self.mark.student}, {self.told.name}: {given} of {self.line.points:g}{origin}"
+        yield "\nWhat the student has read, and may be shown:"
+        yield from map(wrapped, summary(self.told))
+        hidden = {test.name for test in self.told.tests if test.hidden}
+        if hidden:
+            yield "\nThe hidden case that decided; do not show it before the term ends:"
+            tests = tuple(test for test in self.found.tests if test.name in hidden)
+            yield from map(wrapped, summary(replace(self.found, tests=tests))[1:])
+        elif not self.told.right:
+            yield ("\nThe tests that the student has seen decided this mark; no hidden case did.")
+        if (self.told.right, self.told.earned) != (self.found.right, self.found.earned):
+            yield "\nATTENTION: this time it came out otherwise:"
+            yield from map(wrapped, summary(self.found))
+        if self.line.comment:
+            yield f"\nComment: {self.line.comment}"
+        yield f"\nThe answer:\n{self.source or '(none)'}"
+        yield f"\nNumbers and runs, for you alone: {self.page}"
+
+
+def explain(
+    course: Course, student: str, question: str, assignment: str | None = None
+) -> Explanation:
+    """Try an answer again with every hidden case laid open.
+
+    Args:
+        course: The course.
+        student: Whose.
+        question: Which.
+        assignment: Where, if questions of several assignments have this name.
+
+    Raises:
+        UnknownName: No such question was released.
+        LabkitError: There is no mark to explain.
+        NoIsolation: No sandbox can be made here.
+    """
+    bundle = _bundle(course, question, assignment)
+    name = bundle.data["assignment"]
+    mark = next(marks_of(course, name, student), None)
+    if mark is None or mark.result is None:
+        why = (mark and mark.missing) or none_of(course, name, student)
+        raise LabkitError(f"there is no mark to explain: {why}")
+    if mark.result.rejected:
+        raise LabkitError(f"{name} of {student} was rejected: {mark.result.rejected}")
+    told = next((x for x in mark.result.questions if x.verdict.name == question), None)
+    if told is None:
+        raise LabkitError(f"{question} is newer than the mark; type: labkit grade {name}")
+    result = _again(course, student, _LaidOpen(bundle.data), question)
+    (answer,) = result.questions
+    file = course.build / "explain" / f"{student}-{question}.html"
+    lines = tuple(line for line in mark.lines if line.name == question)
+    notes = (*result.notes, _ALONE)
+    line = lines[0] if lines else Line(question, told.verdict.points, told.verdict.earned)
+    shown = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
+    write(file, page(replace(result, notes=notes), shown))
+    return Explanation(mark, line, told.verdict, answer.verdict, told.source, file)
+
+
+@dataclass(frozen=True)
+class _LaidOpen(Bundle):
+    """A bundle all of whose cases are public."""
+
+    @cached_property
+    def questions(self) -> tuple[Question, ...]:
+        return tuple(map(_laid_open, Bundle(self.data).questions))
+
+
+def _laid_open(question: Question) -> Question:
+    tests = tuple(
+        replace(test, cases=tuple(replace(case, hidden=False) for case in test.cases))
+        for test in question.tests
+    )
+    return replace(question, tests=tests)
+
+
+def _again(course: Course, student: str, bundle: Bundle, question: str) -> Result:
+    """Grade one question of a submission, and keep nothing of it."""
+    limits = Limits()
+    submission = Submission.of(course, bundle.data["assignment"], student)
+    data, note, why = submission.read(limits.notebook)
+    if why:
+        raise LabkitError(why)
+    mine = [q for q in bundle.data["questions"] if q["name"] == question]
+    one = _LaidOpen({**bundle.data, "questions": mine})
+
+    def again(sandbox: Sandbox) -> Result:
+        return grade(data, student, one, sandbox, limits.scaled(slowness()), note)
+
+    return in_sandbox(again, course, imports(bundle.data["cells"]))
+
+
+def _bundle(course: Course, question: str, assignment: str | None) -> Bundle:
+    """The bundle that has a question."""
+    names = [assignment] if assignment else [x.stem for x in sorted(course.bundle.glob("*.json"))]
+    bundles = [Bundle.of(course, name) for name in names]
+    asked = {q["name"]: b for b in bundles for q in b.data["questions"]}
+    here = [b for b in bundles if question in {q["name"] for q in b.data["questions"]}]
+    if not here:
+        raise UnknownName("question", question, tuple(asked))
+    if len(here) > 1:
+        several = ", ".join(b.data["assignment"] for b in here)
+        raise LabkitError(f"{several} have {question}; say which with --assignment")
+    return here[0]

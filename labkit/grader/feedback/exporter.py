@@ -1,0 +1,37 @@
+"""The page of a student where nbgrader makes feedback: its button and its command write ours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from nbconvert import HTMLExporter
+
+from ...course.layout import Course
+from ...errors import LabkitError
+from ..marks.table import marks_of
+from ..peers.readers import reviews
+from ..rules import read_rules
+from .page import page
+
+
+class StudentPage(HTMLExporter):
+    """Makes of an autograded notebook what `labkit feedback` makes of its result."""
+
+    def from_filename(  # type: ignore[override]
+        self, filename: str, resources: dict[str, Any] | None = None, **_: Any
+    ) -> tuple[str, dict[str, Any]]:
+        """The page, and what a writer needs to know.
+
+        Raises:
+            LabkitError: The student has no mark.
+        """
+        about = dict(resources or {})
+        course, known = Course.here(Path.cwd()), about["nbgrader"]
+        for mark in marks_of(course, known["assignment"], known["student"]):
+            if mark.result is not None and (mark.lines or not mark.missing):
+                about |= {"output_extension": ".html", "outputs": {}}
+                said = reviews(course, known["assignment"])[0].get(mark.student, ())
+                return page(mark.result, mark, read_rules(course).name, said), about
+            raise LabkitError(f"{mark.student}: {mark.missing}")
+        raise LabkitError(f"there is no mark of {known['student']}")

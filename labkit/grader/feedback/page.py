@@ -1,0 +1,223 @@
+"""Feedback: one page for each student, verdicts in words, nothing that should stay hidden.
+
+It is made from the result alone, so it cannot hold a hidden case or a reference value of one;
+whatever a student's code said is shown as text.  A page with a replay brings the viewer and the
+robot along, 1.7 MB; its policy names each script by its hash, and nothing is loaded from anywhere.
+
+Moodle takes pages back as a zip, and knows a participant by the number in the name of a folder,
+``NAME_PARTICIPANT_assignfeedback_file`` (github.com/moodle/moodle,
+``mod/assign/feedback/file/importziplib.php``).
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import zipfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from markupsafe import Markup
+
+from ...course.layout import Course
+from ...course.messages import (
+    GATE,
+    HEADS,
+    why,
+)
+from ...errors import LabkitError
+from ...metrics import SETTLED
+from ...replay import recorded_html
+from ...replay.motion import unpack
+from ..atomic import write
+from ..each import Failed, for_student
+from ..grading.results import Result
+from ..marks.mark import Mark
+from ..marks.table import mark_of
+from ..nbgrader.markup import markdown
+from ..pages import (
+    file,
+    policy,
+    render,
+    scripts,
+)
+from ..peers.readers import Review, reviews
+from ..rules import read_rules
+from ..students.identity import lms_users
+from .drawing import curve, side_by_side
+
+MEASURES = {
+    "rms_mm": ("position error of the tip, RMS", "mm", 1.0),
+    "max_mm": ("position error of the tip, largest", "mm", 1.0),
+    "rms_deg": ("orientation error of the tip, RMS", "degrees", 1.0),
+    "max_deg": ("orientation error of the tip, largest", "degrees", 1.0),
+    "rms_velocity_mm_s": ("velocity error of the tip, RMS", "mm/s", 1.0),
+    "settling": (f"until it stays within {1e3 * SETTLED:g} mm", "s", 1.0),
+    "effort": ("motor torque, RMS", "N m", 1.0),
+    "saturated": ("commands that a limit cut", "%", 100.0),
+    "duration": ("duration", "s", 1.0),
+}
+"""What each field of `metrics.Summary` is called, its unit, and what one is in that unit."""
+
+
+class Picture(NamedTuple):
+    """A figure, and its words."""
+
+    svg: Markup
+    words: str
+
+
+class Measure(NamedTuple):
+    """A line of the table of a run: value and limit with their unit, and whether it is over."""
+
+    words: str
+    value: str
+    limit: str
+    over: bool
+
+
+def page(
+    result: Result, mark: Mark | None = None, course: str = "", reviews: Sequence[Review] = ()
+) -> str:
+    """The page of one student.
+
+    Args:
+        result: What came of the submission.
+        mark: What it is worth, as the gradebook has it; by default what the result says.
+        course: What the course is called.
+        reviews: What readers said of a report.
+
+    Returns:
+        HTML in one piece, readable without its scripts.
+    """
+    mark = mark or mark_of(result)
+    asked = {line.name: line for line in mark_of(result).lines}
+    replays = any(run["motion"] for q in result.questions for run in q.runs)
+    style, code = file("feedback.css"), scripts() if replays else ()
+    return render(
+        "feedback.html.j2",
+        result=result,
+        mark=mark,
+        course=course,
+        reviews=reviews,
+        lines=asked | {line.name: line for line in mark.lines},
+        by_hand=[line for line in mark.lines if line.name not in asked],
+        heads=HEADS,
+        gate=GATE,
+        why=why,
+        style=style,
+        scripts=code,
+        policy=policy(style, code),
+        motion_of=lambda run: json.loads(run["motion"] or "null"),
+        error_over_time=error_over_time,
+        measures=measures,
+        number_by_number=number_by_number,
+        recorded_html=recorded_html,
+        markdown=lambda text: Markup(markdown({}, text)),
+    )
+
+
+def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> list[Path | Failed]:
+    """Write the pages where ``nbgrader release_feedback`` looks for them.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        marks: Of its students.
+
+    Returns:
+        The files; and for whom no page could be made.
+    """
+    name, said = read_rules(course).name, reviews(course, assignment)[0]
+
+    def make(mark: Mark) -> Path:
+        if mark.result is None or (mark.missing and not mark.lines):
+            raise LabkitError(mark.missing or "there is no result of theirs; grade again")
+        path = course.root / "feedback" / mark.student / assignment / f"{assignment}.html"
+        result = replace(mark.result, student=mark.student)  # a report is of the whole team
+        write(path, page(result, mark, name, said.get(mark.author or mark.student, ())))
+        return path
+
+    return [for_student(mark.student, partial(make, mark)) for mark in marks]
+
+
+def error_over_time(run: Mapping[str, Any], motion: Mapping[str, Any]) -> Picture:
+    """The position error of a run's tip, with the largest that is allowed."""
+    error = 1e3 * np.abs(unpack(motion["error"])[:, 0])
+    t = motion["start"] + motion["period"] * np.arange(len(error))
+    peak, limit = int(error.argmax()), run["limits"].get("max_mm")
+    alt = (
+        f"Position error of the tip over {t[-1]:.3g} s: {_plain(error[0])} mm at the start, "
+        f"largest at {t[peak]:.3g} s with {_plain(error[peak])} mm, {_plain(error[-1])} mm at the "
+        "end."
+    )
+    from_then = f" from {run['since']:g} s on" if run["since"] else ""
+    line = f" The dashed line is the largest that is allowed{from_then}, "
+    line = "" if limit is None else f"{line}{limit:g} mm."
+    return Picture(curve(t, error, ("time [s]", "position error [mm]"), alt, limit), alt + line)
+
+
+def number_by_number(found: Mapping[str, Any]) -> Picture:
+    """The numbers of an answer beside those expected."""
+    expected, given = found["expected"], found["given"]
+    apart = [abs(a - b) for a, b in zip(expected, given, strict=True)]
+    worst = max(range(len(apart)), key=apart.__getitem__)
+    first = f"Of {found['of']} numbers, number {worst + 1} is farthest off: expected"
+    alt = f"{first if found['of'] > 1 else 'Expected'} {expected[worst]:.4g}, "
+    alt += f"yours {given[worst]:.4g}."
+    some = "" if found["of"] == len(given) else f" The first {len(given)} are shown."
+    return Picture(side_by_side(expected, given, alt), alt + some)
+
+
+def measures(run: Mapping[str, Any]) -> Iterator[Measure]:
+    """What was measured of a run, beside its limits."""
+    for name, value in run["measures"].items():
+        words, unit, factor = MEASURES.get(name, (name, "", 1.0))
+        limit = run["limits"].get(name)
+        said = ["never" if x is None else f"{_plain(factor * x)} {unit}" for x in (value, limit)]
+        over = limit is not None and (value is None or value > limit)
+        yield Measure(words, said[0], "" if limit is None else said[1], over)
+
+
+def _plain(x: float) -> str:
+    """Three digits or more, without an exponent up to a billion."""
+    return f"{x:.0f}" if 1e3 <= abs(x) < 1e9 else f"{x:.3g}"
+
+
+def moodle_zip(course: Course, assignment: str, pages: Iterable[Path], to: Path) -> int:
+    """Write the zip that Moodle takes under *Upload multiple feedback files in a zip*.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        pages: ``feedback/STUDENT/ASSIGNMENT/NAME.html``.
+        to: The file to write.
+
+    Returns:
+        How many pages are in it.
+
+    Raises:
+        LabkitError: No page is of a student whom Moodle's download named.
+    """
+    people = lms_users(course, assignment)
+    mine = [
+        (people[student], page)
+        for page in pages
+        if (student := page.parents[1].name) in people and people[student].system == "moodle"
+    ]
+    if not mine:
+        raise LabkitError(
+            f"nobody's {assignment} was collected from Moodle, whose numbers the zip needs; "
+            f"first: labkit collect {assignment} MOODLES.zip"
+        )
+    to.parent.mkdir(parents=True, exist_ok=True)
+    with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
+        for who, page in mine:
+            name = re.sub(r"[_/\\]", " ", who.name)  # the number comes after the first underscore
+            folder = f"{name}_{who.number}_assignfeedback_file"
+            archive.write(page, f"{folder}/{page.name}")
+    return len(mine)

@@ -1,0 +1,111 @@
+"""Whose mark would change after a test has changed, known before anything is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from ...course.bundle import Bundle
+from ...course.layout import Course
+from ...errors import LabkitError
+from ..each import Failed, for_student
+from ..submission import Submission
+from .batch import (
+    GradeOptions,
+    grade_aside,
+    still_good,
+)
+from .results import Result, Results
+
+
+@dataclass(frozen=True)
+class Change:
+    """A mark before and after.
+
+    Attributes:
+        before: The result that counts now, if there is one.
+        after: The new one.
+    """
+
+    before: Result | None
+    after: Result
+
+    @property
+    def by(self) -> float:
+        """How far the mark moves."""
+        return round(self.after.score - (self.before.score if self.before else 0.0), 4)
+
+    def __str__(self) -> str:
+        if self.before is None:
+            return f"{self.after.student}: new, {self.after.score:g} of {self.after.points:g}"
+        each = {q.verdict.name: q.verdict.earned for q in self.before.questions}
+        parts = [
+            f"{v.name} {each.get(v.name, 0.0):g} -> {v.earned:g}"
+            for v in (q.verdict for q in self.after.questions)
+            if v.earned != each.get(v.name, 0.0)
+        ]
+        says = f" ({'; '.join(parts)})" if parts else ""
+        return (
+            f"{self.after.student}: {self.before.score:g} -> {self.after.score:g}, "
+            f"{self.by:+g}{says}"
+        )
+
+
+def changes(
+    course: Course, assignment: str, students: Sequence[str], options: GradeOptions
+) -> Iterator[Change | LabkitError]:
+    """Grade aside, and compare with the results that count; no mark is changed.
+
+    What was graded is kept aside, so that `grade_class` need not do it again.
+
+    Raises:
+        LabkitError: The assignment's sources are newer than its release.
+    """
+    bundle, now = Bundle.of(course, assignment), Results(course, assignment)
+    _refuse_unreleased(course, assignment)
+    aside = now.aside
+    todo: list[Submission] = []
+    for student in students:
+        submission = Submission.of(course, assignment, student)
+        done = still_good((aside, now), submission, bundle, options)
+        if done is None:
+            todo.append(submission)
+        else:
+            yield Change(now.get(student), done)
+    for result in grade_aside(course, bundle, todo, options):
+        if isinstance(result, LabkitError):
+            yield result
+        else:
+            kept = for_student(result.student, partial(aside.keep, result))
+            if isinstance(kept, Failed):  # a name that is too long, a full disk
+                yield LabkitError(f"{kept.student}: {kept.why}")
+            else:
+                yield Change(now.get(result.student), result)
+
+
+def _refuse_unreleased(course: Course, assignment: str) -> None:
+    """Refuse to compare with tests that were corrected since they were released."""
+    released = (course.bundle / f"{assignment}.json").stat().st_mtime
+    sources = sorted(course.notebook_source(assignment).parent.glob("*.py"))
+    newer = [file.name for file in sources if file.stat().st_mtime > released]
+    if newer:
+        raise LabkitError(
+            f"{', '.join(newer)} changed after {assignment} was released, so --diff would not try "
+            f"the change; type: labkit release {assignment}, and correct what it refuses"
+        )
+
+
+def summary(found: Sequence[Change]) -> Iterator[str]:
+    """Whose mark moves and how many there are, a sentence each."""
+    for change in sorted(found, key=lambda m: m.by):
+        if change.by or change.before is None:
+            yield str(change)
+    changed = sum(bool(m.by) for m in found)
+    lower = sum(m.by < 0 for m in found)
+    would = f"{changed} of {len(found)} marks would change, {lower} of them to a lower mark"
+    yield would if changed else f"none of the {len(found)} marks would change"
+    before = {m.before.points for m in found if m.before} - {m.after.points for m in found}
+    if before:
+        full = ", ".join(f"{points:g}" for points in sorted(before))
+        yield f"full marks were {full} and are {found[0].after.points:g} now"

@@ -1,0 +1,140 @@
+"""Executors: functions called in worker processes, of this machine or of a Dask cluster.
+
+Both kinds are a `concurrent.futures.Executor`.  A call whose worker dies is tried once more, by
+another worker, and no other call notices.  Arguments and results are pickled: they are our own.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
+from multiprocessing import Pipe, get_context
+from multiprocessing.connection import Connection
+from queue import SimpleQueue
+from typing import Any
+
+from ...errors import LabkitError
+from ..sandbox.cgroup import sweep
+
+TRIES = 2
+"""How often a call is tried whose worker dies; within a worker `worker.TRIES` counts anew."""
+
+
+@contextmanager
+def executor(workers: int, dask: str | None = None) -> Iterator[Executor]:
+    """An executor for a block; where the block is left early, what still runs is ended."""
+    with ExitStack() as stack:
+        if dask is None:
+            pool: Executor = LocalExecutor(workers)
+            if "PYTHONSAFEPATH" not in os.environ:  # workers import nothing from the
+                os.environ["PYTHONSAFEPATH"] = "1"  # working folder, perhaps a submission's
+                stack.callback(os.environ.pop, "PYTHONSAFEPATH", None)
+        else:
+            client = stack.enter_context(dask_client(dask))
+            client.run_on_scheduler(_allow_one_failure)
+            pool = client.get_executor(pure=False)
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False)
+            raise
+        pool.shutdown()
+
+
+class LocalExecutor(Executor):
+    """Processes of this machine, each in a pool of its own, so that a death concerns one task.
+
+    Args:
+        workers: How many processes; each starts when it is first needed.
+    """
+
+    def __init__(self, workers: int) -> None:
+        self._threads = ThreadPoolExecutor(workers, initializer=_block_interrupts)
+        self._idle: SimpleQueue[ProcessPoolExecutor | None] = SimpleQueue()
+        for _ in range(workers):
+            self._idle.put(None)
+        self._end, self._open = Pipe(duplex=False)
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        """Call a function in one of the processes, and again, once, if that process dies."""
+        return self._threads.submit(self._call, partial(function, *args, **kwargs))
+
+    def _call(self, task: Callable[[], Any]) -> Any:
+        for _ in range(TRIES):
+            pool = self._idle.get()
+            try:
+                pool = pool or self._start()
+                return pool.submit(task).result()
+            except BrokenProcessPool:
+                pool = None
+            finally:
+                self._idle.put(pool)
+        raise LabkitError(
+            f"its worker died {TRIES} times, or had to be ended because it took too long; "
+            "look at the submission yourself"
+        )
+
+    def _start(self) -> ProcessPoolExecutor:
+        if self._open.closed:
+            raise BrokenProcessPool("the executor was shut down")
+        return ProcessPoolExecutor(1, get_context("spawn"), _begin_worker, (self._end,))
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the processes: when they have done what was submitted, or at once."""
+        self._threads.shutdown(wait, cancel_futures=cancel_futures or not wait)
+        while wait and not self._idle.empty():
+            pool = self._idle.get()
+            if pool is not None:
+                pool.shutdown()
+        self._open.close()
+        sweep()
+
+
+def _block_interrupts() -> None:
+    """Keep Ctrl-C from this thread and the processes that it starts; the main thread ends them."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+
+
+def _begin_worker(end: Connection) -> None:
+    """Runs first in a process of a `LocalExecutor`."""
+    os.dup2(2, 1)  # the grader's output has its own format
+    threading.Thread(target=_end_with_executor, args=(end,), daemon=True).start()
+
+
+def _end_with_executor(end: Connection) -> None:
+    """End this process, and the kernel its sandbox, when the executor or its process has ended."""
+    with suppress(EOFError, OSError):
+        end.recv()
+    os._exit(1)
+
+
+def dask_client(address: str) -> Any:
+    """A client of a Dask scheduler, to be closed after use.
+
+    Args:
+        address: Such as ``tcp://127.0.0.1:8786``; use loopback or TLS.
+
+    Raises:
+        LabkitError: distributed is missing, or nothing answers there.
+    """
+    try:
+        from distributed import Client
+        from distributed.comm.addressing import resolve_address
+    except ImportError:
+        raise LabkitError("Dask is missing; type: pip install 'labkit[cluster]'") from None
+    try:
+        resolve_address(address)  # a client takes 20 s to give up on what is not an address
+        return Client(address, timeout="10s", set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise LabkitError(f"no Dask scheduler at {address}: {error}") from None
+
+
+def _allow_one_failure(dask_scheduler: Any) -> None:
+    """Runs in the scheduler: a task may take one worker down; by default it takes four."""
+    dask_scheduler.allowed_failures = TRIES - 1

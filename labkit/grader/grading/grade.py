@@ -1,0 +1,248 @@
+"""Grade one notebook: read it, plan what runs, ask its functions, reach the verdicts.
+
+This side owns what is expected and shares no process with the student's code; what comes back is
+plain data, read with limits.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection, Mapping
+from contextlib import closing, suppress
+from dataclasses import replace
+from typing import Any, cast
+
+from ...course.bundle import Bundle
+from ...course.marking import (
+    Tried,
+    all_alike,
+    mark,
+    not_counted,
+    try_public,
+)
+from ...course.messages import uses
+from ...course.question import Question
+from ...course.receipt import receipt
+from ...course.serialize import read_record, record_data
+from ...course.verdict import (
+    Kind,
+    Outcome,
+    Verdict,
+)
+from ...course.withheld import withheld_tools
+from ..clean import clean_data, clean_line
+from ..sandbox.launch import Sandbox
+from ..sandbox.limits import (
+    TRICKS,
+    Limits,
+    TextBudget,
+)
+from ..sandbox.protocol import Disconnected, ProtocolError
+from ..sandbox.session import RemoteFunction, Session
+from . import seen
+from .plan import Plan, plan
+from .results import (
+    Answer,
+    FailedCell,
+    Hashes,
+    OwnCell,
+    Result,
+    digest,
+    engine,
+    versions,
+)
+
+ADDED = (
+    "this question came after the notebook was handed in, which does not have it; it counts 0 "
+    "until the new notebook is handed in, into which `labkit merge` brings the work done so far"
+)
+
+_THEIRS = {
+    "tricks": ("tricks",),
+    "cells": ("error", "output"),
+    "own": ("source",),
+    "written": ("written",),
+    "questions": ("source", "found"),
+}
+"""The texts of a result that the student wrote; what comes first is kept first."""
+
+
+def _nobody(verdict: Verdict) -> None:
+    """Who listens while a notebook is graded, if nobody does."""
+
+
+def grade(
+    data: bytes,
+    student: str,
+    bundle: Bundle,
+    sandbox: Sandbox,
+    limits: Limits,
+    note: str = "",
+    listener: Callable[[Verdict], None] = _nobody,
+) -> Result:
+    """Grade one notebook.
+
+    Args:
+        data: The file.
+        student: Whose.
+        bundle: What it is held against.
+        sandbox: Where its code runs.
+        limits: What it may use.
+        note: What was unusual about the file.
+        listener: Called with each verdict on a question that was asked, as soon as it is reached.
+
+    Returns:
+        The result, whatever the notebook does.
+    """
+    began = time.perf_counter()
+    bundle = bundle.of_student(student)
+    cells = parse(data, sandbox, limits)
+    if isinstance(cells, str):
+        return rejection(cells, student, bundle, sandbox.level, data)
+    todo = plan(cells, bundle.data["cells"])
+    absent = bundle.added - todo.places.keys()
+    todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
+    tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
+    questions = [q for q in bundle.questions if q.name not in absent and not tools[q.name]]
+    with closing(Session(sandbox, todo.steps, limits)) as session:
+        with suppress(Disconnected):
+            session.start()
+        functions = [RemoteFunction(question, session) for question in questions]
+        tried = {function.question.name: _public(function) for function in functions}
+        failed = session.failed()  # nothing shown of cells is made after the first hidden case
+        verdicts = {}
+        for function, (name, before) in zip(functions, tried.items(), strict=True):
+            verdicts[name] = _guarded(function, before)
+            listener(verdicts[name])
+        spent = session.spent
+    result = replace(
+        _ungraded(student, bundle, sandbox.level, data),
+        score=round(sum(v.earned for v in verdicts.values()), 2),
+        questions=tuple(
+            _answer(
+                question,
+                verdicts.get(question.name) or _untried(question, tools),
+                tried.get(question.name),
+                todo,
+            )
+            for question in bundle.questions
+        ),
+        notes=(*((note,) if note else ()), *todo.notes.get("", ())),
+        cells=cast(tuple[FailedCell, ...], failed),
+        own=cast(tuple[OwnCell, ...], todo.own),
+        written=todo.written,
+        tricks=todo.tricks,
+        seconds={"all": round(time.perf_counter() - began, 4), "student": round(spent, 4)},
+        receipt=receipt(cell["source"] for cell in cells),
+    )
+    return _shortened(result)
+
+
+def rejection(why: str, student: str, bundle: Bundle, level: str, data: bytes = b"") -> Result:
+    """The result of a submission that cannot be graded."""
+    return replace(_ungraded(student, bundle, level, data), rejected=clean_line(why))
+
+
+def _shortened(result: Result) -> Result:
+    """The same, every text in it cleaned, with no more of the student's than there is room for."""
+    budget, data = TextBudget(), record_data(result)
+
+    def cut(x: Any, names: Collection[str], theirs: bool) -> Any:
+        if isinstance(x, str):
+            return budget.take(x) if theirs else x
+        if isinstance(x, dict):
+            order = sorted(x, key=lambda name: name != "source")  # before what became of it
+            return {name: cut(x[name], names, theirs or name in names) for name in order}
+        return [cut(y, names, theirs) for y in x] if isinstance(x, list | tuple) else x
+
+    more = len(data["tricks"]) - TRICKS
+    data["tricks"] = data["tricks"][:TRICKS]
+    for part, names in _THEIRS.items():
+        data |= cut({part: data[part]}, names, theirs=False)
+    data["tricks"] += [f"and {more} more such things"] * (more > 0)
+    note = f"there is more text than is kept; {budget.cut} of its pieces are cut short here"
+    data["notes"] = [*data["notes"], *[note] * bool(budget.cut)]
+    return read_record(Result, clean_data(data))
+
+
+def _ungraded(student: str, bundle: Bundle, level: str, data: bytes) -> Result:
+    return Result(
+        bundle.data["assignment"],
+        student,
+        0.0,
+        bundle.points,
+        bundle.data["seed"],
+        hashes(data, bundle),
+        isolation=level,
+        versions=versions(),
+    )
+
+
+def hashes(data: bytes, bundle: Bundle) -> Hashes:
+    """What a result is known by."""
+    return {"submission": digest(data), "bundle": bundle.data["hash"], "engine": engine()}
+
+
+def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]] | str:
+    """The cells of a notebook, read in a process of its own; or why there are none."""
+    try:
+        with sandbox.spawn("parse", limits, size=len(data)) as process:
+            process.connection.socket.settimeout(limits.parse)
+            with suppress(BrokenPipeError):  # an empty file is answered before it is sent
+                process.connection.socket.sendall(data)
+            found = process.connection.read(limits.parse)
+    except (OSError, ProtocolError):
+        return "the file cannot be read within the limits of time and memory"
+    if "cells" not in found:
+        return str(found.get("rejected", "the file cannot be read"))
+    return list(found["cells"])
+
+
+def _public(function: RemoteFunction) -> Tried:
+    """The public cases.  All questions' come before any hidden one, so that none can tell of it."""
+    try:
+        tried = try_public(function.question, function)
+        if tried.outcome is Outcome.RIGHT:
+            function.session.right.append(function.question.name)
+        return tried
+    except Exception:
+        return Tried(_lost(function.question).tests, {})
+    finally:
+        function.session.close_question()
+
+
+def _guarded(function: RemoteFunction, tried: Tried) -> Verdict:
+    """The verdict, even where an answer is so odd that comparing it fails."""
+    question = function.question
+    try:
+        return mark(question, function, tried)
+    except Exception:
+        return _lost(question)
+    finally:
+        function.session.close_question()
+
+
+def _untried(question: Question, tools: Mapping[str, tuple[str, ...]]) -> Verdict:
+    """Of a question that was not asked: it uses what is withheld, or is not in the notebook."""
+    if tools[question.name]:
+        return not_counted(question, tools[question.name])
+    return all_alike(question, Outcome.NOT_ATTEMPTED)
+
+
+def _lost(question: Question) -> Verdict:
+    """Of a question whose answers cannot be compared with anything."""
+    return all_alike(question, Outcome.ERROR, Kind.OTHER)
+
+
+def _answer(question: Question, verdict: Verdict, tried: Tried | None, todo: Plan) -> Answer:
+    why = (f"it {uses(verdict.withheld)}",) if verdict.withheld else ()
+    notes = tuple(map(clean_line, (*why, *todo.notes.get(verdict.name, ()))))
+    answer = Answer(verdict, notes, todo.source(verdict.name))
+    if tried is None:
+        return answer
+    try:
+        return replace(
+            answer, runs=seen.runs(question, tried), numbers=seen.numbers(question, tried)
+        )
+    except Exception:  # it is too odd to be drawn
+        return answer

@@ -1,0 +1,302 @@
+"""Results: one file for each submission, known by the contents that it came from."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import json
+import platform
+import shutil
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, TypedDict
+
+import labkit
+
+from ...course.layout import Course
+from ...course.serialize import read_record, record_data
+from ...course.verdict import Points, Verdict
+from ...errors import LabkitError
+from ...formats import check_stamp, stamp
+from ...sim import ENGINES
+from ..atomic import write
+from ..clean import clean_data, clean_line
+
+
+class Run(TypedDict):
+    """A run of the arm on a public case; see `seen.runs`."""
+
+    test: str
+    says: str
+    complete: bool
+    since: float
+    measures: dict[str, float | None]
+    limits: dict[str, float | None]
+    words: str
+    motion: str
+
+
+class Numbers(TypedDict):
+    """The numbers of an answer beside those expected; see `seen.numbers`."""
+
+    call: str
+    expected: list[float]
+    given: list[float]
+    of: int
+
+
+class FailedCell(TypedDict):
+    """A cell that failed or was stopped; `cell` counts from 0."""
+
+    cell: int
+    kind: str
+    error: str
+    output: str
+    seconds: float
+
+
+class OwnCell(TypedDict):
+    """A cell of the student's own, and the cell of the release that it follows."""
+
+    type: str
+    source: str
+    after: str
+
+
+class Hashes(TypedDict):
+    """What a result is known by; ``engine`` stands for the code that grades."""
+
+    submission: str
+    bundle: str
+    engine: str
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What came of one question.
+
+    Attributes:
+        verdict: As `mark` reached it.
+        notes: What was unusual, sentences.
+        source: The text of the cell that answers.
+        runs: The public runs of the arm.
+        numbers: The answer's numbers beside those expected, where they differ.
+    """
+
+    verdict: Verdict
+    notes: tuple[str, ...] = ()
+    source: str = ""
+    runs: tuple[Run, ...] = ()
+    numbers: Numbers | None = None
+
+
+@dataclass(frozen=True)
+class Result:
+    """What came of one submission.
+
+    Attributes:
+        assignment: Which.
+        student: Whose.
+        score: Points; 0 where it was rejected.
+        points: What full marks would be.
+        seed: Of the hidden cases.
+        hashes: Of the submission, the release and the engine.
+        rejected: Why it could not be graded, in a sentence; empty where it was.
+        questions: One for each question.
+        notes: What was unusual about the whole.
+        cells: Cells that failed or were stopped, with their sentence.
+        own: The student's own cells, where they stood.
+        written: The text of each cell that a person marks, by its name.
+        tricks: What may be a way around a withheld tool, for the instructor, sentences.
+        isolation: What kept it apart while it ran.
+        versions: Of what graded it.
+        seconds: How long it took: in all, and in the student's own code.
+        receipt: What `lk.hand_in` printed for this file; empty where it was rejected.
+    """
+
+    assignment: str
+    student: str
+    score: Points
+    points: Points
+    seed: int
+    hashes: Hashes
+    rejected: str = ""
+    questions: tuple[Answer, ...] = ()
+    notes: tuple[str, ...] = ()
+    cells: tuple[FailedCell, ...] = ()
+    own: tuple[OwnCell, ...] = ()
+    written: Mapping[str, str] = field(default_factory=dict)
+    tricks: tuple[str, ...] = ()
+    isolation: str = ""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    seconds: Mapping[str, float] = field(default_factory=dict)
+    receipt: str = ""
+
+    def text(self) -> str:
+        """As JSON."""
+        data = stamp() | record_data(self)
+        return json.dumps(data, ensure_ascii=True, indent=1, allow_nan=False) + "\n"
+
+    @classmethod
+    def read(cls, text: str, name: str = "the result") -> Result:
+        """What `text` wrote, with every text in it made safe to store and to show.
+
+        Args:
+            text: JSON.
+            name: What to call it where it is refused.
+
+        Raises:
+            LabkitError: It is not a whole result, or one of another version; the sentence says so.
+        """
+        try:
+            data = clean_data(json.loads(text, parse_constant=_refuse))
+        except (ValueError, RecursionError) as error:
+            raise _damaged(name, str(error)) from None
+        if not isinstance(data, dict):
+            raise _damaged(name, "it is not a table")
+        check_stamp(data, name, "grade it again")
+        known = {x.name for x in fields(cls)} | stamp().keys()
+        if unknown := data.keys() - known:
+            raise _damaged(name, f"nobody knows the field {min(unknown)!r}")
+        try:
+            result = read_record(cls, data)
+        except LabkitError as error:
+            raise _damaged(name, str(error)) from None
+        result._check_sums(name)
+        return result
+
+    def _check_sums(self, name: str) -> None:
+        """Raise a LabkitError unless the score is what the questions earned, and none is missing.
+
+        A report has no question at all: people mark it.
+        """
+        verdicts = [question.verdict for question in self.questions]
+        earned = [v.earned for v in verdicts if v.earned <= v.points]
+        whole = len({v.name for v in verdicts}) == len(verdicts) == len(earned)
+        points = 0.0 if self.rejected else self.points
+        apart = (sum(earned) - self.score, sum(v.points for v in verdicts) - points)
+        if not whole or (self.rejected and verdicts) or max(map(abs, apart)) > 0.01:
+            whole_sum = f"{len(verdicts)} questions earned {sum(earned):g} of {self.points:g}"
+            raise _damaged(name, f"the score is {self.score:g}, and {whole_sum}")
+
+    def __str__(self) -> str:
+        came = f"{self.score:g} of {self.points:g}"
+        return f"{self.student}: {f'rejected; {self.rejected}' if self.rejected else came}"
+
+    @property
+    def verdict(self) -> dict[str, Any]:
+        """Everything that must come out the same wherever it is graded."""
+        data: dict[str, Any] = record_data(self)
+        del data["seconds"], data["isolation"]
+        for cell in data["cells"]:
+            del cell["seconds"]
+        return data
+
+
+class Results:
+    """The result files of one assignment."""
+
+    def __init__(self, course: Course, assignment: str) -> None:
+        self.folder, self.assignment = course.results / assignment, assignment
+
+    @property
+    def aside(self) -> Results:
+        """Results that no mark is made of until `grade_class` takes them over."""
+        other = copy.copy(self)
+        other.folder = self.folder / "aside"
+        return other
+
+    def path(self, student: str) -> Path:
+        """Where a student's result is."""
+        return self.folder / f"{student}.json"
+
+    def students(self) -> list[str]:
+        """Who has a file here, whole or not."""
+        return sorted(path.stem for path in self.folder.glob("*.json"))
+
+    def read(self, student: str) -> Result | None:
+        """A student's result, or None if there is no file.
+
+        Raises:
+            LabkitError: The file is not a whole result of this student and this assignment.
+        """
+        path = self.path(student)
+        try:
+            result = Result.read(path.read_text(encoding="utf-8"), path.name)
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise LabkitError(f"{path.name} cannot be read: {error.strerror}") from None
+        except ValueError:
+            raise LabkitError(f"{path.name} is not text") from None
+        if (result.student, result.assignment) != (student, self.assignment):
+            whose = f"{result.student}'s {result.assignment}"
+            raise LabkitError(f"{path.name} is damaged; it is the result of {whose}")
+        return result
+
+    def get(self, student: str) -> Result | None:
+        """A student's result, or None if there is no whole one."""
+        try:
+            return self.read(student)
+        except LabkitError:
+            return None
+
+    def keep(self, result: Result) -> None:
+        """Write a result; an older one that came from other contents goes to ``old/``."""
+        path, before = self.path(result.student), self.get(result.student)
+        if path.exists() and (before is None or before.hashes != result.hashes):
+            key = "--" if before is None else "-".join(str(x)[:8] for x in before.hashes.values())
+            old = self.folder / "old" / f"{result.student}-{key}.json"
+            old.parent.mkdir(parents=True, exist_ok=True)
+            if path.is_file():
+                shutil.copy2(path, old)  # with the time at which it was written
+            else:  # somebody's folder, which must make room
+                path.rename(old)
+        write(path, result.text())
+
+    def __iter__(self) -> Iterator[Result]:
+        """Whole results; `standing` also names those that are missing or damaged."""
+        for student in self.students():
+            result = self.get(student)
+            if result is not None:
+                yield result
+
+
+def _damaged(name: str, why: str) -> LabkitError:
+    why = clean_line(why, 120)
+    return LabkitError(f"{name} is damaged; it is not a whole result: {why}")
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(f"{constant} is not a number of JSON")
+
+
+def digest(data: bytes) -> str:
+    """A name for contents."""
+    return hashlib.sha256(data).hexdigest()
+
+
+@cache
+def engine() -> str:
+    """A name for the code that grades: another version, another mark."""
+    root = Path(labkit.__file__).parent
+    whole = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        if "replay" not in path.parts:
+            whole.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    return whole.hexdigest()
+
+
+@cache
+def versions() -> Mapping[str, str]:
+    """Of Python and of what marks depend on."""
+    found = {"labkit": labkit.__version__, "python": platform.python_version()}
+    for name in ("numpy", "scipy", *ENGINES, "pin"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = "missing"
+    return found

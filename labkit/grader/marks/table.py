@@ -1,0 +1,168 @@
+"""The mark of each student, the one that every page and every table shows.
+
+It comes from the gradebook, so what was changed by hand, extra credit and what late rules took away
+count.  Where there is none, or where it differs from the result, there is no mark but the reason
+why: nobody is given a 0 that they did not earn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+from ...course.layout import Course
+from ...course.notebook import question_of
+from ..clean import clean_line, clean_text
+from ..each import Failed
+from ..grading.results import Result
+from ..grading.standing import (
+    full_marks,
+    grade_again,
+    standing,
+)
+from ..nbgrader.gradebook import open_gradebook
+from ..rules import settle_lateness
+from ..students.identity import lms_users
+from ..students.roster import read_roster
+from ..submission import plain_name, students
+from ..whys import settle_whys
+from .mark import Line, Mark
+from .team_reports import for_teams
+
+
+def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterator[Mark]:
+    """Everybody in the roster, and all others who handed in or are graded, in order of name.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        only: One student, by what they handed in themselves; by default all.
+    """
+    rows = _own_marks(course, assignment, only)
+    yield from rows if only else for_teams(course, assignment, rows)
+
+
+def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Mark]:
+    """The mark of each student for what they handed in themselves."""
+    by_platform, handed_in = lms_users(course, assignment), set(students(course, assignment))
+    roster = read_roster(course)
+    stand = {one.student: one for one in standing(course, assignment, only)}
+    with open_gradebook(course) as book:
+        settle_whys(course, book, assignment)
+        settle_lateness(course, book, assignment)
+        there = {plain_name(s.student.id): s for s in book.assignment_submissions(assignment)}
+        full = max((float(s.max_score) for s in there.values()), default=0.0)
+        full = full or full_marks(course, assignment)
+        listed = {student.id for student in roster.students}
+        everybody = stand.keys() | there.keys() | listed
+        for student in sorted(everybody if only is None else everybody & {only}):
+            submission, one = there.get(student), stand.get(student)
+            row = Mark(student, points=full, person=roster.get(student))
+            row = replace(row, user=by_platform.get(student), remark="nothing was handed in")
+            if submission is not None or one is not None:
+                row = _marked(replace(row, remark=""), submission, one, assignment)
+            if isinstance(one, Result) and one.rejected and not row.missing:
+                row = replace(row, remark=f"rejected: {one.rejected}")
+            elif row.raw is not None and one is not None and student not in handed_in:
+                gone = "nothing of theirs is in submitted/; the mark stays as it was"
+                row = replace(row, remark=gone)
+            yield _named(row)
+
+
+def mark_of(result: Result) -> Mark:
+    """What a result is worth, where no gradebook has been asked."""
+    verdicts = [question.verdict for question in result.questions]
+    lines = tuple(Line(v.name, v.points, v.earned) for v in verdicts)
+    return Mark(result.student, lines=lines, raw=result.score, points=result.points, result=result)
+
+
+def _named(row: Mark) -> Mark:
+    """A row with the name that the roster has."""
+    who = row.person
+    if who is None:
+        return row
+    return replace(row, first=who.first_name, last=who.last_name, email=who.email)
+
+
+def _marked(row: Mark, submission: Any, one: Result | Failed | None, assignment: str) -> Mark:
+    """A row with what the gradebook says, or why that does not count."""
+    if isinstance(one, Failed):
+        row = replace(row, missing=one.why)
+    elif one is not None:
+        row = replace(row, result=one)
+    if submission is None:
+        why = f"graded and not in the gradebook; {grade_again(assignment, row.student)}"
+        return replace(row, missing=row.missing or why)
+    who = submission.student
+    names = (who.first_name, who.last_name, who.email, who.lms_user_id)
+    first, last, email, lms = (clean_line(name or "") for name in names)
+    row = replace(
+        row,
+        first=first,
+        last=last,
+        email=email,
+        lms=lms,
+        when=str(submission.timestamp or ""),
+        due=str(submission.duedate or ""),
+        points=float(submission.max_score),
+    )
+    lines = tuple(_lines(submission))
+    missing = row.missing or _differs(assignment, row, lines)
+    if missing:
+        return replace(row, missing=missing)
+    row = replace(row, lines=lines, late=_span(submission.total_seconds_late))
+    none = [line.name for line in lines if line.score is None]
+    if none:
+        return replace(
+            row, missing=f"no mark for {', '.join(none)}; give it by hand, in formgrader"
+        )
+    penalty = float(submission.late_submission_penalty or 0.0)
+    return replace(row, raw=float(submission.score), penalty=penalty)
+
+
+def _lines(submission: Any) -> Iterator[Line]:
+    for notebook in submission.notebooks:
+        said = {c.name: c.manual_comment for c in notebook.comments}
+        order = {cell.name: k for k, cell in enumerate(notebook.notebook.source_cells)}
+        for grade in sorted(notebook.grades, key=lambda g: order.get(g.name, len(order))):
+            name = question_of(grade.name)
+            yield Line(
+                name,
+                float(grade.max_score),
+                grade.auto_score,
+                grade.manual_score,
+                float(grade.extra_credit or 0.0),
+                clean_text(said.get(name) or ""),
+                bool(grade.needs_manual_grade),
+            )
+
+
+def _differs(assignment: str, row: Mark, lines: tuple[Line, ...]) -> str:
+    """Where result and gradebook do not say the same, and what to do; empty if they do."""
+    if row.result is None:
+        return ""
+    earned = {q.verdict.name: q.verdict.earned for q in row.result.questions}
+    for line in lines:
+        score = 0.0 if row.result.rejected else earned.get(line.name, line.automatic)
+        if line.automatic != score:
+            return (
+                f"the result gives {_said(score)} for {line.name}, the gradebook "
+                f"{_said(line.automatic)}; {grade_again(assignment, row.student)}"
+            )
+    return ""
+
+
+def _span(seconds: float) -> str:
+    """A time in words; empty if there is none."""
+    if seconds <= 0:
+        return ""
+    days, rest = divmod(int(seconds), 86400)
+    hours, minutes = rest // 3600, rest % 3600 // 60
+    found = [(days, "day"), (hours, "hour")] if days else [(hours, "hour"), (minutes, "minute")]
+    said = [f"{n} {what}{'s' * (n != 1)}" for n, what in found if n]
+    return " ".join(said) or "less than a minute"
+
+
+def _said(score: float | None) -> str:
+    return "nothing" if score is None else f"{score:g}"

@@ -1,0 +1,1 @@
+"""The gradebook, and the steps, pages and log of nbgrader's own commands."""

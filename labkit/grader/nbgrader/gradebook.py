@@ -1,0 +1,299 @@
+"""nbgrader's gradebook: one writer, who changes the automatic scores and nothing else.
+
+Manual grades and comments stay; formgrader finds a notebook to open for every submission.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import warnings
+from collections.abc import Iterable, Iterator, Mapping, Set
+from contextlib import contextmanager
+from datetime import datetime
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import text as sql
+from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
+
+from ...course.bundle import Bundle
+from ...course.layout import Course
+from ...course.notebook import (
+    about,
+    by_hand,
+    grade_id,
+    question_of,
+    read_cells,
+)
+from ...errors import LabkitError
+from ..atomic import write
+from ..each import Failed, for_student
+from ..grading.results import Result
+from ..nbgrader_api import nbgrader_api
+from ..rules import settle_lateness
+from ..timestamp import read_stamp, read_time
+from ..whys import settle_whys
+from .autograded_notebook import (
+    as_text,
+    in_release_form,
+    release_source,
+    with_verdicts,
+)
+
+
+def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
+    """Write results into the gradebook, and a notebook for each; each student separately.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        results: Of its students.
+
+    Returns:
+        What a person should look at, a sentence each; and whose scores could not be written.
+
+    Raises:
+        LabkitError: The gradebook does not know the assignment, or cannot be used.
+    """
+    said: list[str | Failed] = []
+    source = release_source(course, assignment)
+    with open_gradebook(course) as book:
+        if assignment not in {known.name for known in book.assignments}:
+            seed = Bundle.of(course, assignment).data["seed"]
+            raise LabkitError(
+                f"the gradebook does not know {assignment}, as if it were a new one; type: "
+                f"labkit release {assignment} --seed {seed}"
+            )
+        for result in results:
+            step = partial(_record, course, book, source, result)
+            done = for_student(result.student, step, of_all=(OperationalError,))
+            if isinstance(done, Failed):
+                book.db.rollback()
+            said += [done] if isinstance(done, Failed) else done
+        settle_whys(course, book, assignment)
+        settle_lateness(course, book, assignment)
+    return said
+
+
+def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]:
+    """Write one student's scores, whole or not at all; nbgrader commits who the student is first.
+
+    Returns:
+        What a person should look at.
+    """
+    notebook = with_verdicts(in_release_form(source, result), result)
+    written = as_text(notebook)
+    when, note = timestamp(course, result)
+    known = {} if when is None else {"timestamp": when}
+    book.update_or_create_student(result.student)
+    submission = book.update_or_create_submission(result.assignment, result.student, **known)
+    notes = [f"{result.student}: {note}"] if note else []
+    folder = course.root / "autograded" / result.student / result.assignment
+    path = folder / f"{result.assignment}.ipynb"
+    notes += _write_scores(
+        submission, result, automatic_scores(notebook, result), _changed(path, notebook)
+    )
+    book.db.flush()
+    write(path, written)
+    book.db.commit()
+    return notes
+
+
+def _changed(path: Path, notebook: Any) -> set[str]:
+    """Cells marked by hand that say something else than when they were last recorded."""
+    try:
+        before = {grade_id(cell): cell["source"] for cell in read_cells(path)}
+    except LabkitError:
+        return set()
+    cells = {grade_id(cell): cell.source for cell in notebook.cells if by_hand(cell)}
+    return {name for name, text in cells.items() if before.get(name, text) != text}
+
+
+def migrate(course: Course, assignment: str, source: Any) -> list[str]:
+    """Bring the gradebook's cells into line with a new release, where some have handed in.
+
+    nbgrader's ``SaveCells`` refuses such a release, "Cannot add or remove cells for notebook ...
+    because there are submissions associated with it", rather than lose marks.  Here the cells that
+    are new get their rows, empty ones in every submission, and those that are gone lose theirs; a
+    mark or a comment that somebody wrote by hand is never lost.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        source: The new release's notebook, with its metadata.
+
+    Returns:
+        The questions that are new to those who have handed in; none where nobody has.
+
+    Raises:
+        LabkitError: A question would go that somebody has marked or commented on by hand.
+    """
+    from nbgrader.api import GradeCell, MissingEntry, SolutionCell, SourceCell, TaskCell
+
+    cells = {grade_id(cell): (cell, about(cell)) for cell in source.cells if grade_id(cell)}
+    graded = {k: pair for k, pair in cells.items() if pair[1]["grade"] or pair[1]["task"]}
+    solved = {name for name, pair in cells.items() if pair[1]["solution"]}
+    with open_gradebook(course) as book:
+        try:
+            notebook = book.find_notebook(assignment, assignment)
+        except MissingEntry:
+            return []
+        if not notebook.submissions:
+            return []
+        there = [*notebook.grade_cells, *notebook.task_cells]
+        gone = [c for c in there if c.name not in graded]
+        gone += [c for c in notebook.solution_cells if c.name not in solved]
+        _keep_what_was_written(gone)
+        for cell in gone:
+            for row in [*(cell.grades or ()), *(cell.comments or ())]:
+                book.db.delete(row)
+            book.db.delete(cell)
+        for cell in notebook.source_cells:
+            if cell.name not in cells:
+                book.db.delete(cell)
+        new = sorted(set(graded) - {c.name for c in there})
+        for name in new:
+            cell, known = graded[name]
+            points = float(known["points"])
+            kind = cell.cell_type
+            row = TaskCell if known["task"] else GradeCell
+            add = row(name=name, notebook=notebook, max_score=points, cell_type=kind)
+            _add(book.db, add, notebook.submissions)
+        for name in solved - {c.name for c in notebook.solution_cells}:
+            _add(book.db, SolutionCell(name=name, notebook=notebook), notebook.submissions)
+        for name in set(cells) - {c.name for c in notebook.source_cells}:
+            kind = cells[name][0].cell_type
+            book.db.add(SourceCell(name=name, notebook=notebook, cell_type=kind))
+        book.db.commit()
+    return [question_of(name) for name in new]
+
+
+def _add(db: Any, cell: Any, submissions: Iterable[Any]) -> None:
+    """A cell, with an empty row for it in every submission."""
+    from nbgrader.api import Comment, Grade, GradeCell, SolutionCell
+
+    db.add(cell)
+    db.flush()
+    rows = [Grade] * (not isinstance(cell, SolutionCell))
+    rows += [Comment] * (not isinstance(cell, GradeCell))
+    db.add_all([row(cell_id=cell.id, notebook=x) for row in rows for x in submissions])
+
+
+def _keep_what_was_written(gone: Iterable[Any]) -> None:
+    for cell in gone:
+        marked = [g for g in cell.grades or () if g.manual_score is not None or g.extra_credit]
+        said = [c for c in cell.comments or () if c.manual_comment]
+        if marked or said:
+            name = question_of(cell.name)
+            raise LabkitError(
+                f"{name} would go, with {len(marked) + len(said)} marks or comments given by hand; "
+                "keep the question and give it 0 points"
+            )
+
+
+@contextmanager
+def open_gradebook(course: Course) -> Iterator[Any]:
+    """The gradebook as nbgrader sees it; whatever is wrong, nothing is written by halves.
+
+    A second one, in another terminal, waits until the first is closed.
+
+    Raises:
+        LabkitError: The file is damaged, or cannot be read or written now.
+    """
+    course.build.mkdir(parents=True, exist_ok=True)
+    try:
+        with (
+            open(course.build / ".gradebook", "w") as writer,
+            quiet_database(),
+            nbgrader_api(course).gradebook as book,
+        ):
+            fcntl.flock(writer, fcntl.LOCK_EX)
+            if book.db.execute(sql("PRAGMA quick_check(1)")).scalar() != "ok":
+                raise _damaged("parts of it are lost")
+            try:
+                yield book
+            except BaseException:
+                book.db.rollback()
+                raise
+    except OperationalError as error:
+        raise LabkitError(
+            f"gradebook.db: {error.orig}; correct that and type the same again"
+        ) from None
+    except DatabaseError as error:
+        raise _damaged(error.orig) from None
+
+
+def _damaged(why: object) -> LabkitError:
+    return LabkitError(
+        f"gradebook.db is damaged: {why}; restore a copy of it, which has the marks and comments "
+        "given by hand. Without one, move the file away and type labkit release, then labkit grade "
+        "for each assignment: automatic marks come back from results/"
+    )
+
+
+@contextmanager
+def quiet_database() -> Iterator[None]:
+    """Keep back what SQLAlchemy warns of in nbgrader's queries; nobody here can change them."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", category=SAWarning)
+        yield
+
+
+def timestamp(course: Course, result: Result) -> tuple[datetime | None, str]:
+    """When a submission came in, as its collector says; and a note if that is unreadable."""
+    text = read_stamp(course.submitted / result.student / result.assignment)
+    when = read_time(text)
+    bad = f"timestamp.txt says {text[:40]!r}, which is not a time; counted as in time"
+    return when, bad if text and when is None else ""
+
+
+def automatic_scores(notebook: Any, result: Result) -> dict[str, float | None]:
+    """The automatic score of each cell of the gradebook; None for what a person must mark.
+
+    An answer that is as it was handed out earns 0 by itself.
+
+    Args:
+        notebook: The submission in the release's form.
+        result: Of the submission.
+    """
+    from nbgrader.utils import determine_grade
+
+    earned = {q.verdict.name: float(q.verdict.earned) for q in result.questions}
+    found: dict[str, float | None] = {}
+    for cell in notebook.cells:
+        name = grade_id(cell)
+        if about(cell).get("task"):
+            found[name] = 0.0 if result.rejected else None
+        elif by_hand(cell):
+            found[name] = determine_grade(cell)[0]
+        elif about(cell).get("grade"):
+            found[name] = earned.get(question_of(name), 0.0)
+    return found
+
+
+def _write_scores(
+    submission: Any, result: Result, scores: Mapping[str, float | None], changed: Set[str]
+) -> Iterator[str]:
+    """Write automatic scores; marks given by hand stay, and are looked at again where need be."""
+    for notebook in submission.notebooks:
+        for grade in notebook.grades:
+            score, given = (
+                scores.get(grade.name, 0.0 if result.rejected else None),
+                grade.manual_score,
+            )
+            if given is None:
+                grade.needs_manual_grade = score is None
+            elif grade.name in changed:
+                yield (
+                    f"{result.student}: {grade.name} was marked {given:g} by hand, and the answer "
+                    "is another one now; look at it again"
+                )
+                grade.needs_manual_grade = True
+            elif score is not None and grade.auto_score not in {None, score}:
+                yield (
+                    f"{result.student}: {grade.name} was marked {given:g} by hand and is {score:g} "
+                    "now by itself; look at it again"
+                )
+                grade.needs_manual_grade = True
+            grade.auto_score = score

@@ -1,0 +1,1 @@
+"""Two reviews of each report by other students: who reads whose, and the sheet."""

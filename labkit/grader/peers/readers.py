@@ -1,0 +1,191 @@
+"""Peer review: who reads whose report, and what readers said, without their names.
+
+A reader's sheet is made by `peer_sheet`.  The course's copy of it, in ``feedback/``, is the record
+of which two reports somebody was given; what the student hands in is read cell by cell against it.
+"""
+
+from __future__ import annotations
+
+import hmac
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...course.layout import Course
+from ...course.notebook import read_cells
+from ...errors import LabkitError
+from ..clean import clean_text
+from ..pseudonyms import pseudonyms
+from ..sandbox.limits import Limits
+from ..students.class_list import Student
+from ..students.roster import Roster, read_roster
+from ..submission import Submission, students
+
+EACH = 2
+"""So many reports each student reads."""
+LEAST_NAME = 3
+"""A name with fewer letters stays in a text; "An" and "Li" are words and symbols too."""
+LONGEST_COMMENT = 2000
+_FORM = re.compile(r"^\s*level\s*[:=]\s*([0-3])\b.*?^\s*comment\s*[:=](.*)", re.I | re.M | re.S)
+
+
+def sheet_of(assignment: str) -> str:
+    """What the sheet of a report's readers is called, as a file and as something to collect."""
+    return f"{assignment}_review"
+
+
+@dataclass(frozen=True)
+class Review:
+    """What one reader said of one report.
+
+    Attributes:
+        levels: By row of the rubric.
+        comments: By row of the rubric; may be empty.
+    """
+
+    levels: Mapping[str, int]
+    comments: Mapping[str, str]
+
+
+def readers(
+    seed: int, reports: Mapping[str, str], people: Mapping[str, str]
+) -> dict[str, tuple[str, ...]]:
+    """Whose reports each student reads, by HMAC-SHA256 under the term's seed.
+
+    The reports form a circle.  The members of a team take the reports after their own, two by
+    two, so each report has at least two readers, and nobody reads a report of their own team.
+
+    Args:
+        seed: The term's.
+        reports: By team, who handed in its report.
+        people: By student, their team.
+
+    Returns:
+        By student, the authors of two reports.
+
+    Raises:
+        LabkitError: There are fewer than three reports.
+    """
+    if len(reports) <= EACH:
+        raise LabkitError(
+            f"{len(reports)} teams handed in a report; peer review needs {EACH + 1}, so that each "
+            f"student reads {EACH} reports of others"
+        )
+
+    def rank(name: str) -> bytes:
+        return hmac.digest(str(seed).encode(), f"peer review/{name}".encode(), "sha256")
+
+    circle, n = sorted(reports, key=rank), len(reports)
+    teams: dict[str, list[str]] = {}
+    for student in sorted(people, key=rank):
+        teams.setdefault(people[student], []).append(student)
+    found = {}
+    for team, members in teams.items():
+        own = circle.index(team) if team in reports else int.from_bytes(rank(team)) % n
+        others = [reports[circle[(own + step) % n]] for step in range(1, n)]
+        for number, student in enumerate(members):
+            at = (EACH * number + k for k in range(EACH))
+            found[student] = tuple(others[k % (n - 1)] for k in at)
+    return found
+
+
+def of_class(course: Course, assignment: str) -> tuple[dict[str, str], dict[str, str], list[str]]:
+    """Reports by team, everybody's team, and those whose report is not their team's first."""
+    authors, roster = students(course, assignment), read_roster(course)
+    people = {one.id: one.team or one.id for one in roster.students}
+    people |= {author: author for author in authors if author not in people}
+    reports: dict[str, str] = {}
+    for author in authors:
+        reports.setdefault(people[author], author)
+    return reports, people, [x for x in authors if reports[people[x]] != x]
+
+
+def team_of(author: str, people: Mapping[str, str], roster: Roster) -> list[Student]:
+    """Those who wrote a report."""
+    team = [name for name in sorted(people) if people[name] == people[author]]
+    return [roster.get(name) or Student(name) for name in team]
+
+
+def without_names(text: str, people: Sequence[Student], who: str) -> str:
+    """A text in which each of some people is called ``who`` and a number.
+
+    Names, logins, addresses and numbers go, whatever their letters' case.
+    """
+    for number, one in enumerate(people, 1):
+        names = [one.id, one.login, one.email, one.id_number, one.github, one.name, one.team]
+        names += [one.first_name, one.last_name, *re.split(r"[\W_]+", one.id)]
+        known = sorted({x for x in names if len(x) >= LEAST_NAME}, key=len, reverse=True)
+        if known:
+            any_of = "|".join(map(re.escape, known))
+            text = re.sub(rf"(?<!\w)(?:{any_of})(?!\w)", f"{who} {number}", text, flags=re.I)
+    return text
+
+
+def handed_out(course: Course, assignment: str, student: str) -> Path:
+    """Where the course keeps the sheet that a student was given."""
+    name = sheet_of(assignment)
+    return course.root / "feedback" / student / name / f"{name}.ipynb"
+
+
+def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], list[str]]:
+    """What readers said, by the author of the report; and who has not read both, a sentence each.
+
+    A review counts when every row of the rubric has a level.
+
+    Raises:
+        LabkitError: A sheet in ``feedback/`` is damaged.
+    """
+    name, roster = sheet_of(assignment), read_roster(course)
+    given = sorted((course.root / "feedback").glob(f"*/{name}/{name}.ipynb"))
+    code = pseudonyms(course) if given else str
+    authors = {code(author): author for author in students(course, assignment)}
+    found: dict[str, list[Review]] = {author: [] for author in authors.values()}
+    waiting = []
+    for path in given:
+        student = path.parents[1].name
+        asked: dict[str, list[str]] = {}
+        for cell in read_cells(path):
+            if cell["cell_type"] == "raw":
+                who, _, row = cell["id"].partition("_")
+                asked.setdefault(who, []).append(row)
+        said, wrong = _handed_in(course, name, student)
+        me = [roster.get(student) or Student(student)]
+        whole = 0
+        for who, rows in asked.items():
+            review = _review(rows, {row: said.get(f"{who}_{row}", "") for row in rows}, me)
+            if review is not None:
+                whole += 1
+                found.setdefault(authors.get(who, ""), []).append(review)
+        if whole < len(asked):
+            waiting.append(f"{student}: {wrong or f'{whole} of {len(asked)} reviews'}")
+    return found, waiting
+
+
+def _handed_in(course: Course, name: str, student: str) -> tuple[dict[str, str], str]:
+    """The texts of a student's sheet by their cells' names; and why there are none."""
+    submission = Submission.of(course, name, student)
+    if not submission.folder.exists():
+        return {}, "handed in no review"
+    data, _, wrong = submission.read(Limits().notebook)
+    if wrong:
+        return {}, wrong
+    try:
+        cells = read_cells(submission.folder / f"{name}.ipynb", data)
+    except LabkitError as error:
+        return {}, str(error)
+    return {str(cell.get("id")): cell["source"] for cell in cells}, ""
+
+
+def _review(rows: Iterable[str], said: Mapping[str, str], me: Sequence[Student]) -> Review | None:
+    """A review, or None if a row has no level."""
+    forms = {row: _FORM.search(clean_text(said[row])) for row in rows}
+    if not all(forms.values()):
+        return None
+    comments = {row: without_names(form[2].strip(), me, "reader") for row, form in _of(forms)}
+    levels = {row: int(form[1]) for row, form in _of(forms)}
+    return Review(levels, {row: text[:LONGEST_COMMENT] for row, text in comments.items()})
+
+
+def _of(forms: Mapping[str, re.Match[str] | None]) -> Iterator[tuple[str, re.Match[str]]]:
+    return ((row, form) for row, form in forms.items() if form is not None)

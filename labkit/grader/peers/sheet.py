@@ -1,0 +1,158 @@
+"""The sheet of a reader: two reports without names, and the rubric to fill in, as a notebook.
+
+A report is somebody else's: its code is shown as text, of its outputs only pictures are kept, and
+nothing in its text makes a browser fetch anything.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import nbformat
+from nbformat import v4
+
+from ...course.bundle import Bundle
+from ...course.layout import Course
+from ...course.notebook import (
+    Notebook,
+    grade_id,
+    read_cells,
+)
+from ...errors import LabkitError
+from ..atomic import write
+from ..clean import clean_text
+from ..each import Failed, for_student
+from ..pseudonyms import pseudonyms
+from ..sandbox.limits import Limits
+from ..students.class_list import Student
+from ..students.roster import read_roster
+from ..submission import Submission
+from .readers import (
+    handed_out,
+    of_class,
+    readers,
+    sheet_of,
+    team_of,
+    without_names,
+)
+
+FORM = "level: \ncomment: "
+HEAD = """# Review of two reports
+
+Below are two reports by other teams, without names, each followed by the rubric. Read a report
+first as a whole. Then give each row a level, a number from 0 to 3 after `level:`, and after
+`comment:` one sentence that would help the authors. The authors read both, and do not learn who
+you are; do not write your name.
+
+Save this file and hand it in without renaming it."""
+_PICTURE = re.compile(r"!(?=\[[^\]]*\](?!\(attachment:))")
+_BASE64 = re.compile(r"[A-Za-z0-9+/=\s]+")
+
+
+def hand_out(course: Course, assignment: str) -> Iterator[str | Failed]:
+    """Write a sheet for each student who has none yet; what somebody was given stays.
+
+    Yields:
+        What a person should know, a sentence each; and for whom no sheet could be made.
+
+    Raises:
+        LabkitError: There are fewer than three reports that can be read.
+    """
+    bundle, roster = Bundle.of(course, assignment), read_roster(course)
+    reports, people, doubled = of_class(course, assignment)
+    cells = bundle.data["cells"]
+    rubric = {m["grade_id"]: cells[k - 1]["source"] for k, m in enumerate(cells) if "points" in m}
+    if not rubric:
+        raise LabkitError(f"{assignment} has no rubric, so there is nothing to review by")
+    told: dict[str, list[dict[str, Any]]] = {}
+    for team, author in list(reports.items()):
+        members = team_of(author, people, roster)
+        step = partial(_report, course, assignment, author, members, cells)
+        done = for_student(author, step)
+        if isinstance(done, Failed):
+            del reports[team]
+            yield done
+        else:
+            told[author] = done
+    code = pseudonyms(course)
+    to_read = readers(int(bundle.data["seed"]), reports, people)
+    new = {who: handed_out(course, assignment, who) for who in to_read}
+    new = {who: path for who, path in new.items() if not path.exists()}
+    for student, path in new.items():
+        parts = [(code(author), told[author]) for author in to_read[student]]
+        write(path, nbformat.writes(_sheet(parts, rubric)) + "\n")
+    yield f"sheets in feedback/*/{sheet_of(assignment)}: {len(new)} new, {len(to_read)} in all"
+    for student in doubled:
+        first = reports.get(people[student], "somebody")
+        yield f"{student}: nobody reads this report, as {first} of the same team handed in one too"
+
+
+def _sheet(
+    parts: Sequence[tuple[str, Sequence[dict[str, Any]]]], rubric: Mapping[str, str]
+) -> Notebook:
+    """Reports, each by its pseudonym with its cells, and after each the rubric to fill in."""
+    cells = [v4.new_markdown_cell(HEAD, id="head")]
+    for number, (name, report) in enumerate(parts, 1):
+        cells.append(v4.new_markdown_cell(f"## Report {number}", id=f"report-{number}"))
+        cells += [{**cell, "id": f"{number}-{k}"} for k, cell in enumerate(report)]
+        for row, text in rubric.items():
+            cells.append(v4.new_markdown_cell(text, id=f"rubric-{number}-{row}"))
+            cells.append(v4.new_raw_cell(FORM, id=f"{name}_{row}"))
+    return nbformat.from_dict(dict(v4.new_notebook(cells=cells)))
+
+
+def _report(
+    course: Course,
+    assignment: str,
+    author: str,
+    team: Sequence[Student],
+    released: Iterable[Mapping[str, Any]],
+) -> list[dict[str, Any]]:
+    """What a team wrote: the cells that are not the release's, and the headings between them."""
+    data, _, wrong = Submission.of(course, assignment, author).read(Limits().notebook)
+    if wrong:
+        raise LabkitError(f"{wrong}; nobody can read this report")
+    known = {m["source"].strip(): m["kind"] for m in released}
+    answers = {m["grade_id"] for m in released if m["kind"] == "answer"}
+    told: list[dict[str, Any]] = []
+    for cell in read_cells(Path(f"{assignment}.ipynb"), data):
+        text = clean_text(cell["source"]).strip()
+        kind = known.get(text, "own") if text else "walk"
+        if kind == "brief":
+            told.append(v4.new_markdown_cell("#" + text.partition("\n")[0]))
+        elif kind == "own" and grade_id(cell) not in answers:
+            text = without_names(text, team, "author")
+            code = cell["cell_type"] == "code"
+            shown = _as_text(text) if code else _PICTURE.sub("", text.replace("<", "&lt;"))
+            pictures = dict(_pictures(cell, code))
+            if code:
+                shown += "".join(f"\n\n![figure](attachment:{name})" for name in pictures)
+            told.append(v4.new_markdown_cell(shown, attachments=pictures))
+    return told
+
+
+def _as_text(code: str) -> str:
+    fence = "`" * (max(map(len, re.findall("`+", code)), default=0) + 3)
+    return f"{fence}python\n{code}\n{fence}"
+
+
+def _pictures(cell: Mapping[str, Any], code: bool) -> Iterator[tuple[str, dict[str, str]]]:
+    """The PNGs of a cell: a code cell's outputs, a text's attachments."""
+    if code:
+        outputs = cell.get("outputs")
+        parts = outputs if isinstance(outputs, list) else []
+        found = [
+            (f"figure-{k}.png", x.get("data")) for k, x in enumerate(parts) if isinstance(x, dict)
+        ]
+    else:
+        attached = cell.get("attachments")
+        found = list(attached.items()) if isinstance(attached, dict) else []
+    for name, data in found:
+        png = data.get("image/png") if isinstance(data, dict) else None
+        png = "".join(map(str, png)) if isinstance(png, list) else png
+        if isinstance(png, str) and _BASE64.fullmatch(png):
+            yield name, {"image/png": png}

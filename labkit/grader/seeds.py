@@ -1,0 +1,59 @@
+"""The seed of a term's hidden cases, and of an assignment's."""
+
+from __future__ import annotations
+
+import json
+
+from ..course.layout import Course
+from ..course.seed import PUBLIC_SEED
+from ..errors import LabkitError
+
+
+def seed_of(course: Course) -> int:
+    """The course's own seed, or the public one if no term was begun.
+
+    Raises:
+        LabkitError: The term's record cannot be read.
+    """
+    file = course.term
+    if not file.exists():
+        return PUBLIC_SEED
+    try:
+        return int(json.loads(file.read_text(encoding="utf-8"))["seed"])
+    except (ValueError, KeyError, TypeError):
+        raise LabkitError(
+            f"{file} is damaged and holds no seed; restore it, or write the term's as "
+            '{"seed": 123}'
+        ) from None
+
+
+def seed_for(course: Course, assignment: str) -> int:
+    """The seed of an assignment that is released without one.
+
+    It is the term's.  Where no term was begun, it is that of the last release, so that a
+    correction leaves hidden cases as they are; and the public one where that is the first.
+
+    Raises:
+        LabkitError: The bundle of the last release is damaged, and its seed lost.
+    """
+    seed = seed_of(course)
+    bundle = course.bundle / f"{assignment}.json"
+    if seed == PUBLIC_SEED and bundle.exists():
+        try:
+            seed = int(json.loads(bundle.read_text(encoding="utf-8"))["seed"])
+        except (TypeError, ValueError, KeyError) as error:
+            raise LabkitError(
+                f"{bundle} is damaged, and the seed of its hidden cases is lost ({error}); restore "
+                f"it, or name a seed: labkit release {assignment} --seed {seed}"
+            ) from None
+    return seed
+
+
+def public_warning(seed: int) -> str:
+    """What to say of cases that are made with a seed; "" if it is not the public one."""
+    if seed != PUBLIC_SEED:
+        return ""
+    return (
+        f"hidden cases made with the public seed {PUBLIC_SEED} are public: anyone can compute "
+        "them; begin a term with: labkit term new"
+    )

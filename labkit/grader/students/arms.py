@@ -1,0 +1,58 @@
+"""Gives each student of the roster, or each team, an arm of their own."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+
+from ...course.layout import Course
+from ...course.own_arm import (
+    DEMO,
+    FILE,
+    HANDLES,
+    Arms,
+)
+from ..atomic import write
+from .roster import Roster
+
+
+def give_arms(course: Course, roster: Roster, secret: int) -> None:
+    """Keep for grading whose arm is whose, and lay the sealed arms beside what is released.
+
+    Students of one team have one arm. An arm follows from the secret and the handle alone, so an
+    arm that was given stays the same when others join the class.
+
+    Args:
+        course: The course.
+        roster: Its students.
+        secret: The term's seed.
+    """
+    handles = {student.id: student.team or student.id for student in roster.students}
+    write(course.root / HANDLES, Arms(secret, handles).text())
+    for name in course.names():
+        lay_arms(course, name)
+
+
+def lay_arms(course: Course, name: str) -> None:
+    """Lay the sealed arms beside a released notebook that asks about one's own arm."""
+    arms, folder = Arms.of(course.root), course.release / name
+    if arms.handles and _asks(course, name) and folder.is_dir():
+        write(folder / FILE, json.dumps(arms.sealed(), indent=1) + "\n")
+
+
+def without_arms(course: Course, names: Sequence[str]) -> str:
+    """Which of these notebooks ask about one's own arm and have only the public one."""
+    lacking = [x for x in names if _asks(course, x) and not (course.release / x / FILE).exists()]
+    if not lacking:
+        return ""
+    return (
+        f"{', '.join(lacking)}: every student has the public arm {DEMO!r}; for an arm each, import "
+        "the list of students (labkit students import FILE.csv), then make the zip again"
+    )
+
+
+def _asks(course: Course, name: str) -> bool:
+    """Whether a notebook has a question about one's own arm."""
+    text = course.notebook_source(name).read_text(encoding="utf-8")
+    return bool(re.search(r"\bmy_(arm|bug)\(", text))

@@ -1,0 +1,207 @@
+"""Reads lists of students: Moodle's and Canvas's exports, or any table with a row for each.
+
+Canvas: *Grades, Export*; its columns are Student ("Last, First"), ID, SIS User ID, SIS Login ID and
+Section.  Moodle: *Participants*, select all, *Download table data as CSV*; or the grading worksheet
+of an assignment, which alone says which participant number is whose.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...errors import LabkitError
+from ..submission import check_size
+from .platforms import person
+
+LARGEST = 20
+"""Of a list, in [MiB]."""
+HEADS = {
+    "login": "login, login name, username, user name, sis login id, anmeldename, nutzername, "
+    "benutzername",
+    "id_number": "id number, idnumber, sis user id, student number, student id, "
+    "matriculation number, matrikelnummer, id-nummer, numéro d’identification, número de id",
+    "lms_user_id": "lms user id, canvas id",
+    "github": "github, github username, github login",
+    "team": "team, group, groups, gruppe, groupe, grupo",
+    "email": "email, e-mail, email address, e-mail address, mail, e-mail-adresse, "
+    "adresse de courriel, dirección de correo",
+    "first_name": "first name, firstname, given name, forename, vorname, prénom, nombre",
+    "last_name": "last name, lastname, surname, family name, nachname, nom, apellido(s)",
+    "name": "name, full name, student, student name, vollständiger name, nom complet, "
+    "nombre completo",
+    "participant": "identifier",
+    "handed_in": "last modified (submission)",
+}
+"""What a column may be called, by what it holds; a column "id" is settled by its neighbours."""
+_FIELDS = {head: field for field, heads in HEADS.items() for head in heads.split(", ")}
+_NOT_A_STUDENT = "points possible"
+_NO_TEAM = {"no groups", "keine gruppen"}
+"""What Moodle's column Groups says of a student who is in none."""
+_PARTICIPANT = re.compile(r"[^\d]*([0-9]+)")
+
+
+@dataclass(frozen=True)
+class Student:
+    """One student; all but ``id`` may be empty.
+
+    Attributes:
+        id: The name of their folder, and nbgrader's name for them.
+        first_name: First name.
+        last_name: Last name.
+        email: Address.
+        lms_user_id: Canvas's number of the user.
+        login: The name that they log in with.
+        id_number: The university's number.
+        github: The name on GitHub.
+        team: Those who have the same one share an arm.
+    """
+
+    id: str
+    first_name: str = ""
+    last_name: str = ""
+    email: str = ""
+    lms_user_id: str = ""
+    login: str = ""
+    id_number: str = ""
+    github: str = ""
+    team: str = ""
+
+    @property
+    def name(self) -> str:
+        """First and last name."""
+        return f"{self.first_name} {self.last_name}".strip()
+
+    def __str__(self) -> str:
+        return f"{self.name} ({self.id})" if self.name else self.id
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One row of a list; what it does not say is empty.
+
+    Attributes:
+        line: Where it ends in the file, as an editor counts.
+        student: Who it is; without an ``id``, which is for the roster to give.
+        participant: Moodle's number of the participant in one assignment.
+        handed_in: When the participant handed in, as Moodle's worksheet writes it.
+    """
+
+    line: int
+    student: Student
+    participant: str = ""
+    handed_in: str = ""
+
+
+def read_list(path: Path) -> tuple[Entry, ...]:
+    """Read a list of students.
+
+    Args:
+        path: A CSV file; its delimiter and its encoding are found out.
+
+    Raises:
+        LabkitError: It is not a table, a needed column is missing, or a row does not fit.
+    """
+    heads, rows = read_table(path)
+    columns = _columns(heads)
+    if not columns.keys() & {"login", "name", "last_name"}:
+        raise LabkitError(
+            f"{path} does not say who its students are; its columns are "
+            f"{', '.join(map(repr, heads))[:300]}; call one of them 'name' or 'login', or two of "
+            "them 'first name' and 'last name'"
+        )
+    refuse_long_rows(path, heads, rows)
+    return tuple(_entries(path, columns, rows))
+
+
+def read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """The first row of a CSV file, cleaned, and the others with their lines' numbers.
+
+    Raises:
+        LabkitError: It is not a table.
+    """
+    text = _read_text(path)
+    first = text.partition("\n")[0]
+    delimiter = max(
+        ",;\t|", key=lambda x: len(_columns(next(csv.reader([first], delimiter=x), [])))
+    )
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    try:
+        rows = [(reader.line_num, [person(cell) for cell in row]) for row in reader]
+    except csv.Error as error:
+        raise LabkitError(f"{path}, line {reader.line_num}: {error}; correct the table") from None
+    (_, heads), *others = rows or [(0, [])]
+    return heads, others
+
+
+def refuse_long_rows(
+    path: Path, heads: Sequence[str], rows: Sequence[tuple[int, list[str]]]
+) -> None:
+    """Refuse a table in which a comma may have moved somebody's cells.
+
+    Raises:
+        LabkitError: A row has more cells than there are columns.
+    """
+    for line, row in rows:
+        if any(row[len(heads) :]):
+            raise LabkitError(
+                f"{path}, line {line} has {len(row)} cells and the first line has {len(heads)}; "
+                "put quotation marks around what holds a comma"
+            )
+
+
+def _read_text(path: Path) -> str:
+    """A text in any encoding that spreadsheets write."""
+    if not path.is_file():
+        raise LabkitError(f"there is no file {path}")
+    check_size(path.stat().st_size, LARGEST)
+    data = path.read_bytes()
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16", errors="replace")
+    if data.startswith(b"PK\x03\x04") or b"\0" in data:
+        raise LabkitError(f"{path} is not a text; save the spreadsheet as CSV")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", errors="replace")
+
+
+def _columns(heads: Sequence[str]) -> dict[str, int]:
+    """Where each field stands."""
+    plain = [re.sub(r"[\s_]+", " ", person(head).casefold()).strip(' *"') for head in heads]
+    found: dict[str, int] = {}
+    for at, head in enumerate(plain):
+        if head in _FIELDS:
+            found.setdefault(_FIELDS[head], at)
+    if "id" in plain:
+        canvas = "student" in plain and bool({"section", "sis login id"} & set(plain))
+        other = "id_number" if "login" in found else "login"
+        found.setdefault("lms_user_id" if canvas else other, plain.index("id"))
+    return found
+
+
+def _entries(
+    path: Path, columns: dict[str, int], rows: Sequence[tuple[int, list[str]]]
+) -> Iterator[Entry]:
+    for line, row in rows:
+        cells = {k: row[at] if at < len(row) else "" for k, at in columns.items()}
+        name = cells.pop("name", "")
+        if not (name or any(cells.values())) or name.casefold() == _NOT_A_STUDENT:
+            continue  # an empty line, or Canvas's full marks
+        if name and not (cells.get("first_name") or cells.get("last_name")):
+            last, comma, first = name.partition(",")
+            first, _, last = (first, "", last) if comma else name.rpartition(" ")
+            cells |= {"first_name": first.strip(), "last_name": last.strip()}
+        if cells.get("team", "").casefold() in _NO_TEAM:
+            cells["team"] = ""
+        if number := _PARTICIPANT.fullmatch(cells.get("participant", "")):
+            cells["participant"] = number[1]
+        of_hand_in = {k: cells.pop(k, "") for k in ("participant", "handed_in")}
+        student = Student("", **cells)
+        if not (student.name or student.login):
+            raise LabkitError(f"{path}, line {line} has neither a name nor a login")
+        yield Entry(line, student, **of_hand_in)

@@ -1,0 +1,288 @@
+"""Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
+
+Whose a file is comes from the platform's own field (``platforms``, ``downloads``) and from the
+roster (``identity``); which of a student's notebooks counts is settled in ``attempts``.
+"""
+
+from __future__ import annotations
+
+import zipfile
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from ...course.layout import Course
+from ...errors import LabkitError
+from ..each import Failed, for_student
+from ..grading.results import digest
+from .attempts import (
+    Seen,
+    adopt,
+    called,
+    install,
+    keep,
+    that_counts,
+)
+from .enrol import settle
+from .exchange import in_exchange
+from .identity import (
+    all_lms_users,
+    alone,
+    places,
+    remember,
+)
+from .platforms import (
+    File,
+    LmsUser,
+    Named,
+    in_folder,
+    in_zip,
+    open_zip,
+    reader,
+)
+from .roster import Roster, read_roster
+
+
+@dataclass(frozen=True)
+class Taken:
+    """One file, and what was done with it.
+
+    Attributes:
+        student: Whose, as the folder is called; empty if nobody's.
+        file: Its name in the download; empty if it is of none in particular.
+        says: What was done.
+        fine: Whether nobody need look at it.
+    """
+
+    student: str
+    file: str
+    says: str
+    fine: bool = True
+
+    def __str__(self) -> str:
+        return ": ".join(filter(None, (self.student, self.file, self.says)))
+
+
+_HandedIn = tuple[File, Named]
+"""A file, and the one reading of its name that is right."""
+
+
+def collect(
+    course: Course,
+    assignment: str,
+    source: Path,
+    *,
+    unverified: bool = False,
+    named: str | None = None,
+    at: datetime | None = None,
+) -> Iterator[Taken]:
+    """Take notebooks from a download; the same once more changes nothing.
+
+    Args:
+        course: The course.
+        assignment: Which.
+        source: A zip from Moodle or Canvas, or the inbound folder of nbgrader's exchange.
+        unverified: Whether users of the exchange whom this machine does not know are taken at
+            their word.
+        named: How files are named that come from no platform, such as
+            ``paths-{student}/*.ipynb``; then the source is a folder of them, or a zip.
+        at: When the source was made, if that is known; what has no time of its own was handed in
+            by then.
+
+    Yields:
+        What was done with each file.
+
+    Raises:
+        LabkitError: It is neither, it is damaged, or it holds nothing; or a record of the course
+            is damaged.
+    """
+    if not source.exists():
+        raise LabkitError(f"there is no {source}")
+    if not (source.is_file() or source.is_dir()):  # a device or a pipe, which has no end
+        raise LabkitError(f"{source} is neither a file nor a folder; give the download as it is")
+    now = datetime.fromtimestamp(int(source.stat().st_mtime), UTC)
+    with alone(course):
+        if named is not None:
+            read = reader(named)
+            others = [x for x in course.names() if x != assignment]
+            with ExitStack() as stack:
+                if source.is_dir():
+                    files = list(in_folder(source, read))
+                else:
+                    files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
+                mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
+                yield from _take(course, assignment, source, [_made(x, at) for x in mine])
+        elif source.is_dir():
+            files = list(in_exchange(source, assignment, unverified=unverified))
+            yield from _take(course, assignment, source, files)
+        elif not zipfile.is_zipfile(source):
+            raise LabkitError(
+                f"{source} is neither a folder nor a zip file; give the download as it is"
+            )
+        else:
+            with open_zip(source) as archive:
+                files = [_made(file, at) for file in in_zip(archive, now)]
+                yield from _take(course, assignment, source, files)
+
+
+def _made(file: File, at: datetime | None) -> File:
+    """A file of a source that was made at a known time."""
+    return file if at is None or file.exact else replace(file, when=at, exact=True)
+
+
+def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
+    if not files:
+        kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
+        raise LabkitError(
+            f"nothing in {source} was handed in for {assignment}, read as {kind}; files that come "
+            "from no platform need --named, such as --named 'paths-{student}/*.ipynb'"
+        )
+    roster = read_roster(course)
+    for sentence in settle(course, roster):
+        yield Taken("", "", sentence, fine=False)
+    known = all_lms_users(course)
+    handed_in: list[_HandedIn] = []
+    for file in files:
+        named = _whose(file, roster)
+        if isinstance(named, str):
+            yield Taken("", file.label, named, fine=False)
+        else:
+            handed_in.append((file, named))
+    people = {named.who.key: named.who for _, named in handed_in}
+    there = [path.name for path in course.submitted.glob("*")]
+    found = places(people.values(), assignment, known, roster, there)
+    by_folder = {place.folder: people[key] for key, place in found.items()}
+    if not roster.students:
+        yield from _namesakes(people.values())
+        yield from _known_by_name(assignment, by_folder, known)
+    for place in found.values():
+        if place.doubt:
+            yield Taken(place.folder, "", place.doubt, fine=False)
+    remember(course, assignment, by_folder)
+    by_student: dict[str, list[_HandedIn]] = {}
+    for file, named in handed_in:
+        by_student.setdefault(found[named.who.key].folder, []).append((file, named))
+    for student, mine in sorted(by_student.items()):
+        yield from _keep(course, assignment, student, mine)
+
+
+def _whose(file: File, roster: Roster) -> Named | str:
+    """The one reading of a file's name that is right, or why there is none."""
+    if file.refused or not file.readings:
+        return file.refused or "not taken; its name does not say whose it is"
+    if len(file.readings) == 1:
+        who = file.readings[0].who
+        if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
+            known = len(roster.whose(who)) or "no"
+            return (
+                f"not taken; the roster has {known} students who are {who.name!r}; correct it with "
+                "labkit students import LIST.csv, and collect again"
+            )
+        return file.readings[0]
+    fits = [named for named in file.readings if _is_called_so(named.who, roster)]
+    if len(fits) == 1:
+        return fits[0]
+    people = " or ".join(str(named.who) for named in file.readings)
+    return f"not taken; it is of {people}; the roster does not say which"
+
+
+def _is_called_so(who: LmsUser, roster: Roster) -> bool:
+    """Whether the roster has this user of Canvas, under this name."""
+    names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
+    return _letters(who.name) in map(_letters, names)
+
+
+def _letters(name: str) -> str:
+    return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def _namesakes(people: Iterable[LmsUser]) -> Iterator[Taken]:
+    called = Counter(one.name for one in people if one.system == "moodle")
+    for name, count in called.items():
+        if count > 1:
+            yield Taken(name, "", f"{count} students are called so; told apart by their number")
+
+
+def _known_by_name(
+    assignment: str, people: Mapping[str, LmsUser], known: Mapping[str, Mapping[str, LmsUser]]
+) -> Iterator[Taken]:
+    """Who is taken for somebody of an earlier assignment by name alone, which people can change.
+
+    Moodle's numbers are new in each assignment, so without a roster there is nothing else to go by.
+    """
+    pairs = [
+        f"{who.name} ({before.number} for {other}, {who.number} for {assignment})"
+        for folder, who in people.items()
+        for other, there in known.items()
+        if other != assignment and who.system == "moodle"
+        if (before := there.get(folder)) is not None and before.number != who.number
+    ]
+    if pairs:
+        some = ", ".join(pairs[:3]) + (", ..." if len(pairs) > 3 else "")
+        yield Taken(
+            "",
+            "",
+            f"{len(pairs)} are known by their name alone, which people can change: {some}; "
+            "`labkit students import` reads the class list, which knows them for certain",
+        )
+
+
+def _keep(
+    course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
+) -> Iterator[Taken]:
+    """Keep one student's notebooks, and let the right one count."""
+    notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
+    for _, named in mine:
+        if says := _no_notebook(named):
+            yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
+    done = for_student(
+        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
+    )
+    if isinstance(done, Failed):
+        done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
+    yield from done
+
+
+def _no_notebook(named: Named) -> str:
+    file = named.file.lower()
+    if named.kind != "file":
+        return f"it came as Moodle's {named.kind} and not as a file"
+    if file.endswith(".zip"):
+        return "it is a zip; ask for the notebook itself"
+    return "" if file.endswith(".ipynb") else "it is not a notebook"
+
+
+def _keep_notebooks(
+    course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
+) -> Iterator[Taken]:
+    now = str(datetime.now(UTC))
+    adopt(course, student, assignment, now)
+    before = that_counts(course, student, assignment)
+    shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
+    kept: list[tuple[Seen, str, bool]] = []
+    for file, named in notebooks:
+        try:
+            data, secret = file.read(), file.secret()
+        except LabkitError as error:
+            yield Taken(student, named.file, f"not taken; {error}", fine=False)
+            continue
+        when = file.when if file.exact else shown  # a download shows them all at once
+        seen = Seen(when, *named.who.key, named.file, file.exact, named.late, now)
+        kept.append((seen, digest(data), keep(course, student, assignment, data, seen, secret)))
+    after = install(course, student, assignment)
+    for seen, sha256, new in kept:
+        if after is None or after.attempt.sha256 != sha256:
+            beside = {x.when: x.file for x in after.attempt.seen} if after else {}
+            which = beside.get(seen.when, "a later one")
+            if after and which == seen.file:
+                which = f"another {which}, of {after.first.when:%Y-%m-%d %H:%M %Z},"
+            says = f"{'kept' if new else 'there already'}, but {which} counts"
+        elif before is not None and before.attempt.sha256 == sha256:
+            says = "there already"
+        else:
+            says = "taken" + (", in place of an earlier one, which is kept" if before else "")
+            says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
+        yield Taken(student, seen.file, says + (", late" if seen.late else ""))

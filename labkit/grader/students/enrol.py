@@ -1,0 +1,316 @@
+"""Takes a list of students into the roster: who is new, and who is there already.
+
+A row is a student of the roster if they share a login, an address or a number; or the name, if
+nobody else has it and nothing speaks against it.  Nobody leaves the roster by a list that does not
+name them.  A student keeps the folder in which work of theirs lies.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain, count
+from pathlib import Path
+from zoneinfo import ZoneInfo
+
+from ...course.layout import Course
+from ...errors import LabkitError
+from ..clean import safe_name
+from ..rules import read_rules
+from ..seeds import seed_of
+from ..timestamp import read_time
+from .arms import give_arms
+from .attempts import (
+    attempts,
+    counts,
+    install,
+    keep,
+    move,
+)
+from .class_list import (
+    Entry,
+    Student,
+    read_list,
+)
+from .identity import (
+    all_lms_users,
+    alone,
+    lms_users,
+    places,
+    remember,
+)
+from .list_remarks import about_namesakes, about_teams
+from .platforms import LmsUser
+from .roster import (
+    FILE,
+    Roster,
+    read_roster,
+    same_name,
+    save_roster,
+    tell_gradebook,
+)
+
+_Mark = tuple[str, object]
+_KEYS = ("login", "email", "lms_user_id", "id_number", "github")
+_FIELDS = ("first_name", "last_name", "team", *_KEYS)
+
+
+@dataclass(frozen=True)
+class Enrolled:
+    """What came of a list.
+
+    Attributes:
+        roster: With the list's students in it.
+        rows: Each row of the list with its student.
+        new: Those who were not there before.
+    """
+
+    roster: Roster
+    rows: tuple[tuple[Entry, Student], ...]
+    new: tuple[Student, ...]
+
+
+def enrol(
+    roster: Roster, entries: Sequence[Entry], collected: Mapping[str, Mapping[str, LmsUser]]
+) -> Enrolled:
+    """Take a list into the roster.
+
+    Args:
+        roster: As it was.
+        entries: The list's rows.
+        collected: Whose work was collected before, by assignment, then by folder.
+
+    Raises:
+        LabkitError: Two rows, or a row and the roster, contradict each other.
+    """
+    _refuse_contradictions(entries)
+    listed = {(same_name(x.student.name), *_marks(x.student).items()) for x in entries}
+    names = Counter(name for name, *_ in listed)
+    students = {student.id: student for student in roster.students}
+    by_mark: dict[_Mark, set[str]] = {}
+    for student in roster.students:
+        _index(student, by_mark)
+    rows: list[tuple[Entry, str]] = []
+    for entry in entries:
+        unique = names[same_name(entry.student.name)] == 1
+        # who is new has no folder yet, and until `_folders` an id that no folder can have
+        id = _find(entry, unique, students, by_mark) or f"\n{entry.line}"
+        said = {k: v for k in _FIELDS if (v := getattr(entry.student, k))}
+        students[id] = replace(students.get(id, Student(id)), **said)
+        _index(students[id], by_mark)
+        rows.append((entry, id))
+    new = [id for id in students if id not in roster]
+    folders = _folders(Roster(tuple(students.values())), new, collected)
+    done = {id: replace(s, id=folders.get(id, id)) for id, s in students.items()}
+    return Enrolled(
+        Roster(tuple(done.values())),
+        tuple((entry, done[id]) for entry, id in rows),
+        tuple(done[id] for id in new),
+    )
+
+
+@dataclass(frozen=True)
+class Imported:
+    """What came of `import_list`, in sentences.
+
+    Attributes:
+        told: What was done.
+        left: Work of one student that is in two folders.
+        alike: Students whom a download of Moodle's does not tell apart.
+    """
+
+    told: tuple[str, ...]
+    left: tuple[str, ...]
+    alike: tuple[str, ...]
+
+
+def import_list(course: Course, file: Path, assignment: str | None = None) -> Imported:
+    """Take a list of students into the course's roster, and bring earlier work to its owners.
+
+    Args:
+        course: The course.
+        file: A CSV file; see `read_list`.
+        assignment: Where the file is Moodle's grading worksheet of this assignment.
+
+    Raises:
+        LabkitError: The list does not fit the roster or itself, or it is not a list.
+    """
+    if assignment:
+        course.notebook_source(assignment)
+    entries = read_list(file)
+    numbered = sum(bool(entry.participant) for entry in entries)
+    if assignment and not numbered:
+        raise LabkitError(
+            f"{file} has no column 'Identifier'; give the grading worksheet of "
+            f"{assignment}, in English: Submissions, Actions, Download grading worksheet"
+        )
+    with alone(course):
+        before = read_roster(course)
+        done = enrol(before, entries, all_lms_users(course))
+        save_roster(course, done.roster)
+        tell_gradebook(course, done.roster)
+        give_arms(course, done.roster, seed_of(course))
+        left = settle(course, done.roster)
+        left += keep_numbers(course, assignment, done.rows) if assignment else []
+        times = keep_times(course, assignment, done.rows) if assignment else 0
+    listed = {student.id for _, student in done.rows}
+    absent = [str(student) for student in before.students if student.id not in listed]
+    told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
+    if absent:
+        some = ", ".join(absent[:5]) + (", ..." if len(absent) > 5 else "")
+        told.append(f"not in this list, and still in the roster: {len(absent)} ({some})")
+    told += about_teams(who for entry in entries if (who := entry.student.team))
+    if assignment:
+        told.append(f"{assignment}: {numbered} participants; {times} hand-in times set")
+    elif numbered:
+        told.append(
+            "the participants' numbers are those of one assignment; --assignment NAME keeps them"
+        )
+    known = all_lms_users(course)
+    alike = () if assignment else tuple(about_namesakes(done.roster, known))
+    return Imported(tuple(told), tuple(left), alike)
+
+
+def settle(course: Course, roster: Roster) -> list[str]:
+    """Bring all work to those whom the roster has come to know since it was collected.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    left: list[str] = []
+    collected = all_lms_users(course)
+    for assignment, people in collected.items():
+        found = places(people.values(), assignment, collected, roster, ())
+        moved = {
+            folder: to for folder, one in people.items() if (to := found[one.key].folder) != folder
+        }
+        left += [move(course, assignment, folder, to) for folder, to in moved.items()]
+        remember(course, assignment, {to: people[folder] for folder, to in moved.items()})
+    return [sentence for sentence in left if sentence]
+
+
+def keep_numbers(
+    course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
+) -> list[str]:
+    """Keep whose each participant's number is, and bring earlier work to its owner.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
+    before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
+    left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
+    remember(course, assignment, mine)
+    return [sentence for sentence in left if sentence]
+
+
+def keep_times(course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]) -> int:
+    """Keep when each handed in what counts, as Moodle's worksheet says.
+
+    Returns:
+        How many times were taken; a hand-in that was not collected yet has none.
+    """
+    taken, rules = 0, read_rules(course)
+    for entry, student in rows:
+        stated = read_time(entry.handed_in, ZoneInfo(rules.zone)) if entry.handed_in else None
+        chosen = counts(attempts(course, student.id, assignment), assignment)
+        if stated is None or chosen is None or stated > chosen.first.when:
+            continue
+        first = chosen.first
+        if first.origin == "moodle" and not first.exact:
+            exact = replace(first, when=stated, exact=True)
+            keep(course, student.id, assignment, chosen.attempt.file.read_bytes(), exact)
+            install(course, student.id, assignment)
+            taken += 1
+    return taken
+
+
+def _marks(one: Student) -> dict[str, str]:
+    """What tells a student from others, as far as it is known."""
+    return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
+
+
+def _shared(one: Student, other: Student) -> list[bool]:
+    """For each key that both have, whether it is the same."""
+    a, b = _marks(one), _marks(other)
+    return [a[key] == b[key] for key in a.keys() & b.keys()]
+
+
+def _refuse_contradictions(entries: Sequence[Entry]) -> None:
+    by: dict[tuple[str, object], list[Entry]] = {}
+    for entry in entries:
+        who, name = entry.student, same_name(entry.student.name)
+        for key in {*_marks(who).items(), ("name", name)}:
+            for other in by.get(key, ()) if key[1] else ():
+                shared = _shared(who, other.student)
+                lines = f"lines {other.line} and {entry.line}"
+                if key[0] == "name" and not shared:
+                    raise LabkitError(
+                        f"{lines} are both {who.name}, and nothing tells them apart; give each a "
+                        "login, an address or a number, or delete one"
+                    )
+                if any(shared) and not (all(shared) and same_name(other.student.name) == name):
+                    says = _says(other.student, who)
+                    raise LabkitError(f"{lines} contradict each other: {says}")
+            by.setdefault(key, []).append(entry)
+
+
+def _says(one: Student, other: Student) -> str:
+    pairs = [(getattr(one, k), getattr(other, k)) for k in ("name", *_KEYS)]
+    same = " and ".join(a for a, b in pairs if a and a.casefold() == b.casefold())
+    differ = " and ".join(
+        f"{a} here and {b} there" for a, b in pairs if a and b and a.casefold() != b.casefold()
+    )
+    return f"{same} is in both, with {differ}"
+
+
+def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
+    for mark in (*_marks(student).items(), ("name", same_name(student.name))):
+        by_mark.setdefault(mark, set()).add(student.id)
+
+
+def _find(
+    entry: Entry, unique: bool, students: Mapping[str, Student], by_mark: Mapping[_Mark, set[str]]
+) -> str:
+    """The student whom a row means; empty if they are new."""
+    found = set().union(*(by_mark.get(mark, set()) for mark in _marks(entry.student).items()))
+    if len(found) > 1:
+        people = " or ".join(str(students[id]) for id in sorted(found))
+        raise LabkitError(
+            f"line {entry.line} could be {people} of the roster; correct the list, or "
+            "course_private/roster.csv"
+        )
+    name = same_name(entry.student.name)
+    called = by_mark.get(("name", name), set()) if name and unique and not found else set()
+    if len(called) == 1 and not _shared(students[min(called)], entry.student):
+        return min(called)
+    return min(found, default="")
+
+
+def _folders(
+    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, LmsUser]]
+) -> dict[str, str]:
+    """A folder for each new student: the one of their earlier work, or a new one."""
+    used: dict[str, Counter[str]] = {id: Counter() for id in new}
+    for people in collected.values():
+        for folder, one in people.items():
+            whose = everybody.whose(one)
+            if len(whose) == 1 and whose[0].id in used and folder == safe_name(folder):
+                used[whose[0].id][folder] += 1
+    taken = {student.id.casefold() for student in everybody.students}
+    alike = {student.id for group in everybody.namesakes() for student in group}
+    found: dict[str, str] = {}
+    for student in everybody.students:
+        if student.id in used:
+            plain = safe_name(student.login or student.name)
+            others = (student.email.partition("@")[0], student.id_number, student.lms_user_id)
+            names = chain(
+                (folder for folder, _ in used[student.id].most_common()),
+                [plain] * bool(student.login or student.id not in alike),
+                (safe_name(f"{plain}-{other}") for other in others if other),
+                (f"{plain}-{k}" for k in count(2)),
+            )
+            found[student.id] = next(name for name in names if name.casefold() not in taken)
+            taken.add(found[student.id].casefold())
+    return found

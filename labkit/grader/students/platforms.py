@@ -1,0 +1,307 @@
+"""Reads zips and folders: each file, and whose it is by the name that the platform gave it.
+
+Moodle and Canvas put what they know of the person first and the student's own name of the file
+last, so a name is read from its beginning, and nothing that a student calls a file changes whose it
+is.
+
+Moodle writes ``NAME_PARTICIPANT_assignsubmission_file`` and then ``/FILE``, with the student's own
+folders between, or ``_FILE``.  It makes spaces of the underscores in NAME, so the first number is
+the participant's; a name with an underscore in front is a team's, or somebody else's work
+(github.com/moodle/moodle, ``mod/assign/classes/downloader.php``).
+
+Canvas writes ``NAME_[LATE_]USER_ATTACHMENT_FILE``.  NAME is in small letters, without spaces, and
+may end in an underscore and a number; then the name can be read in two ways if the file's own name
+begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).
+
+Every file comes with all ways to read whose it is, and with the reason for which it is refused.
+Nothing is unpacked, so a name in a download leads nowhere.
+
+Folders and zips that no platform named are read by a pattern of the lecturer's: the clones of
+GitHub Classroom, ``paths-ada/01_paths.ipynb``, or files from anywhere, ``01_paths_4711.ipynb``.
+What stands for the student must be known to the roster: a login, an address, a number, the name on
+GitHub, or the student's own name.
+"""
+
+from __future__ import annotations
+
+import io
+import lzma
+import os
+import re
+import stat
+import struct
+import unicodedata
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+from typing import BinaryIO
+
+from ...errors import LabkitError
+from ..clean import clean_line
+from ..sandbox.limits import Limits
+from ..submission import check_size, read_file
+
+_MOODLE = re.compile(
+    r"(?P<name>[^_/]*)_(?P<number>0|[1-9][0-9]{0,18})_assignsubmission_"
+    r"(?P<kind>[a-z]+)(?:_?/(?:[^/]+/)*|_)(?P<file>[^/]+)"
+)
+_CANVAS = re.compile(
+    r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<number>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>[^/]+)"
+)
+_NUMBER_FIRST = re.compile(r"([0-9]+)_([^/]+)")
+_ID = re.compile(r"[1-9][0-9]{0,18}")
+_DAMAGED = (
+    *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
+    *(OSError, EOFError, RuntimeError, ValueError, IndexError),
+)
+
+
+@dataclass(frozen=True)
+class LmsUser:
+    """A person as a platform's download names them.
+
+    Attributes:
+        system: "moodle", "canvas", "exchange", or "files" of no platform.
+        number: Canvas's number of the user; Moodle's of the participant, one for each assignment;
+            the name of the user in the exchange, or the text of a file's name.
+        name: As the download writes it.
+    """
+
+    system: str
+    number: str
+    name: str
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """What tells this person from all others in one assignment."""
+        return self.system, self.number
+
+    def __str__(self) -> str:
+        what = {"moodle": "participant", "canvas": "Canvas's user"}.get(self.system, "user")
+        return f"{what} {self.number}" + (f" ({self.name})" if self.name != self.number else "")
+
+
+@dataclass(frozen=True)
+class Named:
+    """One way to read the name of a file in a download.
+
+    Attributes:
+        who: The person.
+        file: What the student called the file.
+        late: Whether Canvas counts it as late.
+        kind: What Moodle calls the way of handing in; "file", or another, such as "onlinetext".
+    """
+
+    who: LmsUser
+    file: str
+    late: bool = False
+    kind: str = "file"
+
+
+Reader = Callable[[str], tuple[Named, ...]]
+"""Reads whose a file is by its name, with folders."""
+
+
+def readings(entry: str) -> tuple[Named, ...]:
+    """The ways to read a name: none if it is nobody's, two if it could be either of two people's.
+
+    Args:
+        entry: The name of the file with its folders, as the download writes it.
+    """
+    if match := _MOODLE.fullmatch(entry):
+        who = LmsUser("moodle", match["number"], person(match["name"]))
+        return (Named(who, clean_line(match["file"]), kind=match["kind"]),)
+    match = _CANVAS.fullmatch(entry)
+    if match is None or "assignsubmission" in match["name"] or match["name"] == "anon":
+        return ()
+    name, number, attachment = match["name"], match["number"], match["attachment"]
+    found = [(name, number, attachment, match["file"])]
+    if not match["late"] and (more := _NUMBER_FIRST.fullmatch(match["file"])):
+        found.append((f"{name}_{number}", attachment, more[1], more[2]))
+    return tuple(
+        Named(LmsUser("canvas", user, person(called)), clean_line(file), bool(match["late"]))
+        for called, user, number, file in found
+        if _ID.fullmatch(user) and _ID.fullmatch(number)
+    )
+
+
+def person(name: str) -> str:
+    """A person's name in one form, however it was typed."""
+    return unicodedata.normalize("NFC", clean_line(name, 200))
+
+
+@dataclass(frozen=True)
+class File:
+    """One file of a download.
+
+    Attributes:
+        label: Its name in the download, as it can be shown.
+        readings: The ways to read whose it is.
+        when: When it was handed in, or shown by the platform.
+        read: Its bytes; late, as a class's files need not fit into memory together.
+        exact: Whether ``when`` is the hand-in's own time, and not only the download's.
+        refused: What is wrong with it, in a sentence; empty if it can be taken.
+        secret: What the exchange knows the hand-in by.
+    """
+
+    label: str
+    readings: tuple[Named, ...]
+    when: datetime
+    read: Callable[[], bytes]
+    exact: bool = False
+    refused: str = ""
+    secret: Callable[[], bytes | None] = lambda: None
+
+
+@contextmanager
+def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
+    """Open a zip, also one with a name that is not in the encoding that it states.
+
+    Raises:
+        LabkitError: It is damaged.
+    """
+    try:
+        try:
+            archive = zipfile.ZipFile(path)
+        except UnicodeDecodeError:
+            archive = zipfile.ZipFile(_without_utf8_flags(path))
+    except _DAMAGED as error:
+        said = clean_line(str(error))
+        raise LabkitError(f"{path} is damaged: {said}; download it again") from None
+    with archive:
+        yield archive
+
+
+def in_zip(
+    archive: zipfile.ZipFile,
+    made: datetime,
+    read: Reader = readings,
+) -> Iterator[File]:
+    """The files of a zip.
+
+    Args:
+        archive: The zip.
+        made: When it was downloaded, for entries without a time.
+        read: Tells whose a file is by its name; by default as Moodle and Canvas write it.
+    """
+    names: set[str] = set()
+    for entry in archive.infolist():
+        if entry.is_dir():
+            continue
+        name = _name(entry)
+        label, when = clean_line(name)[-120:], _when(entry, made)
+        refused = _refused(entry, name)
+        who = () if refused else read(name)
+        yield File(label, who, when, partial(_read, archive, entry), refused=refused)
+        if name in names and not refused:
+            twice = "it is in the zip twice; both are kept, so look which one counts"
+            yield File(label, (), when, bytes, refused=twice)
+        names.add(name)
+
+
+def _name(entry: zipfile.ZipInfo) -> str:
+    """The entry's name; most programs write UTF-8 without saying so."""
+    if entry.flag_bits & 0x800:
+        return entry.orig_filename
+    raw = entry.orig_filename.encode("cp437", "replace")
+    try:
+        return raw.decode()
+    except UnicodeDecodeError:
+        return entry.orig_filename
+
+
+def _refused(entry: zipfile.ZipInfo, name: str) -> str:
+    """What is wrong with an entry, no matter whose it is."""
+    if stat.S_ISLNK(entry.external_attr >> 16):
+        return "not taken; it is a link"
+    if entry.flag_bits & 1:
+        return "not taken; it is locked with a password"
+    if "\\" in name or "\0" in name or {"", ".", ".."} & set(name.split("/")):
+        return "not taken; it leads out of the download"
+    return ""
+
+
+def _when(entry: zipfile.ZipInfo, made: datetime) -> datetime:
+    """An entry's time, which is that of this machine's clock on the wall."""
+    try:
+        when = datetime(*entry.date_time)
+    except ValueError:
+        return made
+    return made if when == datetime(1980, 1, 1) else when.astimezone(UTC)
+
+
+def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
+    """Unpack an entry in memory, no further than is allowed, whatever it says of its size."""
+    most = Limits().notebook
+    check_size(entry.file_size, most)
+    try:
+        with archive.open(entry) as file:
+            data = file.read(most * 2**20 + 1)
+    except _DAMAGED as error:
+        raise LabkitError(f"damaged: {clean_line(str(error))}") from None
+    check_size(len(data), most)
+    return data
+
+
+def _without_utf8_flags(path: Path) -> BinaryIO:
+    """A copy in which no name claims to be UTF-8, so that every name can be read."""
+    data = bytearray(path.read_bytes())
+    end = data.rfind(b"PK\5\6")
+    size, _ = struct.unpack_from("<LL", data, end + 12)
+    at = end - size
+    while data[at : at + 4] == b"PK\1\2":
+        local = struct.unpack_from("<L", data, at + 42)[0]
+        data[at + 9] &= ~8
+        data[local + 7] &= ~8
+        at += 46 + sum(struct.unpack_from("<3H", data, at + 28))
+    return io.BytesIO(data)
+
+
+_PARTS = {"{student}": "(?P<student>[^/]+?)", "**": ".*", "*": "[^/]*"}
+
+
+def reader(pattern: str) -> Reader:
+    """A reader for names that are all made alike.
+
+    Args:
+        pattern: Such as ``paths-{student}/*.ipynb``; ``*`` stands for anything within one name,
+            ``**`` for folders too.
+
+    Raises:
+        LabkitError: It does not say once where the student stands.
+    """
+    if pattern.count("{student}") != 1:
+        raise LabkitError(
+            f"{pattern!r} needs {{student}} once, such as in 'paths-{{student}}/*.ipynb'"
+        )
+    parts = re.split(r"(\{student\}|\*\*|\*)", pattern)
+    whole = re.compile("".join(_PARTS.get(part, re.escape(part)) for part in parts))
+
+    def read(name: str) -> tuple[Named, ...]:
+        match = whole.fullmatch(name)
+        if match is None:
+            return ()
+        who = person(match["student"])
+        return (Named(LmsUser("files", who, who), clean_line(Path(name).name)),)
+
+    return read
+
+
+def in_folder(folder: Path, read: Reader) -> Iterator[File]:
+    """The notebooks in a folder and all folders in it; links are not followed.
+
+    Their times are when they were written here, by a download or a clone.
+    """
+    for top, folders, names in os.walk(folder):
+        folders[:] = sorted(x for x in folders if not x.startswith("."))
+        for name in sorted(x for x in names if x.endswith(".ipynb") and not x.startswith(".")):
+            path = Path(top, name)
+            label = str(path.relative_to(folder))
+            when = datetime.fromtimestamp(int(path.lstat().st_mtime), UTC)
+            load = partial(read_file, path, Limits().notebook)
+            yield File(clean_line(label)[-120:], read(label), when, load)

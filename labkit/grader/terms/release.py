@@ -1,0 +1,203 @@
+"""Release an assignment: prepare it, make room in the gradebook, write it, let nbgrader clear it.
+
+The answers are cleared by nbgrader's own `generate_assignment`, because its autograde needs the
+records that it keeps; here it is only fed, and its result verified.  What an author got wrong is
+said before anything is written: the file, the question, and what to do.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import traceback
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import nbformat
+
+from ...course.layout import Course
+from ...course.notebook import (
+    BLANK,
+    about,
+    by_hand,
+    grade_id,
+    manifest,
+)
+from ...course.problem import Problem
+from ...course.release import (
+    Prepared,
+    prepare,
+    write,
+)
+from ...course.source import look
+from ...errors import LabkitError
+from ..nbgrader.gradebook import migrate
+from ..nbgrader_api import nbgrader_api, reason
+from ..students.arms import lay_arms
+
+FORBIDDEN = (
+    "BEGIN SOLUTION",
+    "BEGIN HIDDEN",
+    '"hidden":true',
+    "from solutions",
+    "import solutions",
+)
+"""What no student's copy may hold."""
+_POINTS = re.compile(r"([0-9.]+) points?\b")
+
+
+@dataclass(frozen=True)
+class Released:
+    """What one release made.
+
+    Attributes:
+        name: The assignment.
+        folder: The students' copy.
+        questions: How many.
+        points: In all.
+        hidden: How many hidden cases.
+        by_hand: What a person marks: the name of each cell, and its points.
+    """
+
+    name: str
+    folder: Path
+    questions: int
+    points: float
+    hidden: int
+    by_hand: Mapping[str, float]
+
+    def __str__(self) -> str:
+        return (
+            f"{self.name}: {self.questions} questions, {self.points:g} points, "
+            f"{self.hidden} hidden cases"
+            + "".join(
+                f"\n  to be marked by hand: {k}, {v:g} points" for k, v in self.by_hand.items()
+            )
+        )
+
+
+def release(course: Course, name: str, seed: int) -> Released:
+    """Make an assignment: for students, for nbgrader, for graders, and solved.
+
+    Args:
+        course: The course.
+        name: Of the assignment, such as "01_paths".
+        seed: Of the hidden cases; keep your own, the repository's is public.
+
+    Returns:
+        What was made.
+
+    Raises:
+        UnknownName: No such assignment.
+        LabkitError: `prepare` or nbgrader refused, an answer would have leaked, or marks given by
+            hand would have been lost.
+    """
+    made = prepared(course, name, seed)
+    added = migrate(course, name, made.source)  # once nothing of the author's can be refused
+    write(made, added)
+    generate(course, name)
+    _verify(course.release / name)
+    lay_arms(course, name)
+    questions = made.questions.values()
+    hidden = sum(case.hidden for q in questions for t in q.tests for case in t.cases)
+    by_hand = {m["grade_id"]: m["points"] for m in manifest(made.source) if "points" in m}
+    points = sum(q.points for q in questions) + sum(by_hand.values())
+    return Released(name, course.release / name, len(questions), points, hidden, by_hand)
+
+
+def generate(course: Course, name: str) -> None:
+    """Let nbgrader make the students' copy of the files in its source folder."""
+    shutil.rmtree(course.release / name, ignore_errors=True)
+    api = nbgrader_api(course)
+    result = api.generate_assignment(name, force=True, create=True)
+    if not result["success"]:
+        raise LabkitError(
+            f"nbgrader could not make {name}: {reason(result)}; correct that and release it again"
+        )
+    path = course.release / name / f"{name}.ipynb"
+    notebook = nbformat.read(path, as_version=4)
+    source = nbformat.read(course.source / name / f"{name}.ipynb", as_version=4)
+    for cell, original in zip(notebook.cells, source.cells, strict=True):
+        cell["id"] = original["id"]
+        cell["source"] = cell["metadata"].pop(BLANK, cell["source"])
+    notebook.metadata = source.metadata
+    nbformat.write(notebook, path)
+
+
+def _verify(folder: Path) -> None:
+    """Whatever nbgrader did: no answer and no hidden case may leave."""
+    for path in folder.rglob("*"):
+        text = path.read_text(encoding="utf-8") if path.is_file() else ""
+        for word in FORBIDDEN:
+            if word in text:
+                shutil.rmtree(folder)
+                raise LabkitError(f"{path.name} would have shown {word!r}; nothing released")
+
+
+def prepared(course: Course, name: str, seed: int) -> Prepared:
+    """What `prepare` makes, or in one sentence why an author's mistake is in the way.
+
+    Raises:
+        LabkitError: The text, the problems, an answer or a known mistake must be corrected.
+    """
+    path = course.notebook_source(name)
+    try:
+        _check_types(path, course.problems(name))
+        made = prepare(course, name, seed)
+    except (LabkitError, MemoryError):
+        raise
+    except Exception as error:
+        raise LabkitError(f"{name} is not released: {_where(course, error)}") from error
+    if reasons := [*_unreadable(made), *_sums(made)]:
+        raise LabkitError("\n".join([f"{name} is not released; {path.name}:", *reasons]))
+    return made
+
+
+def _check_types(path: Path, problems: object) -> None:
+    """Raise a LabkitError unless PROBLEMS is a tuple of problems with points."""
+    file = path.with_name("problems.py")
+    if not isinstance(problems, tuple) or not all(isinstance(x, Problem) for x in problems):
+        raise LabkitError(f"{file}: PROBLEMS has to be a tuple of Problem(...)")
+    for problem in problems:
+        points = problem.points
+        if (
+            isinstance(points, bool)
+            or not isinstance(points, int | float)
+            or not 0 <= points <= 1000
+        ):
+            raise LabkitError(f"{file}: {problem.name} has points={points!r}; give it 0 or more")
+
+
+def _where(course: Course, error: Exception) -> str:
+    """The place of an exception in the course's own files, the question, and what it says."""
+    said = f"{type(error).__name__}: {error}"
+    if isinstance(error, SyntaxError) and error.filename:
+        return f"{error.filename}, line {error.lineno}: {said}; correct it"
+    place, question = "", ""
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        file = Path(frame.f_code.co_filename)
+        if file.is_relative_to(course.root / "solutions"):
+            place = f"{file}, line {line}"
+        asked = frame.f_locals.get("self")
+        question = asked.name if isinstance(asked, Problem) else question
+    of = f"the question {question}: " if question else ""
+    return f"{of}{place or 'somewhere'}: {said}; correct it"
+
+
+def _unreadable(made: Prepared) -> Iterator[str]:
+    """Cells that Python cannot read, which no student could run."""
+    for number, cell in enumerate(made.source.cells, start=1):
+        broken = look(cell.source)["broken"] if cell.cell_type == "code" else ""
+        if broken:
+            what = f"the stub of {grade_id(cell)}" if grade_id(cell) else f"cell {number}"
+            yield f"{what} is not Python: {broken}"
+
+
+def _sums(made: Prepared) -> Iterator[str]:
+    """Points that the first cell promises and the questions do not add up to."""
+    found = _POINTS.findall(made.source.cells[0].source) if made.source.cells else []
+    manual = sum(float(about(x)["points"]) for x in made.source.cells if by_hand(x))
+    points = sum(q.points for q in made.questions.values()) + manual
+    if found and points not in map(float, found):
+        yield f"the first cell says {found[0]} points, and the questions come to {points:g}"

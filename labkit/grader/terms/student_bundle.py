@@ -1,0 +1,196 @@
+"""What students are given: one folder without answers, as a zip or beside a private repository.
+
+The answers are public in this repository; hidden cases stop hard-coding, not copying.  A course
+that cares gives its students a repository without them.
+"""
+
+from __future__ import annotations
+
+import base64
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import jupytext
+import nbformat
+
+from ...course.layout import Course
+from ...errors import LabkitError
+from ..pages import render
+from ..students.arms import without_arms
+from .release import FORBIDDEN
+
+GRADER = "labkit/grader"
+"""What students' labkit comes without."""
+STUDENT = ".ci/student"
+"""What they get besides labkit and notebooks."""
+PICTURE = "book/static/baxter.png"
+BOOK = "book/_build/html"
+"""Where a book that was built lies."""
+PLACES = {
+    "devcontainer.json": ".devcontainer/devcontainer.json",
+    "postBuild": "binder/postBuild",
+    "runtime.txt": "binder/runtime.txt",
+}
+"""Where files of that folder belong that do not lie at the top."""
+
+
+def student_bundle(course: Course, names: Sequence[str], to: Path, book: str | None = None) -> Path:
+    """Write the zip that students get.
+
+    Args:
+        course: The course; its assignments must be released.
+        names: Which assignments go in; none means all that are released.
+        to: The file to write.
+        book: The address of the book; None puts the book in, if it is built.
+
+    Returns:
+        ``to``.
+
+    Raises:
+        LabkitError: An assignment is not released, or holds an answer, or the wheel could not be
+            built.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        top = Path(folder) / "baxter-lab"
+        student_folder(course, names, top, book)
+        to.parent.mkdir(parents=True, exist_ok=True)
+        with zipfile.ZipFile(to, "w", zipfile.ZIP_DEFLATED) as archive:
+            for path in sorted(top.rglob("*")):
+                if path.is_file():
+                    archive.write(path, path.relative_to(folder))
+    return to
+
+
+def remarks(course: Course, names: Sequence[str]) -> Iterator[str]:
+    """What a zip with these notebooks lacks, a sentence each."""
+    there = [name for name in names if (course.release / name).is_dir()]
+    old = [name for name in there if not (course.bundle / f"{name}.json").exists()]
+    if old and course.term.exists():
+        yield f"not released in this term: {', '.join(old)}; first run: labkit release NAME"
+    if says := without_arms(course, there):
+        yield says
+
+
+def student_folder(
+    course: Course, names: Sequence[str], top: Path, book: str | None = None
+) -> None:
+    """Lay what students get into the new folder ``top``; the rest as for `student_bundle`."""
+    names = names or sorted(path.name for path in course.release.iterdir() if path.is_dir())
+    for name in names:
+        course.notebook_source(name)
+        if not (course.release / name).is_dir():
+            raise LabkitError(f"{name} is not released; first run: labkit release {name}")
+        shutil.copytree(course.release / name, top / "assignments" / name)
+        text = (top / "assignments" / name / f"{name}.ipynb").read_text(encoding="utf-8")
+        if leak := next((word for word in FORBIDDEN if word in text), None):
+            raise LabkitError(f"{name} holds {leak!r}; first run: labkit release {name}")
+    for path in filter(Path.is_file, (course.root / STUDENT).iterdir()):
+        place = top / PLACES.get(path.name, path.name)
+        place.parent.mkdir(exist_ok=True)
+        shutil.copy(path, place)
+    for name in ("constraints.txt", "LICENSE"):
+        shutil.copy(course.root / name, top)
+    if book is None and (course.root / BOOK / "index.html").exists():
+        shutil.copytree(course.root / BOOK, top / "book")
+        book = "book/index.html"
+    wheel(course.root, top, without=GRADER)
+    (top / "START.html").write_text(
+        render("start.html.j2", names=names, book=book), encoding="utf-8"
+    )
+    _start_here(top / "assignments", names, course.root / PICTURE, book)
+
+
+def _start_here(folder: Path, names: Sequence[str], picture: Path, book: str | None) -> None:
+    """The notebook that JupyterLab opens first."""
+    notebooks = [(name, *_about(folder / name / f"{name}.ipynb")) for name in names]
+    practice = next(filter(None, (_first_prediction(folder, name) for name in names)), None)
+    text = render("start_here.py.j2", notebooks=notebooks, book=book, practice=practice)
+    notebook = jupytext.reads(text, fmt="py:percent")
+    image = base64.b64encode(picture.read_bytes()).decode()
+    notebook.cells[0]["attachments"] = {picture.name: {"image/png": image}}
+    notebook.metadata = {"kernelspec": {"name": "python3", "display_name": "Python 3"}}
+    for number, cell in enumerate(notebook.cells):
+        cell["id"] = f"start-{number}"
+    nbformat.write(notebook, folder / "START_HERE.ipynb")
+
+
+def _about(path: Path) -> tuple[str, str]:
+    """A notebook's title and how long it takes, from its first cell."""
+    first = nbformat.read(path, as_version=4).cells[0].source
+    title = re.search(r"^# (?:\d+ · )?(.*)$", first, re.MULTILINE)
+    time = re.search(r"\*\*Time\*\* \| (.*?) \|", first)
+    return (title[1] if title else path.stem), (time[1] if time else "")
+
+
+def _first_prediction(folder: Path, name: str) -> tuple[str, str] | None:
+    """A notebook, and the first thing to predict in it, which is worth one point; or None."""
+    text = (folder / name / f"{name}.ipynb").read_text(encoding="utf-8")
+    found = re.search(r"\*\*Predict first: `(\w+)`\*\* · 1 point", text)
+    return (name, found[1]) if found else None
+
+
+def wheel(root: Path, to: Path, without: str | None = None) -> None:
+    """Build labkit's wheel from a copy: beside its sources lies what earlier builds left.
+
+    Args:
+        root: The course's folder, a checkout.
+        to: The folder to write to.
+        without: A folder that is left out.
+
+    Raises:
+        LabkitError: It could not be built.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder)
+        unwanted = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(root / "labkit", copy / "labkit", ignore=unwanted)
+        if without:
+            shutil.rmtree(copy / without)
+        for name in ("pyproject.toml", "README.md", "LICENSE"):
+            shutil.copy(root / name, copy)
+        words = ["wheel", "--quiet", "--no-deps", "-w", str(to), str(copy)]
+        command = [sys.executable, "-m", "pip", *words]
+        done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        last = (done.stderr.strip().splitlines() or ["pip gave no reason"])[-1]
+        raise LabkitError(f"labkit's wheel could not be built: {last}")
+
+
+def export_course(course: Course, to: Path) -> tuple[Path, Path]:
+    """Write the students' repository and the private one side by side.
+
+    Args:
+        course: The course, a git checkout.
+        to: A folder that does not exist yet.
+
+    Returns:
+        The students' folder and the private one.
+
+    Raises:
+        LabkitError: The folder exists already, this is not a git checkout, or an answer would have
+            leaked.
+    """
+    if to.exists():
+        raise LabkitError(f"{to} is there already; give a folder that is not")
+    files = _tracked(course.root)
+    student, private = to / "student", to / "private"
+    student_folder(course, (), student)
+    for name in files:
+        target = private / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(course.root / name, target)
+    return student, private
+
+
+def _tracked(root: Path) -> list[str]:
+    command = ["git", "-C", str(root), "ls-files", "-z"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        raise LabkitError(f"{root} is not a git checkout: {done.stderr.strip()}")
+    return [name for name in done.stdout.split("\0") if name and (root / name).is_file()]
