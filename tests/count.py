@@ -46,7 +46,7 @@ def main():
     """Print the table, the large files and how many names ``lk.`` offers."""
     code, stated, files, large = Counter(), Counter(), Counter(), []
     for path in sorted(LABKIT.rglob("*.py")):
-        layer  = LAYERS.get(path.relative_to(LABKIT).parts[0], "lab")
+        layer = LAYERS.get(path.relative_to(LABKIT).parts[0], "lab")
         text = path.read_text(encoding="utf-8")
         count = lines(text)
         code[layer] += count
@@ -55,7 +55,7 @@ def main():
         if count > LARGE:
             large.append(f"{path.relative_to(LABKIT.parent)} ({count})")
     print("layer    files   lines   statements")
-    for layer  in ("lab", "course", "grader"):
+    for layer in ("lab", "course", "grader"):
         print(f"{layer:8}{files[layer]:6}{code[layer]:8}{stated[layer]:13}")
     print(f"together{files.total():6}{code.total():8}{stated.total():13}")
     print(f"files over {LARGE} lines of code: {', '.join(large) or 'none'}")

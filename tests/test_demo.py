@@ -9,11 +9,7 @@ import demo
 import pytest
 
 from labkit.course.verdict import Outcome, Verdict
-from labkit.grader.grading.results import (
-    Answer,
-    Result,
-    Results,
-)
+from labkit.grader.grading.results import Answer, Result, Results
 
 
 @pytest.fixture

@@ -4,11 +4,7 @@ import json
 import time
 from contextlib import contextmanager
 
-from labkit.grader.grading.batch import (
-    GradeOptions,
-    grade_class,
-    workers,
-)
+from labkit.grader.grading.batch import GradeOptions, grade_class, workers
 from labkit.grader.submission import students
 from labkit.grader.terms.release import release
 

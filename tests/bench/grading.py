@@ -3,11 +3,7 @@
 import shutil
 import time
 
-from labkit.grader.grading.batch import (
-    GradeOptions,
-    grade_class,
-    workers,
-)
+from labkit.grader.grading.batch import GradeOptions, grade_class, workers
 from labkit.grader.submission import students
 from labkit.grader.terms.release import release
 

@@ -10,11 +10,7 @@ from handmade import hand_in
 from labkit.course.bundle import Bundle
 from labkit.course.verdict import Difference, Kind, Outcome, TestResult, Verdict
 from labkit.grader.grading.grade import hashes, rejection
-from labkit.grader.grading.results import (
-    Answer,
-    Result,
-    Results,
-)
+from labkit.grader.grading.results import Answer, Result, Results
 from labkit.grader.marks.table import mark_of
 from labkit.grader.nbgrader.gradebook import record
 

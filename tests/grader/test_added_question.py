@@ -17,11 +17,7 @@ from labkit.course.notebook import read_cells
 from labkit.errors import LabkitError
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import page
-from labkit.grader.grading.batch import (
-    GradedSubmission,
-    GradeOptions,
-    grade_class,
-)
+from labkit.grader.grading.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.grading.results import Results
 from labkit.grader.marks.table import mark_of
 from labkit.grader.nbgrader.gradebook import open_gradebook, record

@@ -31,17 +31,9 @@ from labkit.errors import LabkitError
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.students.class_list import read_list
 from labkit.grader.students.collect import collect
-from labkit.grader.students.enrol import (
-    enrol,
-    keep_numbers,
-    settle,
-)
+from labkit.grader.students.enrol import enrol, keep_numbers, settle
 from labkit.grader.students.exchange import SECRET
-from labkit.grader.students.identity import (
-    FILE,
-    all_lms_users,
-    lms_users,
-)
+from labkit.grader.students.identity import FILE, all_lms_users, lms_users
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import FILE as ROSTER
 from labkit.grader.students.roster import read_roster, save_roster

@@ -16,11 +16,7 @@ from labkit.__main__ import main
 from labkit.course.bugs import CLEAR, tells_apart
 from labkit.course.layout import Course
 from labkit.course.outcomes import OUTCOMES
-from labkit.grader.terms.concepts import (
-    LAYOUTS,
-    asked,
-    items,
-)
+from labkit.grader.terms.concepts import LAYOUTS, asked, items
 
 COURSE = Course(ROOT)
 ITEMS = items(COURSE)

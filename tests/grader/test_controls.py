@@ -20,11 +20,7 @@ from plain_nbgrader import pack_hidden
 
 from labkit.course.notebook import kind
 from labkit.grader.feedback.page import page
-from labkit.grader.grading.batch import (
-    GradedSubmission,
-    GradeOptions,
-    grade_class,
-)
+from labkit.grader.grading.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.submission import students

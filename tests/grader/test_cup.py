@@ -14,20 +14,8 @@ from labkit.__main__ import main
 from labkit.course.baxter_cup import MARKS, PUBLIC_SEEDS
 from labkit.course.layout import CUP
 from labkit.grader.cup import entries as cup
-from labkit.grader.cup.entries import (
-    A_DAY,
-    SEEDS,
-    Entry,
-    entries,
-    latest,
-    play,
-    seeds,
-)
-from labkit.grader.cup.table import (
-    as_text,
-    give_bonus,
-    page,
-)
+from labkit.grader.cup.entries import A_DAY, SEEDS, Entry, entries, latest, play, seeds
+from labkit.grader.cup.table import as_text, give_bonus, page
 from labkit.grader.grading.worker import TRIES
 from labkit.grader.marks.export import of_term
 from labkit.grader.marks.table import marks_of

@@ -18,11 +18,7 @@ from labkit.__main__ import main
 from labkit.course.layout import DEFENCE
 from labkit.course.marking import try_public
 from labkit.course.question import Loop
-from labkit.grader.defence.draw import (
-    ASKED,
-    Asked,
-    draw,
-)
+from labkit.grader.defence.draw import ASKED, Asked, draw
 from labkit.grader.defence.mark import await_mark, give_mark
 from labkit.grader.defence.page import write_page
 from labkit.grader.grading.results import Results

@@ -15,11 +15,7 @@ from made import NAME, changed, graded, handed_in, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.each import (
-    Failed,
-    Failures,
-    for_student,
-)
+from labkit.grader.each import Failed, Failures, for_student
 from labkit.grader.feedback import page as feedback
 from labkit.grader.grading import batch, results
 from labkit.grader.grading.results import Results

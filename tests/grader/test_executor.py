@@ -20,11 +20,7 @@ from labkit.errors import LabkitError
 from labkit.grader.grading import executor as pools
 from labkit.grader.grading import worker
 from labkit.grader.grading.executor import LocalExecutor, executor
-from labkit.grader.grading.worker import (
-    Task,
-    close_sandbox,
-    grade_submission,
-)
+from labkit.grader.grading.worker import Task, close_sandbox, grade_submission
 from labkit.grader.sandbox import cgroup
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import Isolation, NoIsolation

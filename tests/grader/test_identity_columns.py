@@ -7,12 +7,7 @@ import io
 
 import pytest
 
-from labkit.grader.marks.export import (
-    LAYOUTS,
-    as_csv,
-    left_out,
-    remarks,
-)
+from labkit.grader.marks.export import LAYOUTS, as_csv, left_out, remarks
 from labkit.grader.marks.mark import Mark
 from labkit.grader.students.class_list import Student
 from labkit.grader.students.platforms import LmsUser

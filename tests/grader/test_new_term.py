@@ -21,12 +21,7 @@ from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.students.class_list import Student
 from labkit.grader.students.identity import remember
 from labkit.grader.students.platforms import LmsUser
-from labkit.grader.students.roster import (
-    Roster,
-    read_roster,
-    save_roster,
-    tell_gradebook,
-)
+from labkit.grader.students.roster import Roster, read_roster, save_roster, tell_gradebook
 from labkit.grader.terms import term
 from labkit.grader.terms.release import FORBIDDEN
 from labkit.grader.terms.student_bundle import export_course

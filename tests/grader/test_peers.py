@@ -22,12 +22,7 @@ from labkit.grader.grading.grade import rejection
 from labkit.grader.grading.results import Answer, Results
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
-from labkit.grader.peers.readers import (
-    handed_out,
-    readers,
-    sheet_of,
-    without_names,
-)
+from labkit.grader.peers.readers import handed_out, readers, sheet_of, without_names
 from labkit.grader.students.class_list import Student
 from labkit.grader.terms.release import release
 

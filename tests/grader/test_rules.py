@@ -13,12 +13,7 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import Late, read_rules
-from labkit.grader.students.attempts import (
-    Seen,
-    install,
-    keep,
-    that_counts,
-)
+from labkit.grader.students.attempts import Seen, install, keep, that_counts
 
 RULES = f"""
 name = "Robot control, winter 2026"

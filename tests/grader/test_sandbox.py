@@ -11,11 +11,7 @@ import sys
 import pytest
 from handmade import ROOT
 
-from labkit.grader.doctor import (
-    DOCKER,
-    elsewhere,
-    examine,
-)
+from labkit.grader.doctor import DOCKER, elsewhere, examine
 from labkit.grader.sandbox.launch import FIRST_UID, Sandbox, SandboxLost
 from labkit.grader.sandbox.limits import Limits
 from labkit.grader.sandbox.mounts import NoIsolation

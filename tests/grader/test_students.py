@@ -14,21 +14,11 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.clean import LONGEST, safe_name
 from labkit.grader.nbgrader.gradebook import open_gradebook
-from labkit.grader.students.class_list import (
-    Entry,
-    Student,
-    read_list,
-)
+from labkit.grader.students.class_list import Entry, Student, read_list
 from labkit.grader.students.enrol import enrol, import_list
 from labkit.grader.students.identity import remember
 from labkit.grader.students.platforms import LmsUser
-from labkit.grader.students.roster import (
-    FILE,
-    Roster,
-    read_roster,
-    same_name,
-    save_roster,
-)
+from labkit.grader.students.roster import FILE, Roster, read_roster, same_name, save_roster
 
 
 def listed(tmp_path, text, encoding="utf-8"):

@@ -11,11 +11,7 @@ from handmade import ROOT
 
 from labkit.course.layout import Course
 from labkit.errors import LabkitError
-from labkit.grader.submission import (
-    Submission,
-    none_of,
-    read_file,
-)
+from labkit.grader.submission import Submission, none_of, read_file
 
 NAME = "01_paths"
 

@@ -19,18 +19,10 @@ from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import page
-from labkit.grader.grading.batch import (
-    GradedSubmission,
-    GradeOptions,
-    grade_class,
-)
+from labkit.grader.grading.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.grading.changes import changes
 from labkit.grader.grading.results import Results
-from labkit.grader.marks.export import (
-    LAYOUTS,
-    as_csv,
-    left_out,
-)
+from labkit.grader.marks.export import LAYOUTS, as_csv, left_out
 from labkit.grader.marks.mark import Line, Mark
 from labkit.grader.marks.table import mark_of, marks_of
 from labkit.grader.nbgrader.gradebook import record

@@ -16,11 +16,7 @@ from labkit.grader.atomic import write
 from labkit.grader.each import Failed, Failures
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import write_feedback
-from labkit.grader.grading.batch import (
-    GradeOptions,
-    common_failures,
-    grade_class,
-)
+from labkit.grader.grading.batch import GradeOptions, common_failures, grade_class
 from labkit.grader.grading.standing import standing
 from labkit.grader.marks.export import LAYOUTS, as_csv
 from labkit.grader.marks.table import marks_of

@@ -10,11 +10,7 @@ import click
 from ...course.cli import PATH, verb
 from ...course.layout import Course
 from ...course.seed import PUBLIC_SEED
-from .course import (
-    SEED,
-    names,
-    of_course,
-)
+from .course import SEED, names, of_course
 
 Option = Callable[[Callable[..., int]], Callable[..., int]]
 
@@ -57,11 +53,7 @@ def report_card(
     The checks are tried on every known mistake, and on right answers written in other forms, with
     several draws of hidden cases. Without a NAME all assignments are tried.
     """
-    from ...course.report_card import (
-        functions_from,
-        make,
-        write,
-    )
+    from ...course.report_card import functions_from, make, write
 
     card = make(
         course,

@@ -11,20 +11,11 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from ...course.cli import verb
-from ...course.layout import (
-    CUP,
-    UNRELEASED,
-    Course,
-)
+from ...course.layout import CUP, UNRELEASED, Course
 from ...errors import LabkitError
 from ..each import Failed, Failures
 from .course import of_course
-from .pages import (
-    nobody,
-    tell,
-    to_file,
-    write,
-)
+from .pages import nobody, tell, to_file, write
 
 if TYPE_CHECKING:
     from ..marks.mark import Mark
@@ -77,12 +68,7 @@ def export(
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
     was graded, and the total with the weights of course.toml.
     """
-    from ..marks.export import (
-        LAYOUTS,
-        as_csv,
-        of_term,
-        remarks,
-    )
+    from ..marks.export import LAYOUTS, as_csv, of_term, remarks
     from ..marks.table import marks_of
     from ..rules import read_rules
 
@@ -153,11 +139,7 @@ def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
 def _board(course: Course, final: bool, to: Path | None) -> int:
     """Run the new entries of the cup and print the board; write it as a page too."""
     from ..cup.entries import latest, play
-    from ..cup.table import (
-        as_text,
-        give_bonus,
-        page,
-    )
+    from ..cup.table import as_text, give_bonus, page
     from ..seeds import public_warning, seed_of
     from ..submission import misnamed
 

@@ -75,12 +75,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     Each submission is graded in a sandbox of its own. After you have changed a test and released
     the assignment, all submissions are graded again. No mark is lowered unless you add --lower.
     """
-    from ..grading.batch import (
-        GradeOptions,
-        common_failures,
-        grade_class,
-        watch,
-    )
+    from ..grading.batch import GradeOptions, common_failures, grade_class, watch
     from ..grading.changes import changes, summary
     from ..grading.results import Result, Results
     from ..lock import WHOLE, exclusive_run
@@ -201,11 +196,7 @@ def _handed_in(
     course: Course, assignment: str, student: str | None, failures: Failures
 ) -> list[str]:
     """The students who handed in, or the one asked for; folders with unfit names are failures."""
-    from ..submission import (
-        misnamed,
-        none_of,
-        students,
-    )
+    from ..submission import misnamed, none_of, students
 
     found = students(course, assignment)
     who = [student] if student else found

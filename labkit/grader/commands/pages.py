@@ -95,11 +95,7 @@ def class_report(
     The report counts mistakes by their names. Students have pseudonyms unless you add --names.
     """
     from ...course.bundle import Bundle
-    from ..feedback.class_report import (
-        FEWEST,
-        for_jplag,
-        report,
-    )
+    from ..feedback.class_report import FEWEST, for_jplag, report
     from ..marks.table import marks_of
     from ..pseudonyms import pseudonyms
 

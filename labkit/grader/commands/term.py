@@ -9,11 +9,7 @@ import click
 from ...course.cli import verb
 from ...course.layout import Course
 from ...errors import LabkitError
-from .course import (
-    SEED,
-    names,
-    of_course,
-)
+from .course import SEED, names, of_course
 from .pages import tell
 
 
@@ -64,22 +60,8 @@ def term(
 
     The law may say how long marks must be kept.
     """  # noqa: D301
-    from ..terms.forget import (
-        entries_of,
-        forget,
-        left_by_hand,
-        places_of,
-        unknown,
-    )
-    from ..terms.term import (
-        about,
-        archives,
-        new_term,
-        old_rules,
-        refuse_running,
-        running,
-        way_back,
-    )
+    from ..terms.forget import entries_of, forget, left_by_hand, places_of, unknown
+    from ..terms.term import about, archives, new_term, old_rules, refuse_running, running, way_back
 
     if action == "new":
         if not yes:

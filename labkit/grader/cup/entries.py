@@ -18,11 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from ...control import Command, State
-from ...course.baxter_cup import (
-    MARKS,
-    CupRun,
-    cup_run,
-)
+from ...course.baxter_cup import MARKS, CupRun, cup_run
 from ...course.judges import Close
 from ...course.layout import CUP, Course
 from ...course.own_arm import Arms
@@ -42,11 +38,7 @@ from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
 from ..sandbox.mounts import NoIsolation
 from ..sandbox.protocol import Disconnected
-from ..sandbox.session import (
-    RemoteFunction,
-    Session,
-    Step,
-)
+from ..sandbox.session import RemoteFunction, Session, Step
 from ..seeds import seed_of
 from ..submission import Submission, students
 from ..whys import rank

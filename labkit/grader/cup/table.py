@@ -10,12 +10,7 @@ from ...course.own_arm import Arms
 from ...replay import recorded_html
 from ..nbgrader.gradebook import open_gradebook
 from ..nbgrader.unreleased import enter
-from ..pages import (
-    file,
-    policy,
-    render,
-    scripts,
-)
+from ..pages import file, policy, render, scripts
 from ..rules import read_rules
 from .entries import Entry, marks
 

@@ -14,32 +14,15 @@ from itertools import islice
 
 from ...course.bundle import Bundle
 from ...course.layout import Course
-from ...course.marking import (
-    Tried,
-    recognise,
-    try_public,
-)
-from ...course.question import (
-    Call,
-    Loop,
-    Question,
-    Tuned,
-)
+from ...course.marking import Tried, recognise, try_public
+from ...course.question import Call, Loop, Question, Tuned
 from ...course.verdict import Misconception, Outcome
 from ...errors import LabkitError
 from ..each import Failed
 from ..grading import seen
 from ..grading.grade import parse
-from ..grading.plan import (
-    Plan,
-    imports,
-    plan,
-)
-from ..grading.results import (
-    Answer,
-    Numbers,
-    Run,
-)
+from ..grading.plan import Plan, imports, plan
+from ..grading.results import Answer, Numbers, Run
 from ..grading.standing import standing
 from ..grading.worker import in_sandbox
 from ..sandbox.launch import Sandbox
@@ -49,11 +32,7 @@ from ..seeds import seed_of
 from ..students.roster import read_roster
 from ..submission import Submission
 from ..whys import rank
-from .edits import (
-    Edit,
-    edits,
-    shown,
-)
+from .edits import Edit, edits, shown
 
 ASKED = 3
 """Questions of one defence."""

@@ -12,11 +12,7 @@ from ...errors import LabkitError
 from ..nbgrader.autograded_notebook import as_typed
 from ..nbgrader.gradebook import open_gradebook
 from ..nbgrader.unreleased import enter
-from .draw import (
-    ASKED,
-    FULL,
-    Asked,
-)
+from .draw import ASKED, FULL, Asked
 
 LINES = tuple(f"question_{k + 1}" for k in range(ASKED))
 """What the gradebook calls the questions."""

@@ -10,23 +10,10 @@ from pathlib import Path
 from ...course.layout import Course
 from ...replay import recorded_html
 from ..atomic import write
-from ..feedback.page import (
-    error_over_time,
-    measures,
-    number_by_number,
-)
-from ..pages import (
-    file,
-    policy,
-    render,
-    scripts,
-)
+from ..feedback.page import error_over_time, measures, number_by_number
+from ..pages import file, policy, render, scripts
 from ..rules import read_rules
-from .draw import (
-    ASKED,
-    FULL,
-    Asked,
-)
+from .draw import ASKED, FULL, Asked
 
 RUBRIC = (
     "says which line was changed, and what stood there",

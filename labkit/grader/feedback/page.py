@@ -24,11 +24,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ...course.layout import Course
-from ...course.messages import (
-    GATE,
-    HEADS,
-    why,
-)
+from ...course.messages import GATE, HEADS, why
 from ...errors import LabkitError
 from ...metrics import SETTLED
 from ...replay import recorded_html
@@ -39,12 +35,7 @@ from ..grading.results import Result
 from ..marks.mark import Mark
 from ..marks.table import mark_of
 from ..nbgrader.markup import markdown
-from ..pages import (
-    file,
-    policy,
-    render,
-    scripts,
-)
+from ..pages import file, policy, render, scripts
 from ..peers.readers import Review, reviews
 from ..rules import read_rules
 from ..students.identity import lms_users

@@ -22,11 +22,7 @@ from ..sandbox.mounts import NoIsolation
 from ..submission import Submission, students
 from .executor import executor
 from .grade import hashes
-from .results import (
-    Result,
-    Results,
-    digest,
-)
+from .results import Result, Results, digest
 from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3

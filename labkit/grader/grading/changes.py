@@ -11,11 +11,7 @@ from ...course.layout import Course
 from ...errors import LabkitError
 from ..each import Failed, for_student
 from ..submission import Submission
-from .batch import (
-    GradeOptions,
-    grade_aside,
-    still_good,
-)
+from .batch import GradeOptions, grade_aside, still_good
 from .results import Result, Results
 
 

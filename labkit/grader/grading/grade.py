@@ -13,44 +13,21 @@ from dataclasses import replace
 from typing import Any, cast
 
 from ...course.bundle import Bundle
-from ...course.marking import (
-    Tried,
-    all_alike,
-    mark,
-    not_counted,
-    try_public,
-)
+from ...course.marking import Tried, all_alike, mark, not_counted, try_public
 from ...course.messages import uses
 from ...course.question import Question
 from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
-from ...course.verdict import (
-    Kind,
-    Outcome,
-    Verdict,
-)
+from ...course.verdict import Kind, Outcome, Verdict
 from ...course.withheld import withheld_tools
 from ..clean import clean_data, clean_line
 from ..sandbox.launch import Sandbox
-from ..sandbox.limits import (
-    TRICKS,
-    Limits,
-    TextBudget,
-)
+from ..sandbox.limits import TRICKS, Limits, TextBudget
 from ..sandbox.protocol import Disconnected, ProtocolError
 from ..sandbox.session import RemoteFunction, Session
 from . import seen
 from .plan import Plan, plan
-from .results import (
-    Answer,
-    FailedCell,
-    Hashes,
-    OwnCell,
-    Result,
-    digest,
-    engine,
-    versions,
-)
+from .results import Answer, FailedCell, Hashes, OwnCell, Result, digest, engine, versions
 
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "

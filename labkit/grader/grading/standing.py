@@ -7,26 +7,12 @@ from collections.abc import Iterator
 from functools import partial
 
 from ...course.bundle import Bundle
-from ...course.layout import (
-    CUP,
-    DEFENCE,
-    Course,
-)
+from ...course.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
 from ..each import Failed, for_student
 from ..sandbox.limits import Limits
-from ..submission import (
-    Submission,
-    is_name,
-    misnamed,
-    plain_name,
-    students,
-)
-from .results import (
-    Result,
-    Results,
-    digest,
-)
+from ..submission import Submission, is_name, misnamed, plain_name, students
+from .results import Result, Results, digest
 
 
 def standing(

@@ -16,11 +16,7 @@ from ...course.notebook import question_of
 from ..clean import clean_line, clean_text
 from ..each import Failed
 from ..grading.results import Result
-from ..grading.standing import (
-    full_marks,
-    grade_again,
-    standing,
-)
+from ..grading.standing import full_marks, grade_again, standing
 from ..nbgrader.gradebook import open_gradebook
 from ..rules import settle_lateness
 from ..students.identity import lms_users

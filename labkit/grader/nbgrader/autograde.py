@@ -25,16 +25,8 @@ from ..each import for_student
 from ..grading.batch import GradeOptions, grade_aside
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
-from ..submission import (
-    Submission,
-    is_name,
-    unfit,
-)
-from .autograded_notebook import (
-    in_release_form,
-    release_source,
-    with_verdicts,
-)
+from ..submission import Submission, is_name, unfit
+from .autograded_notebook import in_release_form, release_source, with_verdicts
 
 
 class FitNames(NotebookExporter):
@@ -99,7 +91,7 @@ def unlink_foreign(notebooks: Iterable[str], **_: str) -> None:
 
 
 def _foreign(folder: Path) -> list[Path]:
-    """Links and special files in a folder that is not a link itself."""
+    """Links and special files elf."""
     if folder.is_symlink() or folder.parent.is_symlink():
         return []
     found = (Path(top, name) for top, *names in os.walk(folder) for part in names for name in part)

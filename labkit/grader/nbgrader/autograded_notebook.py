@@ -14,14 +14,7 @@ import nbformat
 
 from ...course.layout import Course
 from ...course.messages import summary
-from ...course.notebook import (
-    Notebook,
-    about,
-    by_hand,
-    grade_id,
-    kind,
-    question_of,
-)
+from ...course.notebook import Notebook, about, by_hand, grade_id, kind, question_of
 from ...errors import LabkitError
 from ..clean import clean_line
 from ..grading.results import Answer, Result

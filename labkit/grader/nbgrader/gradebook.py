@@ -19,13 +19,7 @@ from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
 from ...course.bundle import Bundle
 from ...course.layout import Course
-from ...course.notebook import (
-    about,
-    by_hand,
-    grade_id,
-    question_of,
-    read_cells,
-)
+from ...course.notebook import about, by_hand, grade_id, question_of, read_cells
 from ...errors import LabkitError
 from ..atomic import write
 from ..each import Failed, for_student
@@ -34,12 +28,7 @@ from ..nbgrader_api import nbgrader_api
 from ..rules import settle_lateness
 from ..timestamp import read_stamp, read_time
 from ..whys import settle_whys
-from .autograded_notebook import (
-    as_text,
-    in_release_form,
-    release_source,
-    with_verdicts,
-)
+from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 
 
 def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:

@@ -17,11 +17,7 @@ from nbformat import v4
 
 from ...course.bundle import Bundle
 from ...course.layout import Course
-from ...course.notebook import (
-    Notebook,
-    grade_id,
-    read_cells,
-)
+from ...course.notebook import Notebook, grade_id, read_cells
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import clean_text
@@ -31,14 +27,7 @@ from ..sandbox.limits import Limits
 from ..students.class_list import Student
 from ..students.roster import read_roster
 from ..submission import Submission
-from .readers import (
-    handed_out,
-    of_class,
-    readers,
-    sheet_of,
-    team_of,
-    without_names,
-)
+from .readers import handed_out, of_class, readers, sheet_of, team_of, without_names
 
 FORM = "level: \ncomment: "
 HEAD = """# Review of two reports

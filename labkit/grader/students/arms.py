@@ -7,12 +7,7 @@ import re
 from collections.abc import Sequence
 
 from ...course.layout import Course
-from ...course.own_arm import (
-    DEMO,
-    FILE,
-    HANDLES,
-    Arms,
-)
+from ...course.own_arm import DEMO, FILE, HANDLES, Arms
 from ..atomic import write
 from .roster import Roster
 

@@ -37,11 +37,7 @@ from ..grading.results import digest
 from ..rules import read_rules
 from ..sandbox.limits import Limits
 from ..submission import read_file
-from ..timestamp import (
-    TIMESTAMP,
-    read_stamp,
-    read_time,
-)
+from ..timestamp import TIMESTAMP, read_stamp, read_time
 from .exchange import SECRET, read_secret
 
 FOLDER = "attempts"

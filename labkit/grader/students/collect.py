@@ -18,31 +18,11 @@ from ...course.layout import Course
 from ...errors import LabkitError
 from ..each import Failed, for_student
 from ..grading.results import digest
-from .attempts import (
-    Seen,
-    adopt,
-    called,
-    install,
-    keep,
-    that_counts,
-)
+from .attempts import Seen, adopt, called, install, keep, that_counts
 from .enrol import settle
 from .exchange import in_exchange
-from .identity import (
-    all_lms_users,
-    alone,
-    places,
-    remember,
-)
-from .platforms import (
-    File,
-    LmsUser,
-    Named,
-    in_folder,
-    in_zip,
-    open_zip,
-    reader,
-)
+from .identity import all_lms_users, alone, places, remember
+from .platforms import File, LmsUser, Named, in_folder, in_zip, open_zip, reader
 from .roster import Roster, read_roster
 
 

@@ -21,35 +21,12 @@ from ..rules import read_rules
 from ..seeds import seed_of
 from ..timestamp import read_time
 from .arms import give_arms
-from .attempts import (
-    attempts,
-    counts,
-    install,
-    keep,
-    move,
-)
-from .class_list import (
-    Entry,
-    Student,
-    read_list,
-)
-from .identity import (
-    all_lms_users,
-    alone,
-    lms_users,
-    places,
-    remember,
-)
+from .attempts import attempts, counts, install, keep, move
+from .class_list import Entry, Student, read_list
+from .identity import all_lms_users, alone, lms_users, places, remember
 from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
-from .roster import (
-    FILE,
-    Roster,
-    read_roster,
-    same_name,
-    save_roster,
-    tell_gradebook,
-)
+from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
 
 _Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number", "github")

@@ -22,12 +22,7 @@ from ..sandbox.limits import Limits
 from ..submission import read_file
 from ..timestamp import TIMESTAMP, read_time
 from .exchange_times import Times
-from .platforms import (
-    File,
-    LmsUser,
-    Named,
-    person,
-)
+from .platforms import File, LmsUser, Named, person
 
 SECRET = "submission_secret.txt"
 _LARGEST = 1

@@ -17,11 +17,7 @@ from ...errors import LabkitError
 from ..atomic import write
 from ..clean import safe_name
 from ..nbgrader.gradebook import open_gradebook
-from .class_list import (
-    Student,
-    read_table,
-    refuse_long_rows,
-)
+from .class_list import Student, read_table, refuse_long_rows
 from .platforms import LmsUser
 
 FILE = "course_private/roster.csv"

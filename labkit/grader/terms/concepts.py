@@ -20,11 +20,7 @@ import msgspec
 from ...course.layout import Course
 from ...course.outcomes import OUTCOMES
 from ...errors import LabkitError
-from ..pages import (
-    file,
-    policy,
-    render,
-)
+from ..pages import file, policy, render
 
 FILE = "solutions/concepts.toml"
 Form = Literal["a", "b"]

@@ -21,11 +21,7 @@ from ..atomic import write
 from ..rules import FILE as RULES
 from ..rules import read_rules
 from ..seeds import seed_of
-from ..students import (
-    attempts,
-    identity,
-    roster,
-)
+from ..students import attempts, identity, roster
 from .release import release
 
 PERSONAL_FILES = (
