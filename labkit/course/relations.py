@@ -99,6 +99,13 @@ def _relations(
         return
     if not any(x.any() for x in a):
         yield "is zero"
+    if (
+        not a[0].ndim
+        and len(a) > 1
+        and all_near(a, [a[0]] * len(a))
+        and not all_near(b, [b[0]] * len(b))
+    ):
+        yield f"is {float(a[0]):.5g}, whatever it is called with"
     if all_near(a, [-x for x in b]):
         yield "has the other sign"
     for name in given[0]:

@@ -852,6 +852,7 @@ VERDICTS = Problem(
                     }
                 ),
                 call({"I is worse than J": [[4.0, 3.5, 5.5], [3.0, 2.0, 5.0]]}),
+                call({"O is worse than P": [[6.1, 4.0, 7.8, 5.2, 3.5], _SEEDS]}),
                 call(
                     {
                         "K is worse than L": _TEN_PAIRS,
@@ -963,6 +964,14 @@ VERDICTS = Problem(
             "You ask whether all differences have one sign. The mean may be sure although one pair is against it.",
             mistakes.Said(sure=lambda d: not d.min() < 0.0 < d.max()),
             "An interval is about the mean.",
+        ),
+        Wrong(
+            "the spread of the pairs instead of the interval",
+            "You compare the mean with the standard deviation of the differences. The mean of n "
+            "differences varies less than one of them, and few of them need Student's t: compare "
+            "it with t·s/√n.",
+            mistakes.Said(sure=lambda d: abs(d.mean()) > d.std(ddof=1)),
+            "Standard deviation and standard error are two things.",
         ),
         Wrong(
             "capital letters",

@@ -227,8 +227,8 @@ TRAPEZOID = Problem(
         ),
         Wrong(
             "limits taken for limits of s",
-            "v_max and a_max are in metres, and s has no unit. Divide way, speed and acceleration "
-            "by the distance.",
+            "v_max and a_max are in metres, and s has no unit. Divide both limits by the distance "
+            "before you use them.",
             mistakes.limits_on_s,
             "Units: a limit in m/s bounds distance·ds, not ds.",
         ),

@@ -806,7 +806,7 @@ PREDICT = Problem(
             "The velocity moves the place.",
         ),
         Wrong(
-            "a third where a half belongs",
+            "a half where a third belongs",
             "The corner of the place is age³/3: ∫ (age - s)² ds.",
             mistakes.Predicted(((3.0, 0.5), (2.0, 0.5), (1.0, 1.0))),
             "Integrate the push's effect.",

@@ -238,7 +238,8 @@ INVERSE_TRANSFORM = Problem(
         ),
         Wrong(
             "the translation turned by R, not by its transpose",
-            "-R_ab t would be right if t were in b's axes. It is in a's, so turn it by R_abᵀ.",
+            "R_ab turns components along b's axes into a's axes. t is along a's axes already, and "
+            "the answer should be along b's: turn it by R_abᵀ.",
             mistakes.turned_forwards,
             "Let the subscripts cancel: R_ba t_a.",
         ),

@@ -66,6 +66,20 @@ def test_a_factor_that_is_an_argument_is_told():
     assert "multiplied by `d`" in seen(SCALED, lambda x, d: np.array([x, x * x]))
 
 
+def test_an_answer_that_never_changes_is_told_so():
+    """Rather than that it does not feel one of its arguments, of which it feels none."""
+    ratio = Problem(
+        "ratio",
+        1,
+        "Give it.",
+        lambda x, y: x / y,
+        (Trial("any", (call(2.0, 3.0), call(5.0, 7.0)), weight=1.0),),
+    )
+    says = "In every call your answer is 0.01, whatever it is called with."
+    assert seen(ratio, lambda x, y: min(x / y, 0.01)) == says
+    assert seen(ratio, lambda x, y: x) != says
+
+
 def test_only_the_wrong_parts_of_an_answer_are_spoken_of():
     """Of three parts two are wrong by a factor: these are named, and the rest is called right."""
     parts = Problem(
