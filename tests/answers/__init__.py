@@ -3,7 +3,8 @@
 Their authors wrote them from the notebooks' stubs and the model answers, and had read neither the
 known mistakes nor the judges.  So they stand for answers that nobody has foreseen: never add a
 known mistake because it is here, or the measure is worth nothing.  Whoever improves the naming may
-look at the wrong answers that are not `held`, and at no others: those in ``second`` are all held.
+look at the wrong answers that are not `held`, and at no others: those in ``second`` and ``third``,
+by other authors, are all held.
 
 There is a file for each notebook.  A line `# %% question wrong: what is wrong`, or `# %% question
 right: how it is written`, stands above a whole answer cell of a notebook with `np` and `lk`.
@@ -16,18 +17,20 @@ from pathlib import Path
 from typing import NamedTuple
 
 HERE = Path(__file__).parent
+AUTHORS = ("", "second", "third")
+"""Whose answers there are, by their folders."""
 _HEAD = re.compile(r"^# %% (\w+) (right|wrong): (.+)\n", re.M)
 
 
 class Answer(NamedTuple):
-    """One answer cell: its notebook and question, whether it is right, in what way, its code."""
+    """One answer cell: notebook and question, whether and how it is right, its code, the author."""
 
     topic: str
     question: str
     right: bool
     says: str
     source: str
-    second: bool
+    author: str
 
     @property
     def held(self) -> bool:
@@ -35,18 +38,18 @@ class Answer(NamedTuple):
 
         With this number in front, the hash holds back about half of each question's wrong answers.
         """
-        return self.second or sha256(f"1774{self.source}".encode()).digest()[0] % 2 == 1
+        return bool(self.author) or sha256(f"1774{self.source}".encode()).digest()[0] % 2 == 1
 
 
 def read(topic: str) -> tuple[Answer, ...]:
     """The answers to one notebook, such as ``read("warmup")``."""
-    return (*_read(topic, HERE, second=False), *_read(topic, HERE / "second", second=True))
+    return tuple(answer for author in AUTHORS for answer in _read(topic, author))
 
 
-def _read(topic: str, folder: Path, second: bool) -> Iterator[Answer]:
-    cells = iter(_HEAD.split((folder / f"{topic}.txt").read_text(encoding="utf-8"))[1:])
+def _read(topic: str, author: str) -> Iterator[Answer]:
+    cells = iter(_HEAD.split((HERE / author / f"{topic}.txt").read_text(encoding="utf-8"))[1:])
     for question, verdict, says, source in zip(cells, cells, cells, cells, strict=True):
-        yield Answer(topic, question, verdict == "right", says, source.strip() + "\n", second)
+        yield Answer(topic, question, verdict == "right", says, source.strip() + "\n", author)
 
 
 TOPICS = tuple(sorted(path.stem for path in HERE.glob("*.txt")))

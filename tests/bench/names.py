@@ -1,7 +1,7 @@
 """How many wrong answers the checks call by their names, on answers that the names never saw.
 
-`build/names.tsv` lists each wrong answer with its author's sentence and with what the student is
-told, so that somebody can judge whether it fits.
+`build/names_AUTHOR.tsv` lists each wrong answer with its author's sentence and with what the
+student is told, so that somebody can judge whether it fits.
 """
 
 import linecache
@@ -12,7 +12,7 @@ from pathlib import Path
 from labkit.course import student
 from labkit.course.messages import tell
 from labkit.course.verdict import Kind, Outcome
-from tests.answers import TOPICS, read
+from tests.answers import AUTHORS, TOPICS, read
 
 ROOT = Path(__file__).parents[2]
 OUT = ROOT / "build/names.tsv"
@@ -96,8 +96,15 @@ def measure_answers(answers, out=OUT):
 def measure():
     """Wrong answers that are named, wrong ones that pass, right ones that do not."""
     answers = [answer for topic in TOPICS for answer in read(topic)]
-    counts = measure_answers([answer for answer in answers if answer.held or answer.right])
-    total = sum(counts.values(), Counter())
+    by_author = {
+        author or "first": measure_answers(
+            [one for one in answers if one.author == author and (one.held or one.right)],
+            OUT.with_stem(f"names_{author or 'first'}"),
+        )
+        for author in AUTHORS
+    }
+    totals = {author: sum(counts.values(), Counter()) for author, counts in by_author.items()}
+    total = sum(totals.values(), Counter())
     figures = {
         "named_share": total["named"] / total["wrong"],
         "wrong_answers": total["wrong"],
@@ -105,5 +112,4 @@ def measure():
         "right_answers": total["right"],
         "right_refused": total["right_refused"],
     }
-    shares = {f"named_{q}": count["named"] / max(count["wrong"], 1) for q, count in counts.items()}
-    return figures | shares
+    return figures | {f"named_{who}": one["named"] / one["wrong"] for who, one in totals.items()}
