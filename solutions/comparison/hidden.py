@@ -94,11 +94,12 @@ def uneven_logs(random: Random) -> Iterator[Call]:
 
 
 def loops(random: Random) -> Iterator[Call]:
-    """Other gains, lags and delays."""
+    """Other gains, lags and delays, and a delay alone."""
     for _ in range(3):
         yield call(
             random.uniform(1.0, 20.0), random.uniform(0.01, 0.08), random.uniform(0.005, 0.03)
         )
+    yield call(random.uniform(1.0, 20.0), 0.0, random.uniform(0.005, 0.03))
 
 
 def lagging(random: Random) -> Iterator[Call]:

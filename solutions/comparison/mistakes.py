@@ -15,7 +15,7 @@ from scipy.stats import t as student
 import labkit as lk
 from labkit.shapes import Array
 
-from .answers import paired_difference
+from .answers import open_loop, paired_difference
 
 
 def mean_of_components(log: lk.Log, model: lk.Model) -> float:
@@ -131,6 +131,11 @@ def closed_loop(kp: float, lag: float, delay: float) -> Any:
     """The closed loop, which margins cannot be read from."""
     loop = control.tf([kp], [lag, 1.0, 0.0] if lag else [1.0, 0.0])
     return control.feedback(loop * control.tf(*control.pade(delay, 4)) if delay else loop)
+
+
+def delay_forgotten(kp: float, lag: float, delay: float) -> Any:
+    """Returns the integrator at once where there is no lag."""
+    return open_loop(kp, lag, delay if lag else 0.0)
 
 
 def delay_as_a_lag(kp: float, lag: float, delay: float) -> Any:

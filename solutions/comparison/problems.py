@@ -243,8 +243,8 @@ OPEN_LOOP = Problem(
         ),
         Trial("with a lag", (call(4.0, 0.05, 0.0),), hidden.lagging, "other lags"),
         Trial(
-            "with lag and delay",
-            (call(4.0, 0.03, 0.015), call(12.0, 0.05, 0.03)),
+            "with a delay, the lag may be 0",
+            (call(4.0, 0.03, 0.015), call(12.0, 0.05, 0.03), call(6.0, 0.0, 0.02)),
             hidden.loops,
             "other gains, lags and delays",
             weight=2.0,
@@ -286,6 +286,13 @@ OPEN_LOOP = Problem(
             "seconds; control.pade approximates it.",
             mistakes.LoopWithout(delay=0.0),
             "The age of the state is part of the loop.",
+        ),
+        Wrong(
+            "no delay where the lag is 0",
+            "Where the lag is 0 your loop forgets the delay: the branch for `lag == 0` returns "
+            "before the delay is multiplied in.",
+            mistakes.delay_forgotten,
+            "Each part of the loop may be absent by itself.",
         ),
         Wrong(
             "no lag",
