@@ -82,7 +82,7 @@ record: .venv/.course ## make all recorded data again, and say which verdicts ch
 build/campaign.json: # the book to hand out has the films
 	@$(BIN)/python -m solutions.study
 
-count: ## how large labkit is: lines of code and statements of each storey
+count: ## how large labkit is: lines of code and statements of each layer
 	@python3 tests/count.py
 
 bench: for-tests .venv/.dev browser ## measure speeds as ratios: build/bench.json

@@ -1,4 +1,4 @@
-"""How large labkit is, in lines of code and statements per storey: `make count`.
+"""How large labkit is, in lines of code and statements per layer: `make count`.
 
 A line of code has a token on it that is neither a comment nor a part of a docstring.
 """
@@ -10,7 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 LABKIT = Path(__file__).parents[1] / "labkit"
-STOREYS = {"course": "course", "grader": "grader", "__main__.py": "course"}
+LAYERS = {"course": "course", "grader": "grader", "__main__.py": "course"}
 """Of each folder and of the command line; all else is the lab."""
 LARGE = 200
 BLANK = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT,
@@ -46,17 +46,17 @@ def main():
     """Print the table, the large files and how many names ``lk.`` offers."""
     code, stated, files, large = Counter(), Counter(), Counter(), []
     for path in sorted(LABKIT.rglob("*.py")):
-        storey = STOREYS.get(path.relative_to(LABKIT).parts[0], "lab")
+        layer = LAYERS.get(path.relative_to(LABKIT).parts[0], "lab")
         text = path.read_text(encoding="utf-8")
         count = lines(text)
-        code[storey] += count
-        stated[storey] += statements(text)
-        files[storey] += 1
+        code[layer] += count
+        stated[layer] += statements(text)
+        files[layer] += 1
         if count > LARGE:
             large.append(f"{path.relative_to(LABKIT.parent)} ({count})")
-    print("storey   files   lines   statements")
-    for storey in ("lab", "course", "grader"):
-        print(f"{storey:8}{files[storey]:6}{code[storey]:8}{stated[storey]:13}")
+    print("layer    files   lines   statements")
+    for layer in ("lab", "course", "grader"):
+        print(f"{layer:8}{files[layer]:6}{code[layer]:8}{stated[layer]:13}")
     print(f"together{files.total():6}{code.total():8}{stated.total():13}")
     print(f"files over {LARGE} lines of code: {', '.join(large) or 'none'}")
     tree = ast.parse((LABKIT / "__init__.py").read_text(encoding="utf-8"))
