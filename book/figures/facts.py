@@ -67,8 +67,8 @@ def impedance() -> None:
     _is("dry friction of 1 N m and a lever of half a metre holds against 2 N at the hand, so of "
         "10 N only about 8", (1.0, 0.5, 2.0, 10.0, 8.0),
         (dry, lever, dry / lever, push, push - dry / lever))  # fmt: skip
-    _is("friction holds these 2 N of each push, and a push below 2 N does not", (2.0, 2.0),
-        (dry / lever, dry / lever))  # fmt: skip
+    _is("friction holds these 2 N of each push, and a push below 2 N does not", 2.0,
+        dry / lever)  # fmt: skip
     _is("viscous friction of 0.7 N m s/rad", 0.7, lk.BAXTER.viscous[0])
     _is("The arm has 300 N/m, the contact", 300.0, TIP_SPRING[0])
     _is("The workspace impedance of 300 N/m presses with", 300.0, TIP_SPRING[0])
