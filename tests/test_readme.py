@@ -1,5 +1,6 @@
 """What the README shows is what happens."""
 
+import json
 import re
 import subprocess
 from fnmatch import fnmatch
@@ -9,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import labkit
+from labkit.course.layout import Course
 from labkit.course.marking import mark
 from labkit.course.messages import tell
 from labkit.course.student import Desk
@@ -49,6 +51,43 @@ def test_the_message_shown_is_what_the_check_says():
     told = iter(tell(question, mark(question, names[question.name])).splitlines())
     for line in said.splitlines():
         assert line == "  …" or line in told, line
+
+
+def points():
+    """Points of each released notebook, by the metadata that nbgrader reads."""
+    found = {}
+    for path in sorted((ROOT / "assignments").glob("*/*.ipynb")):
+        cells = [
+            cell["metadata"].get("nbgrader", {}) for cell in json.loads(path.read_text())["cells"]
+        ]
+        found[path.stem] = sum(cell["points"] for cell in cells if cell.get("grade"))
+    return found
+
+
+def test_the_points_of_the_readme_are_those_of_the_notebooks():
+    """README counts the points that the released notebooks give."""
+    found = points()
+    (told,) = re.findall(r"(\d+) for the notebooks, (\d+) for the report", README)
+    report = found.pop("08_report")
+    assert [float(x) for x in told] == [sum(found.values()), report]
+    course = Course.here(Path(__file__))
+    asked = [problem for name in course.names() for problem in course.problems(name)]
+    (told,) = re.findall(r"Of the \d+, (\d+) are for functions, (\d+) of them in core", README)
+    assert float(told[0]) == sum(problem.points for problem in asked)
+    assert float(told[1]) == sum(problem.points for problem in asked if problem.core)
+
+
+def test_the_points_and_weights_of_the_guide_are_those_of_the_notebooks():
+    """The guide's sums, and a weight for each notebook in proportion to its points."""
+    guide, found = (ROOT / "book/instructor_guide.md").read_text(), points()
+    del found["08_report"]
+    everything = sum(found.values())
+    assert {float(x) for x in re.findall(r"(?:in place of|the sum is) (\d+)\b", guide)} == {
+        everything
+    }
+    rows = re.findall(r"^\| (`0[0-7]_.+) \| ([\d.]+)(?: each)? \|$", guide, re.MULTILINE)
+    weights = {name: float(w) for names, w in rows for name in re.findall(r"`(\w+)`", names)}
+    assert weights == {name: round(50.0 * x / everything, 1) for name, x in found.items()}
 
 
 def test_every_verb_exists():

@@ -178,7 +178,7 @@ def lens_by_hand() -> None:
     number("lens_short", 1e3 * (away - away / 1.2), ".2g")
     ends = 1e3 * image_servoing.approach("pose, goal measured", 0.2).distance[-1]
     claim(
-        "ends about a sixth further off than this sum says",
+        "ends about a sixth further off than this calculation says",
         lambda run, by_hand: 0.0 < 1.14 * by_hand < run < 1.2 * by_hand,
         run=float(ends),
         by_hand=1e3 * (away - away / 1.2),

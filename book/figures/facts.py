@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy.optimize import brentq
 
 import labkit as lk
 from labkit.plant import EVIDENCE, SPRINGS
@@ -31,7 +32,7 @@ def velocity() -> None:
         (step, pays, KD))  # fmt: skip
     lever = math.sqrt(TIP_SPRING[3] / TIP_SPRING[0])
     _is("If a radian counts as 0.26 m", 0.26, WorkspaceVelocityPD.lever)
-    _is("The 0.26 m come from the [impedance](impedance.md) of 300 N/m and 20 N m/rad",
+    _is("The length of 0.26 m comes from the [impedance](impedance.md) of 300 N/m and 20 N m/rad",
         (0.26, 300.0, 20.0), (lever, TIP_SPRING[0], TIP_SPRING[3]), 0.02)  # fmt: skip
     _is("in a shift of $\\sqrt{20/300} = 0.26$ m", 0.26, lever, 0.02)
 
@@ -66,6 +67,8 @@ def impedance() -> None:
     _is("dry friction of 1 N m and a lever of half a metre holds against 2 N at the hand, so of "
         "10 N only about 8", (1.0, 0.5, 2.0, 10.0, 8.0),
         (dry, lever, dry / lever, push, push - dry / lever))  # fmt: skip
+    _is("friction holds these 2 N of each push, and a push below 2 N does not", 2.0,
+        dry / lever)  # fmt: skip
     _is("viscous friction of 0.7 N m s/rad", 0.7, lk.BAXTER.viscous[0])
     _is("The arm has 300 N/m, the contact", 300.0, TIP_SPRING[0])
     _is("The workspace impedance of 300 N/m presses with", 300.0, TIP_SPRING[0])
@@ -87,6 +90,14 @@ def report() -> None:
     )
     _is("fixes the mean speed at 0.2 m/s", 0.2, 1.0 / 5.0)
     _is("0.4 m/s by equation 1", 0.4, 2.0 / 5.0)
+    lag, age = lk.BAXTER.velocity_lag, 0.0115
+    w = brentq(lambda w: math.atan(w * lag) + w * age - math.pi, 1.0, 500.0)
+    claim(
+        "a drive that obeys within a tick allows 1, one with a lag of 30 ms allows more",
+        lambda lag, most: math.isclose(lag, 0.03) and 3.0 < most < 12.0,
+        lag=lag,
+        most=math.hypot(1.0, w * lag),  # of K_d alone: where its loop has lost half a turn
+    )
     law = report_gains.TABLE_1["workspace impedance"](lk.Model("left", lk.BAXTER)).controller
     _is("With a stiffness of 0.5 N/m a push of 1 N would move the hand 2 m", (0.5, 1.0, 2.0),
         (law.D[0], 1.0, 1.0 / law.D[0]))  # fmt: skip

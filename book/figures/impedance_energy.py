@@ -102,8 +102,8 @@ def margins() -> None:
         share[task.name] = max(found)
     numbers({"eaten_circle": 100 * share["circle"], "eaten_square": 100 * share["square"]}, ".2g")
     claim(
-        "At 0.2 m/s and less the damper outweighs it everywhere on the line, the circle and "
-        "the square",
+        "At 0.2 m/s and less this holds everywhere on the line, the circle and the square of "
+        "[the comparison](comparison.md), with $D$ positive definite",
         lambda most, least, fastest: (
             0.0 < max(most) < 0.5 and least > 0.3 and 0.1 < fastest < 0.205
         ),

@@ -140,6 +140,23 @@ def one_mass_by_hand() -> None:
     )
 
 
+def admittance() -> None:
+    """On how stiff a wall an admittance behind a lag is stable: by Routh, and by the roots."""
+    m, k, lag, contact = 2.0, 200.0, 0.03, contact_stiffness(experiments.the_wall())
+
+    def stable(b: float, k_w: float) -> bool:
+        parts = (m * lag, m + b * lag, b + k * lag, k + k_w)
+        return bool(np.roots(parts).real.max() < 0.0)
+
+    most = max(x for x in np.arange(1000.0, 4000.0) if stable(40.0, x))
+    least = min(b for b in np.arange(20.0, 80.0) if stable(b, contact))
+    shows("With 2 kg, 200 N/m and 40 N s/m, critically damped in free air, and a lag of 30 ms, "
+          "that is 2,250 N/m: the contact of this chapter, with 3,333 N/m, is too stiff",
+          (2.0, 200.0, 40.0, 30.0, 2250.0, 3333.0),
+          (m, k, 2.0 * math.sqrt(k * m), 1e3 * lag, most, contact), 2e-3)  # fmt: skip
+    shows("It takes 54 N s/m", 54.0, least)
+
+
 def felt_inertia() -> HTML:
     """The inertia at Baxter's tip, in the vertical plane, for a free and for a guided hand."""
     model = lk.Model("left", lk.IDEAL)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
 
 import labkit as lk
+from labkit.shapes import Array
 
 from .claims import claim, shows
 from .embed import demo_html
@@ -28,7 +31,7 @@ def jacobian_demo() -> HTML:
 def checks() -> HTML:
     """What the formulas promise, tried on random states."""
     model, random = lk.Model("left", lk.BAXTER), np.random.default_rng(SEED)
-    worst = dict.fromkeys(("J", "symmetry", "skew", "gravity", "power"), 0.0)
+    worst = dict.fromkeys(("J", "symmetry", "skew", "gravity", "power", "turn"), 0.0)
     smallest = np.inf
     for _ in range(100):
         q = random.uniform(model.robot.lower, model.robot.upper)
@@ -52,6 +55,7 @@ def checks() -> HTML:
             ("skew", skew + skew.T),
             ("gravity", np.array(hill) - model.gravity(q)),
             ("power", np.array(dq @ skew @ dq)),
+            ("turn", model.mass_matrix(q * np.array((0.0, *np.ones(6)))) - M),
         ):
             worst[name] = max(worst[name], float(np.abs(off).max()))
         smallest = min(smallest, float(np.linalg.eigvalsh(M)[0]))
@@ -63,6 +67,7 @@ def checks() -> HTML:
         ("Ṁ − 2C is skew", f"{_small(worst['skew'])} kg m²/s"),
         ("g is the slope of the potential energy", f"{_small(worst['gravity'])} N m"),
         ("q̇ᵀ(Ṁ − 2C)q̇ vanishes", f"{_small(worst['power'])} W"),
+        ("M does not change when s0 turns", f"{_small(worst['turn'])} kg m²"),
         ("M is positive definite", f"none: its smallest eigenvalue is {smallest:.2g} kg m²"),
     ]
     return table(("Law", "Largest miss"), rows, "100 random states within the joint limits")
@@ -191,8 +196,9 @@ def weigh() -> HTML:
     return table(head, rows, "What s1 holds at the neutral pose, body by body")
 
 
-def power() -> HTML:
-    """The energy that the motors give is the energy that the arm has."""
+@cache
+def _swing() -> lk.Log:
+    """A swing of the ideal arm under computed torque at 1 kHz."""
     model = lk.Model("left")
     q0 = model.robot.ready
     swing = lk.Trajectory(
@@ -206,7 +212,37 @@ def power() -> HTML:
         return lk.JointTorque(model.mass_matrix(q) @ wanted + model.bias(q, dq))
 
     with lk.Arm("left", lk.IDEAL, q0=q0) as arm:
-        log = lk.run(arm, swing, feedforward, rate=1000)
+        return lk.run(arm, swing, feedforward, rate=1000)
+
+
+def wrong_axes() -> None:
+    """Who finds inertias that were left in the bodies' own axes: not the power balance."""
+    model, log = lk.Model("left"), _swing()
+
+    def extra(q: Array) -> Array:
+        """What the mistake adds to the mass matrix."""
+        turns = [(x.com_jacobian[3:], x.inertia, x.T_wl[:3, :3]) for x in model.links(q)]
+        return sum(W.T @ (I - R @ I @ R.T) @ W for W, I, R in turns)
+
+    more = [0.5 * dq @ extra(q) @ dq for q, dq in zip(log.q, log.dq, strict=True)]
+    missed = float(np.abs(np.gradient(np.array(more), log.t)).max())
+    q = np.array(model.robot.ready)
+    turned = q + 0.5 * np.pi * np.eye(7)[0]
+    entry = [float((model.mass_matrix(x) + extra(x))[1, 1]) for x in (q, turned)]
+    right = float(np.abs(model.mass_matrix(turned) - model.mass_matrix(q)).max())
+    numbers({"axes_mw": 1e3 * missed}, ".2g")
+    numbers({"axes_before": entry[0], "axes_after": entry[1]}, ".3f")
+    claim(
+        "so $M$ must not change when s0 turns",
+        lambda right, wrong: right < 1e-9 and 0.015 < wrong < 0.03,
+        right=round(right, 9),
+        wrong=entry[0] - entry[1],
+    )
+
+
+def power() -> HTML:
+    """The energy that the motors give is the energy that the arm has."""
+    model, log = lk.Model("left"), _swing()
     rows = zip(log.q, log.dq, strict=True)
     energy = [model.kinetic_energy(q, dq) + model.potential_energy(q) for q, dq in rows]
     gained = np.gradient(np.array(energy), log.t)

@@ -137,7 +137,7 @@ def geometry() -> None:
     by_hand("= 0.00147 m", 0.00147, sigma / (math.sqrt(2.0) * FOCAL * SIZE))
     away = at[2] + SIZE / 2.0 * math.sin(math.radians(24.6)) * np.array((-1.0, 1.0))
     by_hand(
-        "and the sums by hand below assume 0.1 pixel",
+        "and the calculations by hand below assume 0.1 pixel",
         0.1,
         math.sqrt(2.0) * FOCAL * SIZE * 0.00147,
     )

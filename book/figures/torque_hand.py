@@ -241,7 +241,7 @@ def payload() -> HTML:
         ends.append((float(sag[-1]), float(expected)))
         said.append(f"{sag[-1]:.2g} mm for Kp = {gain:g}")
     claim(
-        "the hand comes to rest where the sum says",
+        "the hand comes to rest where the formula says",
         lambda found, expected: (
             all(math.isclose(a, b, rel_tol=0.05) for a, b in zip(found, expected, strict=True))
             and 1.0 < found[1] < 0.3 * found[0]
@@ -263,7 +263,7 @@ def payload() -> HTML:
     ax.legend()
     return figure(
         "Holding still under computed torque with 0.5 kg in the hand that the model does not have. "
-        "Dotted, the sum by hand.",
-        f"Two curves that rise and settle: {', '.join(said)}; the dotted lines of the sum by hand "
+        "Dotted, the formula.",
+        f"Two curves that rise and settle: {', '.join(said)}; the dotted lines of the formula "
         "are where they settle.",
     )

@@ -6,9 +6,10 @@ The chapters on paths, on the model and on velocity control.
 from __future__ import annotations
 
 from functools import cache
-from math import atan, degrees, exp, hypot, pi, sqrt
+from math import atan, atan2, degrees, exp, hypot, pi, sqrt
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 import labkit as lk
 from solutions.study.singular import damped_inverse
@@ -231,6 +232,9 @@ def velocity() -> None:
     shows("with the length $\\sqrt{0.2} = 0.447$", (0.4, 0.2), np.linalg.pinv(J)[:, 0])
     free = np.eye(2) - np.linalg.pinv(J) @ J
     shows("joint to turn at 1 rad/s, $z = (1, 0)$", (0.2, -0.4), free[:, 0], 1e-6)
+    _limited(J)
+    _turned()
+    _integral()
     _finite()
     _wanted()
     cut, even = np.minimum((3.0, 0.9), 1.5), 0.5 * np.array((3.0, 0.9))
@@ -244,6 +248,44 @@ def velocity() -> None:
     shows("published at 100 Hz, is another 5 ms old on average; a command is held for 5 ms",
           (100.0, 5.0, 2.5),
           (lk.BAXTER.state_rate, 0.5e3 / lk.BAXTER.state_rate, 0.5e3 / 200.0))  # fmt: skip
+
+
+def _limited(J: np.ndarray) -> None:
+    """The two joints with a limit on the first: cut, and by the quadratic program."""
+    cut = np.minimum(np.linalg.pinv(J)[:, 0], (0.3, np.inf))
+    price = 1e-4 * np.eye(2)
+    best = lsq_linear(np.vstack((J, price)), (1.0, 0.0, 0.0), ([-0.3, -9.0], [0.3, 9.0]), "bvls").x
+    shows("limited to 0.3 rad/s, a motor that cuts makes $(0.3, 0.2)$, and the tip moves at 0.8 in "
+          "place of 1", (0.3, 0.2, 0.8), (*cut, *(J @ cut)), 1e-6)  # fmt: skip
+    shows("answers $(0.3, 0.4)$ rad/s", (0.3, 0.4, 1.0), (*best, *(J @ best)), 1e-6)
+
+
+def _turned() -> None:
+    """The yaw of the ready pose, and how fast an error of orientation decays under the law."""
+    R = lk.Model("left").pose(lk.robot("left").ready)[:3, :3]
+    shows("ready pose $\\psi$ is −164°", -164.0, degrees(atan2(R[1, 0], R[0, 0])), 5e-3)
+    left, kp, h = [], 3.0, 1e-3
+    for kd in (0.0, 0.6):
+        for turning in (0.0, 1.0):
+            R, R_d = lk.se3.rotation(np.array((0.8, -0.5, 0.9))), np.eye(3)
+            for t in np.arange(0.0, 1.0, h):
+                w_d = turning * np.array((0.9 * np.sin(3.0 * t), 0.7, 1.2))
+                w = w_d + kp / (1.0 + kd) * lk.se3.rotation_log(R_d @ R.T)
+                R, R_d = lk.se3.rotation(h * w) @ R, lk.se3.rotation(h * w_d) @ R_d
+            left.append(float(np.linalg.norm(lk.se3.rotation_log(R_d @ R.T))) / sqrt(1.7))
+    claim(
+        "The angle of the orientation's error decays at this rate too, with $K_d$ and without it, "
+        "whether the target rests or turns",
+        lambda x: np.allclose(x, [exp(-3.0)] * 2 + [exp(-3.0 / 1.6)] * 2, rtol=0.01),
+        x=left,
+    )
+
+
+def _integral() -> None:
+    """The exercise on the integral: the slower of two exponentials, over all K_i."""
+    rates = {ki: -max(np.roots((1.0, 4.0, ki)).real) for ki in (1.0, 3.0, 4.0, 8.0)}
+    shows("at half the rate of $K_p$ alone", (4.0, 2.0), (4.0, max(rates.values())), 1e-6)
+    shows("leaves the rate at 2 1/s", 2.0, rates[8.0], 1e-6)
 
 
 def _wanted() -> None:

@@ -495,8 +495,9 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "Euler angles subtracted",
-            "The difference of roll, pitch and yaw is not a rotation vector; with the gripper "
-            "down it even has the wrong signs. Use lk.se3.pose_error, which takes the logarithm.",
+            "The difference of roll, pitch and yaw is not a rotation vector; with the gripper down "
+            "and a yaw beyond 90 degrees, as in the ready pose, it even drives the hand away. Use "
+            "lk.se3.pose_error, which takes the logarithm.",
             mistakes.euler_subtraction,
             "Position errors alone never show it.",
         ),

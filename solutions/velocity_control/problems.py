@@ -571,8 +571,8 @@ WORKSPACE_VELOCITY_PD = Problem(
     wrong=(
         Wrong(
             "roll, pitch and yaw subtracted",
-            "With the gripper down their difference has the wrong sign in roll and pitch, and jumps "
-            "at 180 degrees. Use the logarithm, as in notebook 00.",
+            "With the gripper down and a yaw beyond 90 degrees, as in the ready pose, their difference "
+            "drives roll and pitch the wrong way, and it jumps at 180 degrees. Use the logarithm, as in notebook 00.",
             mistakes.euler_error,
             "Orientations are compared by a product.",
         ),

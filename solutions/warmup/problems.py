@@ -316,8 +316,9 @@ ORIENTATION_ERROR = Problem(
     wrong=(
         Wrong(
             "roll, pitch and yaw subtracted",
-            "Euler angles are not a vector. With the gripper down, roll and pitch come out with "
-            "the wrong sign, so feedback tips the hand over, and at ±180 degrees they jump. Take "
+            "Euler angles are not a vector. With the gripper down and a yaw beyond 90 degrees, as in "
+            "the ready pose, feedback of roll and pitch tips the hand over, and at ±180 degrees they "
+            "jump. Take "
             "the logarithm of one rotation instead.",
             mistakes.euler_subtracted,
             "Orientations are compared by a product, never by a difference of angles.",
