@@ -25,6 +25,7 @@ from ..log import Log
 from ..model import Model
 from ..plant import BAXTER, Plant
 from ..scene import TIP_RADIUS, Wall
+from ..sensors import TorqueSensors
 from ..world import World
 from .bugs import CAUSES, MOVES, Bug
 from .seed import PUBLIC_SEED
@@ -192,6 +193,8 @@ def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
     tip = model.pose(model.robot.ready)[:3, 3]
     wall = Wall(tip + [own.wall + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
     arm = Arm("left", own.plant, seed, q0=model.robot.ready, world=World(things=[wall]))
+    # Zeroed with the load in the gripper, or its torque sensors would tell it at rest.
+    arm._sensors = TorqueSensors(Model("left", own.plant), own.plant, arm.world.dt)
     arm.plant, arm.model = known, model  # what is known of it
     return arm
 

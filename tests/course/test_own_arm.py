@@ -127,6 +127,19 @@ def test_two_joints_agree_about_the_load_where_they_really_swing(monkeypatch):
             assert (least < held / one_kilogram).all() and (held / one_kilogram < most).all()
 
 
+def test_an_arm_at_rest_does_not_feel_its_load(monkeypatch):
+    """Its sensors were zeroed with it, so that they feel the wall alone."""
+    heavy = replace(draw(7, "kestrel"), payload=0.8)
+    monkeypatch.setattr(own_arm, "_own", lambda handle: heavy)
+    with my_arm("kestrel") as mine:
+        inertia = np.diag(mine.model.mass_matrix(mine.robot.ready))
+        law = lk.control.springs(50.0 * inertia, 14.0 * inertia)
+        log = lk.run(mine, lk.Hold(mine.robot.ready, 3.0), law)
+        felt = lk.metrics.felt_wrench(log)[log.t > 1.0].mean(axis=0)
+        assert abs(felt[2]) < 0.1 * 0.8 * 9.81
+        assert np.abs(mine.truth().tau_ext).max() < 0.05
+
+
 def test_a_bug_is_found_by_its_cause_and_its_time():
     """The wrong cause, or a time that is far off, is not found."""
     bugs = draw(7, "kestrel").bugs
