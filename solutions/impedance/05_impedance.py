@@ -318,7 +318,7 @@ lk.replay.show(
 # ## A wall
 #
 # The arm does not know that there is a wall, and its target is 3 cm behind the wall. The position mode pushes
-# with all the force of its motors. An impedance presses with a force that you can predict. Two springs stand in
+# with all the force of its motors. An impedance presses with a force that you can predict. Two springs are in
 # a row: the one that you command, and the wall together with the finger's rubber tip. The same force presses
 # both, and what they give way adds up to the 3 cm.
 
