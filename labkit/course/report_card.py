@@ -210,19 +210,8 @@ def _row(
     if margin is not None and margin < NEAREST:
         failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance, and {NEAREST:g} needed")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(draws))
-    return Row(
-        name,
-        problem.name,
-        len(wrong),
-        rejected,
-        named,
-        len(right),
-        accepted,
-        agree,
-        margin,
-        nearest,
-        tuple(failures),
-    )
+    tried = len(wrong), rejected, named, len(right), accepted, agree
+    return Row(name, problem.name, *tried, margin, nearest, tuple(failures))
 
 
 def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
