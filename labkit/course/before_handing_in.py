@@ -17,7 +17,7 @@ from typing import Any
 
 from ..sim import chosen
 from .brief import WORDS
-from .forms import COMMITTED
+from .forms import COMMITTED, OWN_ARM
 from .gaps import bring_back, changed_since, first_error, undefined
 from .messages import head
 from .notebook import (
@@ -29,6 +29,7 @@ from .notebook import (
     last_verdict,
     read_cells,
 )
+from .own_arm import arms_for, opens_the_public_arm
 from .serialize import decode
 from .source import look as look_at
 from .student import read_checks
@@ -135,6 +136,7 @@ def look(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
+    problems += _on_the_public_arm(path, cells, verdicts)
     stale = [name for name in verdicts if changed_since(cells, name)]
     if stale:
         notes.append(
@@ -164,6 +166,24 @@ def look(path: Path) -> HandIn:
         if which := [name for name in wrong if (name in predictions) == foretold]:
             notes.append(says.format(", ".join(which)))
     return HandIn(name, tuple(problems), tuple(notes), verdicts, predictions, texts)
+
+
+def _on_the_public_arm(
+    path: Path, cells: list[dict[str, Any]], verdicts: Mapping[str, Verdict | None]
+) -> list[str]:
+    """What to say where numbers of one's own arm were measured on the public one."""
+    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    measured = [
+        name
+        for name, verdict in verdicts.items()
+        if verdict and verdict.right and any(test.name == OWN_ARM for test in verdict.tests)
+    ]
+    if not (measured and opens_the_public_arm(code) and arms_for(path.resolve().parent)):
+        return []
+    return [
+        f'HANDLE is "demo", the public arm, and {", ".join(measured)} will be judged by an arm of '
+        "your own; set HANDLE to the name that your instructor gave you, and measure again"
+    ]
 
 
 def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[list[str], list[str]]:

@@ -11,7 +11,9 @@ import base64
 import hashlib
 import hmac
 import json
-from collections.abc import Mapping
+import re
+import unicodedata
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
@@ -23,6 +25,7 @@ from ..log import Log
 from ..model import Model
 from ..plant import BAXTER, Plant
 from ..scene import TIP_RADIUS, Wall
+from ..sensors import TorqueSensors
 from ..world import World
 from .bugs import CAUSES, MOVES, Bug
 from .seed import PUBLIC_SEED
@@ -42,6 +45,9 @@ RANGES = {
 }
 """From where to where each number is drawn; below `OwnArm` says what it is."""
 
+APART = {"payload": 0.15, "stiction": 0.1, "lag": 0.00625, "wall": 0.005}
+"""How far from the public arm's numbers those of any other arm lie: a measurement of the public
+arm is then wrong everywhere else.  Where a number is asked for, it is 1.25 tolerances."""
 
 BUGS = 3
 """The number of misbehaving runs that each arm has, of `CAUSES` times `MOVES`."""
@@ -81,10 +87,12 @@ class OwnArm:
 
 
 def draw(secret: int, handle: str) -> OwnArm:
-    """The arm of a handle, by HMAC-SHA256 under the term's secret."""
+    """The arm of a handle, in any spelling of it, by HMAC-SHA256 under the term's secret."""
+    handle = spelt(handle)
     digest = hmac.new(str(secret).encode(), handle.encode(), hashlib.sha256).digest()
     shares = (int.from_bytes(digest[8 * k : 8 * k + 8], "big") / 2.0**64 for k in range(4))
-    numbers = (a + x * (b - a) for x, (a, b) in zip(shares, RANGES.values(), strict=True))
+    public = None if handle == DEMO else draw(PUBLIC_SEED, DEMO)
+    numbers = (_number(name, x, public) for name, x in zip(RANGES, shares, strict=True))
     random = np.random.default_rng(list(digest))
     causes = random.choice(list(CAUSES), BUGS, replace=False)
     bugs = (
@@ -99,6 +107,25 @@ def draw(secret: int, handle: str) -> OwnArm:
     )
     payload, stiction, lag, wall = numbers
     return OwnArm(payload, stiction, lag, wall, tuple(bugs))
+
+
+def _number(name: str, share: float, public: OwnArm | None) -> float:
+    """A number at a share of its range, from which those near the public arm's are cut out."""
+    least, most = RANGES[name]
+    if public is None:
+        return least + share * (most - least)
+    middle: float = getattr(public, name)
+    cut = max(middle - APART[name], least), min(middle + APART[name], most)
+    number = least + share * (most - least - (cut[1] - cut[0]))
+    return number if number < cut[0] else number + (cut[1] - cut[0])
+
+
+def spelt(handle: str) -> str:
+    """A handle in the one spelling by which it is known: composed, in small letters.
+
+    A Mac may take "ö" apart into "o" and two dots, and a keyboard may type letters of full width.
+    """
+    return unicodedata.normalize("NFKC", handle).casefold().strip()
 
 
 @dataclass(frozen=True)
@@ -137,7 +164,8 @@ class Arms:
 
     def arm(self, student: str) -> OwnArm | None:
         """A student's arm, or None."""
-        handle = self.handles.get(student)
+        known = {spelt(who): handle for who, handle in self.handles.items()}
+        handle = known.get(spelt(student))
         return None if handle is None else draw(self.secret, handle)
 
     def sealed(self) -> dict[str, str]:
@@ -165,6 +193,8 @@ def my_arm(handle: str = DEMO, seed: int = 0) -> Arm:
     tip = model.pose(model.robot.ready)[:3, 3]
     wall = Wall(tip + [own.wall + TIP_RADIUS, 0.0, 0.0], (-1.0, 0.0, 0.0))
     arm = Arm("left", own.plant, seed, q0=model.robot.ready, world=World(things=[wall]))
+    # Zeroed with the load in the gripper, or its torque sensors would tell it at rest.
+    arm._sensors = TorqueSensors(Model("left", own.plant), own.plant, arm.world.dt)
     arm.plant, arm.model = known, model  # what is known of it
     return arm
 
@@ -186,18 +216,29 @@ def my_bug(number: int, handle: str = DEMO) -> Log:
 
 
 def _own(handle: str) -> OwnArm:
-    return draw(PUBLIC_SEED, DEMO) if handle == DEMO else _unsealed(handle)
+    return draw(PUBLIC_SEED, DEMO) if spelt(handle) == DEMO else _unsealed(handle)
+
+
+def arms_for(folder: Path) -> Path | None:
+    """The file of sealed arms that a notebook in a folder opens, if there is one."""
+    files = (place / FILE for place in (folder, *folder.parents[:2]))
+    return next((file for file in files if file.exists()), None)
+
+
+def opens_the_public_arm(cells: Iterable[str]) -> bool:
+    """Whether the HANDLE that a notebook's cells set last is that of the public arm."""
+    said = re.findall(r"^HANDLE\s*=\s*(['\"])(.*?)\1", "\n".join(cells), re.MULTILINE)
+    return bool(said) and spelt(said[-1][1]) == DEMO
 
 
 def _unsealed(handle: str) -> OwnArm:
-    folder = Path.cwd()
-    files = [place / FILE for place in (folder, *folder.parents[:2]) if (place / FILE).exists()]
-    if not files:
+    file = arms_for(Path.cwd())
+    if file is None:
         raise LabkitError(
             f"there is no {FILE} here or in the two folders above; your instructor hands it out "
             f"with the notebooks of your course. To practise, take lk.my_arm({DEMO!r})"
         )
-    arms = json.loads(files[0].read_text(encoding="utf-8"))
+    arms = json.loads(file.read_text(encoding="utf-8"))
     text = arms.get(_hashed(handle))
     if text is None:
         raise LabkitError(
@@ -208,7 +249,7 @@ def _unsealed(handle: str) -> OwnArm:
 
 
 def _hashed(handle: str) -> str:
-    return hashlib.sha256(handle.encode()).hexdigest()[:16]
+    return hashlib.sha256(spelt(handle).encode()).hexdigest()[:16]
 
 
 def _seal(arm: OwnArm, handle: str) -> str:
@@ -217,5 +258,5 @@ def _seal(arm: OwnArm, handle: str) -> str:
 
 def _mixed(data: bytes, handle: str) -> bytes:
     """The data with a stream of bytes laid over it, which the handle starts; twice is once."""
-    stream = np.random.default_rng(list(handle.encode())).bytes(len(data))
+    stream = np.random.default_rng(list(spelt(handle).encode())).bytes(len(data))
     return bytes(a ^ b for a, b in zip(data, stream, strict=True))

@@ -2,7 +2,8 @@
 
 Every answer, known mistake and right variant is marked with many draws of the hidden cases; how
 near the nearest of them comes to the tolerance, `margins` says.  A question where nothing spreads
-has no margin and is listed apart.
+has no margin and is listed apart.  It fails where a mistake earns too much, a right answer too
+little, where only hidden cases reject a mistake, or where an answer comes nearer than `NEAREST`.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ Functions = Mapping[str, Sequence[Callable[..., Any]]]
 DRAWS = 20
 HANGS = 600.0
 """Seconds after which one call of an answer is stopped; no limit, a guard against endless ones."""
+NEAREST = 3.0
+"""Sigmas that must lie between every answer and the tolerance."""
 LARGEST_PART = 0.6
 """Share of the points that one right part of an answer may earn."""
 
@@ -80,19 +83,24 @@ class Card:
     seeds: int
     rows: tuple[Row, ...]
 
+    @property
+    def nearest(self) -> list[tuple[float, Row]]:
+        """The margins there are, in sigmas, and their rows; the least first."""
+        found = [(row.margin_sigma, row) for row in self.rows if row.margin_sigma is not None]
+        return sorted(found, key=lambda pair: pair[0])
+
     def data(self) -> dict[str, Any]:
         """Totals and rows, as JSON data."""
         totals: dict[str, Any] = {
             key: sum(getattr(row, key) for row in self.rows)
             for key in ("mistakes", "rejected", "named", "variants", "accepted")
         }
-        margins = [row.margin_sigma for row in self.rows if row.margin_sigma is not None]
         return {
             "seed": self.seed,
             "seeds": self.seeds,
             **totals,
             "seeds_agree": min((row.seeds_agree for row in self.rows), default=0),
-            "min_margin_sigma": min(margins, default=None),
+            "min_margin_sigma": next((margin for margin, _ in self.nearest), None),
             "without_spread": [row.question for row in self.rows if row.margin_sigma is None],
             "questions": [asdict(row) for row in self.rows],
         }
@@ -118,7 +126,7 @@ def make(
 
     Args:
         course: The course.
-        names: Of the assignments.
+        names: Of the assignments; one question of one is "assignment/question".
         seed: Of the first draw of hidden cases; the others follow it.
         mistakes: More wrong answers, from outside; these have no name to be called by.
         variants: More right answers, from outside.
@@ -128,7 +136,11 @@ def make(
     Raises:
         UnknownName: No such assignment, or an answer to a question that nobody asks.
     """
-    problems = [(name, problem) for name in names for problem in course.problems(name)]
+    problems = [
+        (assignment, problem)
+        for assignment, _, only in (name.partition("/") for name in names)
+        for problem in _asked(course, assignment, only)
+    ]
     asked = [question for name, problem in problems for question in _names(name, problem)]
     for question in (*(mistakes or {}), *(variants or {})):
         if question not in asked:
@@ -142,6 +154,14 @@ def make(
         rows.append(_row(name, problem, seed, draws, *more))
         progress(rows[-1])
     return Card(seed, draws, tuple(rows))
+
+
+def _asked(course: Course, assignment: str, only: str) -> Sequence[Problem]:
+    """The problems of an assignment, or the one that is named."""
+    problems = {problem.name: problem for problem in course.problems(assignment)}
+    if only and only not in problems:
+        raise UnknownName("question", only, tuple(problems))
+    return [problems[only]] if only else list(problems.values())
 
 
 def _names(assignment: str, problem: Problem) -> tuple[str, str]:
@@ -180,25 +200,18 @@ def _row(
             named += 1
         elif label in own:
             failures.append(f"{label}: taken for {known.name if known else 'nothing known'}")
+        if all(test.hidden or test.outcome is Outcome.RIGHT for test in verdicts[label][0].tests):
+            failures.append(f"{label}: rejected by hidden cases alone; add a public one that does")
     for label in right:
         if all(verdict.outcome is Outcome.RIGHT for verdict in verdicts[label]):
             accepted += 1
         else:
             failures.append(f"{label}: a right answer earned only {min(marks[label]):g}")
+    if margin is not None and margin < NEAREST:
+        failures.append(f"{nearest}: {margin:.2f} sigma from the tolerance, and {NEAREST:g} needed")
     agree = sum(all(m[k] == m[0] for m in marks.values()) for k in range(draws))
-    return Row(
-        name,
-        problem.name,
-        len(wrong),
-        rejected,
-        named,
-        len(right),
-        accepted,
-        agree,
-        margin,
-        nearest,
-        tuple(failures),
-    )
+    tried = len(wrong), rejected, named, len(right), accepted, agree
+    return Row(name, problem.name, *tried, margin, nearest, tuple(failures))
 
 
 def _labelled(whose: str, functions: Sequence[Callable[..., Any]]) -> dict[str, Callable[..., Any]]:
@@ -252,7 +265,7 @@ def write(card: Card, folder: Path) -> tuple[Path, Path]:
 def markdown(card: Card) -> str:
     """The card as a page."""
     data = card.data()
-    least = data["min_margin_sigma"]
+    nearest = [f"{margin:.2f} ({row.assignment}/{row.question})" for margin, row in card.nearest]
     lines = [
         "# Report card of the checks",
         "",
@@ -261,7 +274,7 @@ def markdown(card: Card) -> str:
         f"- mistakes rejected: {data['rejected']} of {data['mistakes']}, named: {data['named']}",
         f"- right answers accepted: {data['accepted']} of {data['variants']}",
         f"- draws that agree: {data['seeds_agree']} of {card.seeds}",
-        f"- least margin: {'none measured' if least is None else f'{least:.1f} sigma'}",
+        f"- least margins, in sigma: {', '.join(nearest[:3]) or 'none measured'}",
         "",
         "| assignment | question | rejected | named | accepted | draws | margin [σ] | nearest |",
         "|---|---|---|---|---|---|---|---|",

@@ -24,6 +24,10 @@ UNSEEN_LIMIT = 3.9
 """Worst error allowed on unseen cases, in [mm]: without D gains of 12.4 to 38 reach it."""
 RESERVE = 1.3
 """This multiple of the chosen Kp must reach it too, which leaves 12.4 to 29."""
+LINE_LIMIT = 3.5
+"""Worst error allowed on the line, in [mm]: gains that pass unseen leave 3.0 there at most."""
+FAR = 1.6
+"""This multiple of the chosen Kp must reach it too; of gains that pass unseen it leaves 2.8."""
 
 
 def stiffer(trials: Trials, factor: float) -> Trials:
@@ -124,6 +128,14 @@ def margins(random: Random) -> Iterator[Call]:
 def no_delay(random: Random) -> Iterator[Call]:
     """A lag alone."""
     yield call(random.uniform(0.01, 0.08), 0.0, random.uniform(30.0, 75.0))
+
+
+def on_the_line() -> Iterator[Choice]:
+    """The line of both arms that a student may try, with the chosen Kp and a multiple of it."""
+    for slow in (1.0, SLOW):
+        line = stiffer(ON_THE_LINE, slow)
+        for times in (1.0, FAR):
+            yield Choice(line, {"worst_mm": LINE_LIMIT}, stiffer(ON_THE_LINE, slow * times))
 
 
 def unseen_cases(random: Random) -> Iterator[Choice]:

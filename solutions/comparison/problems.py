@@ -8,18 +8,20 @@ import control
 import numpy as np
 from scipy.stats import t as student
 
-from labkit.course import Choice, Close, Response
+from labkit.course import Close, Response
 from labkit.course.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
 
 _RANDOM = np.random.default_rng(7)
 _SEEDS = [3.0, 1.1, 4.9, 2.05, 3.9]
-_PAIRS = (call([4.0, 2.0, 6.0, 3.0, 5.0], _SEEDS),)
 _TEN_PAIRS = [
     [4.0, 0.5, 6.0, 5.0, 5.5, 2.0, 7.5, 4.5, 4.0, 2.0],
     [3.0, 1.0, 4.0, 2.0, 5.0, 3.0, 6.0, 2.0, 4.0, 1.0],
 ]
+_PAIRS = (call([4.0, 2.0, 6.0, 3.0, 5.0], _SEEDS), call(*_TEN_PAIRS[::-1]))
+_NEAR_THE_EDGE = [3.1, 2.7, 5.2, 3.45, 4.4], [3.5, 2.7, 5.7, 3.45, 4.5]
+"""Rows that differ from `_SEEDS` by 2.6 and by 4.5 standard errors; 2.78 decide."""
 _345 = np.array([0.003, 0.004, 0.012])
 
 RMS_ERROR = Problem(
@@ -549,17 +551,16 @@ CHOOSE_GAINS = Problem(
     asks="Choose `(Kp, Kd)` for the joint velocity PD with at most 20 runs: `runner(Kp, Kd, seed)` "
     "gives the RMS error of a run along the line in mm, for `seed` 0 to 4. Your gains are then tried "
     f"where you could not try them, and so is {hidden.RESERVE:g} times your Kp, your margin: at most "
-    f"{hidden.UNSEEN_LIMIT:g} mm on the worst seed there. Your function is called twice, with "
-    "20 runs for each call: the second arm is about a quarter as quick as the first, so other gains are "
+    f"{hidden.UNSEEN_LIMIT:g} mm on the worst seed there. On the line at most {hidden.LINE_LIMIT:g} mm "
+    f"are allowed, with your Kp and with {hidden.FAR:g} times it. Your function is called for two arms, "
+    "with 20 runs each time: the second arm is about a quarter as quick as the first, so other gains are "
     "right for it.",
     answer=answers.choose_gains,
     trials=(
         Trial(
-            "on the line, on its worst seed: at most 6 mm; the same on an arm a quarter as quick",
-            (
-                Choice(hidden.ON_THE_LINE, {"worst_mm": 6.0}),
-                Choice(hidden.stiffer(hidden.ON_THE_LINE, hidden.SLOW), {"worst_mm": 6.0}),
-            ),
+            f"on the line, on its worst seed: at most {hidden.LINE_LIMIT:g} mm, and with "
+            f"{hidden.FAR:g} times the chosen Kp; the same on an arm a quarter as quick",
+            tuple(hidden.on_the_line()),
             weight=0.0,
         ),
         Trial(
@@ -639,7 +640,7 @@ PAIRED = Problem(
             weight=0.0,
         ),
         Trial(
-            "the mean over five seeds that differ much, of a difference that does not",
+            "the mean over seeds that differ much, of a difference that does not: five and ten",
             _PAIRS,
             hidden.pairs,
             "other seeds, other numbers of them",
@@ -683,6 +684,13 @@ PAIRED = Problem(
             "1.96 is right for very many pairs. For a few, use Student's t, which is wider.",
             mistakes.normal_quantile,
             "Five seeds are not many.",
+        ),
+        Wrong(
+            "the rows sorted first",
+            "Sorted, each error has another partner, and the differences shrink. The pairs are the "
+            "seeds: leave them as they are.",
+            mistakes.Paired(lambda a, b: np.sort(a) - np.sort(b)),
+            "Same seeds: pair them.",
         ),
         Wrong(
             "n instead of n - 1 in the deviation",
@@ -848,18 +856,24 @@ VERDICTS = Problem(
             weight=0.0,
         ),
         Trial(
-            "one that flips with the seed, some near the edge, and three and ten seeds",
+            "one that flips with the seed, some near the edge on either side, three and ten seeds",
             (
                 call({"A is worse than B": [[4.0, 5.0, 6.0, 2.0], [3.0, 6.2, 5.1, 2.6]]}),
                 call(
                     {
-                        "C is worse than D": [[3.1, 2.7, 5.2, 3.45, 4.4], _SEEDS],
-                        "E is worse than F": [[3.5, 2.7, 5.7, 3.45, 4.5], _SEEDS],
+                        "C is worse than D": [_NEAR_THE_EDGE[0], _SEEDS],
+                        "E is worse than F": [_NEAR_THE_EDGE[1], _SEEDS],
                         "G is worse than H": [[3.5, 1.7, 5.3, 2.65, 4.5], _SEEDS],
                     }
                 ),
                 call({"I is worse than J": [[4.0, 3.5, 5.5], [3.0, 2.0, 5.0]]}),
                 call({"O is worse than P": [[6.1, 4.0, 7.8, 5.2, 3.5], _SEEDS]}),
+                call(
+                    {
+                        "O is worse than P": [_SEEDS, _NEAR_THE_EDGE[0]],
+                        "Q is worse than R": [_SEEDS, _NEAR_THE_EDGE[1]],
+                    }
+                ),
                 call(
                     {
                         "K is worse than L": _TEN_PAIRS,
@@ -964,6 +978,13 @@ VERDICTS = Problem(
             "it holds whenever it is decided",
             "The sign of the mean decides: above zero 'holds', below zero 'does not hold'.",
             mistakes.Said(("holds", "holds", "undecided")),
+            "An interval has two sides.",
+        ),
+        Wrong(
+            "below zero without an interval",
+            "A mean below zero does not yet speak against the claim: the whole interval must lie "
+            "below zero, as it must lie above zero before the claim holds.",
+            mistakes.Said(sure=lambda d: d.mean() < 0.0 or d.mean() > mistakes.half_of(d)),
             "An interval has two sides.",
         ),
         Wrong(

@@ -318,10 +318,9 @@ lk.replay.show(
 # ## A wall
 #
 # The arm does not know that there is a wall, and its target is 3 cm behind the wall. The position mode pushes
-# with all the force of its motors. An impedance presses with a force that you can predict: its own spring,
-# the wall and the finger's rubber tip are springs in series,
-#
-# $$ F = \frac{3\,\mathrm{cm}}{1/K + 1/k_{wall}} . $$
+# with all the force of its motors. An impedance presses with a force that you can predict. Two springs are in
+# a row: the one that you command, and the wall together with the finger's rubber tip. The same force presses
+# both, and what they give way adds up to the 3 cm.
 
 # %% predict="wall_force"
 
@@ -378,6 +377,10 @@ into = lk.replay.motion_of(
     met, "Into the wall", label="impedance", ghosts={"position mode": rammed}, force=True, things=[wall]
 )
 lk.replay.show(into) if wall_force is not None else None
+
+# %% [markdown]
+# Two springs in a row that give way by $\delta$ together press with $F = \delta/(1/K + 1/k_{wall})$. While the wall
+# is much stiffer than your spring, you decide the force.
 
 # %% [markdown]
 # ## A spring
@@ -524,7 +527,8 @@ lk.plotting.show(
 #
 # Your own arm carries something, and there is a wall somewhere in front of it. (Open the arm with the name that your
 # instructor gave you, as in notebook 03; `"demo"` is a public arm to practise on.) Find out both with experiments of
-# your own; the cell below is only a beginning. Move slowly: a fast tip bounces off the wall and blurs the reading.
+# your own; the cell below is only a beginning. The torque sensors were set to zero with the load in the gripper, so
+# they feel the wall and not the load. Move slowly: a fast tip bounces off the wall and blurs the reading.
 
 # %%
 HANDLE = "demo"  # in a course: the name that your instructor gave you

@@ -6,7 +6,8 @@ PREDICTIONS = (
     Prediction(
         "wall_force",
         "The target lies 3 cm behind a wall. The position mode would press with all that its motors "
-        "have. With springs of 300 N/m at the tip, how hard does the tip press?",
+        "have. With springs of 300 N/m at the tip, and 3,333 N/m of the wall and the finger's tip "
+        "together, how hard does the tip press?",
         Number("N", 0.0, 100.0),
         truth=8.3,
     ),
@@ -38,7 +39,9 @@ PREDICTIONS = (
             "Let s1 and e1 swing slowly about the ready pose with springs at the joints "
             "(`lk.control.springs`), and average the commanded torque over whole swings.",
             "Compare the averages of s1 and e1 with J^T (0, 0, 9.81), for one kilogram, by least "
-            "squares. A second of averaging is not enough; take several swings.",
+            "squares. Take J where the arm really swings, at the mean of `log.q`: the springs give "
+            "way under the load, and with the levers of the ready pose s1 and e1 disagree. A second "
+            "of averaging is not enough; take several swings.",
         ),
     ),
     Identification(

@@ -88,10 +88,11 @@ def lifts(random: Random) -> Iterator[Call]:
 
 
 def gentle_lifts(random: Random) -> Iterator[Call]:
-    """A slower lift within the limits, helped or hindered by a hand."""
-    way, duration = random.uniform(0.3, 0.4), random.uniform(0.75, 0.85)
-    hand = random.choice((-1.0, 1.0)) * random.uniform(8.0, 12.0)
-    yield call(lift(way, duration, 400.0, hand), ROUGH_MODEL)
+    """Slower lifts within the limits, one hindered by a hand and one helped."""
+    for sign in (-1.0, 1.0):
+        way, duration = random.uniform(0.3, 0.4), random.uniform(0.75, 0.85)
+        hand = sign * random.uniform(8.0, 12.0)
+        yield call(lift(way, duration, 400.0, hand), ROUGH_MODEL)
 
 
 @cache

@@ -564,7 +564,7 @@ POWER_BALANCE = Problem(
             "a slow lift with friction, and a hand that helps",
             (call(lift(0.35, 0.8, 400.0, 10.0), ROUGH_MODEL),),
             hidden.gentle_lifts,
-            "other lifts, helped or hindered",
+            "other lifts, helped and hindered",
             weight=0.0,
         ),
         Trial(

@@ -218,6 +218,11 @@ def half_an_arctangent(s: float, start: Any, centre: Any) -> lk.Sample:
     return circle(s, [*(centre[:2] + (out if out[0] > 0.0 else -out)[:2]), start[2]], centre)
 
 
+def arccosine_of_the_start(s: float, start: Any, centre: Any) -> lk.Sample:
+    """The angle from its cosine, as if no start lay on the side of smaller y."""
+    return circle(s, [start[0], centre[1] + abs(start[1] - centre[1]), start[2]], centre)
+
+
 def still_by_s(path: Path, scaling: Scaling, t: float) -> lk.Sample:
     """The path at s(t), its derivatives still those by s."""
     return path(scaling(t)[0])

@@ -347,10 +347,14 @@ CIRCLE = Problem(
             "centres above and below",
         ),
         Trial(
-            "a start turned by 130 degrees",
+            "starts turned by 130 degrees and by -110 degrees",
             tuple(
-                call(s, np.array([0.47144, 0.25321, 0.2]), np.array([0.6, 0.1, 0.2]))
-                for s in (0.0, 0.3)
+                call(s, np.array([x, y, 0.2]), np.array([0.6, 0.1, 0.2]))
+                for s, x, y in (
+                    (0.0, 0.47144, 0.25321),
+                    (0.3, 0.47144, 0.25321),
+                    (0.3, 0.5316, -0.08794),
+                )
             ),
             hidden.circle_yaw,
             "starts all round the centre",
@@ -425,6 +429,13 @@ CIRCLE = Problem(
             "Use np.arctan2(y, x), or turn the spoke without any angle.",
             mistakes.half_an_arctangent,
             "atan2 knows the quadrant, atan does not.",
+        ),
+        Wrong(
+            "the arccosine of the start",
+            "An arccosine is never negative: a start at a smaller y than the centre's lands on the "
+            "other side. Use np.arctan2(y, x), or turn the spoke without any angle.",
+            mistakes.arccosine_of_the_start,
+            "atan2 knows the quadrant, acos does not.",
         ),
         Wrong(
             "the start's angle twice",

@@ -674,6 +674,8 @@ COMPUTED_TORQUE = Problem(
     variants=(variants.computed_by_newton_euler, variants.computed_by_bias),
 )
 
+_BY_JOINT = np.array([1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0])
+
 GAINS_FOR = Problem(
     name="gains_for",
     points=2,
@@ -691,12 +693,14 @@ GAINS_FOR = Problem(
             (call(2.0, 0.7), call(0.5, 1.5)),
             hidden.gains,
             "other numbers",
+            0.4,
         ),
         Trial(
-            "a frequency for each joint",
-            (call(np.array([1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0]), 0.7),),
+            "a frequency for each joint; a ratio for each joint too",
+            (call(_BY_JOINT, 0.7), call(_BY_JOINT, np.array([0.5, 0.7, 1.0, 1.5, 1.0, 0.7, 0.4]))),
             hidden.gains_by_joint,
-            "a ratio for each joint",
+            "other numbers for each joint",
+            0.6,
         ),
     ),
     hints=(
@@ -766,6 +770,13 @@ GAINS_FOR = Problem(
             "kp is the square of ω, not twice of it.",
             mistakes.GainsOf(lambda w, z: (2.0 * w, 2.0 * z * w)),
             "ω² is ω times ω.",
+        ),
+        Wrong(
+            "one kd for all joints: an inner product",
+            "np.dot and @ add up the products of all joints. * multiplies joint by joint, so that "
+            "each joint has its own kd.",
+            mistakes.GainsOf(lambda w, z: (w**2, 2.0 * np.dot(z, w))),
+            "Between arrays, * goes entry by entry and @ sums.",
         ),
         Wrong(
             "the damped frequency",

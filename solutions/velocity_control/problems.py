@@ -20,6 +20,8 @@ from .hidden import (
 )
 
 MOVING = 0.1 * np.arange(1, 8)
+ASKEW = READY + np.array([0.2, -0.1, 0.3, 0.2, -0.4, 0.3, 0.5])
+"""A gripper straight down has R = R^T, and hides which of them is right; here it does not."""
 COMMAND = Close(rtol=1e-6, atol=1e-8)
 
 JOINT_VELOCITY_PD = Problem(
@@ -523,9 +525,9 @@ WORKSPACE_VELOCITY_PD = Problem(
                     damping=0.003,
                 ),
                 call(
-                    state(READY),
+                    state(ASKEW),
                     pose_sample(
-                        READY, CENTIMETRES, (0.3, -0.2, 0.25), (0.1, 0.0, -0.05, 0.0, 0.2, 0.3)
+                        ASKEW, CENTIMETRES, (0.3, -0.2, 0.25), (0.1, 0.0, -0.05, 0.0, 0.2, 0.3)
                     ),
                     MODEL,
                     kp=GAINS,

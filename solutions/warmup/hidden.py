@@ -89,20 +89,23 @@ def turns_about_z(random: Random) -> Iterator[Call]:
     yield call(there, there)
 
 
-def _tilts(random: Random, axis: int) -> Iterator[Call]:
-    for angle in random.uniform(0.03, 0.3, 2) * random.choice((-1.0, 1.0), 2):
-        down = lk.se3.rotation([0.0, 0.0, random.uniform(-1.5, 1.5)]) @ DOWN
-        yield call(down, down @ lk.se3.rotation(angle * np.eye(3)[axis]))
+def _tilt(random: Random, axis: int, least: float, most: float) -> Call:
+    """A gripper that points down, tilted by so much, whatever its yaw."""
+    angle = random.uniform(least, most) * random.choice((-1.0, 1.0))
+    down = lk.se3.rotation([0.0, 0.0, random.uniform(-1.5, 1.5)]) @ DOWN
+    return call(down, down @ lk.se3.rotation(angle * np.eye(3)[axis]))
 
 
 def rolls(random: Random) -> Iterator[Call]:
-    """A gripper that points down, rolled, whatever its yaw."""
-    yield from _tilts(random, 0)
+    """A gripper that points down, rolled; at 0.1 rad a tangent is off by eight tolerances."""
+    for _ in range(2):
+        yield _tilt(random, 0, 0.1, 0.3)
 
 
 def pitches(random: Random) -> Iterator[Call]:
-    """A gripper that points down, pitched, whatever its yaw."""
-    yield from _tilts(random, 1)
+    """A gripper that points down, pitched, once beyond 90 degrees."""
+    for least, most in ((0.1, 0.3), (1.7, 2.6)):
+        yield _tilt(random, 1, least, most)
 
 
 def big_turns(random: Random) -> Iterator[Call]:

@@ -294,11 +294,14 @@ ORIENTATION_ERROR = Problem(
             "gripper down and turned about the vertical, 5 degrees of pitch",
             (call(SIDE, SIDE @ _turned(5.0, 1)),),
             hidden.pitches,
-            "pitches at other yaws",
+            "pitches at other yaws, beyond 90 degrees too",
         ),
         Trial(
-            "a big turn between tilted orientations",
-            (call(lk.se3.rotation([0.3, -1.2, 0.9]) @ _turned(40.0, 0), _turned(40.0, 0)),),
+            "big turns between tilted orientations, one of them beyond 90 degrees",
+            tuple(
+                call(lk.se3.rotation(turn) @ _turned(40.0, 0), _turned(40.0, 0))
+                for turn in ([0.3, -1.2, 0.9], [-1.5, 1.2, 1.3])
+            ),
             hidden.big_turns,
             "turns of up to 160 degrees",
         ),
@@ -373,6 +376,13 @@ ORIENTATION_ERROR = Problem(
             "not a number. Return zero where there is no turn, as lk.se3.rotation_log does.",
             mistakes.zero_by_zero,
             "Try a formula where the error is zero: there the arm should spend its life.",
+        ),
+        Wrong(
+            "the arcsine of the turn",
+            "An arcsine never exceeds 90 degrees: 133 degrees come out as 47. Read the turn with "
+            "lk.se3.rotation_log, or take the angle from sine and cosine, np.arctan2.",
+            mistakes.TurnOf(lambda angle: np.arcsin(np.sin(angle))),
+            "A sine belongs to two angles.",
         ),
         Wrong(
             "the quaternion's vector",

@@ -10,9 +10,11 @@ import pytest
 
 from labkit import LabkitError
 from labkit.course.before_handing_in import HandIn, look
+from labkit.course.forms import OWN_ARM
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
+from labkit.course.own_arm import FILE
 from labkit.course.receipt import _last_word, receipt
-from labkit.course.verdict import Outcome, Verdict
+from labkit.course.verdict import Outcome, TestResult, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
 
@@ -233,6 +235,33 @@ def with_texts_of(folder, words):
         return cells
 
     return look(edited(folder / "01_paths.ipynb", change))
+
+
+def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
+    """Only where the course gave arms out and a number was written down."""
+    folder = Path(shutil.copytree(ASSIGNMENT.parent / "05_impedance", tmp_path / "05_impedance"))
+    path = folder / "05_impedance.ipynb"
+    (folder / FILE).write_text("{}")
+    assert not [text for text in look(path).problems if "public arm" in text]
+
+    def measured(cells):
+        for cell in cells:
+            if 'check("my_wall"' in "".join(cell["source"]):
+                test = TestResult(OWN_ARM, 1.0, Outcome.NOT_TRIED)
+                cell["outputs"] = [output("my_wall", Outcome.RIGHT, tests=(test,))]
+        return cells
+
+    (problem,) = look(edited(path, measured)).problems
+    assert problem == (
+        'HANDLE is "demo", the public arm, and my_wall will be judged by an arm of your own; set '
+        "HANDLE to the name that your instructor gave you, and measure again"
+    )
+    path.write_text(path.read_text().replace('HANDLE = \\"demo\\"', 'HANDLE = \\"ada\\"'))
+    assert not look(path).problems
+    path.write_text(path.read_text().replace('HANDLE = \\"ada\\"', 'HANDLE = \\" Demo \\"'))
+    assert look(path).problems
+    (folder / FILE).unlink()
+    assert not look(path).problems
 
 
 def test_words_of_a_text_are_counted_without_the_placeholder(folder):

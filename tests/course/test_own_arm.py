@@ -1,14 +1,29 @@
 """An arm of one's own: drawn again from the secret, sealed, unlike any other, and judged."""
 
 import json
+import unicodedata
+from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from labkit.course import Found, Identification, Measured, Outcome, Telling, mark, my_arm
+import labkit as lk
+from labkit.course import (
+    Found,
+    Identification,
+    Measured,
+    Outcome,
+    Telling,
+    mark,
+    my_arm,
+    own_arm,
+)
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.identification import personal
+from labkit.course.layout import Course
 from labkit.course.messages import tell
-from labkit.course.own_arm import DEMO, FILE, Arms, draw
+from labkit.course.own_arm import APART, DEMO, FILE, RANGES, Arms, draw
 from labkit.course.reply import Here
 from labkit.errors import LabkitError
 
@@ -18,6 +33,50 @@ def test_the_secret_draws_the_same_arm_again_and_others_otherwise():
     assert draw(7, "kestrel") == draw(7, "kestrel")
     arms = {draw(secret, handle).payload for secret in range(5) for handle in "abcde"}
     assert len(arms) == 25
+
+
+ARMS = [draw(2019, f"team {k}") for k in range(200)]
+
+
+@pytest.mark.parametrize("name", RANGES)
+def test_no_arm_is_like_the_public_one(name):
+    """Of 200 arms none has a number near the public arm's, and no two have the same."""
+    public, (least, most) = getattr(draw(2019, DEMO), name), RANGES[name]
+    numbers = sorted(getattr(arm, name) for arm in ARMS)
+    assert least <= numbers[0] and numbers[-1] <= most
+    assert len(set(numbers)) == 200
+    assert min(abs(x - public) for x in numbers) >= APART[name]
+
+
+def test_who_measures_the_public_arm_is_wrong_about_any_other():
+    """Even a quarter of the tolerance beside its true number."""
+    course = Course.here(Path(__file__))
+    asked = [x for name in course.names() for x in course.predictions(name)]
+    judges = [x.judge for x in asked if isinstance(getattr(x, "judge", None), Measured)]
+    assert {judge.of for judge in judges} == {"lag", "payload", "wall"}
+    public = draw(2019, DEMO)
+    for judge in judges:
+        assert APART[judge.of] == pytest.approx(1.25 * judge.tolerance)
+        for off in (-0.24, 0.0, 0.24):
+            said = judge.expected(public) + off * judge.tolerance
+            assert judge(said, judge.expected(public)) is None
+            assert all(judge(said, judge.expected(arm)) is not None for arm in ARMS)
+
+
+def test_a_handle_opens_its_arm_in_any_spelling(tmp_path, monkeypatch):
+    """Composed or taken apart, of full width, in capitals: one arm, here and for the grader."""
+    given = Arms(7, {"jörg": "die möwen", "zoe": "zoe"})
+    (tmp_path / FILE).write_text(json.dumps(given.sealed()))
+    monkeypatch.chdir(tmp_path)
+    lag = given.arm("jörg").lag
+    for who in ("jörg", unicodedata.normalize("NFD", "jörg"), "JÖRG", " ｊörg"):
+        assert given.arm(who) == given.arm("jörg")
+        with my_arm(who) as mine:
+            assert mine._engine is not None
+    assert draw(7, unicodedata.normalize("NFD", "Die Möwen")).lag == lag
+    assert given.arm("zoe").lag != lag
+    with my_arm("DEMO") as public:
+        assert public.plant.name == "own"
 
 
 def test_what_students_get_names_no_number(tmp_path, monkeypatch):
@@ -43,6 +102,42 @@ def test_a_number_is_judged_against_ones_own_arm():
     assert mark(personal(asked, other), Here(other.payload, ())).outcome is Outcome.RIGHT
     assert mark(personal(asked, other), Here(demo.payload, ())).earned == 0.0
     assert mark(asked.public(), Here(other.payload, ())).outcome is Outcome.RIGHT
+
+
+def test_two_joints_agree_about_the_load_where_they_really_swing(monkeypatch):
+    """The springs give way under it: with the levers of the ready pose each joint finds less."""
+    heavy = replace(draw(7, "kestrel"), payload=0.8)
+    monkeypatch.setattr(own_arm, "_own", lambda handle: heavy)
+    ready, joints = lk.robot("left").ready, [1, 3]
+    way = 0.12 * (np.eye(7)[1] - np.eye(7)[3])
+
+    def swing(t):
+        w = 0.5 * np.pi
+        s, c = np.sin(w * t), np.cos(w * t)
+        return lk.Sample(ready + s * way, w * c * way, -w * w * s * way)
+
+    with my_arm("kestrel") as mine:
+        inertia = np.diag(mine.model.mass_matrix(ready))
+        law = lk.control.springs(50.0 * inertia, 14.0 * inertia)
+        log = lk.run(mine, swing, law, duration=12.0)
+        swings = log.t >= 4.0
+        held = log.command[swings].mean(axis=0)[joints]
+        for q, least, most in ((log.q[swings].mean(axis=0), 0.78, 0.82), (ready, 0.6, 0.76)):
+            one_kilogram = mine.model.tip_jacobian(q)[2, joints] * 9.81
+            assert (least < held / one_kilogram).all() and (held / one_kilogram < most).all()
+
+
+def test_an_arm_at_rest_does_not_feel_its_load(monkeypatch):
+    """Its sensors were zeroed with it, so that they feel the wall alone."""
+    heavy = replace(draw(7, "kestrel"), payload=0.8)
+    monkeypatch.setattr(own_arm, "_own", lambda handle: heavy)
+    with my_arm("kestrel") as mine:
+        inertia = np.diag(mine.model.mass_matrix(mine.robot.ready))
+        law = lk.control.springs(50.0 * inertia, 14.0 * inertia)
+        log = lk.run(mine, lk.Hold(mine.robot.ready, 3.0), law)
+        felt = lk.metrics.felt_wrench(log)[log.t > 1.0].mean(axis=0)
+        assert abs(felt[2]) < 0.1 * 0.8 * 9.81
+        assert np.abs(mine.truth().tau_ext).max() < 0.05
 
 
 def test_a_bug_is_found_by_its_cause_and_its_time():

@@ -1,4 +1,4 @@
-"""Wrong answers that once earned full marks, or were called by another one's name.
+"""Wrong answers that once earned full marks, were called right in public or by another one's name.
 
 They were written by somebody who knew the students' notebooks alone, and stand here as they were.
 """
@@ -32,6 +32,20 @@ def zero_by_zero(R_wd, R_wt):
         a = np.arccos((np.trace(E) - 1) / 2)
         v = np.array([E[2, 1] - E[1, 2], E[0, 2] - E[2, 0], E[1, 0] - E[0, 1]])
         return a / (2 * np.sin(a)) * v
+
+
+def turn_by_arcsine(R_wd, R_wt):
+    v = lk.se3.vee(R_wd @ R_wt.T)
+    n = np.linalg.norm(v)
+    return v / n * np.arcsin(min(n, 1)) if n > 1e-12 else v
+
+
+def circle_by_arccosine(s, start, centre):
+    out, w = np.subtract(start, centre)[:2], 2 * np.pi
+    r = np.hypot(*out)
+    a = np.arccos(out[0] / r) + w * s
+    spoke, on = (r * np.array([*x, 0]) for x in ((np.cos(a), np.sin(a)), (-np.sin(a), np.cos(a))))
+    return lk.Sample(np.array([*centre[:2], start[2]]) + spoke, w * on, -w * w * spoke)
 
 
 def too_high_a_triangle(t, distance, v_max, a_max):
@@ -74,6 +88,14 @@ def by_arcsine(state, target, model, *, kp, damping):
     return lk.JointVelocity(damped @ (target.twist + kp * e))
 
 
+def turn_with_the_wrong_transpose(state, target, model, *, kp, damping):
+    T, J = model.pose(state.q), model.body_jacobian(state.q)
+    R, e = T[:3, :3], lk.se3.pose_error(target.pose, T)
+    V = target.twist + kp * e
+    V_b = np.concatenate([R.T @ V[:3], R @ V[3:]])
+    return lk.JointVelocity(J.T @ np.linalg.solve(J @ J.T + damping * np.eye(6), V_b))
+
+
 def springs(zeta):
     def choose_gains(model):
         w, m = 2 * np.pi * 1.9, np.diag(model.mass_matrix(model.robot.ready))
@@ -89,6 +111,16 @@ def from_the_notebook(model):
 def from_the_notebooks_other_cell(model):
     m = np.diag(model.mass_matrix(model.robot.ready))
     return 50.0 * m, 14.0 * m
+
+
+def gains_by_dot(frequency, damping_ratio):
+    w = 2 * np.pi * frequency
+    return w**2, 2 * np.dot(w, damping_ratio)
+
+
+def gains_of_one_ratio(frequency, damping_ratio):
+    w = 2 * np.pi * frequency
+    return w**2, 2 * float(damping_ratio) * w
 
 
 def spring_from_zero(state, target, force, *, m, b, k):
@@ -138,6 +170,16 @@ def by_interval(a, b, t=None):
     return "undecided" if abs(d.mean()) <= half else "holds" if d.mean() > 0 else "does not hold"
 
 
+def sorted_pairs(a, b):
+    d = np.subtract(sorted(a), sorted(b))
+    return d.mean(), stats.t.ppf(0.975, len(d) - 1) * stats.sem(d)
+
+
+def undecided_above_zero_only(a, b):
+    verdict = by_interval(a, b)
+    return "does not hold" if np.mean(a) < np.mean(b) else verdict
+
+
 def by_ten_percent(a, b):
     if max(a.mean() / b.mean(), b.mean() / a.mean()) <= 1.1:
         return "undecided"
@@ -153,19 +195,25 @@ def lowest(seeds, grid, share=1.0):
 
 
 GRID = (14.0, 22.0, 34.0, 50.0)
-FINE = tuple(np.geomspace(10.0, 90.0, 18))
+ONLY_ON_THE_LINE = lowest((0,), np.geomspace(10.0, 90.0, 18))
+"""Its gains hold on the line, and with 1.6 times Kp: that they do not elsewhere is the lesson."""
 REJECTED = [
     ("00 joint_error", wrapped, "the error wrapped to half a turn"),
     ("00 orientation_error", zero_by_zero, "0/0 where there is no turn"),
+    ("00 orientation_error", turn_by_arcsine, "the arcsine of the turn"),
+    ("01 circle", circle_by_arccosine, "the arccosine of the start"),
     ("01 trapezoid", too_high_a_triangle, "a triangle that is too high"),
     ("02 coriolis", over_h, "twice the right matrix"),
     ("02 power_balance", lambda *x: left_over(*x, joints=6), "the power of only some joints"),
     ("02 power_balance", lambda *x: abs(left_over(*x)), "the absolute value"),
     ("03 workspace_velocity_pd", by_arcsine, "the arcsine of the turn"),
+    ("03 workspace_velocity_pd", turn_with_the_wrong_transpose, None),
     ("04 choose_gains", springs(0.1), "too little damping"),
     ("04 choose_gains", springs(0.0), "no damping"),
     ("04 choose_gains", from_the_notebook, None),
     ("04 choose_gains", from_the_notebooks_other_cell, "gains tuned on the slow line only"),
+    ("04 gains_for", gains_by_dot, "one kd for all joints: an inner product"),
+    ("04 gains_for", gains_of_one_ratio, None),
     ("05 msd", spring_from_zero, "a spring tied to the origin"),
     (
         "05 apparent_stiffness",
@@ -178,6 +226,8 @@ REJECTED = [
     ("07 open_loop", plain_function, None),
     ("07 open_loop", loop(1), "a delay of first order"),
     ("07 open_loop", loop(4, unit=1e3), "almost no delay"),
+    ("07 paired_difference", sorted_pairs, "the rows sorted first"),
+    ("07 verdicts", each(undecided_above_zero_only), "below zero without an interval"),
     (
         "07 verdicts",
         each(lambda a, b: by_interval(a, b, 2.776)),
@@ -194,7 +244,7 @@ REJECTED = [
         ("07 choose_gains", lowest(seeds, GRID), "the lowest error of all seeds, and no step back")
         for seeds in ((0,), (0, 1), range(5))
     ),
-    ("07 choose_gains", lowest((0,), FINE), None),
+    ("07 choose_gains", ONLY_ON_THE_LINE, None),
     ("07 choose_gains", lowest(range(5), GRID, 0.9), "only a tenth below the lowest point"),
     ("07 choose_gains", lambda runner: (20.0, 1.0), "gains chosen without a run"),
     ("07 choose_gains", lambda runner: (40.0, 0.6), None),
@@ -207,8 +257,9 @@ REJECTED = [
     ids=[f"{question}: {name or f.__name__}" for question, f, name in REJECTED],
 )
 def test_it_is_rejected_and_called_by_its_own_name(question, answer, name):
-    """It earns less than half, or its largest part; no other mistake's sentence is given for it."""
+    """The check rejects it too; it earns less than half, or its largest part; its name is right."""
     asked = PROBLEMS[question].question(2019)
+    assert mark(asked.public(), answer).right == (answer is ONLY_ON_THE_LINE)
     verdict = mark(asked, answer)
     assert verdict.earned < rejected_below(asked), verdict.tests
     assert (verdict.mistake.name if verdict.mistake else None) == name

@@ -51,7 +51,9 @@ def report_card(
     """Measure how well the checks tell right from wrong.
 
     The checks are tried on every known mistake, and on right answers written in other forms, with
-    several draws of hidden cases. Without a NAME all assignments are tried.
+    several draws of hidden cases. Each NAME is an assignment, or one question of it, such as
+    01_paths/circle. Without a NAME all assignments are tried. The exit code is 1 where a check is
+    wrong, or an answer comes nearer to its tolerance than three sigma.
     """
     from ...course.report_card import functions_from, make, write
 

@@ -15,6 +15,7 @@ from typing import Any, cast
 from ...course.bundle import Bundle
 from ...course.marking import Tried, all_alike, mark, not_counted, try_public
 from ...course.messages import uses
+from ...course.own_arm import opens_the_public_arm
 from ...course.question import Question
 from ...course.receipt import receipt
 from ...course.serialize import read_record, record_data
@@ -32,6 +33,11 @@ from .results import Answer, FailedCell, Hashes, OwnCell, Result, digest, engine
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "
     "until the new notebook is handed in, into which `labkit merge` brings the work done so far"
+)
+
+PUBLIC_ARM = (
+    'HANDLE is "demo": what was measured on this public arm is not true of the arm that the course '
+    "gave this student"
 )
 
 _THEIRS = {
@@ -72,11 +78,13 @@ def grade(
         The result, whatever the notebook does.
     """
     began = time.perf_counter()
+    given = bundle.arms.arm(student) is not None
     bundle = bundle.of_student(student)
     cells = parse(data, sandbox, limits)
     if isinstance(cells, str):
         return rejection(cells, student, bundle, sandbox.level, data)
     todo = plan(cells, bundle.data["cells"])
+    public_arm = PUBLIC_ARM if given and opens_the_public_arm(x["source"] for x in cells) else ""
     absent = bundle.added - todo.places.keys()
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
@@ -104,7 +112,7 @@ def grade(
             )
             for question in bundle.questions
         ),
-        notes=(*((note,) if note else ()), *todo.notes.get("", ())),
+        notes=(*filter(None, (note, public_arm)), *todo.notes.get("", ())),
         cells=cast(tuple[FailedCell, ...], failed),
         own=cast(tuple[OwnCell, ...], todo.own),
         written=todo.written,
