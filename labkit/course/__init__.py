@@ -17,7 +17,7 @@ from .own_arm import my_arm, my_bug
 from .predictions import Prediction
 from .question import Call, Choice, Loop, Mistake, Question, Raised, Test, Tuned
 from .receipt import hand_in
-from .reply import Failed
+from .reply import NoAnswer
 from .reveal import predict
 from .serialize import question_data, read_question
 from .student import check, hint, use
@@ -31,13 +31,13 @@ __all__ = [
     "Choose",
     "Close",
     "Curve",
-    "Failed",
     "Found",
     "Gains",
     "Identification",
     "Loop",
     "Measured",
     "Mistake",
+    "NoAnswer",
     "Number",
     "Outcome",
     "Prediction",

@@ -18,7 +18,7 @@ from .advice import told
 from .equivalence import Judge
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
-from .reply import Failed
+from .reply import NoAnswer
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import Withheld
 
@@ -39,7 +39,7 @@ class Ran(NamedTuple):
     complete: bool
 
 
-class Evidence(NamedTuple):
+class Mismatch(NamedTuple):
     """What was expected and what came, on one call.
 
     Attributes:
@@ -79,7 +79,7 @@ class Tried:
                 if isinstance(case, Loop | Tuned) and isinstance(log, Log):
                     yield Ran(test.name, case, log, complete=log is answer)
 
-    def evidence(self, question: Question) -> Evidence | None:
+    def evidence(self, question: Question) -> Mismatch | None:
         """The first public call whose answer differs, where both are numbers of one form."""
         for call in question.calls:
             answer: Any = self.answers.get(call)
@@ -89,7 +89,7 @@ class Tried:
                 continue
             same_form = expected.shape == given.shape and np.isfinite(given).all()
             if same_form and question.judge(answer, call.expected) is not None:
-                return Evidence(call.shown(question.name), expected, given)
+                return Mismatch(call.shown(question.name), expected, given)
         return None
 
 
@@ -99,7 +99,7 @@ def mark(question: Question, function: Callable[..., Any], tried: Tried | None =
     Args:
         question: With its hidden cases, or without.
         function: The student's, or one that asks the student's in another process; that one raises
-            `Failed`.
+            `NoAnswer`.
         tried: What came of the public cases, if they were tried already.
 
     Returns:
@@ -213,8 +213,8 @@ def _answer(case: Case, function: Callable[..., Any]) -> Any:
 def _failure(error: BaseException) -> _Failure:
     """What to say of an exception that came out of the student's code, or of the loop around it."""
     cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
-    kind = cause.kind if isinstance(cause, Failed) else type(cause).__name__
-    known = isinstance(error, Failed) or (isinstance(error, LabkitError) and error.__cause__)
+    kind = cause.kind if isinstance(cause, NoAnswer) else type(cause).__name__
+    known = isinstance(error, NoAnswer) or (isinstance(error, LabkitError) and error.__cause__)
     sentence = str(error) if known else told(error)
     log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
     return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")

@@ -30,7 +30,7 @@ class TimeUp(BaseException):
     """A cell or a call took too long."""
 
 
-class Failed(LabkitError):
+class NoAnswer(LabkitError):
     """A student's function did not answer.
 
     Attributes:
@@ -80,20 +80,20 @@ def answer(data: Mapping[str, Any], withheld: Sequence[str]) -> Any:
         withheld: The tools that the question withholds.
 
     Raises:
-        Failed: There is none.
+        NoAnswer: There is none.
         Withheld: The function used a tool that the question withholds.
     """
     if "is" in data:
         try:
             return decode_answer(data["is"])
         except TypeMismatch as error:
-            raise Failed("TypeMismatch", f"TypeMismatch: {error}") from None
+            raise NoAnswer("TypeMismatch", f"TypeMismatch: {error}") from None
     if data.get("withheld") in withheld:
         raise Withheld(data["withheld"])
     raised, says = str(data.get("raised", "Exception")), str(data.get("says", ""))
     if raised == ArgumentChanged.__name__:
-        raise Failed(raised, says)
-    raise Failed(raised, f"{raised}: {says}" if says else raised)
+        raise NoAnswer(raised, says)
+    raise NoAnswer(raised, f"{raised}: {says}" if says else raised)
 
 
 def kind(error: BaseException) -> str:
@@ -125,13 +125,13 @@ class Here:
         self, function: Callable[..., Any], withheld: Sequence[str], seconds: float = 10.0
     ) -> None:
         self.function, self.withheld, self.seconds = function, withheld, seconds
-        self.stopped: Failed | None = None
+        self.stopped: NoAnswer | None = None
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         """The answer to one call.
 
         Raises:
-            Failed: There is none.
+            NoAnswer: There is none.
             Withheld: A withheld tool was used.
         """
         if self.stopped is not None:
@@ -141,7 +141,7 @@ class Here:
                 data = reply(self.function, args, kwargs)
         except TimeUp:
             says = f"it did not come back within {self.seconds:g} s; does every loop in it end?"
-            self.stopped = Failed("TimeoutError", f"TimeoutError: {says}")
+            self.stopped = NoAnswer("TimeoutError", f"TimeoutError: {says}")
             raise self.stopped from None
         return answer(data, self.withheld)
 

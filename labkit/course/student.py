@@ -21,7 +21,7 @@ from ..formats import check_stamp
 from .advice import line_of
 from .calling import heard
 from .card import card
-from .marking import Evidence, mark, not_counted, try_public
+from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, message, waits, wrapped
 from .notebook import verdict_metadata
 from .observed import explained
@@ -89,7 +89,7 @@ class Desk:
 
     def verdict(
         self, name: str, function: Callable[..., Any]
-    ) -> tuple[Verdict, str, Evidence | None]:
+    ) -> tuple[Verdict, str, Mismatch | None]:
         """Try a function; also what it printed meanwhile, and the numbers that differ.
 
         Raises:
@@ -279,7 +279,7 @@ def use(
     return given
 
 
-def _say(says: Message, verdict: Verdict, found: Evidence | None) -> None:
+def _say(says: Message, verdict: Verdict, found: Mismatch | None) -> None:
     """Print a message; in a notebook it is a card, which also keeps the verdict as data."""
     if shell() is None:
         print(says)
@@ -291,7 +291,7 @@ def _say(says: Message, verdict: Verdict, found: Evidence | None) -> None:
     display(shown, metadata=verdict_metadata(verdict), raw=True)
 
 
-def _picture(found: Evidence) -> tuple[bytes, str]:
+def _picture(found: Mismatch) -> tuple[bytes, str]:
     """A small figure of the answers that gave a known mistake away, and its words."""
     from .. import plotting
 

@@ -10,8 +10,8 @@ from questions import CALLS, DOUBLE, HIDDEN, double, square
 import labkit as lk
 from labkit.course import (
     Call,
-    Failed,
     Loop,
+    NoAnswer,
     Outcome,
     Raised,
     Test,
@@ -104,10 +104,10 @@ def test_a_question_is_data():
 
 
 def test_answers_from_another_process_may_fail():
-    """`Failed` from a process that died counts as an error, with its sentence."""
+    """`NoAnswer` from a process that died counts as an error, with its sentence."""
 
     def ask(x):
-        raise Failed("MemoryError", "it needed more than 1 GB")
+        raise NoAnswer("MemoryError", "it needed more than 1 GB")
 
     verdict = mark(DOUBLE, ask)
     assert verdict.outcome is Outcome.ERROR

@@ -13,7 +13,7 @@ from labkit.course import Call, Close, Outcome, Question, Test
 from labkit.course.calling import ArgumentChanged, call
 from labkit.course.marking import mark
 from labkit.course.messages import tell, why
-from labkit.course.reply import Failed, Here, answer, reply
+from labkit.course.reply import Here, NoAnswer, answer, reply
 from labkit.course.withheld import Withheld
 from labkit.errors import LabkitError
 
@@ -197,7 +197,7 @@ def test_no_answer_is_too_odd(make):
     [
         Mute(), Nameless(), Base(), Base("\ud800"), SystemExit("x" * 10_000_000), GeneratorExit(),
         StopIteration(3), ValueError(Raises()), RecursionError(), MemoryError(), LabkitError("odd"),
-        Failed("TypeError", "forged"), ExceptionGroup("many", [ValueError(1), Mute()]),
+        NoAnswer("TypeError", "forged"), ExceptionGroup("many", [ValueError(1), Mute()]),
     ],
 )  # fmt: skip
 def test_no_exception_is_too_odd(error):
@@ -219,7 +219,7 @@ def test_only_a_tool_of_the_question_is_withheld():
     with pytest.raises(Withheld):
         answer({"withheld": "labkit.Circle"}, ("labkit.Circle",))
     for forged in ("labkit.Line", ["labkit.Circle"], None, 3):
-        with pytest.raises(Failed):
+        with pytest.raises(NoAnswer):
             answer({"withheld": forged}, ("labkit.Circle",))
 
 

@@ -14,7 +14,7 @@ from labkit.course.bundle import Bundle
 from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
 from labkit.course.layout import Course
 from labkit.course.messages import why
-from labkit.course.reply import Failed
+from labkit.course.reply import NoAnswer
 from labkit.errors import OutOfRange
 from labkit.grader.grading import grade as checker
 from labkit.grader.grading.grade import grade
@@ -304,7 +304,7 @@ def test_what_an_exception_says_is_one_clean_line_before_there_is_a_result(bundl
     with closing(Session(sandbox, [Step(0, fails), answers], QUICK)) as session:
         session.start()
         (cell,) = session.failed()
-        with pytest.raises(Failed) as failed:
+        with pytest.raises(NoAnswer) as failed:
             RemoteFunction(question, session)()
     line = "a [1/1] zoe: 0 of 20 [2J\ufffd"
     assert cell["error"].startswith(line) and "\n" not in cell["error"]

@@ -22,7 +22,7 @@ from ..grading.grade import grade
 from ..grading.plan import imports
 from ..grading.results import Result
 from ..grading.worker import in_sandbox
-from ..marks.mark import Line, Mark
+from ..marks.mark import Mark, MarkLine
 from ..marks.table import marks_of
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
@@ -46,7 +46,7 @@ class Explanation:
     """
 
     mark: Mark
-    line: Line
+    line: MarkLine
     told: Verdict
     found: Verdict
     source: str
@@ -109,7 +109,7 @@ def explain(
     file = course.build / "explain" / f"{student}-{question}.html"
     lines = tuple(line for line in mark.lines if line.name == question)
     notes = (*result.notes, _ALONE)
-    line = lines[0] if lines else Line(question, told.verdict.points, told.verdict.earned)
+    line = lines[0] if lines else MarkLine(question, told.verdict.points, told.verdict.earned)
     shown = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
     write(file, page(replace(result, notes=notes), shown))
     return Explanation(mark, line, told.verdict, answer.verdict, told.source, file)

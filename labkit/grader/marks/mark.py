@@ -12,7 +12,7 @@ from ..submission import is_name
 
 
 @dataclass(frozen=True)
-class Line:
+class MarkLine:
     """What one question brings, and where that comes from.
 
     Attributes:
@@ -85,7 +85,7 @@ class Mark:
     lms: str = ""
     when: str = ""
     due: str = ""
-    lines: tuple[Line, ...] = ()
+    lines: tuple[MarkLine, ...] = ()
     raw: float | None = None
     penalty: float = 0.0
     points: float = 0.0

@@ -23,7 +23,7 @@ from ..students.identity import lms_users
 from ..students.roster import read_roster
 from ..submission import plain_name, students
 from ..whys import settle_whys
-from .mark import Line, Mark
+from .mark import Mark, MarkLine
 from .team_reports import for_teams
 
 
@@ -69,7 +69,7 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
 def mark_of(result: Result) -> Mark:
     """What a result is worth, where no gradebook has been asked."""
     verdicts = [question.verdict for question in result.questions]
-    lines = tuple(Line(v.name, v.points, v.earned) for v in verdicts)
+    lines = tuple(MarkLine(v.name, v.points, v.earned) for v in verdicts)
     return Mark(result.student, lines=lines, raw=result.score, points=result.points, result=result)
 
 
@@ -117,13 +117,13 @@ def _marked(row: Mark, submission: Any, one: Result | Failed | None, assignment:
     return replace(row, raw=float(submission.score), penalty=penalty)
 
 
-def _lines(submission: Any) -> Iterator[Line]:
+def _lines(submission: Any) -> Iterator[MarkLine]:
     for notebook in submission.notebooks:
         said = {c.name: c.manual_comment for c in notebook.comments}
         order = {cell.name: k for k, cell in enumerate(notebook.notebook.source_cells)}
         for grade in sorted(notebook.grades, key=lambda g: order.get(g.name, len(order))):
             name = question_of(grade.name)
-            yield Line(
+            yield MarkLine(
                 name,
                 float(grade.max_score),
                 grade.auto_score,
@@ -134,7 +134,7 @@ def _lines(submission: Any) -> Iterator[Line]:
             )
 
 
-def _differs(assignment: str, row: Mark, lines: tuple[Line, ...]) -> str:
+def _differs(assignment: str, row: Mark, lines: tuple[MarkLine, ...]) -> str:
     """Where result and gradebook do not say the same, and what to do; empty if they do."""
     if row.result is None:
         return ""

@@ -15,7 +15,7 @@ from typing import Any
 
 from ... import errors
 from ...course.question import Question
-from ...course.reply import Failed, answer
+from ...course.reply import NoAnswer, answer
 from ...course.serialize import encode
 from .clean import clean_line
 from .launch import Sandbox, SandboxProcess
@@ -248,11 +248,11 @@ class RemoteFunction:
         """The answer to one call.
 
         Raises:
-            Failed: There is none.
+            NoAnswer: There is none.
             Withheld: The function used a tool that the question withholds.
         """
         if self.lost >= MAX_LOST or self.session.over or self.left <= 0.0:
-            raise Failed("TimeoutError", "TimeoutError: too much time was spent already")
+            raise NoAnswer("TimeoutError", "TimeoutError: too much time was spent already")
         try:
             if self.session.open(self.question):
                 self._sent = {}
@@ -266,7 +266,7 @@ class RemoteFunction:
         except Disconnected:
             failed = "SystemExit", "SystemExit: it ended its own process"
         self.lost += 1
-        raise Failed(*failed)
+        raise NoAnswer(*failed)
 
     def _unless_sent(self, kwargs: Mapping[str, Any]) -> dict[str, Any] | None:
         """Keyword arguments as data; None where they are those of the call before.

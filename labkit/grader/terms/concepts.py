@@ -63,7 +63,7 @@ class Option:
 
 
 @dataclass(frozen=True)
-class Asked:
+class FormItem:
     """One item as it is asked in a form."""
 
     number: int
@@ -99,7 +99,7 @@ def items(course: Course) -> tuple[Item, ...]:
     return found
 
 
-def asked(course: Course, form: Form) -> tuple[Asked, ...]:
+def asked(course: Course, form: Form) -> tuple[FormItem, ...]:
     """One form of the test; its options have the same order each time."""
     known = {
         f"{problem.name}: {wrong.name}": wrong.says
@@ -108,7 +108,9 @@ def asked(course: Course, form: Form) -> tuple[Asked, ...]:
         for wrong in problem.wrong
     }
     return tuple(
-        Asked(number, item.name, item.outcome, wording.asks, tuple(_options(wording, item, known)))
+        FormItem(
+            number, item.name, item.outcome, wording.asks, tuple(_options(wording, item, known))
+        )
         for number, item in enumerate(items(course), start=1)
         for wording in [item.a if form == "a" else item.b]
     )
