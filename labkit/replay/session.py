@@ -48,7 +48,7 @@ STEP = 0.05
 
 _OVER = 10**9  # a tick later than the last of any run
 
-_LIMIT = "a run is at most {:g} s long: a new one began at t = {:.0f} s, and only it can be kept now"
+_LIMIT = "a run is at most {:g} s long: a new one, which can be kept, began at t = {:.0f} s"
 
 
 class Session(Simulated):

@@ -282,7 +282,8 @@ def test_force_and_sentence_are_shown_and_said(page, data):
     told = frame(data, state="running", force=[0, 10, 0], at=tip, link=7, error=0.0333, t=1.0)
     page.evaluate("(f) => tell(f)", told)
     page.locator(".lk-tag", has_text="10.0 N").wait_for()
-    assert "33.3 mm from the target · your force 10.0 N at the tip" in page.inner_text(".lk-readout")
+    pulled = "33.3 mm from the target · your force 10.0 N at the tip"
+    assert pulled in page.inner_text(".lk-readout")
     page.evaluate("(f) => tell(f)", told | {"link": 3, "kept": [12.5], "t": 1.05})
     assert "your force 10.0 N at the elbow (e1) · 1 kept" in page.inner_text(".lk-readout")
     assert page.inner_text(".lk-say") == "Kept as view.log: 12.5 s, since the last change."
