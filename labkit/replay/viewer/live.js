@@ -10,7 +10,7 @@ const BEAT = 60; // ms between two messages while something is held
 const SLOW = 100; // ms without a turn for the timers, from which on the kernel is told to be patient
 const AXES = [["+x", [1, 0, 0]], ["−x", [-1, 0, 0]], ["+y", [0, 1, 0]], ["−y", [0, -1, 0]], ["+z", [0, 0, 1]], ["−z", [0, 0, -1]]];
 const STALE = 400; // ms without a force in a hand that holds, from which on the page says why
-const TOLD = 5; // s of the arm's time for which the page says that a run was kept
+const TOLD = 3; // s of the arm's time for which the page says that a run was kept
 const SHOWN = 10; // seconds of the curves
 
 export class LiveArm {
@@ -184,6 +184,7 @@ export class LiveArm {
       this.kept = { t: frame.t, words: `Kept as view.log: ${frame.kept.at(-1)} s, since the last change.` };
       this.speak(this.kept.words, 0);
     }
+    if (before !== frame.state && frame.state === "running") this.kept = null;
     const kept = frame.t < this.kept?.t + TOLD ? this.kept.words : "";
     if (before !== frame.state && ["stopped", "closed"].includes(frame.state)) this.release();
     if (frame.state === "running" && performance.now() - (this.here ?? -1e9) > 1e4) { // somebody looks on

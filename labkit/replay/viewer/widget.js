@@ -25,7 +25,7 @@ async function render({ model, el }) {
   el.append(alt, host);
   host.tabIndex = -1; // a click beside a button leaves the keys here too
   host.style.outline = "none";
-  el.addEventListener("keydown", (event) => { // d d would delete the cell
+  el.addEventListener("keydown", (event) => { // d d would delete the cell; Ctrl+S saves
     if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "s") event.stopPropagation();
   });
   const { mount } = await viewer(model);
