@@ -106,5 +106,9 @@ class ArmLost(LabkitError, RuntimeError):
     log: object = None
 
 
+class NothingKept(LabkitError, LookupError):
+    """No run of a live arm was kept."""
+
+
 class Closed(LabkitError, RuntimeError):
     """The simulated world was closed and can no longer be used."""

@@ -74,9 +74,10 @@ class Hand:
 
     def seen(self) -> dict[str, Any]:
         """What it does, in plain numbers for who draws it."""
-        if self.at is None:
-            return {"at": None, "force": None}
-        return {"at": self.at.round(4).tolist(), "force": self.force.round(3).tolist()}
+        if self.at is None or self._point is None:
+            return {"at": None, "force": None, "link": None}
+        at, force = self.at.round(4).tolist(), self.force.round(3).tolist()
+        return {"at": at, "force": force, "link": self._point[0]}
 
     def act(self) -> None:
         """Pull during the next physics step."""

@@ -27,8 +27,12 @@ from .pull import Pull
 from .surroundings import Surroundings
 from .watch import PATIENCE, Watch, sentence
 
-FRESH = 0.2
-"""A hand of which nothing was heard for this long, in [s], lets go."""
+FRESH, SLOW_PAGE = 0.2, 1.0
+"""A pointer of which nothing was heard for this long, in [s], lets go; where a page says that it is
+slow, after three times its slowest turn of late, but at most after the second of these."""
+
+STEADY = 5.0
+"""A push by a button goes on for this long, in [s], after the last word of it."""
 
 LONGEST = 120.0
 """A run is at most this long, in [s]; then the next begins where it ended."""
@@ -43,6 +47,8 @@ STEP = 0.05
 """What the button "Step" advances, in [s]."""
 
 _OVER = 10**9  # a tick later than the last of any run
+
+_LIMIT = "a run is at most {:g} s long: a new one, which can be kept, began at t = {:.0f} s"
 
 
 class Session(Simulated):
@@ -70,8 +76,9 @@ class Session(Simulated):
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self.logs: list[Log] = []
         self.state, self.note = "ready", ""
-        self._keep = self._over = self._again = False
-        self._steps_left, self._heard, self._held = 0, 0.0, 0.0
+        self._within = self._keep = self._over = self._again = False  # of a run
+        self._steps_left, self._heard, self._held, self._patience = 0, 0.0, 0.0, FRESH
+        self._limit = ""  # what is said of a run that reached the limit
         self._move = self._answered = 0  # the hand's moves, as the page counts them
         self._changes: list[Callable[[], Any]] = []
         self._watch = Watch(self.period, lambda note: show({"kind": "note", "note": note}))
@@ -81,12 +88,20 @@ class Session(Simulated):
 
     def tell(self, message: dict[str, Any]) -> None:
         """Take a message from the page; the thread reads it before its next tick."""
+        if self.state == "closed" and self._thread.is_alive():
+            self._thread.join(2 * PATIENCE)  # it is on its way out, and reads no more
         self._heard = time.monotonic()
         self._inbox.put({**message, "heard": self._heard})
-        if message["kind"] in ("go", "step") and not self._thread.is_alive():
+        if self._thread.is_alive():
+            return
+        if message["kind"] in ("go", "step"):
             self._thread = threading.Thread(target=self._main, name="labkit live", daemon=True)
             self._thread.start()
             self._watch.over(self._thread)
+        else:
+            self._obey()
+            self._change()
+            self._picture()
 
     def close(self) -> None:
         """End it; the arm is at rest and free for other cells."""
@@ -108,13 +123,12 @@ class Session(Simulated):
 
     def _one_run(self) -> None:
         """From a start to whatever ends it: a dial, another law, "keep", an error."""
-        for change in self._changes:
-            change()
-        self._changes.clear()
+        self._change()
         self._obey(wait=self.state != "running")
         if self._changes or self.state != "running":
             return
-        self._over = self._again = False
+        self._over = self._again = self._keep = False
+        self._within = True
         self.plant, self._began = self.arm.plant, time.monotonic()
         try:
             log = loop(self, self.around.target, self._law, LONGEST)
@@ -122,10 +136,20 @@ class Session(Simulated):
             if self.state != "closed":
                 self._rest(error)
             return
+        finally:
+            self._within = False
+        self._limit = "" if self._over else _LIMIT.format(LONGEST, self.arm.world.t)
         self.around.go_on(0.0 if self._again else float(log.t[-1]))
         if self._keep:
-            self._keep = False
             self.logs.append(log)
+            self._picture()
+
+    def _change(self) -> None:
+        """Turn what is to be turned between two runs."""
+        if self._changes:
+            for change in self._changes:
+                change()
+            self._changes.clear()
             self._picture()
 
     def _rest(self, error: BaseException) -> None:
@@ -153,7 +177,7 @@ class Session(Simulated):
         """Take the physics of a tick, read what came, and wait for the wall's clock."""
         self._watch.ends()
         self._watch.check_pace()
-        if time.monotonic() - self._held > FRESH:
+        if time.monotonic() - self._held > self._patience:
             self._hand.let_go()
         self.around.approach(self.period)
         k, t, cut = super().advance(k)
@@ -191,7 +215,7 @@ class Session(Simulated):
                 wait = False
 
     def _on_go(self, message: dict[str, Any]) -> None:
-        self.state, self.note = "running", ""
+        self.state, self.note, self._limit, self._steps_left = "running", "", "", 0
         self._real = deque([(time.monotonic(), self.arm.world.t)], maxlen=30)
 
     def _on_pause(self, message: dict[str, Any]) -> None:
@@ -210,13 +234,19 @@ class Session(Simulated):
         self._picture()
 
     def _on_keep(self, message: dict[str, Any]) -> None:
-        self._keep = self._over = self.state in ("running", "paused")
+        if self._within:
+            self._keep = self._over = True
+        else:
+            self.note = self.note or "there is no run to keep: press Start or Step first"
+            self._picture()
 
     def _on_close(self, message: dict[str, Any]) -> None:
+        self._hand.let_go()
         self.state, self.note = "closed", "ended: other cells can use the arm; Start begins again"
 
     def _on_hand(self, message: dict[str, Any]) -> None:
-        self._held = message["heard"]
+        slow = min(SLOW_PAGE, max(FRESH, 3.0 * message.get("every", 0.0)))
+        self._held, self._patience = message["heard"], STEADY if "force" in message else slow
         self._move = message.get("move", self._move)
         point = message["link"], message["local"]
         if "force" in message:
@@ -251,7 +281,7 @@ class Session(Simulated):
     def _picture(self) -> None:
         if self.state == "running":
             said = self._pull.look(self._law.asked, self.around.wanted(), self._hand.at is None)
-            self.note = f"{self._law.name} {said}" if said else ""
+            self.note = f"{self._law.name} {said}" if said else self._limit
         self._show(self.numbers())
 
     def numbers(self) -> dict[str, Any]:
@@ -263,7 +293,7 @@ class Session(Simulated):
             "note": self.note,
             "law": self._law.name,
             "pace": round((y - x) / (b - a), 3) if b > a else None,
-            "kept": len(self.logs),
+            "kept": [round(float(log.t[-1]), 1) for log in self.logs],
             "move": self._move,
             **self.around.seen(),
             **self._hand.seen(),

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..arm import Arm
-from ..errors import TypeMismatch
+from ..errors import NothingKept, TypeMismatch
 from ..log import Log
 from ..robot import SIDES
 from ..shapes import shown
@@ -50,7 +50,8 @@ def live(
 
     Returns:
         A view to put last in a cell; ``view.log`` is the run that was kept last, ``view.logs`` are
-        all, ``view.close()`` frees the arm.
+        all, ``view.close()`` frees the arm.  A run begins with Start, Reset, and each turn of a
+        dial or choice of a controller, and anew after 120 s.
 
     Raises:
         TypeMismatch: The arm is not simulated, a controller or the target is not a function, or a
@@ -113,9 +114,15 @@ def _widget_class() -> type[Any]:
             return self.words
 
         @property
-        def log(self) -> Log | None:
-            """The run that was kept last."""
-            return self.session.logs[-1] if self.session.logs else None
+        def log(self) -> Log:
+            """The run that was kept last.
+
+            Raises:
+                NothingKept: None was.
+            """
+            if not self.session.logs:
+                raise NothingKept("no run was kept: press Start, then Keep this run in the view")
+            return self.session.logs[-1]
 
         @property
         def logs(self) -> tuple[Log, ...]:

@@ -148,7 +148,7 @@ def with_gains(law, plant, kp, kd, arm_compensates):
     def controller(state, target):
         return law(state, target, known, kp=kp, kd=kd, arm_compensates=arm_compensates)
 
-    controller.__name__ = law.__name__
+    controller.__name__ = "a stand-in, position mode" if law is position_mode else law.__name__
     return controller
 
 
@@ -191,7 +191,7 @@ else:
 right, *others = logs.items()
 carried = lk.replay.motion_of(
     right[1],
-    "Who carries the weight?",
+    f"Who carries the weight? Held by {right[1].controller}",
     label=right[0],
     ghosts=dict(others[:2]),
     reference=False,
@@ -685,14 +685,14 @@ lk.plotting.show(f"The error over the stiffness of your gains. Yours, in the mid
 # which does not know of that kilogram either.
 
 # %%
-sprung = drive(loaded, lk.control.springs(kp, kd))
 ct = with_gains(my_computed_torque, lk.BAXTER, 120.0, 22.0, True)
-computed = drive(loaded, ct)
-print(f"springs: {lk.metrics.summary(sprung)}")
-print(f"computed torque: {lk.metrics.summary(computed)}")
+spring_law = "your springs" if my_choose_gains is choose_gains else "a stand-in, the springs of Rethink's example"
+sprung, computed = drive(loaded, lk.control.springs(kp, kd)), drive(loaded, ct)
+print(f"{spring_law}: {lk.metrics.summary(sprung)}")
+print(f"{ct.__name__}: {lk.metrics.summary(computed)}")
 lk.replay.show(
     lk.replay.motion_of(
-        sprung, "A circle with 1 kg in the gripper", label="springs", ghosts={"computed torque": computed}
+        sprung, "A circle with 1 kg in the gripper", label=spring_law, ghosts={ct.__name__: computed}
     )
 )
 
@@ -710,7 +710,8 @@ lk.replay.show(
 # %% [markdown]
 # Now pull the arm yourself. Press *Start*, and pull at the arm while it circles: the springs give way. Make
 # them softer and stiffer with the dial, which is the factor on their frequency as above; hang the kilogram
-# on; take the friction away.
+# on; take the friction away. Then choose computed torque. (The sentence below the picture begins with what moves
+# the arm, and says so if it is a stand-in.)
 
 # %%
 def pulled(state, target, factor):
@@ -718,7 +719,7 @@ def pulled(state, target, factor):
 
 
 view = lk.live(
-    lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), {"springs": pulled, "computed torque": ct}, circle,
+    lk.Arm("left", lk.BAXTER, q0=circle(0.0).position), {spring_law: pulled, ct.__name__: ct}, circle,
     title="Torque control", factor=(0.3, 2.0, 1.0), payload=(0.0, 1.0), stiction=(0.0, 1.0),
 )
 view

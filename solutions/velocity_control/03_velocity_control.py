@@ -75,6 +75,8 @@ def feedforward(state, target, **gains):
 
 
 my_joint_velocity_pd = use("joint_velocity_pd", joint_velocity_pd, feedforward)
+yours = my_joint_velocity_pd is joint_velocity_pd
+joint_law = "joint velocity PD" if yours else "feed-forward, a stand-in"
 
 ideal, baxter = lk.Arm("left", lk.IDEAL), lk.Arm("left", lk.BAXTER, seed=1)
 model, q0 = ideal.model, ideal.robot.ready
@@ -83,12 +85,12 @@ reach = lk.Trajectory(lk.Line(q0, q0 + [0.6, 0.2, 0.0, -0.4, 0.3, 0.2, 0.4]), lk
 
 
 def with_gains(kp, kd):
-    """Your joint controller with its gains filled in."""
+    """Your joint controller, or the stand-in, with its gains filled in."""
 
     def controller(state, target):
         return my_joint_velocity_pd(state, target, kp=kp, kd=kd)
 
-    controller.__name__ = "joint velocity PD"
+    controller.__name__ = joint_law
     return controller
 
 
@@ -318,6 +320,8 @@ def tip_feedforward(state, target, model, *, kp, damping):
 
 
 my_workspace_velocity_pd = use("workspace_velocity_pd", workspace_velocity_pd, tip_feedforward)
+yours = my_workspace_velocity_pd is workspace_velocity_pd
+workspace_law = "workspace velocity PD" if yours else "feed-forward of the tip, a stand-in"
 
 
 def in_the_workspace(state, target):
@@ -447,19 +451,19 @@ joints = model.joint_trajectory(poses, q0)
 runs = {}
 for name, target, controller in (
     ("feed-forward alone", joints, feedforward),
-    ("joint velocity PD", joints, with_gains(5.0, 0.0)),
-    ("workspace velocity PD", poses, in_the_workspace),
+    (joint_law, joints, with_gains(5.0, 0.0)),
+    (workspace_law, poses, in_the_workspace),
 ):
     baxter.reset(q0 + 0.02)
     runs[name] = lk.run(baxter, target, controller)
 
 plt.figure(figsize=(8, 3), layout="constrained")
-print("                       RMS [mm]   largest [mm]   tilted by [deg]")
+print(f"{'RMS [mm]':>44} {'largest [mm]':>14} {'tilted by [deg]':>17}")
 for (name, run), style in zip(runs.items(), ("-", "--", "-.")):
     numbers = lk.metrics.summary(run)
     off = 1e3 * np.linalg.norm(lk.metrics.tip_error(run)[:, :3], axis=1)
     plt.plot(run.t, off, style, label=name)
-    print(f"{name:22} {numbers.rms_mm:8.1f} {numbers.max_mm:14.1f} {numbers.max_deg:17.1f}")
+    print(f"{name:35} {numbers.rms_mm:8.1f} {numbers.max_mm:14.1f} {numbers.max_deg:17.1f}")
 plt.xlabel("time [s]")
 plt.ylabel("tip off by [mm]")
 plt.legend(frameon=False)
@@ -472,9 +476,9 @@ lk.plotting.show(
 # %%
 lk.replay.show(
     lk.replay.motion_of(
-        runs["workspace velocity PD"],
+        runs[workspace_law],
         "Baxter draws a circle",
-        label="workspace velocity PD",
+        label=workspace_law,
         ghosts={"feed-forward alone": runs["feed-forward alone"]},
     )
 )
@@ -500,7 +504,8 @@ lk.replay.show(
 # Now the same in real time, and you can push. Press *Start*, drag the arm off its circle and let go: how long
 # does it take to come back, and with which kp? Velocity mode is stiff. However hard you pull, the motors give
 # all they have to keep the speed. Now choose a kp and raise *state_delay* until the arm begins to swing.
-# Repeat this with half the kp: how much more delay can the arm bear?
+# Repeat this with half the kp: how much more delay can the arm bear? (The sentence below the picture begins with
+# what moves the arm: your controller, or a stand-in. The stand-in has no kp.)
 
 # %%
 def circling(state, target, kp):
@@ -508,8 +513,8 @@ def circling(state, target, kp):
 
 
 view = lk.live(
-    lk.Arm("left", lk.BAXTER, q0=q0), circling, joints, title="Velocity control", kp=(0.0, 30.0, 5.0),
-    state_delay=(0.0, 0.1), payload=(0.0, 1.0),
+    lk.Arm("left", lk.BAXTER, q0=q0), {joint_law: circling}, joints, title="Velocity control",
+    kp=(0.0, 30.0, 5.0), state_delay=(0.0, 0.1), payload=(0.0, 1.0),
 )
 view
 

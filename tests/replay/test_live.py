@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.errors import Closed, OutOfRange, TypeMismatch, UnknownName
+from labkit.errors import Closed, NothingKept, OutOfRange, TypeMismatch, UnknownName
 from labkit.hand import STRONGEST, Hand
 from labkit.replay.dials import read_dials
-from labkit.replay.session import FRAME, FRESH, Session
+from labkit.replay.session import FRAME, FRESH, SLOW_PAGE, STEADY, Session
 
 READY = np.array(lk.robot("left").ready)
 T_READY = lk.Model("left").pose(READY)
@@ -76,11 +76,12 @@ def push(session, force, link=7):
 def test_nothing_runs_before_start(live):
     """A notebook that is run without a reader, as by a grader, gets no thread."""
     before = threading.active_count()
-    session, frames = live({"springs": springy})
+    session, frames = live({"springs": springy, "still": lk.control.hold(READY)}, factor=(0.5, 4.0))
     session.tell({"kind": "dial", "name": "factor", "value": 2.0})
-    session.tell({"kind": "reset"})
+    session.tell({"kind": "law", "name": "still"})
     assert threading.active_count() == before
-    assert frames == []
+    assert frames[-1]["state"] == "ready"
+    assert frames[-1]["law"] == "still"
 
 
 def test_a_hand_pushes_any_link_as_statics_says():
@@ -124,11 +125,111 @@ def test_the_force_ends_when_nothing_is_heard(live):
     """A hand whose page fell silent lets go, and the pictures go on."""
     session, frames = live({"springs": springy})
     session.tell({"kind": "go"})
-    force = [0.0, 10.0, 0.0]
-    pushed = until(frames, lambda f: f["force"] == force, tell=lambda: push(session, force))
+    hand = {"kind": "hand", "link": 7, "local": [0, 0, 0], "to": [0.7, 0.5, 0.1]}
+    pushed = until(frames, lambda f: f["force"], tell=lambda: session.tell(hand))
     gone = until(frames, lambda f: f["t"] > pushed["t"] and f["force"] is None)
     assert gone["state"] == "running"
     assert FRESH <= 0.2
+
+
+@pytest.mark.parametrize(
+    ("hand", "lasts"),
+    [
+        ({"to": [0.7, 0.5, 0.1]}, FRESH),
+        ({"to": [0.7, 0.5, 0.1], "every": 0.3}, 0.9),
+        ({"to": [0.7, 0.5, 0.1], "every": 9.0}, SLOW_PAGE),
+        ({"force": [0.0, 10.0, 0.0]}, STEADY),
+    ],
+)
+def test_a_hand_holds_on_for_as_long_as_its_page_may_be_silent(live, hand, lasts):
+    """0.2 s for a pointer, more where the page is slow, and seconds for a button's steady push."""
+    session, _ = live({"springs": springy})
+    session.tell({"kind": "hand", "link": 3, "local": [0, 0, 0], **hand})
+    assert session._patience == pytest.approx(lasts)
+
+
+def test_a_push_outlasts_a_page_that_says_nothing_for_a_second(live):
+    """Its full force stays on the link that it names, whatever keeps the browser from speaking."""
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    push(session, [0.0, 10.0, 0.0], link=3)
+    first = until(frames, lambda f: f["force"])
+    last = until(frames, lambda f: f["t"] > first["t"] + 1.2)
+    held = [f for f in frames if first["t"] <= f["t"] <= last["t"]]
+    assert {(tuple(f["force"]), f["link"]) for f in held} == {((0.0, 10.0, 0.0), 3)}
+
+
+@pytest.mark.parametrize("end", ["reset", "close"])
+@pytest.mark.parametrize("first", ["go", "pause"])
+def test_reset_and_stop_let_go_at_once(live, first, end):
+    """A push does not outlive Reset or Stop, while the arm runs or pauses; Reset puts it back."""
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    push(session, [0.0, 0.0, -20.0])
+    until(frames, lambda f: f["force"] and f["error"] > 1e-3)
+    session.tell({"kind": first})
+    session.tell({"kind": end})
+    ended = until(frames, lambda f: f["force"] is None)
+    if end == "reset":
+        np.testing.assert_allclose(ended["q"], READY, atol=1e-5)
+    else:
+        until(frames, lambda f: f["state"] == "closed")
+        frames.clear()
+        session.tell({"kind": "go"})
+        until(frames, lambda f: f["state"] == "running")
+        assert all(f["force"] is None for f in frames)
+
+
+def test_reset_puts_the_arm_back_also_after_stop(live):
+    """Where no thread runs any more, Reset is done at once, not at the next start."""
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    push(session, [0.0, 0.0, -20.0])
+    until(frames, lambda f: f["error"] > 1e-3)
+    session.tell({"kind": "close"})
+    until(frames, lambda f: f["state"] == "closed")
+    session.close()
+    session.tell({"kind": "reset"})
+    assert frames[-1]["state"] == "ready"
+    np.testing.assert_allclose(frames[-1]["q"], READY, atol=1e-5)
+
+
+def test_a_run_is_kept_once(live):
+    """Keep, pressed again while paused, says that there is no run, and later runs are not kept."""
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    until(frames, lambda f: f["t"] > 0.1)
+    session.tell({"kind": "pause"})
+    session.tell({"kind": "keep"})
+    until(frames, lambda f: len(f["kept"]) == 1)
+    session.tell({"kind": "keep"})
+    assert "no run to keep" in until(frames, lambda f: f["note"])["note"]
+    frames.clear()
+    session.tell({"kind": "go"})
+    session.tell({"kind": "law", "name": "springs"})
+    session.tell({"kind": "reset"})
+    later = until(frames, lambda f: f["state"] == "running" and f["t"] > frames[0]["t"] + 0.1)
+    assert len(later["kept"]) == 1
+    assert later["note"] == ""
+
+
+def test_a_run_that_reached_the_limit_says_so(live, monkeypatch):
+    """After the longest run a new one begins, and the note says since when it can be kept."""
+    monkeypatch.setattr("labkit.replay.session.LONGEST", 0.1)
+    session, frames = live({"springs": springy})
+    session.tell({"kind": "go"})
+    note = until(frames, lambda f: f.get("note"))["note"]
+    assert note.startswith("a run is at most 0.1 s long: a new one, which can be kept, began")
+
+
+def test_a_view_without_a_kept_run_says_so():
+    """`view.log` of a view that kept nothing is an error of labkit's, and says what to press."""
+    with lk.Arm("left", q0=READY) as arm:
+        view = lk.live(arm, springy, lk.Hold(T_READY, 1.0))
+        assert view.logs == ()
+        with pytest.raises(NothingKept, match="press Start, then Keep this run"):
+            view.log  # noqa: B018
+        view.close()
 
 
 def test_a_move_of_the_hand_is_answered_after_the_next_tick(live):
@@ -156,8 +257,9 @@ def test_dials_take_effect_and_a_kept_run_says_which(live):
     session.tell({"kind": "dial", "name": "payload", "value": 0.5})
     until(frames, lambda f: f["t"] > 0.3)
     session.tell({"kind": "keep"})
-    until(frames, lambda f: f["kept"] == 1)
+    until(frames, lambda f: f["kept"])
     (log,) = session.logs
+    assert frames[-1]["kept"] == [round(log.t[-1], 1)]
     assert log.plant.payload == 0.5
     assert log.controller == "springs, factor 2"
     assert log.q[-1, 1] != pytest.approx(log.q[0, 1], abs=1e-4), "the payload pulls the arm down"

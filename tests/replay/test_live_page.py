@@ -7,6 +7,7 @@ from accessibility import violations
 from figures.embed import shared_files
 
 import labkit as lk
+from labkit.replay.figure import VIEWER
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +58,7 @@ SPOT = """(at) => {
     p.project(picture.stage.camera);
     return [box.x + (p.x + 1) * box.width / 2, box.y + (1 - p.y) * box.height / 2];
 }"""
+LIVE = "document.querySelector('[data-ready]').labkit"
 CURSOR = "getComputedStyle(document.querySelector('canvas.lk-canvas')).cursor"
 
 
@@ -79,6 +81,66 @@ def test_keys_push_as_the_pointer_does(page):
     page.keyboard.press("Enter")
     assert "force" not in sent(page, "hand")[-1]
     assert button.get_attribute("aria-pressed") == "false"
+
+
+def test_another_force_applies_while_it_pushes(page):
+    """A number typed into the force box changes the push that is on; one above 60 N becomes 60."""
+    page.get_by_role("button", name="Push along plus y").click()
+    box = page.get_by_label("Force in newtons")
+    for typed, force in (("25", 25), ("99", 60)):
+        box.fill(typed)
+        box.press("Enter")
+        assert sent(page, "hand")[-1]["force"] == [0, force, 0]
+    assert box.input_value() == "60"
+
+
+@pytest.mark.parametrize(("name", "kind"), [("Reset", "reset"), ("Stop", "close")])
+def test_reset_and_stop_end_a_push(page, name, kind):
+    """The push is released before the kernel hears of Reset or Stop, and never taken up again."""
+    push = page.get_by_role("button", name="Push along minus z")
+    push.click()
+    page.get_by_role("button", name=name, exact=True).click()
+    assert push.get_attribute("aria-pressed") == "false"
+    page.wait_for_timeout(200)  # three beats
+    *_, released, last = page.evaluate("sent")
+    assert released == {"kind": "hand", "link": 0, "local": [0, 0, 0]}
+    assert last == {"kind": kind}
+
+
+def test_a_pull_at_an_arm_that_was_reset_is_over(page):
+    """A pointer that is still down when the arm goes back pulls at nothing."""
+    x, y = page.evaluate(SPOT)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.get_by_role("button", name="Reset", exact=True).press("Enter")
+    before = len(sent(page, "hand"))
+    page.mouse.move(x + 60, y)
+    page.mouse.up()
+    assert len(sent(page, "hand")) == before
+
+
+def test_the_arrow_of_a_push_stands_outside_the_arm(page, data):
+    """A push at the elbow's middle is drawn from the arm's surface on, along the push."""
+    page.get_by_label("Push at").select_option("elbow (e1)")
+    page.get_by_role("button", name="Push along plus y").click()
+    middle = page.evaluate(f"{LIVE}.picture.frames.left_e1.p")
+    told = frame(data, state="running", at=middle, force=[0, 10, 0], link=3, t=1.0)
+    page.evaluate("(f) => tell(f)", told)
+    away = page.evaluate(f"{LIVE}.picture.arrows.force.mark.position.toArray()")
+    assert away[0] == pytest.approx(middle[0], abs=1e-6)
+    assert 0.04 < away[1] - middle[1] < 0.12
+    assert away[2] == pytest.approx(middle[2], abs=1e-6)
+
+
+def test_a_slow_page_asks_for_patience(page):
+    """A page whose timers had no turn for a while says so with the pointer's next word."""
+    x, y = page.evaluate(SPOT)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.evaluate("() => { const end = Date.now() + 300; while (Date.now() < end); }")
+    page.wait_for_function("sent.at(-1).every >= 0.25")
+    page.mouse.up()
+    assert "every" not in sent(page, "hand")[-1]
 
 
 def test_a_pointer_on_the_arm_pulls_and_beside_it_turns_the_view(page):
@@ -166,14 +228,65 @@ def test_buttons_and_dials_are_told_to_the_kernel(page):
     assert sent(page, "dial")[0] == {"kind": "dial", "name": "factor", "value": 1.5}
 
 
+def test_enter_applies_a_number_that_was_typed_back(page):
+    """Each Enter in a dial's box tells the kernel its number, also the one that it had before."""
+    box = page.get_by_label("factor, typed")
+    for k, typed in enumerate(("1.5", "1", "1"), start=1):
+        box.click()
+        box.press("Control+a")
+        page.keyboard.type(typed)
+        page.keyboard.press("Enter")
+        page.wait_for_function(f"sent.filter((m) => m.kind === 'dial').length === {k}")
+        assert sent(page, "dial")[-1]["value"] == float(typed)
+
+
+def test_keys_in_a_view_stay_there(chromium, data):
+    """The notebook hears no key but Ctrl+S from picture, buttons, boxes, and what lies between."""
+    page = chromium.new_page()
+    page.set_content("<!doctype html><html lang='en'><body><div id='a'></div></body></html>")
+    page.set_default_timeout(120_000)
+    for name in ("viewer.js", "robot.js"):
+        page.add_script_tag(content=shared_files()[name].read_text())
+    page.evaluate(
+        """async ([source, data]) => {
+            window.heard = [];
+            document.addEventListener("keydown", (e) => heard.push(e.key));
+            window.labkitLoad = async () => labkitViewer;
+            const file = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+            const model = { get: () => data, on() {}, off() {}, send() {} };
+            (await import(file)).default.render({ model, el: document.getElementById("a") });
+        }""",
+        [(VIEWER / "widget.js").read_text(), data],
+    )
+    page.wait_for_selector("[data-ready]")
+    places = (
+        page.locator("canvas").first,
+        page.get_by_role("button", name="Start"),
+        page.get_by_label("factor, typed"),
+        page.get_by_label("Controller"),
+        page.locator(".lk-readout"),
+    )
+    for place in places:
+        place.click(position={"x": 3, "y": 3})
+        for key in ("d", "d", "a", "b", "x", "z", "m", "y", "0", "Escape", "Shift+M", "Control+m"):
+            page.keyboard.press(key)
+        page.keyboard.press("Control+s")
+        assert page.evaluate("heard.splice(0)") == ["s"]
+    page.close()
+
+
 def test_force_and_sentence_are_shown_and_said(page, data):
     """The force in newtons stands at its arrow; a stopped law's sentence is beside the picture."""
     first = frame(data)
     tip = json.loads(data)["first"]["things"]["target"]["position"]
-    told = frame(data, state="running", force=[0, 10, 0], at=tip, error=0.0333, t=1.0)
+    told = frame(data, state="running", force=[0, 10, 0], at=tip, link=7, error=0.0333, t=1.0)
     page.evaluate("(f) => tell(f)", told)
     page.locator(".lk-tag", has_text="10.0 N").wait_for()
-    assert "33.3 mm from the target · your force 10.0 N" in page.inner_text(".lk-readout")
+    pulled = "33.3 mm from the target · your force 10.0 N at the tip"
+    assert pulled in page.inner_text(".lk-readout")
+    page.evaluate("(f) => tell(f)", told | {"link": 3, "kept": [12.5], "t": 1.05})
+    assert "your force 10.0 N at the elbow (e1) · 1 kept" in page.inner_text(".lk-readout")
+    assert page.inner_text(".lk-say") == "Kept as view.log: 12.5 s, since the last change."
     words = "soft lost the arm at t = 1.000 s"
     page.evaluate("(f) => tell(f)", frame(data, state="stopped", note=words, t=1.1))
     assert page.inner_text(".lk-say") == words

@@ -23,6 +23,11 @@ async function render({ model, el }) {
   const alt = document.createElement("p");
   alt.textContent = data().alt ?? "";
   el.append(alt, host);
+  host.tabIndex = -1; // a click beside a button leaves the keys here too
+  host.style.outline = "none";
+  el.addEventListener("keydown", (event) => { // d d would delete the cell; Ctrl+S saves
+    if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "s") event.stopPropagation();
+  });
   const { mount } = await viewer(model);
   alt.remove();
   const hear = [];

@@ -27,6 +27,14 @@ export const unique = (stem) => `lk-${stem}-${++count}`;
 
 export const reducedMotion = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 
+/** Call `apply` when a box is changed or left with another number than `known()`, and at each Enter. */
+export function entered(box, apply, known) {
+  const changed = () => { if (box.value !== known()) apply(); };
+  box.addEventListener("change", changed);
+  box.addEventListener("blur", changed); // a number typed back is no change to a browser
+  box.addEventListener("keydown", (event) => { if (event.key === "Enter") apply(); });
+}
+
 /**
  * A slider with a typed number beside it; `stops` holds the only values it can take.
  * `oninput` gets the value, and what was typed if it was typed.
@@ -50,11 +58,11 @@ export function dial({ label, unit = "", stops, min, max, step, value, digits = 
   };
   const changed = () => { set(get()); oninput?.(get()); };
   range.addEventListener("input", changed);
-  number.addEventListener("change", () => {
+  entered(number, () => {
     const typed = Number.isFinite(number.valueAsNumber) ? number.valueAsNumber : get();
     set(typed);
     oninput?.(get(), typed);
-  });
+  }, () => show(get()));
   set(value ?? (stops ? stops[0] : min));
   const element = h("div", { class: "lk-dial" },
     h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, unit));

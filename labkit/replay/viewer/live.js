@@ -2,18 +2,21 @@
 // this side draws it and says what pointer, keys and dials want.
 import { Picture } from "./picture.js";
 import { Plot } from "./plots.js";
-import { choice, dial, h, unique } from "./dom.js";
+import { choice, dial, entered, h } from "./dom.js";
 import { sight } from "./sight.js";
 
 const NEWTON = 0.006; // metres of arrow
 const BEAT = 60; // ms between two messages while something is held
+const SLOW = 100; // ms without a turn for the timers, from which on the kernel is told to be patient
 const AXES = [["+x", [1, 0, 0]], ["−x", [-1, 0, 0]], ["+y", [0, 1, 0]], ["−y", [0, -1, 0]], ["+z", [0, 0, 1]], ["−z", [0, 0, -1]]];
+const STALE = 400; // ms without a force in a hand that holds, from which on the page says why
+const TOLD = 3; // s of the arm's time for which the page says that a run was kept
 const SHOWN = 10; // seconds of the curves
 
 export class LiveArm {
   /** link: {send(message), hear(f)}, the way to the kernel; without it the picture stands still. */
   constructor(host, data, robot, link) {
-    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, moves: 0, rows: [], frames: 0 });
+    Object.assign(this, { host, data, link, robot: data.robot ?? robot, held: null, moves: 0, rows: [], frames: 0, beaten: 0, slow: 0 });
     this.element = h("div", { class: "lk-player lk-live", role: "group", "aria-label": data.title });
     this.stagebox = h("div", { class: "lk-stage" });
     this.note = h("p", { class: "lk-say", hidden: true });
@@ -46,25 +49,28 @@ export class LiveArm {
   send(message) { this.link?.send(message); }
 
   buttons() {
-    const button = (text, kind, title) => h("button", { type: "button", title, disabled: !this.link, onclick: () => this.send({ kind }) }, text);
+    const button = (text, kind, title, first = () => {}) => h("button", { type: "button", title, disabled: !this.link,
+      onclick: () => { first(); this.send({ kind }); } }, text);
+    const release = () => this.release();
     this.start = h("button", { type: "button", class: "lk-play", disabled: !this.link,
       onclick: () => this.send({ kind: this.state === "running" ? "pause" : "go" }) }, "Start");
     const laws = this.data.laws.length < 2 ? [] : [choice({ label: "Controller", values: this.data.laws,
       onchange: (name) => this.send({ kind: "law", name }) }).element];
     return h("div", { class: "lk-bar" }, this.start, button("Step", "step", "Advance by 0.05 s"),
-      button("Reset", "reset", "Back to where the arm began"), button("Keep this run", "keep", "The run since the last change becomes view.log"),
-      button("Stop", "close", "End it, and free the arm for other cells"), laws);
+      button("Reset", "reset", "Back to where the arm began", release),
+      button("Keep this run", "keep", "The run since the last change becomes view.log; after 120 s a new run begins"),
+      button("Stop", "close", "End it, and free the arm for other cells", release), laws);
   }
 
   /** What the pointer does, for keys: choose a link and a force, switch it on along an axis. */
   hand() {
     const { joints } = this.data;
-    const names = ["tip", ...joints.map((j) => (j === "e1" ? "elbow (e1)" : j)).reverse()];
-    this.where = choice({ label: "Push at", values: names });
-    this.where.at = () => joints.length - this.where.index();
+    this.links = [...joints.map((j) => (j === "e1" ? "elbow (e1)" : j)), "tip"];
+    this.where = choice({ label: "Push at", values: [...this.links].reverse() });
     this.newtons = h("input", { type: "number", "aria-label": "Force in newtons", min: 0, max: 60, step: "any", value: 10, disabled: !this.link });
+    entered(this.newtons, () => this.pushing?.(), () => String(this.size));
     this.pushes = AXES.map(([name, axis]) => h("button", { type: "button", class: "lk-icon", "aria-pressed": "false", disabled: !this.link,
-      "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`,
+      "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`, title: "Push until it is pressed again",
       onclick: (e) => this.push(e.currentTarget, axis, name) }, name));
     return h("div", { class: "lk-bar", role: "group", "aria-label": "Push with keys" }, this.where.element,
       this.newtons, h("span", { class: "lk-unit" }, "N along"), this.pushes);
@@ -75,28 +81,43 @@ export class LiveArm {
     this.release();
     if (!on) return;
     button.setAttribute("aria-pressed", "true");
-    const link = this.where.at();
-    const size = Math.min(60, Math.max(0, this.newtons.valueAsNumber || 0));
-    this.take({ link, local: [0, 0, 0], force: axis.map((x) => size * x) });
-    this.speak(`Pushing ${size} N along ${name} at the ${this.where.get()}.`, 0);
-    this.speak(() => `Under ${size} N along ${name}: ${this.numbers()}`, 1500);
+    const where = this.where.get(), link = this.links.indexOf(where);
+    this.pushing = () => { // again when another force is typed
+      const size = Math.min(60, Math.max(0, this.newtons.valueAsNumber || 0));
+      this.newtons.value = this.size = size;
+      this.take({ link, local: [0, 0, 0], force: axis.map((x) => size * x) });
+      this.speak(`Pushing ${size} N along ${name} at the ${where}.`, 0);
+      this.speak(() => `Under ${size} N along ${name}: ${this.numbers()}`, 1500);
+    };
+    this.pushing();
   }
 
   /** Hold on to the arm until `release`: the kernel lets go of a hand of which it hears nothing. */
   take(hand) {
     this.held = hand;
-    const beat = () => this.send({ kind: "hand", ...this.held });
-    beat();
+    this.beaten = performance.now();
+    this.slow = Math.max(this.slow, this.picture.stage.took ?? 0);
+    this.beat();
     clearInterval(this.beating);
-    this.beating = setInterval(beat, BEAT);
+    this.beating = setInterval(() => this.beat(), BEAT);
+  }
+
+  /** Say that the hand still holds, and, where the page is slow, how late the next word may come. */
+  beat() {
+    const now = performance.now();
+    this.slow = Math.max(now - this.beaten, 0.99 * this.slow);
+    this.beaten = now;
+    this.send({ kind: "hand", ...this.held, ...(this.held.to && this.slow > SLOW && { every: this.slow / 1000 }) });
   }
 
   release() {
     clearInterval(this.beating);
+    this.pushing = null;
     this.pushes.forEach((b) => b.setAttribute("aria-pressed", "false"));
     if (!this.held) return;
     this.held = null;
     this.send({ kind: "hand", link: 0, local: [0, 0, 0] });
+    this.speak("Let go.", 0);
   }
 
   dials() {
@@ -123,7 +144,11 @@ export class LiveArm {
     picture.stage.rig.mirror = this.data.side === "right" ? -1 : 1;
     picture.stage.rig.around([...seen, picture.frames[`${this.data.side}_e1`]?.p ?? picture.tip.p]);
     picture.stage.rig.use("Motion");
-    picture.stage.drawn = () => { this.host.dataset.ready = "1"; this.frames++; };
+    picture.stage.drawn = () => {
+      this.host.dataset.ready = "1";
+      this.frames++;
+      if (this.held && performance.now() - this.beaten > BEAT) this.beat(); // drawing keeps timers from their turn
+    };
     this.sight.alone.click();
     if (this.link) picture.grab((picked, event) => this.grip(picked, event), ({ thing }) => !this.things[thing]?.fixed);
   }
@@ -144,8 +169,9 @@ export class LiveArm {
     this.release();
     this.take({ link: picked.link, local: picked.local, to: at });
     const move = (e) => {
+      if (!this.held?.to) return; // Reset and Stop let go too
       this.held = { ...this.held, to: picture.dragged(e, at), move: (this.moves += 1) };
-      this.send({ kind: "hand", ...this.held });
+      this.beat();
       picture.stage.hold();
     };
     return { move, end: () => this.release() };
@@ -154,7 +180,13 @@ export class LiveArm {
   /** A picture in numbers came from the kernel. */
   show(frame) {
     const before = this.state, told = this.frame?.note;
-    if (frame.kept > this.frame?.kept) this.speak("Kept as view.log.", 0);
+    if (frame.kept.length > this.frame?.kept.length) {
+      this.kept = { t: frame.t, words: `Kept as view.log: ${frame.kept.at(-1)} s, since the last change.` };
+      this.speak(this.kept.words, 0);
+    }
+    if (before !== frame.state && frame.state === "running") this.kept = null;
+    const kept = frame.t < this.kept?.t + TOLD ? this.kept.words : "";
+    if (before !== frame.state && ["stopped", "closed"].includes(frame.state)) this.release();
     if (frame.state === "running" && performance.now() - (this.here ?? -1e9) > 1e4) { // somebody looks on
       this.here = performance.now();
       this.send({ kind: "here" });
@@ -169,7 +201,8 @@ export class LiveArm {
     }
     this.readout.textContent = this.numbers();
     const stale = this.held && frame.state === "running" && !frame.force && this.old();
-    this.say(frame.note || (stale ? "The kernel is busy with another cell: what you pull arrives later, and until then there is no force." : ""),
+    const busy = this.slow > STALE ? "This page is busy" : "The kernel is busy with another cell";
+    this.say(frame.note || (stale ? `${busy}: what you pull arrives later, and until then there is no force.` : kept),
       frame.state === "stopped");
     if (before !== frame.state || frame.note && frame.note !== told) this.speak(frame.note || { running: "Running.", paused: "Paused.", ready: "Ready.", closed: "Ended." }[frame.state] || "", 0);
     this.plotted ??= setTimeout(() => { this.plotted = null; const c = this.curve(); this.plot.set(c.series, c.x); this.plot.time(c.x.at(-1)); }, 200);
@@ -178,16 +211,17 @@ export class LiveArm {
   /** Whether the hand has been held for longer than a message should take. */
   old() {
     if (this.since !== this.held) { this.since = this.held; this.taken ??= performance.now(); }
-    return performance.now() - this.taken > 400;
+    return performance.now() - this.taken > STALE;
   }
 
-  draw({ q, force, at, things }) {
+  draw({ q, force, at, link, things }) {
     const { picture } = this;
     picture.pose(this.data.side, q);
     picture.furnish(things);
     const size = force ? Math.hypot(...force) : 0;
     if (force) this.taken = performance.now();
-    picture.arrow("force", at ?? picture.tip.p, (force ?? [0, 0, 0]).map((x) => NEWTON * x), `${size.toFixed(1)} N`);
+    const starts = this.held?.force && force && link < this.links.length - 1 ? picture.outside(at, force) : at ?? picture.tip.p;
+    picture.arrow("force", starts, (force ?? [0, 0, 0]).map((x) => NEWTON * x), `${size.toFixed(1)} N`);
     picture.moved(this.frame.t);
     const from = things.target?.position ?? picture.tip.p;
     const off = picture.tip.p.map((x, k) => this.times * (x - from[k]));
@@ -202,12 +236,12 @@ export class LiveArm {
   }
 
   numbers() {
-    const { t, error, force, pace, kept, law } = this.frame;
+    const { t, error, force, link, pace, kept, law } = this.frame;
     const words = [law, `t = ${t.toFixed(2)} s`];
     if (error !== null) words.push(`${(1000 * error).toFixed(1)} mm from the target`);
-    words.push(`your force ${(force ? Math.hypot(...force) : 0).toFixed(1)} N`);
+    words.push(force ? `your force ${Math.hypot(...force).toFixed(1)} N at the ${this.links[link]}` : "your force 0.0 N");
     if (pace && pace < 0.95 && this.state === "running") words.push(`${pace.toFixed(2)} × real time`);
-    if (kept) words.push(`${kept} kept`);
+    if (kept.length) words.push(`${kept.length} kept`);
     return words.join(" · ");
   }
 

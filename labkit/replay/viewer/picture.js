@@ -8,6 +8,7 @@ import { Stage } from "./stage.js";
 import { place, thing } from "./things.js";
 import { apply, subtract, transpose } from "./so3.js";
 
+const REACH = 0.25; // metres within which an arrow is moved out of the arm
 const NEAR = 0.035; // metres from the tip within which a pointer means the tip
 const LOOK = 80; // ms between two looks at what lies under a pointer that holds nothing
 
@@ -156,6 +157,14 @@ export class Picture {
 
   /** The middle of a joint, as `pick` gives it: for keys. */
   atJoint(link) { return { link, local: [0, 0, 0], at: this.where(link, [0, 0, 0]) }; }
+
+  /** Where, seen from a point in the arm, its surface ends along a vector: there an arrow can be seen. */
+  outside(at, along) {
+    const way = new THREE.Vector3(...along).normalize(), far = new THREE.Vector3(...at).addScaledVector(way, REACH);
+    const parts = joints(this.robot, this.side).map((name) => this.body.groups[name]);
+    const [hit] = new THREE.Raycaster(far, way.negate(), 0, REACH).intersectObjects(parts, true);
+    return hit ? hit.point.toArray() : at;
+  }
 
   frame(link) { return link >= joints(this.robot, this.side).length ? this.tip : this.frames[joints(this.robot, this.side)[link]]; }
 

@@ -6,6 +6,7 @@ import { h } from "./dom.js";
 
 const HURRY = 0.55; // of the size, while a picture moves that the processor has to draw
 const CALM = 400; // ms without another picture, after which it is drawn in full
+const LONG = 40; // ms of drawing without a card, after which all that is longer is left to the page's timers
 const ANSWER = 40; // ms that a picture waits for an answer, where drawing would keep the page from hearing it
 
 let renderer; // undefined: not tried, null: this browser has no WebGL
@@ -50,7 +51,7 @@ export class Stage {
     this.rig = new Rig(this.canvas, this.camera, () => this.draw());
     this.light();
     this.visible = true;
-    this.waiting = this.quiet = 0;
+    this.waiting = this.quiet = this.rest = 0;
     this.labels = [];
     this.watch = [new ResizeObserver(() => this.draw()), new IntersectionObserver(([entry]) => {
       this.visible = entry.isIntersecting;
@@ -110,7 +111,7 @@ export class Stage {
     if (!this.works || !this.visible || this.waiting) return;
     this.waiting = requestAnimationFrame((now) => {
       this.waiting = 0;
-      if (now < this.quiet) this.draw();
+      if (now < Math.max(this.quiet, this.rest)) this.draw();
       else this.paint();
     });
   }
@@ -149,6 +150,9 @@ export class Stage {
     this.paper.drawImage(renderer.domElement, 0, 0, w, t, 0, 0, W, T);
     if (this.small && !this.small.hidden) this.closeUp(drawn);
     this.settle(width, height);
+    const end = performance.now();
+    this.took = end - now;
+    this.rest = card ? 0 : end + this.took - LONG;
     this.drawn?.();
   }
 

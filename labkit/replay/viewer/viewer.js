@@ -33,7 +33,6 @@ const KINDS = {
 export function mount(host, data, load, link) {
   dress();
   const made = KINDS[data.kind](host, data, globalThis.labkitRobot, load, link);
-  made.element.dataset.lmSuppressShortcuts = "true"; // JupyterLab's own keys stay out
   host.labkit = made;
   return made;
 }
