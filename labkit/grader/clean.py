@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from typing import Any
 
 from .sandbox.clean import clean_line, clean_text
 
-__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "safe_name"]
+__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "safe_name", "some"]
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 LONGEST = 80
@@ -37,3 +38,8 @@ def safe_name(name: str) -> str:
     text = re.sub(r"-+", "-", re.sub(r"\.+", ".", text)).strip("-._@")
     text = text.encode()[:LONGEST].decode(errors="ignore").strip("-._@")
     return f"student-{text}".rstrip("-") if not text or _RESERVED.fullmatch(text) else text
+
+
+def some(names: Sequence[str], most: int = 5) -> str:
+    """The first few names, for a sentence."""
+    return ", ".join(names[:most]) + ", ..." * (len(names) > most)

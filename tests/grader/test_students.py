@@ -152,6 +152,17 @@ def test_a_second_list_adds_and_changes_but_takes_nobody_away(tmp_path):
     assert zoe.lms_user_id == "8" and bob.email == "bob@uni.org"
 
 
+def test_a_guess_from_a_full_name_replaces_no_name(tmp_path):
+    """Which words are the last name, a worksheet does not say; a comma or two columns do."""
+    roster = Roster((Student("ada", "Ada", "de la Cruz", "ada@x"), Student("b", email="b@x")))
+    text = "Identifier,Full name,Email address\nParticipant 7,{},ada@x\nParticipant 8,Bo Li,b@x\n"
+    ada, bo = enrolled(listed(tmp_path, text.format("Ada de la Cruz")), roster).students
+    assert (ada.first_name, ada.last_name) == ("Ada", "de la Cruz")
+    assert (bo.first_name, bo.last_name) == ("Bo", "Li"), "where there is none, it is taken"
+    ada, _ = enrolled(listed(tmp_path, text.format('"Cruz, Ada de la"')), roster).students
+    assert (ada.first_name, ada.last_name) == ("Ada de la", "Cruz")
+
+
 def test_a_row_between_two_students_is_refused():
     """The login of one and the address of another."""
     roster = Roster((Student("a", "A", email="a@x"), Student("b", "B", login="b")))

@@ -89,12 +89,14 @@ class Entry:
         student: Who it is; without an ``id``, which is for the roster to give.
         participant: Moodle's number of the participant in one assignment.
         handed_in: When the participant handed in, as Moodle's worksheet writes it.
+        guessed: Whether first and last name are a guess from the full name.
     """
 
     line: int
     student: Student
     participant: str = ""
     handed_in: str = ""
+    guessed: bool = False
 
 
 def read_list(path: Path) -> tuple[Entry, ...]:
@@ -189,11 +191,12 @@ def _entries(
 ) -> Iterator[Entry]:
     for line, row in rows:
         cells = {k: row[at] if at < len(row) else "" for k, at in columns.items()}
-        name = cells.pop("name", "")
+        name, guessed = cells.pop("name", ""), False
         if not (name or any(cells.values())) or name.casefold() == _NOT_A_STUDENT:
             continue  # an empty line, or Canvas's full marks
         if name and not (cells.get("first_name") or cells.get("last_name")):
             last, comma, first = name.partition(",")
+            guessed = not comma
             first, _, last = (first, "", last) if comma else name.rpartition(" ")
             cells |= {"first_name": first.strip(), "last_name": last.strip()}
         if cells.get("team", "").casefold() in _NO_TEAM:
@@ -204,4 +207,4 @@ def _entries(
         student = Student("", **cells)
         if not (student.name or student.login):
             raise LabkitError(f"{path}, line {line} has neither a name nor a login")
-        yield Entry(line, student, **of_hand_in)
+        yield Entry(line, student, **of_hand_in, guessed=guessed)
