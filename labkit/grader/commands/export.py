@@ -68,7 +68,7 @@ def export(
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
     was graded, and the total with the weights of course.toml.
     """
-    from ..marks.export import LAYOUTS, as_csv, of_term, remarks
+    from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
     from ..marks.table import marks_of
     from ..rules import read_rules
 
@@ -92,6 +92,11 @@ def export(
         return [replace(m, raw=0.0) if absent_zero and m.absent else m for m in found]
 
     if assignment is None:
+        if layout != "questions" or column:
+            raise LabkitError(
+                "--layout and --column are for one assignment: type labkit export ASSIGNMENT "
+                f"--layout {layout}; without them, labkit export writes the table of the term"
+            )
         rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
         names += UNRELEASED
         term = {name: marks for name in names if (marks := read(name))}
@@ -106,7 +111,8 @@ def export(
         raise nobody(assignment, None)
     tell(remarks(layout, marks), sys.stderr)
     write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
-    return int(any(mark.missing for mark in marks))
+    lost, count = unmatched(layout, marks)
+    return int(any(mark.missing for mark in marks) or 0 < count == len(lost))
 
 
 def _concept_test(
