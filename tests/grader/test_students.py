@@ -79,6 +79,7 @@ def test_what_columns_hold(tmp_path):
         ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
         ("PK\x03\x04", "is not a text; save the spreadsheet as CSV"),
         ("name,login\nLovelace, Ada,ada\n", "line 2 has 3 cells and the first line has 2"),
+        (f"name,{'x' * 200_000}\nAda,\n", "line 1: field larger than field limit"),
         ('name,login\n"Ada,ada\n', "unexpected end of data; correct the table"),
         ("name,email\n,a@x\n", "line 2 has neither a name nor a login"),
     ],
@@ -106,6 +107,28 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
     with pytest.raises(LabkitError) as error:
         enrolled(listed(tmp_path, text))
     assert words in str(error.value)
+
+
+def test_lines_of_an_old_mac_are_lines(tmp_path):
+    """They end with a carriage return alone."""
+    assert len(people(tmp_path, MOODLE.replace("\n", "\r"))) == 2
+
+
+def test_a_number_that_is_no_participants_is_none(tmp_path):
+    """Such as a word, wide digits, or more of them than any platform counts."""
+    for number in ("Participant abc", "Participant \uff11", "9" * 5000):
+        (one,) = listed(tmp_path, f"Identifier,Full name\n{number},Ada\n")
+        assert one.participant == ""
+
+
+def test_nothing_in_the_roster_becomes_a_formula(tmp_path):
+    """A person may call themselves so, and a lecturer opens the file in a spreadsheet."""
+    course = bare_course(tmp_path / "course")
+    roster = enrolled(listed(tmp_path, "name,login\n=cmd|' /C calc'!A0,@SUM(A1)\n'=1,-ada\n"))
+    save_roster(course, roster)
+    cells = (course.root / FILE).read_text().replace("\n", ",").split(",")
+    assert not [cell for cell in cells if cell[:1] in {"=", "@", "-", "+"}]
+    assert read_roster(course) == roster
 
 
 def test_a_row_that_is_there_twice_is_one_student(tmp_path):

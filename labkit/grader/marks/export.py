@@ -25,7 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ..clean import some
+from ..clean import no_formula, some
 from .mark import Mark
 
 
@@ -218,6 +218,6 @@ def as_csv(table: Sequence[Sequence[Any]]) -> str:
 
 
 def _cell(x: Any, identity: bool) -> Any:
-    if not isinstance(x, str) or x[:1] not in {"=", "+", "-", "@", "\t", "\r"}:
+    if not isinstance(x, str) or (identity and _PLAIN.fullmatch(x)):
         return x
-    return x if identity and _PLAIN.fullmatch(x) else f"'{x}"
+    return no_formula(x)

@@ -42,7 +42,9 @@ _FIELDS = {head: field for field, heads in HEADS.items() for head in heads.split
 _NOT_A_STUDENT = "points possible"
 _NO_TEAM = {"no groups", "keine gruppen"}
 """What Moodle's column Groups says of a student who is in none."""
-_PARTICIPANT = re.compile(r"[^\d]*([0-9]+)")
+_PARTICIPANT = re.compile(r"[^\d]*([0-9]{1,19})")
+_LONG_LINE = 100_000
+"""Characters of the first line by which the delimiter is found out; a cell may have few more."""
 
 
 @dataclass(frozen=True)
@@ -126,8 +128,8 @@ def read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     Raises:
         LabkitError: It is not a table.
     """
-    text = _read_text(path)
-    first = text.partition("\n")[0]
+    text = _read_text(path).replace("\r\n", "\n").replace("\r", "\n")
+    first = text.partition("\n")[0][:_LONG_LINE]
     delimiter = max(
         ",;\t|", key=lambda x: len(_columns(next(csv.reader([first], delimiter=x), [])))
     )
@@ -201,8 +203,8 @@ def _entries(
             cells |= {"first_name": first.strip(), "last_name": last.strip()}
         if cells.get("team", "").casefold() in _NO_TEAM:
             cells["team"] = ""
-        if number := _PARTICIPANT.fullmatch(cells.get("participant", "")):
-            cells["participant"] = number[1]
+        number = _PARTICIPANT.fullmatch(cells.get("participant", ""))
+        cells["participant"] = number[1] if number else ""
         of_hand_in = {k: cells.pop(k, "") for k in ("participant", "handed_in")}
         student = Student("", **cells)
         if not (student.name or student.login):
