@@ -100,6 +100,7 @@ def test_a_list_that_cannot_be_read_is_a_sentence(tmp_path, text, words):
         ("name,login,email\nAda,a,x@u\nAda,b,X@u\n", "with a here and b there"),
         ("name\nLi Wei\nWei Li\n", "are both Wei Li, and nothing tells them apart"),
         ("name,login,email\nKim,a,\nKim,,x@u\n", "nothing tells them apart"),
+        ("Identifier,name\nParticipant 7,A\nParticipant 7,B\n", "participant 7 is in 2 lines;"),
     ],
 )
 def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):

@@ -182,6 +182,12 @@ def _shared(one: Student, other: Student) -> list[bool]:
 
 
 def _refuse_contradictions(entries: Sequence[Entry]) -> None:
+    numbers = Counter(entry.participant for entry in entries if entry.participant)
+    for number, times in numbers.items():
+        if times > 1:
+            raise LabkitError(
+                f"participant {number} is in {times} lines; download the worksheet again"
+            )
     by: dict[tuple[str, object], list[Entry]] = {}
     for entry in entries:
         who, name = entry.student, same_name(entry.student.name)
