@@ -110,6 +110,13 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
     assert words in str(error.value)
 
 
+def test_a_list_that_is_cut_off_is_refused(tmp_path):
+    """Half a character in UTF-16 would stand in the last login."""
+    (tmp_path / "cut.csv").write_bytes("login\nada\n".encode("utf-16")[:-1])
+    with pytest.raises(LabkitError, match="is cut off; download"):
+        read_list(tmp_path / "cut.csv")
+
+
 def test_lines_of_an_old_mac_are_lines(tmp_path):
     """They end with a carriage return alone."""
     assert len(people(tmp_path, MOODLE.replace("\n", "\r"))) == 2

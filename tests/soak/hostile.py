@@ -805,7 +805,6 @@ RULES = {
     "due at a time of day": _DUE + b"due = 23:59:00",
     "weight is infinite": _DUE + b"weight = inf",
     "weight is nan": _DUE + b"weight = nan",
-    "name of escapes": b'name = "\\u001b[2J\\u202e"',
     "odd extension": b'[[extensions]]\nstudent = "\\u001b[2J"\ndays = 1',
     "odd assignment": b'[assignments."\\u001b[2J"]\nweight = 1',
 }

@@ -165,7 +165,10 @@ def _read_text(path: Path) -> str:
     check_size(path.stat().st_size, LARGEST)
     data = path.read_bytes()
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return data.decode("utf-16", errors="replace")
+        try:
+            return data.decode("utf-16")
+        except UnicodeDecodeError:
+            raise LabkitError(f"{path} is cut off; download or save it again") from None
     if data.startswith(b"PK\x03\x04") or b"\0" in data:
         raise LabkitError(f"{path} is not a text; save the spreadsheet as CSV")
     try:
