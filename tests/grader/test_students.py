@@ -122,7 +122,7 @@ def test_lines_of_an_old_mac_are_lines(tmp_path):
     assert len(people(tmp_path, MOODLE.replace("\n", "\r"))) == 2
 
 
-def test_a_number_that_is_no_participants_is_none(tmp_path):
+def test_a_number_that_is_not_a_participants_is_none(tmp_path):
     """Such as a word, wide digits, or more of them than any platform counts."""
     for number in ("Participant abc", "Participant \uff11", "9" * 5000):
         (one,) = listed(tmp_path, f"Identifier,Full name\n{number},Ada\n")

@@ -68,7 +68,7 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
 
 
 def unknown_extensions(course: Course) -> Iterator[str]:
-    """Who has longer by the rules and is no student, a sentence each."""
+    """Who has longer by the rules and is not a student, a sentence each."""
     known = {student.id for student in read_roster(course).students}
     known |= {path.name for path in course.submitted.glob("*")}
     for name in sorted({x.student for x in read_rules(course).extensions} - known):
