@@ -73,6 +73,8 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["term", "list", "--course", "nowhere"], "there is no "),
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["export", "01_paths", "--layout", "cup", "--course", ROOT], "export --layout cup"),
+        (["export", "--layout", "moodle", "--course", ROOT], "labkit export ASSIGNMENT --layout m"),
+        (["export", "--column", "Paths", "--course", ROOT], "without them, labkit export writes"),
         (["export", "--final", "--course", ROOT], "type: labkit export --layout cup"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
     ],

@@ -193,7 +193,7 @@ class Found:
             return Difference(Kind.REFUSED, found=found)
         if expected is None or (cause == expected[0] and abs(seconds - expected[1]) <= NEAR):
             return None
-        return Difference(Kind.VALUE, found=str(answer))
+        return Difference(Kind.VALUE, expected=str(expected), found=str(answer))
 
     def same(self, answer: Any, other: Any) -> bool:
         """Whether two answers are the same one."""
@@ -238,7 +238,7 @@ class Telling:
             says = f"the two differ by {ratio:.1f} times the noise; {CLEAR:g} are needed"
             return Difference(Kind.REFUSED, found=says)
         if expected is not None and one != expected:
-            return Difference(Kind.VALUE, found=str(one))
+            return Difference(Kind.VALUE, expected=str(expected), found=str(one))
         return None
 
     def same(self, answer: Any, other: Any) -> bool:

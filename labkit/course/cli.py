@@ -115,5 +115,5 @@ def _is_valid(notebook: dict[str, Any]) -> bool:
 
     try:
         return bool(isvalid(notebook, version=4, version_minor=5))
-    except TypeError:  # an id or a cell's type that is not text
+    except (TypeError, RecursionError):  # an id or a cell's type that is not text; too deep
         return False

@@ -198,7 +198,7 @@ class Measured:
             return Difference(Kind.REFUSED, found=found)
         if expected is None or abs(answer - expected) <= self.tolerance:
             return None
-        return Difference(Kind.NUMBERS, found=float(answer), several=True)
+        return Difference(Kind.NUMBERS, expected=float(expected), found=float(answer))
 
     def same(self, answer: Any, other: Any) -> bool:
         """Whether two numbers are the same one."""

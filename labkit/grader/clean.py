@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections.abc import Sequence
 from typing import Any
 
 from .sandbox.clean import clean_line, clean_text
 
-__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "safe_name"]
+__all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "from_no_formula",
+           "no_formula", "safe_name", "some"]  # fmt: skip
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
+_FORMULAS = frozenset("=+-@\t\r")
 LONGEST = 80
 """The longest name of a student's folder, in bytes; results, pages and attempts take that name."""
 
@@ -37,3 +40,18 @@ def safe_name(name: str) -> str:
     text = re.sub(r"-+", "-", re.sub(r"\.+", ".", text)).strip("-._@")
     text = text.encode()[:LONGEST].decode(errors="ignore").strip("-._@")
     return f"student-{text}".rstrip("-") if not text or _RESERVED.fullmatch(text) else text
+
+
+def no_formula(cell: str) -> str:
+    """A cell of a table that no spreadsheet runs: what could begin a formula gets a quote first."""
+    return f"'{cell}" if cell.lstrip("'")[:1] in _FORMULAS else cell
+
+
+def from_no_formula(cell: str) -> str:
+    """What `no_formula` was given."""
+    return cell[1:] if cell[:1] == "'" and cell.lstrip("'")[:1] in _FORMULAS else cell
+
+
+def some(names: Sequence[str], most: int = 5) -> str:
+    """The first few names, for a sentence."""
+    return ", ".join(names[:most]) + ", ..." * (len(names) > most)

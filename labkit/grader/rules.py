@@ -27,7 +27,7 @@ from .nbgrader_api import nbgrader_api
 
 FILE = "course.toml"
 _Share = Annotated[float, msgspec.Meta(ge=0.0, le=100.0)]
-_Positive = Annotated[float, msgspec.Meta(ge=0.0)]
+_Positive = Annotated[float, msgspec.Meta(ge=0.0, le=10_000.0)]
 _DAY = 86400.0
 
 
@@ -62,6 +62,10 @@ class Assignment(_Table, frozen=True):
     due: datetime | None = None
     weight: _Positive = 1.0
 
+    def __post_init__(self) -> None:
+        if self.due is not None and not 2000 <= self.due.year < 2100:
+            raise ValueError(f"due in the year {self.due.year}, which is not between 2000 and 2099")
+
 
 class Extension(_Table, frozen=True):
     """Longer time for one student, in one assignment or in all of them."""
@@ -85,7 +89,7 @@ class Rules(_Table, frozen=True):
     """
 
     name: str = ""
-    id: Annotated[str, msgspec.Meta(pattern=r"^[\w-]+$")] = "trajectory_tracking"
+    id: Annotated[str, msgspec.Meta(pattern=r"^[\w-]+\Z")] = "trajectory_tracking"
     zone: str = "UTC"
     counts: Literal["latest", "latest in time"] = "latest"
     late: Late = Late()
@@ -126,12 +130,16 @@ def read_rules(course: Course) -> Rules:
     """
     path = course.root / FILE
     try:
-        rules = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8")), Rules)
-        ZoneInfo(rules.zone)
+        rules = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), Rules)
     except FileNotFoundError:
         return Rules()
-    except (ValueError, ZoneInfoNotFoundError) as error:
+    except (ValueError, RecursionError) as error:
         raise LabkitError(f"{path}: {error}; correct that line") from None
+    try:
+        ZoneInfo(rules.zone)
+    except (ValueError, OSError, ZoneInfoNotFoundError):
+        says = f"{rules.zone[:60]!r} is not a time zone; write one such as 'Europe/Berlin'"
+        raise LabkitError(f"{path}: {says}") from None
     unknown = {*rules.assignments, *(x.assignment for x in rules.extensions)} - {
         "",
         *UNRELEASED,

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from ..course.layout import Course
 from ..errors import LabkitError
-from .clean import clean_line
+from .clean import clean_line, some
 from .each import Failed
 
 
@@ -102,10 +102,9 @@ def meant(name: str, known: Iterable[str]) -> str:
     plain = {one.casefold(): one for one in known}
     near = [one for key, one in plain.items() if name.casefold() in key]
     near = near or [plain[key] for key in get_close_matches(name.casefold(), plain)]
-    some = ", ".join((near or sorted(plain.values()))[:5])
     if near:
-        return f"; did you mean {some}?"
-    return f"; there are {some}{', ...' * (len(plain) > 5)}" if plain else ""
+        return f"; did you mean {', '.join(near[:5])}?"
+    return f"; there are {some(sorted(plain.values()))}" if plain else ""
 
 
 def _folders(course: Course, name: str) -> list[str]:

@@ -20,6 +20,7 @@ from labkit.course import (
     own_arm,
 )
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
+from labkit.course.differences import sentence
 from labkit.course.identification import personal
 from labkit.course.layout import Course
 from labkit.course.messages import tell
@@ -149,7 +150,8 @@ def test_a_bug_is_found_by_its_cause_and_its_time():
     assert judge((cause, shows + 0.1), (cause, shows)) is None
     assert judge((cause, shows + 0.3), (cause, shows)) is not None
     wrong = next(letter for letter in CAUSES if letter != cause)
-    assert judge((wrong, shows), (cause, shows)) is not None
+    found = judge((wrong, shows), (cause, shows))
+    assert sentence(found) == f"It should be ({cause!r}, {shows}), not ({wrong!r}, {shows})."
 
 
 def test_a_mistake_shows_after_its_onset():
@@ -163,7 +165,7 @@ def test_an_experiment_must_tell_two_suspects_apart():
     assert tells_apart("f", "h", still, still) < 5.0
     assert Telling(0)(("fh", still, still), None) is not None
     assert Telling(0)(("bc", still, still), "b") is None
-    assert Telling(0)(("bc", still, still), "c") is not None
+    assert sentence(Telling(0)(("bc", still, still), "c")) == "It should be c, not b."
 
 
 def test_a_number_of_ones_own_arm_is_not_called_right_where_the_arm_is_not_known():

@@ -6,12 +6,14 @@ import json
 
 import pytest
 from courses import copied
+from handmade import hand_in, put
 
 from labkit.__main__ import main
 from labkit.course import my_arm
 from labkit.course.bundle import Bundle
 from labkit.course.own_arm import FILE, HANDLES, Arms
 from labkit.errors import LabkitError
+from labkit.grader.feedback.explain import explain
 from labkit.grader.terms.release import release
 from labkit.grader.terms.student_bundle import remarks
 
@@ -56,6 +58,21 @@ def test_the_grader_asks_for_ones_own_number(course):
     assert expected["mallory"][1] == bundle.data["hash"]
     payload = Arms.of(course.root).arm("ada").payload
     assert expected["ada"][0] == pytest.approx(payload, abs=0.01)
+
+
+def test_an_explanation_asks_for_ones_own_number(course):
+    """What is right of a student's own arm is right when it is explained, and else it is not."""
+    work = json.loads((course.release / NAME / f"{NAME}.ipynb").read_text())
+    payload = {who: Arms.of(course.root).arm(who).payload for who in ("ada", "eve")}
+    for student, number in (("eve", payload["eve"]), ("ada", payload["ada"] - 0.2)):
+        hand_in(course, NAME, student, put(work, "my_payload", f"my_payload = {number!r}"))
+    assert main(["grade", NAME, "--course", str(course.root)]) == 0
+    right, wrong = (explain(course, student, "my_payload") for student in ("eve", "ada"))
+    assert right.told.right and right.found.right
+    assert not wrong.told.right and not wrong.found.right
+    numbers = f"expected {payload['ada']:.6g}, got {payload['ada'] - 0.2:.6g}"
+    assert numbers in " ".join(str(wrong).split())
+    assert "ATTENTION" not in str(right) + str(wrong)
 
 
 def test_an_arm_stays_when_others_join_and_after_a_new_release(course, capsys):

@@ -76,4 +76,5 @@ def test_what_could_be_a_formula_is_quoted_and_named(login):
     assert table("canvas", mark)[-1]["SIS Login ID"] == f"'{login}"
     assert table("moodle", mark)[-1]["First name"] == f"'{login}"
     assert table("moodle", mark)[-1]["Email address"] == f"'{login}"
-    assert "1 of the 1 who handed in cannot be matched by this table" in left_out("moodle", [mark])
+    other = row("bob", email="bob@x")
+    assert "1 of the 2 who handed in cannot be matched" in left_out("moodle", [mark, other])

@@ -206,13 +206,14 @@ def test_the_mean_says_whose_it_is(course):
 
 
 def test_the_same_text_of_three_is_listed_and_accuses_nobody(course):
-    """Of long answers alone, and of two or more; a lone one or a short one is not listed."""
-    long = "def f(t):\n" + "".join(f"    x{k} = {k} * t\n" for k in range(6))
+    """Of answers of some lines, and of two or more, also where a fourth shares one of them."""
+    long = "def f(t):\n" + "".join(f"    x{k} = {k} * t\n" for k in range(2))
     results = [result_of(course, who) for who in ("ada", "bob", "eve", "zoe")]
     for where in (0, 1):
         results[:3] = [
             changed(result, where, source=f"{long}    # {where}") for result in results[:3]
         ]
+    results[3] = changed(results[3], 0, source=f"{long}    # 0")
     results[:] = [changed(result, 2, source="def g(t):\n    return t") for result in results]
     results[:] = [changed(result, 3, source=long) for result in results]
     text = report(NAME, list(map(mark_of, results)), {}, str)

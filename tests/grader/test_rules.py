@@ -7,6 +7,7 @@ import io
 from datetime import UTC, datetime
 
 import pytest
+from downloaded import bare_course
 from made import NAME, graded, notebook_of, result_of
 
 from labkit.__main__ import main
@@ -97,6 +98,57 @@ def test_who_handed_in_nothing_is_listed(late, tmp_path, capsys):
     assert f"frank{12 * ','}nothing was handed in" in out
     assert f"\nfrank{10 * ','}0.0,0.0," in verb(late, capsys, "export", NAME, "--absent-zero")[1]
     assert verb(late, capsys, "feedback", NAME)[0] == 0
+
+
+def test_an_extension_that_reaches_nobody_is_named(late, capsys):
+    """A name that is misspelt costs its student the days, so the table ends with exit 1."""
+    (late.root / "course.toml").write_text(RULES.replace('"cleo"', '"Cleo"'))
+    for words in (["export", NAME], ["export"]):
+        code, _, err = verb(late, capsys, *words)
+        assert code == 1
+        assert "extension for 'Cleo', who is not a student; did you mean cleo?" in err
+
+
+def test_no_zero_is_written_where_work_is_kept_apart(late, tmp_path, capsys):
+    """Who seems to be absent may have handed in under a name that the roster does not have."""
+    people = tmp_path / "people.csv"
+    people.write_text("login,first name,last name\nada,Ada,L\nben,Ben,M\nfrank,F,O\n")
+    assert verb(late, capsys, "students", "import", str(people))[0] == 0
+    for words in (["export", NAME], ["export"]):
+        code, out, err = verb(late, capsys, *words, "--absent-zero")
+        assert code == 1 and f"{NAME}: no 0 is written, because cleo handed in" in err
+        (row,) = [line for line in out.splitlines() if line.startswith("frank")]
+        assert "0.0" not in row
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("zone = 'Europe'", "'Europe' is not a time zone; write one such as"),
+        (f"zone = '{'x' * 5000}'", "is not a time zone"),
+        ("[late]\ngrace_minutes = inf", "<= 10000.0 - at `$.late.grace_minutes`"),
+        ("[[extensions]]\nstudent = 'ada'\ndays = 1e8", "`$.extensions[0].days`"),
+        ("[assignments.01_paths]\nweight = inf", "`$.assignments[...].weight`"),
+        ("[assignments.01_paths]\ndue = 9999-12-31T23:59:00", "due in the year 9999"),
+        ("zone = 'Asia/Tokyo'\n[assignments.01_paths]\ndue = 0001-01-01T00:00:00", "year 1"),
+        ("x = " + "[" * 100_000, "recursion"),
+        ('id = "a\\n"', "matching regex"),
+    ],
+)
+def test_what_nobody_can_follow_is_a_sentence(tmp_path, text, says):
+    """No zone, no number that a clock can add, no depth that Python can read."""
+    course = bare_course(tmp_path)
+    (tmp_path / "course.toml").write_text(text)
+    with pytest.raises(LabkitError) as error:
+        read_rules(course)
+    assert says in str(error.value)
+
+
+def test_a_byte_order_mark_is_read(tmp_path):
+    """Windows' editor writes one."""
+    course = bare_course(tmp_path)
+    (tmp_path / "course.toml").write_text("zone = 'Europe/Berlin'", "utf-8-sig")
+    assert read_rules(course).zone == "Europe/Berlin"
 
 
 def test_nbgraders_own_plugin_works_from_the_courses_folder(late, capsys):

@@ -79,6 +79,7 @@ def test_what_columns_hold(tmp_path):
         ("name\n\x00", "is not a text; save the spreadsheet as CSV"),
         ("PK\x03\x04", "is not a text; save the spreadsheet as CSV"),
         ("name,login\nLovelace, Ada,ada\n", "line 2 has 3 cells and the first line has 2"),
+        (f"name,{'x' * 200_000}\nAda,\n", "line 1: field larger than field limit"),
         ('name,login\n"Ada,ada\n', "unexpected end of data; correct the table"),
         ("name,email\n,a@x\n", "line 2 has neither a name nor a login"),
     ],
@@ -99,6 +100,7 @@ def test_a_list_that_cannot_be_read_is_a_sentence(tmp_path, text, words):
         ("name,login,email\nAda,a,x@u\nAda,b,X@u\n", "with a here and b there"),
         ("name\nLi Wei\nWei Li\n", "are both Wei Li, and nothing tells them apart"),
         ("name,login,email\nKim,a,\nKim,,x@u\n", "nothing tells them apart"),
+        ("Identifier,name\nParticipant 7,A\nParticipant 7,B\n", "participant 7 is in 2 lines;"),
     ],
 )
 def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
@@ -106,6 +108,35 @@ def test_rows_that_contradict_each_other_are_refused(tmp_path, text, words):
     with pytest.raises(LabkitError) as error:
         enrolled(listed(tmp_path, text))
     assert words in str(error.value)
+
+
+def test_a_list_that_is_cut_off_is_refused(tmp_path):
+    """Half a character in UTF-16 would stand in the last login."""
+    (tmp_path / "cut.csv").write_bytes("login\nada\n".encode("utf-16")[:-1])
+    with pytest.raises(LabkitError, match="is cut off; download"):
+        read_list(tmp_path / "cut.csv")
+
+
+def test_lines_of_an_old_mac_are_lines(tmp_path):
+    """They end with a carriage return alone."""
+    assert len(people(tmp_path, MOODLE.replace("\n", "\r"))) == 2
+
+
+def test_a_number_that_is_not_a_participants_is_none(tmp_path):
+    """Such as a word, wide digits, or more of them than any platform counts."""
+    for number in ("Participant abc", "Participant \uff11", "9" * 5000):
+        (one,) = listed(tmp_path, f"Identifier,Full name\n{number},Ada\n")
+        assert one.participant == ""
+
+
+def test_nothing_in_the_roster_becomes_a_formula(tmp_path):
+    """A person may call themselves so, and a lecturer opens the file in a spreadsheet."""
+    course = bare_course(tmp_path / "course")
+    roster = enrolled(listed(tmp_path, "name,login\n=cmd|' /C calc'!A0,@SUM(A1)\n'=1,-ada\n"))
+    save_roster(course, roster)
+    cells = (course.root / FILE).read_text().replace("\n", ",").split(",")
+    assert not [cell for cell in cells if cell[:1] in {"=", "@", "-", "+"}]
+    assert read_roster(course) == roster
 
 
 def test_a_row_that_is_there_twice_is_one_student(tmp_path):
@@ -150,6 +181,17 @@ def test_a_second_list_adds_and_changes_but_takes_nobody_away(tmp_path):
         "Ada-Lovelace", "7", "alovelace", "ada@uni.org",
     )  # fmt: skip
     assert zoe.lms_user_id == "8" and bob.email == "bob@uni.org"
+
+
+def test_a_guess_from_a_full_name_replaces_no_name(tmp_path):
+    """Which words are the last name, a worksheet does not say; a comma or two columns do."""
+    roster = Roster((Student("ada", "Ada", "de la Cruz", "ada@x"), Student("b", email="b@x")))
+    text = "Identifier,Full name,Email address\nParticipant 7,{},ada@x\nParticipant 8,Bo Li,b@x\n"
+    ada, bo = enrolled(listed(tmp_path, text.format("Ada de la Cruz")), roster).students
+    assert (ada.first_name, ada.last_name) == ("Ada", "de la Cruz")
+    assert (bo.first_name, bo.last_name) == ("Bo", "Li"), "where there is none, it is taken"
+    ada, _ = enrolled(listed(tmp_path, text.format('"Cruz, Ada de la"')), roster).students
+    assert (ada.first_name, ada.last_name) == ("Ada de la", "Cruz")
 
 
 def test_a_row_between_two_students_is_refused():

@@ -532,6 +532,19 @@ def _top(**fields: Any) -> Any:
     return lambda notebook: notebook.update(copy.deepcopy(fields))
 
 
+def _deep(depth: int) -> Any:
+    """A table in a table, and so on."""
+    inner: dict[str, Any] = {}
+    for _ in range(depth):
+        inner = {"x": inner}
+    return inner
+
+
+def _nest(notebook: Notebook, depth: int) -> None:
+    for cell in notebook["cells"]:
+        cell["metadata"]["x"] = _deep(depth)
+
+
 def _twice(notebook: Notebook) -> None:
     notebook["cells"] += copy.deepcopy(notebook["cells"])
 
@@ -608,6 +621,28 @@ NOTEBOOKS = {
     "notebook's metadata is a list": _top(metadata=[]),
     "NaN": _top(metadata={"x": float("nan"), "y": float("inf"), "z": -float("inf")}),
     "huge number": _top(nbformat_minor=10**3000),
+    "deep metadata": lambda notebook: notebook.update(metadata=_deep(900)),
+    "deep metadata of cells": lambda notebook: _nest(notebook, 200),
+    "minor format is a text": _top(nbformat_minor="x"),
+    "minor format is none": _top(nbformat_minor=None),
+    "minor format is negative": _top(nbformat_minor=-1),
+    "sources are nested": _each(source=[["x = 1"], {"x": 1}]),
+    "sources of halves": _each(source=["\ud83d", "\ude00"]),  # together a character
+    "outputs of huge numbers": _each(outputs=[{"output_type": "execute_result", "metadata": {},
+        "execution_count": 10**400, "data": {"application/json": {"x": float("nan")}}}]),
+    "a verdict that is a list": _each(outputs=[
+        {"output_type": "display_data", "metadata": {"labkit": [1]}, "data": {}}]),
+    "points are nan": _lab(points=float("nan"), grade=True, solution=True),
+    "points are huge": _lab(points=10**400, grade=True, solution=True),
+    "schema is huge": _lab(schema_version=10**400),
+    "schema is none": _lab(schema_version=None),
+    "long grade_ids": _lab(grade_id="x" * 100_000),
+    "grade_ids of markup": _lab(grade_id="<script>hostile()</script>"),
+    "kernel is a list": _top(metadata={"kernelspec": [1], "language_info": 5}),
+    "headings": _each(cell_type="heading", level=1),
+    "ids of half a character": _each(id="\ud800"),
+    "count is infinite": _each(execution_count=float("inf")),
+    "field of half a character": _top(**{"\ud800": 1}),
     "attachments": _each(attachments={"x": {"text/html": "<script>hostile()</script>"}}),
 }  # fmt: skip
 """Done to a solved notebook, as JSON data."""
@@ -714,6 +749,66 @@ STATES = {
     "config: no UTF-8": _write("nbgrader_config.py", b"# \xff\n"),
 }
 """Done to a course in which the class is graded already."""
+
+_HEAD, _SHEET = b"name,login\n", b"Identifier,Full name,Last modified (submission)\n"
+
+LISTS = {
+    "half of UTF-16": (_HEAD + b"Ann,ann\n").decode().encode("utf-16")[:-1],
+    "UTF-16 without a mark": (_HEAD + b"Ann,ann\n").decode().encode("utf-16-le"),
+    "UTF-32": (_HEAD + b"Ann,ann\n").decode().encode("utf-32"),
+    "NUL": _HEAD + b"A\0nn,ann\n",
+    "long column": b"name,login," + b"x" * 200_000 + b"\nAnn,ann,\n",  # csv reads 131,072
+    "long cell": _HEAD + b"x" * 200_000 + b",ann\n",
+    "10,000 columns": b"name,login" + b",x" * 10_000 + b"\nAnn,ann\n",
+    "columns twice": b"name,name,login,login\nAnn,Bea,a,b\n",
+    "old Mac": b"name,login\rAnn,ann\rBea,bea\r",  # its lines end with a carriage return
+    "Excel's own": b"sep=;\nname;login\nAnn;ann\n",
+    "two marks": b"\xef\xbb\xbf\xef\xbb\xbfname,login\nAnn,ann\n",
+    "surrogate": _HEAD + b"\xed\xa0\x80Ann,ann\n",
+    "formulas": _HEAD + b"=cmd|' /C calc'!A0,@SUM(A1)\n",
+    "paths": _HEAD + b"Ann,../../etc/passwd\nBob,/root\n",
+    "line break": _HEAD + b'"Ada\nzoe: 0 of 20",ann\n',
+    "escape": _HEAD + b"\x1b[2J\x1b]0;owned\x07,ann\n",
+    "only signs": _HEAD + b"***,\n---,\n",
+    "open quotation": b'name,"login\nAnn,ann\n',
+    "page": b"<html><table><tr><td>name</td></tr></table>",
+    "participant is a word": _SHEET + b"Participant abc,Ann,-\n",
+    "participant of 5000 digits": _SHEET + b"Participant " + b"9" * 5000 + b",Ann,-\n",
+    "one number for two": _SHEET + b"Participant 101,Ann,-\nParticipant 101,Bob,-\n",
+    "time of no year": _SHEET + b"Participant 101,Mia Wong,23:59\n",
+    "time far off": _SHEET + b"Participant 101,Mia Wong,99999-13-45 99:99:99 +99:99\n",
+    "time of two dates": _SHEET + b"Participant 101,Mia Wong,01.03.2026 12:00\n",
+    "time of no zone": _SHEET + b"Participant 101,Mia Wong,2026-03-01 12:00 XYZ\n",
+    "formula as a time": _SHEET + b"Participant 101,Mia Wong,=1+1\n",
+}
+"""Imported as a list of students, or as the worksheet of a class that is graded already."""
+
+_DUE = b"[assignments.01_paths]\n"
+_LONGER = _DUE + b"due = 2090-11-02T23:59:00\n[[extensions]]\nstudent = 'kim'\ndays = "
+
+RULES = {
+    "no TOML": b"[late\n",
+    "byte order mark": b"\xef\xbb\xbfzone = 'UTC'\n",
+    "UTF-16": "zone = 'UTC'\n".encode("utf-16"),
+    "no UTF-8": b"name = '\xe9'\n",
+    "deep": b"x = " + b"[" * 100_000,
+    "long number": b"x = " + b"9" * 10_000,
+    "zone is a folder": b"zone = 'Europe'",
+    "zone climbs": b"zone = '../../../etc/passwd'",
+    "long zone": b"zone = '" + b"x" * 5000 + b"'",
+    "days are infinite": _LONGER + b"inf",
+    "days are many": _LONGER + b"1e8",
+    "days are nan": _LONGER + b"nan",
+    "grace is infinite": b"[late]\ngrace_minutes = inf\n" + _DUE + b"due = 2090-11-02T23:59:00",
+    "last year": _DUE + b"due = 9999-12-31T23:59:00",
+    "first year": b"zone = 'Asia/Tokyo'\n" + _DUE + b"due = 0001-01-01T00:00:00",
+    "due at a time of day": _DUE + b"due = 23:59:00",
+    "weight is infinite": _DUE + b"weight = inf",
+    "weight is nan": _DUE + b"weight = nan",
+    "odd extension": b'[[extensions]]\nstudent = "\\u001b[2J"\ndays = 1',
+    "odd assignment": b'[assignments."\\u001b[2J"]\nweight = 1',
+}
+"""The course's rules, where a class is graded already and nobody is late."""
 
 ANSWERS = {
     "gone": lambda path: path.unlink(),

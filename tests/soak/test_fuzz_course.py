@@ -137,6 +137,36 @@ def test_download(fresh, kind):
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.parametrize("kind", kinds("LISTS"), ids=str)
+def test_list(fresh, clean, kind):
+    """A list of students is taken or refused in a sentence; nobody's mark changes."""
+    course = fresh()
+    (course / "list.csv").write_bytes(kind.thing)
+    more = ("--assignment", NAME) if b"Identifier" in kind.thing else ()
+    wrong = [
+        *laws.said(typed(course, "labkit", "students", "import", "list.csv", *more), (0, 1, 2))
+    ]
+    for step in EXPORTS:
+        ended = typed(course, *step.words(NAME))
+        wrong += laws.said(ended, (0, 1))
+        wrong += laws.changed(clean[step], laws.seen(course, ended))
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("kind", kinds("RULES"), ids=str)
+def test_rules(fresh, clean, kind):
+    """Rules are followed or refused in a sentence by each command; nobody's mark changes."""
+    wrong = []
+    course = fresh()
+    (course / "course.toml").write_bytes(kind.thing)
+    for step in (EXPORTS[0], FEEDBACK, GRADE, COLLECT):
+        ended = typed(course, *step.words(NAME))
+        wrong += (f"{step.line}: {says}" for says in laws.said(ended, (0, 1, 2)))
+        if ended.code != 2:
+            wrong += laws.changed(clean[step], laws.seen(course, ended))
+    assert not wrong, "\n".join(wrong)
+
+
 def may_mount():
     """Whether this user may make a small disk, in a name space of its own."""
     words = ["unshare", "--mount", "mount", "-t", "tmpfs", "none", "/mnt"]

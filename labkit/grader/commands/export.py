@@ -13,6 +13,7 @@ import click
 from ...course.cli import verb
 from ...course.layout import CUP, UNRELEASED, Course
 from ...errors import LabkitError
+from ..clean import some
 from ..each import Failed, Failures
 from .course import of_course
 from .pages import nobody, tell, to_file, write
@@ -68,8 +69,8 @@ def export(
     The marks are those of an assignment or, without ASSIGNMENT, of the term: every assignment that
     was graded, and the total with the weights of course.toml.
     """
-    from ..marks.export import LAYOUTS, as_csv, of_term, remarks
-    from ..marks.table import marks_of
+    from ..marks.export import LAYOUTS, as_csv, of_term, remarks, unmatched
+    from ..marks.table import marks_of, unknown_extensions
     from ..rules import read_rules
 
     if layout == "gradescope":
@@ -83,15 +84,33 @@ def export(
     if final or layout == "cup":
         raise LabkitError("for the cup's board type: labkit export --layout cup [--final]")
 
+    doubts = list(unknown_extensions(course))
+
     def read(name: str) -> list[Mark]:
         if name not in UNRELEASED:
             course.notebook_source(name)
         found = list(marks_of(course, name))
-        if all(mark.absent for mark in found):
-            return []
-        return [replace(m, raw=0.0) if absent_zero and m.absent else m for m in found]
+        return [] if all(mark.absent for mark in found) else found
+
+    def filled(name: str, marks: list[Mark]) -> list[Mark]:
+        """The marks with a 0 for each who is absent, if that is asked for and certain."""
+        strangers = [m.student for m in marks if not (m.absent or m.person)]
+        if not absent_zero or not any(m.absent for m in marks):
+            return marks
+        if strangers:
+            doubts.append(
+                f"{name}: no 0 is written, because {some(strangers)} handed in and are not in the "
+                "roster, and may be somebody who is; import a list that has them"
+            )
+            return marks
+        return [replace(m, raw=0.0) if m.absent else m for m in marks]
 
     if assignment is None:
+        if layout != "questions" or column:
+            raise LabkitError(
+                "--layout and --column are for one assignment: type labkit export ASSIGNMENT "
+                f"--layout {layout}; without them, labkit export writes the table of the term"
+            )
         rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]
         names += UNRELEASED
         term = {name: marks for name in names if (marks := read(name))}
@@ -99,14 +118,18 @@ def export(
             raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
         for name, marks in term.items():
             tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
-        write(as_csv(of_term(term, {name: rules.weight(name) for name in term})), to)
-        return int(any(mark.missing for marks in term.values() for mark in marks))
+        whole = {name: filled(name, marks) for name, marks in term.items()}
+        write(as_csv(of_term(whole, {name: rules.weight(name) for name in term})), to)
+        tell(doubts, sys.stderr)
+        return int(any(m.missing for marks in term.values() for m in marks) or bool(doubts))
     marks = read(assignment)
     if not marks:
         raise nobody(assignment, None)
     tell(remarks(layout, marks), sys.stderr)
-    write(as_csv(LAYOUTS[layout](column or assignment, marks)), to)
-    return int(any(mark.missing for mark in marks))
+    write(as_csv(LAYOUTS[layout](column or assignment, filled(assignment, marks))), to)
+    tell(doubts, sys.stderr)
+    lost, count = unmatched(layout, marks)
+    return int(any(m.missing for m in marks) or 0 < count == len(lost) or bool(doubts))
 
 
 def _concept_test(

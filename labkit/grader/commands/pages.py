@@ -12,6 +12,7 @@ import click
 from ...course.cli import PATH, verb
 from ...course.layout import Course
 from ...errors import LabkitError
+from ..clean import some
 from ..each import Failed, Failures
 from .course import of_assignment
 
@@ -122,10 +123,9 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
     open_ones = [mark for mark in marks if mark.open and not mark.author]
     waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
     if waiting:
-        some = ", ".join(waiting[:5]) + (", ..." if len(waiting) > 5 else "")
         raise LabkitError(
-            f"{some}: these answers wait for a mark by hand, {len(waiting)} students in all; give "
-            "it in formgrader, or add --unmarked to write the pages without these marks"
+            f"{some(waiting)}: these answers wait for a mark by hand, {len(waiting)} students in "
+            "all; give it in formgrader, or add --unmarked to write the pages without these marks"
         )
 
 

@@ -70,7 +70,7 @@ def term(
         record = new_term(course, seed, names)
         if record["archived"]:
             print(f"archived: {there or 'files without students'}")
-            print(way_back(course, record["archived"]))
+            tell(way_back(course, record["archived"]), sys.stdout)
         print(f"a new term begins, released: {', '.join(record['bundles'])}")
         print("its secret seed is in course_private/term.json; keep a copy")
         tell(filter(None, [old_rules(course)]), sys.stdout)

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 
 from ...course.bundle import Bundle
 from ...course.layout import Course
 from ...course.messages import summary, wrapped
-from ...course.question import Question
+from ...course.serialize import question_data
 from ...course.verdict import Verdict
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
@@ -104,7 +103,7 @@ def explain(
     told = next((x for x in mark.result.questions if x.verdict.name == question), None)
     if told is None:
         raise LabkitError(f"{question} is newer than the mark; type: labkit grade {name}")
-    result = _again(course, student, _LaidOpen(bundle.data), question)
+    result = _again(course, student, _laid_open(bundle.of_student(student), question))
     (answer,) = result.questions
     file = course.build / "explain" / f"{student}-{question}.html"
     lines = tuple(line for line in mark.lines if line.name == question)
@@ -115,35 +114,26 @@ def explain(
     return Explanation(mark, line, told.verdict, answer.verdict, told.source, file)
 
 
-@dataclass(frozen=True)
-class _LaidOpen(Bundle):
-    """A bundle all of whose cases are public."""
-
-    @cached_property
-    def questions(self) -> tuple[Question, ...]:
-        return tuple(map(_laid_open, Bundle(self.data).questions))
-
-
-def _laid_open(question: Question) -> Question:
+def _laid_open(bundle: Bundle, name: str) -> Bundle:
+    """One question of a bundle, every case of it public."""
+    question = next(q for q in bundle.questions if q.name == name)
     tests = tuple(
         replace(test, cases=tuple(replace(case, hidden=False) for case in test.cases))
         for test in question.tests
     )
-    return replace(question, tests=tests)
+    return Bundle({**bundle.data, "questions": [question_data(replace(question, tests=tests))]})
 
 
-def _again(course: Course, student: str, bundle: Bundle, question: str) -> Result:
-    """Grade one question of a submission, and keep nothing of it."""
+def _again(course: Course, student: str, bundle: Bundle) -> Result:
+    """Grade what a bundle asks of a submission, and keep nothing of it."""
     limits = Limits()
     submission = Submission.of(course, bundle.data["assignment"], student)
     data, note, why = submission.read(limits.notebook)
     if why:
         raise LabkitError(why)
-    mine = [q for q in bundle.data["questions"] if q["name"] == question]
-    one = _LaidOpen({**bundle.data, "questions": mine})
 
     def again(sandbox: Sandbox) -> Result:
-        return grade(data, student, one, sandbox, limits.scaled(slowness()), note)
+        return grade(data, student, bundle, sandbox, limits.scaled(slowness()), note)
 
     return in_sandbox(again, course, imports(bundle.data["cells"]))
 

@@ -25,6 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
+from ..clean import no_formula, some
 from .mark import Mark
 
 
@@ -90,6 +91,15 @@ def moodle_worksheet(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     return table
 
 
+_NEEDS = {
+    "canvas": "ID or login (labkit students import CANVAS-LIST.csv)",
+    "moodle": "address, ID number or login (labkit students import LIST.csv)",
+    "moodle-worksheet": "participant's number (labkit collect NAME MOODLE.zip, or labkit students "
+    "import WORKSHEET.csv --assignment NAME)",
+}
+"""By what a platform knows a student, and where it comes from."""
+
+
 def _participants(marks: Sequence[Mark]) -> set[str]:
     """Moodle's numbers that are one student's alone; others would get two marks."""
     numbers = Counter(r.number("moodle") for r in marks)
@@ -140,19 +150,30 @@ def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
         elif mark.remark and not (mark.absent or mark.author):
             yield f"{mark.student}: {mark.remark}"
     if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
-        yield f"{len(team)} have the mark of a report that their team handed in: {_some(team)}"
+        yield f"{len(team)} have the mark of a report that their team handed in: {some(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
-        yield f"{len(absent)} handed in nothing: {_some(absent)}"
+        yield f"{len(absent)} handed in nothing: {some(absent)}"
     if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
         yield (
             f"{len(lost)} have no Canvas ID, so Canvas must find them by SIS ID or login: "
-            f"{_some(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
+            f"{some(lost)}; import Canvas's own list (Grades, Export), which has the IDs"
         )
     yield from filter(None, [left_out(layout, marks)])
 
 
 def left_out(layout: str, marks: Sequence[Mark]) -> str:
     """Whom a platform cannot match by a table, in a sentence; "" if it can match everybody."""
+    lost, count = unmatched(layout, marks)
+    if lost and len(lost) == count:
+        return (
+            f"nobody can import this table: it has no {_NEEDS[layout]} of the {count} who handed in"
+        )
+    who = f"{len(lost)} of the {count} who handed in"
+    return f"{who} cannot be matched by this table: {some(lost)}" if lost else ""
+
+
+def unmatched(layout: str, marks: Sequence[Mark]) -> tuple[list[str], int]:
+    """Whom a platform cannot match by a table, and of how many who handed in."""
     once = _participants(marks)
     ways: dict[str, Callable[[Mark], str]] = {
         "canvas": lambda r: r.canvas or r.id_number or r.login,
@@ -160,16 +181,10 @@ def left_out(layout: str, marks: Sequence[Mark]) -> str:
         "moodle-worksheet": lambda r: r.number("moodle") if r.number("moodle") in once else "",
     }
     if layout not in ways:
-        return ""
+        return [], 0
     way = ways[layout]
     there = [r for r in marks if not r.absent]
-    lost = [r.student for r in there if not way(r) or _cell(way(r), True) != way(r)]
-    who = f"{len(lost)} of the {len(there)} who handed in"
-    return f"{who} cannot be matched by this table: {_some(lost)}" if lost else ""
-
-
-def _some(names: Sequence[str]) -> str:
-    return ", ".join(names[:5]) + (", ..." if len(names) > 5 else "")
+    return [r.student for r in there if not way(r) or _cell(way(r), True) != way(r)], len(there)
 
 
 LAYOUTS: dict[str, Callable[[str, Sequence[Mark]], list[list[Any]]]] = {
@@ -203,6 +218,6 @@ def as_csv(table: Sequence[Sequence[Any]]) -> str:
 
 
 def _cell(x: Any, identity: bool) -> Any:
-    if not isinstance(x, str) or x[:1] not in {"=", "+", "-", "@", "\t", "\r"}:
+    if not isinstance(x, str) or (identity and _PLAIN.fullmatch(x)):
         return x
-    return x if identity and _PLAIN.fullmatch(x) else f"'{x}"
+    return no_formula(x)

@@ -18,10 +18,11 @@ from ..each import Failed
 from ..grading.results import Result
 from ..grading.standing import full_marks, grade_again, standing
 from ..nbgrader.gradebook import open_gradebook
-from ..rules import settle_lateness
+from ..rules import FILE as RULES
+from ..rules import read_rules, settle_lateness
 from ..students.identity import lms_users
 from ..students.roster import read_roster
-from ..submission import plain_name, students
+from ..submission import meant, plain_name, students
 from ..whys import settle_whys
 from .mark import Mark, MarkLine
 from .team_reports import for_teams
@@ -64,6 +65,15 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
                 gone = "nothing of theirs is in submitted/; the mark stays as it was"
                 row = replace(row, remark=gone)
             yield _named(row)
+
+
+def unknown_extensions(course: Course) -> Iterator[str]:
+    """Who has longer by the rules and is not a student, a sentence each."""
+    known = {student.id for student in read_roster(course).students}
+    known |= {path.name for path in course.submitted.glob("*")}
+    for name in sorted({x.student for x in read_rules(course).extensions} - known):
+        said = f"an extension for {clean_line(name, 60)!r}, who is not a student"
+        yield f"{RULES} has {said}{meant(name, known)}"
 
 
 def mark_of(result: Result) -> Mark:

@@ -42,7 +42,9 @@ _FIELDS = {head: field for field, heads in HEADS.items() for head in heads.split
 _NOT_A_STUDENT = "points possible"
 _NO_TEAM = {"no groups", "keine gruppen"}
 """What Moodle's column Groups says of a student who is in none."""
-_PARTICIPANT = re.compile(r"[^\d]*([0-9]+)")
+_PARTICIPANT = re.compile(r"[^\d]*([0-9]{1,19})")
+_LONG_LINE = 100_000
+"""Characters of the first line by which the delimiter is found out; a cell may have few more."""
 
 
 @dataclass(frozen=True)
@@ -89,12 +91,14 @@ class Entry:
         student: Who it is; without an ``id``, which is for the roster to give.
         participant: Moodle's number of the participant in one assignment.
         handed_in: When the participant handed in, as Moodle's worksheet writes it.
+        guessed: Whether first and last name are a guess from the full name.
     """
 
     line: int
     student: Student
     participant: str = ""
     handed_in: str = ""
+    guessed: bool = False
 
 
 def read_list(path: Path) -> tuple[Entry, ...]:
@@ -124,8 +128,8 @@ def read_table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     Raises:
         LabkitError: It is not a table.
     """
-    text = _read_text(path)
-    first = text.partition("\n")[0]
+    text = _read_text(path).replace("\r\n", "\n").replace("\r", "\n")
+    first = text.partition("\n")[0][:_LONG_LINE]
     delimiter = max(
         ",;\t|", key=lambda x: len(_columns(next(csv.reader([first], delimiter=x), [])))
     )
@@ -161,7 +165,10 @@ def _read_text(path: Path) -> str:
     check_size(path.stat().st_size, LARGEST)
     data = path.read_bytes()
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        return data.decode("utf-16", errors="replace")
+        try:
+            return data.decode("utf-16")
+        except UnicodeDecodeError:
+            raise LabkitError(f"{path} is cut off; download or save it again") from None
     if data.startswith(b"PK\x03\x04") or b"\0" in data:
         raise LabkitError(f"{path} is not a text; save the spreadsheet as CSV")
     try:
@@ -189,19 +196,20 @@ def _entries(
 ) -> Iterator[Entry]:
     for line, row in rows:
         cells = {k: row[at] if at < len(row) else "" for k, at in columns.items()}
-        name = cells.pop("name", "")
+        name, guessed = cells.pop("name", ""), False
         if not (name or any(cells.values())) or name.casefold() == _NOT_A_STUDENT:
             continue  # an empty line, or Canvas's full marks
         if name and not (cells.get("first_name") or cells.get("last_name")):
             last, comma, first = name.partition(",")
+            guessed = not comma
             first, _, last = (first, "", last) if comma else name.rpartition(" ")
             cells |= {"first_name": first.strip(), "last_name": last.strip()}
         if cells.get("team", "").casefold() in _NO_TEAM:
             cells["team"] = ""
-        if number := _PARTICIPANT.fullmatch(cells.get("participant", "")):
-            cells["participant"] = number[1]
+        number = _PARTICIPANT.fullmatch(cells.get("participant", ""))
+        cells["participant"] = number[1] if number else ""
         of_hand_in = {k: cells.pop(k, "") for k in ("participant", "handed_in")}
         student = Student("", **cells)
         if not (student.name or student.login):
             raise LabkitError(f"{path}, line {line} has neither a name nor a login")
-        yield Entry(line, student, **of_hand_in)
+        yield Entry(line, student, **of_hand_in, guessed=guessed)

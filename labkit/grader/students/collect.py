@@ -16,6 +16,7 @@ from pathlib import Path
 
 from ...course.layout import Course
 from ...errors import LabkitError
+from ..clean import some
 from ..each import Failed, for_student
 from ..grading.results import digest
 from .attempts import Seen, adopt, called, install, keep, that_counts
@@ -201,12 +202,12 @@ def _known_by_name(
         if (before := there.get(folder)) is not None and before.number != who.number
     ]
     if pairs:
-        some = ", ".join(pairs[:3]) + (", ..." if len(pairs) > 3 else "")
         yield Taken(
             "",
             "",
-            f"{len(pairs)} are known by their name alone, which people can change: {some}; "
-            "`labkit students import` reads the class list, which knows them for certain",
+            f"{len(pairs)} are known by their name alone, which people can change: "
+            f"{some(pairs, 3)}; `labkit students import` reads the class list, which knows them "
+            "for certain",
         )
 
 

@@ -8,25 +8,23 @@ name them.  A student keeps the folder in which work of theirs lies.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
-from zoneinfo import ZoneInfo
 
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..clean import safe_name
-from ..rules import read_rules
+from ..clean import safe_name, some
 from ..seeds import seed_of
-from ..timestamp import read_time
 from .arms import give_arms
-from .attempts import attempts, counts, install, keep, move
+from .attempts import move
 from .class_list import Entry, Student, read_list
-from .identity import all_lms_users, alone, lms_users, places, remember
+from .identity import all_lms_users, alone, places, remember
 from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
+from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]
 _KEYS = ("login", "email", "lms_user_id", "id_number", "github")
@@ -73,8 +71,10 @@ def enrol(
         unique = names[same_name(entry.student.name)] == 1
         # who is new has no folder yet, and until `_folders` an id that no folder can have
         id = _find(entry, unique, students, by_mark) or f"\n{entry.line}"
-        said = {k: v for k in _FIELDS if (v := getattr(entry.student, k))}
-        students[id] = replace(students.get(id, Student(id)), **said)
+        student = students.get(id, Student(id))
+        known = ("first_name", "last_name") if entry.guessed and student.name else ()
+        said = {k: v for k in _FIELDS if (v := getattr(entry.student, k)) and k not in known}
+        students[id] = replace(student, **said)
         _index(students[id], by_mark)
         rows.append((entry, id))
     new = [id for id in students if id not in roster]
@@ -93,7 +93,7 @@ class Imported:
 
     Attributes:
         told: What was done.
-        left: Work of one student that is in two folders.
+        left: Work of one student that is in two folders, and hand-in times that are not set.
         alike: Students whom a download of Moodle's does not tell apart.
     """
 
@@ -129,14 +129,17 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
         left = settle(course, done.roster)
-        left += keep_numbers(course, assignment, done.rows) if assignment else []
-        times = keep_times(course, assignment, done.rows) if assignment else 0
+        times = 0
+        if assignment:
+            left += keep_numbers(course, assignment, done.rows)
+            times, not_taken = keep_times(course, assignment, done.rows)
+            left += not_taken
     listed = {student.id for _, student in done.rows}
     absent = [str(student) for student in before.students if student.id not in listed]
     told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
     if absent:
-        some = ", ".join(absent[:5]) + (", ..." if len(absent) > 5 else "")
-        told.append(f"not in this list, and still in the roster: {len(absent)} ({some})")
+        still = f"{len(absent)} ({some(absent)})"
+        told.append(f"not in this list, and still in the roster: {still}")
     told += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
         told.append(f"{assignment}: {numbered} participants; {times} hand-in times set")
@@ -167,42 +170,6 @@ def settle(course: Course, roster: Roster) -> list[str]:
     return [sentence for sentence in left if sentence]
 
 
-def keep_numbers(
-    course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
-) -> list[str]:
-    """Keep whose each participant's number is, and bring earlier work to its owner.
-
-    Returns:
-        What a person should look at, a sentence each.
-    """
-    mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
-    before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
-    left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
-    remember(course, assignment, mine)
-    return [sentence for sentence in left if sentence]
-
-
-def keep_times(course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]) -> int:
-    """Keep when each handed in what counts, as Moodle's worksheet says.
-
-    Returns:
-        How many times were taken; a hand-in that was not collected yet has none.
-    """
-    taken, rules = 0, read_rules(course)
-    for entry, student in rows:
-        stated = read_time(entry.handed_in, ZoneInfo(rules.zone)) if entry.handed_in else None
-        chosen = counts(attempts(course, student.id, assignment), assignment)
-        if stated is None or chosen is None or stated > chosen.first.when:
-            continue
-        first = chosen.first
-        if first.origin == "moodle" and not first.exact:
-            exact = replace(first, when=stated, exact=True)
-            keep(course, student.id, assignment, chosen.attempt.file.read_bytes(), exact)
-            install(course, student.id, assignment)
-            taken += 1
-    return taken
-
-
 def _marks(one: Student) -> dict[str, str]:
     """What tells a student from others, as far as it is known."""
     return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
@@ -215,6 +182,12 @@ def _shared(one: Student, other: Student) -> list[bool]:
 
 
 def _refuse_contradictions(entries: Sequence[Entry]) -> None:
+    numbers = Counter(entry.participant for entry in entries if entry.participant)
+    for number, times in numbers.items():
+        if times > 1:
+            raise LabkitError(
+                f"participant {number} is in {times} lines; download the worksheet again"
+            )
     by: dict[tuple[str, object], list[Entry]] = {}
     for entry in entries:
         who, name = entry.student, same_name(entry.student.name)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
+from ..clean import some
 from .platforms import LmsUser
 from .roster import FILE, Roster
 
@@ -13,12 +14,11 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
     """What follows from a list's teams, which may be groups that were made for something else."""
     teams = Counter(named)
     if teams:
-        some = ", ".join(sorted(teams)[:5]) + (", ..." if len(teams) > 5 else "")
         yield (
-            f"teams in this list: {len(teams)} ({some}), the largest of {max(teams.values())} "
-            "students; a team has one arm and hands in one report. If these are other groups, such "
-            f"as tutorials, delete their column from the list, clear the column team of {FILE}, "
-            "and import the list again"
+            f"teams in this list: {len(teams)} ({some(sorted(teams))}), the largest of "
+            f"{max(teams.values())} students; a team has one arm and hands in one report. If "
+            "these are other groups, such as tutorials, delete their column from the list, clear "
+            f"the column team of {FILE}, and import the list again"
         )
 
 

@@ -15,7 +15,7 @@ from functools import cached_property
 from ...course.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
-from ..clean import safe_name
+from ..clean import from_no_formula, no_formula, safe_name
 from ..nbgrader.gradebook import open_gradebook
 from .class_list import Student, read_table, refuse_long_rows
 from .platforms import LmsUser
@@ -99,7 +99,7 @@ def read_roster(course: Course) -> Roster:
         raise _damaged(path, "it has no column 'id'")
     found: dict[str, Student] = {}
     for line, row in rows:
-        cells = dict(zip(heads, row, strict=False))
+        cells = dict(zip(heads, map(from_no_formula, row), strict=False))
         student = Student(**{column: cells.get(column, "") for column in COLUMNS})
         if student.id != safe_name(student.id) or student.id.casefold() in found:
             why = "is there twice" if student.id.casefold() in found else "cannot name a folder"
@@ -113,7 +113,8 @@ def save_roster(course: Course, roster: Roster) -> None:
     out = io.StringIO()
     table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
     table.writeheader()
-    table.writerows(asdict(student) for student in roster.students)
+    for student in roster.students:
+        table.writerow({name: no_formula(cell) for name, cell in asdict(student).items()})
     write(course.root / FILE, out.getvalue())
 
 

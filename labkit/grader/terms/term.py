@@ -122,23 +122,21 @@ def archive(course: Course) -> Path | None:
     return folder
 
 
-def way_back(course: Course, folder: str) -> str:
-    """Where the last term is now, and how to return to it."""
-    old = _private(course) / folder
-    by_place: dict[str, list[str]] = {}
-    for name in (*PERSONAL_FILES, course.term.relative_to(course.root).as_posix()):
-        path = Path(name)
-        if (old / path.name).exists():
-            by_place.setdefault(path.parent.as_posix(), []).append(path.name)
-    back = "; ".join(
-        f"{', '.join(sorted(files))} to {'the course folder' if place == '.' else place}"
-        for place, files in sorted(by_place.items())
-    )
-    again = " ".join(["labkit release", *sorted(x.stem for x in (old / "bundle").glob("*.json"))])
-    return (
-        f"the last term is in {old.relative_to(course.root)}; to return to it, move its files back "
-        f"in place of the new term's ({back}), then type: {again}"
-    )
+def way_back(course: Course, folder: str) -> Iterator[str]:
+    """Where the last term is now, and the commands that return to it, a line each."""
+    old = (_private(course) / folder).relative_to(course.root)
+    mine = (*PERSONAL_FILES, course.term.relative_to(course.root).as_posix())
+    new = [name for name in mine if (course.root / name).exists()]
+    by_place: dict[Path, list[str]] = {}
+    for name in (Path(name) for name in mine):
+        if (course.root / old / name.name).exists():
+            by_place.setdefault(name.parent, []).append(f"{old / name.name}")
+    names = sorted(x.stem for x in (course.root / old / "bundle").glob("*.json"))
+    yield f"the last term is in {old}; to return to it, type in the course's folder:"
+    yield "    mkdir course_private/undone"
+    yield f"    mv {' '.join(new)} course_private/undone"
+    yield from (f"    mv {' '.join(files)} {place}" for place, files in by_place.items())
+    yield f"    labkit release {' '.join(names)}".rstrip()
 
 
 def old_rules(course: Course) -> str:

@@ -1,0 +1,99 @@
+"""Moodle's grading worksheet: whose each participant's number is, and when each handed in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from datetime import datetime
+from zoneinfo import ZoneInfo
+
+from ...course.layout import Course
+from ..clean import some
+from ..rules import read_rules
+from ..timestamp import read_time
+from .attempts import Attempt, Counted, attempts, counts, install, keep, move
+from .class_list import Entry, Student
+from .identity import lms_users, remember
+from .platforms import LmsUser
+
+
+def keep_numbers(
+    course: Course, assignment: str, rows: Iterable[tuple[Entry, Student]]
+) -> list[str]:
+    """Keep whose each participant's number is, and bring earlier work to its owner.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
+    before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
+    left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
+    remember(course, assignment, mine)
+    return [sentence for sentence in left if sentence]
+
+
+def keep_times(
+    course: Course, assignment: str, rows: Sequence[tuple[Entry, Student]]
+) -> tuple[int, list[str]]:
+    """Keep when each handed in what counts, as Moodle's worksheet says.
+
+    Returns:
+        How many times were taken; and which were not, a sentence each.
+    """
+    zone = ZoneInfo(read_rules(course).zone)
+    taken = 0
+    left: list[str] = []
+    waiting: list[str] = []
+    for entry, student in rows:
+        all = attempts(course, student.id, assignment)
+        chosen, said = counts(all, assignment), entry.handed_in.strip(" -")
+        if chosen is None:
+            waiting += [str(student)] * bool(said)
+            continue
+        first = chosen.first
+        if first.origin != "moodle" or (first.exact and not said):
+            continue
+        when = _time(said, zone, chosen, all)
+        if isinstance(when, str):
+            left.append(f"{student}: no hand-in time is set; the worksheet says {when}")
+        elif when != first.when:
+            data = chosen.attempt.file.read_bytes()
+            keep(course, student.id, assignment, data, replace(first, when=when, exact=True))
+            install(course, student.id, assignment)
+            taken += 1
+    if left and not any(entry.handed_in for entry, _ in rows):
+        left = [
+            "no hand-in time is set; the worksheet has none, or its column is not called 'Last "
+            "modified (submission)'; take it in English"
+        ]
+    if waiting:
+        left.append(
+            f"{len(waiting)} handed in, and nothing of theirs was collected yet: {some(waiting)}; "
+            "collect the download, then import the worksheet again"
+        )
+    return taken, left
+
+
+def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) -> datetime | str:
+    """When what counts was handed in; or what the worksheet says instead, and what to do."""
+    when, first = read_time(said, zone), chosen.first.when
+    others = [x.when for one in all if one is not chosen.attempt for x in one.seen]
+    earlier = max((x for x in others if x < first), default=None)
+    if when is None:
+        unread = "which is not a time that labkit can read; take the worksheet in English"
+        return f"{said!r}, {unread}" if said else "no time"
+    if when > first:
+        return (
+            f"{said!r}, and the download that was collected is from {_local(first, zone)}; "
+            "collect a newer download, then import the worksheet again"
+        )
+    if earlier and when <= earlier:
+        return (
+            f"{said!r}, and a download from {_local(earlier, zone)} shows an earlier notebook; "
+            "download the worksheet again, and import it"
+        )
+    return when
+
+
+def _local(when: datetime, zone: ZoneInfo) -> str:
+    return f"{when.astimezone(zone):%Y-%m-%d %H:%M}"

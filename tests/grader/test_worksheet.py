@@ -1,0 +1,122 @@
+"""Moodle's grading worksheet: when each handed in, and why a time of it is not taken."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+
+import pytest
+from downloaded import NAME, bare_course, from_moodle
+
+from labkit.__main__ import main
+from labkit.grader.students.attempts import that_counts
+from labkit.grader.students.collect import collect
+from labkit.grader.timestamp import read_time
+
+ADA, HEAD = ("Ada Lovelace", 101), "Identifier,Full name,Email address"
+TIMED = f"{HEAD},Last modified (submission)"
+IN_TIME = "Sunday, 1 March 2026, 11:30 AM"
+LATER = "Sunday, 1 March 2026, 12:30 PM"
+
+
+@pytest.fixture
+def bare(tmp_path):
+    return bare_course(tmp_path / "course")
+
+
+def take(course, tmp_path, data="1", day=1, **options):
+    zip = from_moodle(tmp_path / "1.zip", [(ADA, "x.ipynb", data)], (2026, 3, day, 12, 0, 0))
+    return [str(one) for one in collect(course, NAME, zip, **options)]
+
+
+def worksheet(course, tmp_path, capsys, when, head=TIMED):
+    """Import a worksheet that says when Ada handed in: the exit code, and what was said."""
+    path = tmp_path / "worksheet.csv"
+    time = f',"{when}"' if head == TIMED else ""
+    path.write_text(f"{head}\nParticipant 101,Ada Lovelace,ada@x{time}\n", "utf-8")
+    words = ["students", "import", str(path), "--assignment", NAME, "--course", str(course.root)]
+    capsys.readouterr()
+    code = main(words)
+    return code, *capsys.readouterr()
+
+
+def handed_in(course):
+    seen = that_counts(course, "Ada-Lovelace", NAME).first
+    return f"{seen.when:%d %H:%M}" if seen.exact else ""
+
+
+def test_the_worksheets_time_is_when_it_was_handed_in(bare, tmp_path, capsys):
+    """It is counted in the summary; the same once more changes nothing and says nothing."""
+    take(bare, tmp_path)
+    code, out, err = worksheet(bare, tmp_path, capsys, IN_TIME)
+    assert (code, err, handed_in(bare)) == (0, "", "01 11:30")
+    assert "01_paths: 1 participants; 1 hand-in times set" in out
+    code, out, err = worksheet(bare, tmp_path, capsys, IN_TIME)
+    assert (code, err, handed_in(bare)) == (0, "", "01 11:30")
+
+
+@pytest.mark.parametrize(
+    ("when", "says"),
+    [
+        ("Sonntag, 1. März 2026, 11:30", "which is not a time that labkit can read"),
+        (LATER, "the download that was collected is from 2026-03-01 12:00; collect a newer"),
+        ("-", "says no time"),
+    ],
+)
+def test_a_time_that_is_not_taken_is_named(bare, tmp_path, capsys, when, says):
+    """With the student, the reason and what to do; the exit code is 1, so no late rule is lost."""
+    take(bare, tmp_path)
+    code, out, err = worksheet(bare, tmp_path, capsys, when)
+    assert (code, handed_in(bare)) == (1, "") and "; 0 hand-in times set" in out
+    assert err.startswith("Ada Lovelace (Ada-Lovelace): no hand-in time is set; the worksheet")
+    assert says in err
+
+
+def test_a_worksheet_without_times_is_named_once(bare, tmp_path, capsys):
+    """Where the column is missing or in another language, no student is named."""
+    take(bare, tmp_path)
+    code, _, err = worksheet(bare, tmp_path, capsys, "", HEAD)
+    assert code == 1 and "not called 'Last modified (submission)'" in err
+    assert "Ada" not in err
+
+
+def test_times_of_what_was_not_collected_are_named(bare, tmp_path, capsys):
+    """Who imports the worksheet before collecting is told to import it once more."""
+    code, _, err = worksheet(bare, tmp_path, capsys, IN_TIME)
+    assert code == 1 and err.startswith("1 handed in, and nothing of theirs was collected yet: Ada")
+    take(bare, tmp_path)
+    assert worksheet(bare, tmp_path, capsys, IN_TIME)[0] == 0
+
+
+def test_the_worksheet_is_nearer_than_the_time_of_the_download(bare, tmp_path, capsys):
+    """What was collected with --at counts from the hand-in once the worksheet says when it was."""
+    take(bare, tmp_path, at=read_time("2026-03-01 12:00"))
+    assert handed_in(bare) == "01 12:00"
+    assert worksheet(bare, tmp_path, capsys, IN_TIME)[0] == 0
+    assert handed_in(bare) == "01 11:30"
+
+
+def test_an_old_worksheet_makes_no_newer_hand_in_older(bare, tmp_path, capsys):
+    """A download between the two shows that the time is an earlier hand-in's."""
+    take(bare, tmp_path)
+    take(bare, tmp_path, "2", day=3)
+    code, _, err = worksheet(bare, tmp_path, capsys, IN_TIME)
+    assert (code, handed_in(bare)) == (1, "")
+    assert "shows an earlier notebook; download the worksheet again" in err
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["Sonntag, 1. März 2026, 11:30", "01.03.2026, 11:30", "3/1/26, 11:30", "11:30", "5", "",
+     "Sunday, 1 March 1926", "2026-03-01 11:30 XYZ", "2026-03-01 11:30 +99:99"],
+)  # fmt: skip
+def test_what_could_be_another_time_is_none(text):
+    """Another language, a day that may be a month, no year, a zone that is nobody's."""
+    assert read_time(text) is None
+
+
+@pytest.mark.parametrize(
+    "text", [IN_TIME, "2026-03-01 11:30", "2026-03-01T12:30+01:00", "2026-03-01 12:30 CET"]
+)
+def test_what_can_be_one_time_alone_is_that_time(text):
+    """As Moodle, a person and nbgrader's exchange write it, in the zone that it names."""
+    assert read_time(text) == datetime(2026, 3, 1, 11, 30, tzinfo=UTC)
