@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ..errors import OutOfRange, TypeMismatch, UnknownName
@@ -112,7 +112,7 @@ class Dialled:
 
     def __init__(self, laws: Mapping[str, Callable[..., Any]], dials: Mapping[str, Dial]) -> None:
         """Begin with the first law and the dials at their start."""
-        self._laws = laws
+        self._laws, self._dials = laws, dials
         self._takes = {
             law: [d for d in dials if d in arguments(f) and not dials[d].of_plant]
             for law, f in laws.items()
@@ -125,6 +125,16 @@ class Dialled:
         """The law and its dials, for logs and sentences."""
         told = [f"{d} {self.values[d]:g}" for d in self._takes[self.name]]
         return ", ".join([self.name, *told])
+
+    def turn(self, name: str, value: float) -> bool:
+        """Turn a dial; whether it is one of the plant."""
+        self.values[name] = value
+        return self._dials[name].of_plant
+
+    def dialled(self, usual: Plant) -> Plant:
+        """The usual plant with the numbers of its dials."""
+        numbers: Any = {n: v for n, v in self.values.items() if self._dials[n].of_plant}
+        return replace(usual, **numbers, name=f"{usual.name}, dialled")
 
     def __call__(self, state: Any, target: Any) -> Any:
         """The law's command."""

@@ -8,40 +8,27 @@ from __future__ import annotations
 
 import threading
 import time
-from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import replace
 from queue import Empty, SimpleQueue
 from typing import Any
 
-import numpy as np
-
 from ..arm import Arm
 from ..driven import Simulated
-from ..hand import Hand
 from ..log import Log
 from ..run import loop
 from .dials import Dial, Dialled
+from .grip import Grip
 from .pull import Pull
 from .surroundings import Surroundings
+from .wall_clock import WallClock
 from .watch import PATIENCE, Watch, sentence
-
-FRESH, SLOW_PAGE = 0.2, 1.0
-"""A pointer of which nothing was heard for this long, in [s], lets go; where a page says that it is
-slow, after three times its slowest turn of late, but at most after the second of these."""
-
-STEADY = 5.0
-"""A push by a button goes on for this long, in [s], after the last word of it."""
 
 LONGEST = 120.0
 """A run is at most this long, in [s]; then the next begins where it ended."""
 
 ABSENT = 60.0
 """Without a word from any page for this long, in [s], the session pauses."""
-
-FRAME = 1 / 30
-"""Time between two pictures, in [s]."""
 
 STEP = 0.05
 """What the button "Step" advances, in [s]."""
@@ -69,20 +56,18 @@ class Session(Simulated):
     ) -> None:
         """A session that has not begun; ``show`` receives each picture, in numbers."""
         super().__init__(arm, rate)
-        self.arm, self._dials, self._show = arm, dials, show
+        self.arm, self._show = arm, show
         self._law, self.around = Dialled(laws, dials), Surroundings(arm, target)
-        self._hand, self._pull, self._thread = Hand(arm), Pull(arm), threading.Thread()
-        self._usual, self._q0 = arm.plant, np.array(arm.truth().q)
+        self._hand, self._pull, self._thread = Grip(arm), Pull(arm), threading.Thread()
+        self._usual, self._q0 = arm.plant, arm.truth().q.copy()
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self.logs: list[Log] = []
         self.state, self.note = "ready", ""
         self._within = self._keep = self._over = self._again = False  # of a run
-        self._steps_left, self._heard, self._held, self._patience = 0, 0.0, 0.0, FRESH
-        self._limit = ""  # what is said of a run that reached the limit
-        self._move = self._answered = 0  # the hand's moves, as the page counts them
+        self._steps_left, self._heard, self._limit = 0, 0.0, ""
         self._changes: list[Callable[[], Any]] = []
         self._watch = Watch(self.period, lambda note: show({"kind": "note", "note": note}))
-        self._real = deque([(0.0, 0.0)], maxlen=30)
+        self._clock = WallClock()
 
     # From any thread
 
@@ -127,9 +112,9 @@ class Session(Simulated):
         self._obey(wait=self.state != "running")
         if self._changes or self.state != "running":
             return
-        self._over = self._again = self._keep = False
-        self._within = True
-        self.plant, self._began = self.arm.plant, time.monotonic()
+        self._within, self._over, self._again, self._keep = True, False, False, False
+        self.plant = self.arm.plant
+        self._clock.set(0.0)
         try:
             log = loop(self, self.around.target, self._law, LONGEST)
         except BaseException as error:
@@ -177,8 +162,7 @@ class Session(Simulated):
         """Take the physics of a tick, read what came, and wait for the wall's clock."""
         self._watch.ends()
         self._watch.check_pace()
-        if time.monotonic() - self._held > self._patience:
-            self._hand.let_go()
+        self._hand.tire()
         self.around.approach(self.period)
         k, t, cut = super().advance(k)
         if self._steps_left:
@@ -189,22 +173,18 @@ class Session(Simulated):
         while self.state == "paused" and not self._over:
             self._picture()
             self._obey(wait=True)
-            self._began = time.monotonic() - t
+            self._clock.set(t)
         self._watch.begins(self._law.name)
         return (_OVER if self._over or self.state != "running" else k), t, cut
 
     def _pace(self, t: float) -> None:
-        """Wait for the wall; a loop that is late by more than 0.1 s goes on from there."""
-        ahead = self._began + t - (now := time.monotonic())
-        if ahead < -0.1:
-            self._began = now - t
-        if now - self._heard > ABSENT:
+        """Wait for the wall, and show a picture if one is due."""
+        if time.monotonic() - self._heard > ABSENT:
             self.state, self.note = "paused", "nobody looked for a minute"
-        if self._move != self._answered or now - self._real[-1][0] > FRAME:
-            self._answered = self._move
-            self._real.append((now, self.arm.world.t))
+        if self._clock.is_due(self._hand.move):
+            self._clock.shown(self.arm.world.t, self._hand.move)
             self._picture()
-        time.sleep(max(0.0, ahead))
+        time.sleep(max(0.0, self._clock.ahead(t)))
 
     def _obey(self, wait: bool = False) -> None:
         """Do what the page asked for; with `wait`, wait for something."""
@@ -216,7 +196,7 @@ class Session(Simulated):
 
     def _on_go(self, message: dict[str, Any]) -> None:
         self.state, self.note, self._limit, self._steps_left = "running", "", "", 0
-        self._real = deque([(time.monotonic(), self.arm.world.t)], maxlen=30)
+        self._clock.begin(self.arm.world.t)
 
     def _on_pause(self, message: dict[str, Any]) -> None:
         self.state = "paused" if self.state == "running" else self.state
@@ -245,16 +225,7 @@ class Session(Simulated):
         self.state, self.note = "closed", "ended: other cells can use the arm; Start begins again"
 
     def _on_hand(self, message: dict[str, Any]) -> None:
-        slow = min(SLOW_PAGE, max(FRESH, 3.0 * message.get("every", 0.0)))
-        self._held, self._patience = message["heard"], STEADY if "force" in message else slow
-        self._move = message.get("move", self._move)
-        point = message["link"], message["local"]
-        if "force" in message:
-            self._hand.push(*point, message["force"])
-        elif "to" in message:
-            self._hand.take(*point, message["to"])
-        else:
-            self._hand.let_go()
+        self._hand.follow(message)
 
     def _on_thing(self, message: dict[str, Any]) -> None:
         self.around.move(message["name"], message["position"])
@@ -271,10 +242,8 @@ class Session(Simulated):
         self._over = True
 
     def _turn(self, name: str, value: float) -> None:
-        self._law.values[name] = value
-        if self._dials[name].of_plant:
-            numbers: Any = {n: v for n, v in self._law.values.items() if self._dials[n].of_plant}
-            self.arm.become(replace(self._usual, **numbers, name=f"{self._usual.name}, dialled"))
+        if self._law.turn(name, value):
+            self.arm.become(self._law.dialled(self._usual))
 
     # What the page draws
 
@@ -286,15 +255,14 @@ class Session(Simulated):
 
     def numbers(self) -> dict[str, Any]:
         """The session as the page draws it."""
-        (a, x), (b, y) = self._real[0], self._real[-1]
         return {
             "kind": "frame",
             "state": self.state,
             "note": self.note,
             "law": self._law.name,
-            "pace": round((y - x) / (b - a), 3) if b > a else None,
+            "pace": self._clock.pace,
             "kept": [round(float(log.t[-1]), 1) for log in self.logs],
-            "move": self._move,
+            "move": self._hand.move,
             **self.around.seen(),
             **self._hand.seen(),
         }

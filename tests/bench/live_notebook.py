@@ -86,7 +86,7 @@ view
 BUSY = """
 session = view.session
 while session._hand.at is not None:
-    held = session._held
+    held = session._hand.heard
     sum(range(1000))
     if session._hand.at is None:
         print("let go after", 1000 * (time.monotonic() - held), "ms")

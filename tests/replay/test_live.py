@@ -11,7 +11,9 @@ import labkit as lk
 from labkit.errors import Closed, NothingKept, OutOfRange, TypeMismatch, UnknownName
 from labkit.hand import STRONGEST, Hand
 from labkit.replay.dials import read_dials
-from labkit.replay.session import FRAME, FRESH, SLOW_PAGE, STEADY, Session
+from labkit.replay.grip import FRESH, SLOW_PAGE, STEADY
+from labkit.replay.session import Session
+from labkit.replay.wall_clock import FRAME
 
 READY = np.array(lk.robot("left").ready)
 T_READY = lk.Model("left").pose(READY)
@@ -145,7 +147,7 @@ def test_a_hand_holds_on_for_as_long_as_its_page_may_be_silent(live, hand, lasts
     """0.2 s for a pointer, more where the page is slow, and seconds for a button's steady push."""
     session, _ = live({"springs": springy})
     session.tell({"kind": "hand", "link": 3, "local": [0, 0, 0], **hand})
-    assert session._patience == pytest.approx(lasts)
+    assert session._hand.patience == pytest.approx(lasts)
 
 
 def test_a_push_outlasts_a_page_that_says_nothing_for_a_second(live):
