@@ -126,7 +126,8 @@ try:
     bad.append("it can write to /usr")
 except OSError:
     pass
-if any(map(os.path.exists, ("/etc/passwd", "/etc/hostname", "/usr/share/doc", "/var/log", "/sys"))):
+machine = "/etc/passwd", "/etc/hostname", "/usr/share/doc", "/var/log", "/sys/kernel"
+if any(map(os.path.exists, machine)):
     bad.append("it sees files of the machine")
 try:
     os.utime("/dev/null")

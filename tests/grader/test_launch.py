@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from handmade import ROOT
+from processes import below
 
 from labkit.grader.sandbox import mounts as launch
 from labkit.grader.sandbox.confine import DEVICES
@@ -39,6 +40,11 @@ def files(words, below):
         check=True,
     )
     return sorted(str(Path(x).relative_to(below)) for x in found.stdout.splitlines())
+
+
+def on_huge_pages(rollup):
+    """Whether a process has any, by the kernel's account of its memory."""
+    return int(rollup.partition("AnonHugePages:")[2].split()[0]) > 0
 
 
 @pytest.fixture
@@ -99,7 +105,8 @@ def test_a_virtual_environment_starts_wherever_it_lies(tmp_path, through_a_link)
 def test_only_what_is_needed_is_shown(sandbox):
     """Of the system there are programs, libraries and fonts; no home, no settings, no sources."""
     look = "import json, os\nos.chdir('/')\nprint(json.dumps({x: os.listdir(x) for x in "
-    look += "('/', 'etc', 'usr', 'usr/share', 'usr/local', 'dev', 'proc') if os.path.exists(x)}))"
+    look += "('/', 'etc', 'usr', 'usr/share', 'usr/local', 'dev', 'proc', 'sys') "
+    look += "if os.path.exists(x)}))"
     found = {name: set(inside) for name, inside in json.loads(run(sandbox, look)).items()}
     paths = [x for path in launch.needed() for x in (path, path.resolve())]
     assert found["/"] <= {path.parts[1] for path in paths} | {"lab", "proc", "dev", "tmp"}
@@ -109,7 +116,23 @@ def test_only_what_is_needed_is_shown(sandbox):
     assert found.get("usr/share", set()) <= {"fonts"}
     assert found["etc"] <= {"alternatives", "ld.so.cache"}
     assert found["dev"] == {"shm"} | {Path(device).name for device in DEVICES}
-    assert not found["proc"]
+    assert not found["proc"] and not found.get("sys")
+
+
+def test_what_is_loaded_lies_on_pages_of_2_mb_where_any_program_gets_some():
+    """The C library learns of them before what it asks is hidden."""
+    code = "import numpy; print(open('/proc/self/smaps_rollup').read())"
+    asked = subprocess.run(
+        [sys.executable, "-c", code],
+        env={"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1", "PYTHONMALLOC": "malloc"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    with Sandbox() as sandbox:
+        places = [f"/proc/{pid}/smaps_rollup" for pid, _ in below(sandbox.process.pid, 4)]
+        inside = [on_huge_pages(Path(place).read_text()) for place in places]
+    assert any(inside) == on_huge_pages(asked.stdout)
 
 
 @pytest.mark.parametrize("place", [place for place in PLACES if os.access(place, os.W_OK)], ids=str)

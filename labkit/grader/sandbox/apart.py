@@ -49,6 +49,7 @@ class Namespaces(Bare):
 
     def __init__(self) -> None:
         confine.lock_devices()
+        confine.cover_kernel()
         seccomp.program(platform.machine())
         self._home = os.open("/proc/self/ns/pid", os.O_RDONLY)
         self._shown = confine.shown_below()

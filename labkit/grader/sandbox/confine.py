@@ -41,6 +41,12 @@ def lock_devices() -> None:
         _mount(None, device, None, _REMOUNT | _BIND | _READ_ONLY | flags)
 
 
+def cover_kernel() -> None:
+    """Hide what the C library has read of the kernel; see `mounts`."""
+    if os.path.exists("/sys"):
+        _mount("tmpfs", "/sys", "tmpfs", _READ_ONLY | _NO_SUID | _NO_DEV, "size=0")
+
+
 def shown_below() -> list[str]:
     """What the sandbox shows below the folders that are new for each process.
 

@@ -27,7 +27,9 @@ _PACKAGE = Path(labkit.__file__).parent
 _LAB = "/lab"
 _PARTS = ("bin", "lib", "lib32", "lib64", "pyvenv.cfg")
 """What is shown of the system, of ``/usr`` and of each Python."""
-_MORE = ("/usr/share/fonts", "/etc/ld.so.cache", "/etc/alternatives")
+_HUGE_PAGES = "/sys/kernel/mm/transparent_hugepage"
+"""What the C library asks about pages of 2 MB; covered before anything is forked."""
+_MORE = ("/usr/share/fonts", "/etc/ld.so.cache", "/etc/alternatives", _HUGE_PAGES)
 _FORKSERVER = (sys.executable, "-P", "-s", "-m", "labkit.grader.sandbox.forkserver")
 _VARIABLES = {
     "PYTHONHASHSEED": "0",
@@ -44,7 +46,15 @@ _INSIDE = _VARIABLES | {
     "HOME": "/tmp",
     "PYTHONPATH": _LAB,
     "MPLCONFIGDIR": "/tmp/mpl",
+    "GLIBC_TUNABLES": "glibc.malloc.hugetlb=1",
+    "PYTHONMALLOC": "malloc",
 }
+"""The last two put what is loaded on pages of 2 MB (glibc 2.35 or newer; else they do nothing).
+
+Each question is answered by forks, which copy the table of all pages: a submission of four
+questions takes 0.88 of the processor time that it takes without the two, and 0.95 with the first
+alone, as Python's own allocator asks for no such pages.
+"""
 
 
 class NoIsolation(LabkitError):
