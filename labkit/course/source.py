@@ -44,6 +44,19 @@ def plain(source: str) -> str:
     return text
 
 
+@lru_cache(maxsize=1)
+def parsed(source: str) -> tuple[str, ast.Module]:
+    """A cell as plain Python, and its syntax; kept for whoever looks at the same cell next.
+
+    Raises:
+        SyntaxError, ValueError, RecursionError, MemoryError: Python cannot read it.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        text = plain(source)
+        return text, ast.parse(text)
+
+
 @lru_cache(maxsize=4096)
 def look(source: str) -> Look:
     """What a code cell does with names.
@@ -61,21 +74,20 @@ def look(source: str) -> Look:
         "definitions": [],
     }  # fmt: skip
     try:
+        text, tree = parsed(source)
+        other = _OTHER_MAGIC.match(text)
+        found["magic"] = other[1] if other else ""
+        functions = [x for x in tree.body if isinstance(x, ast.FunctionDef | ast.ClassDef)]
+        found["functions"] = [x.name for x in functions]
+        found["stubs"] = [x.name for x in functions if is_stub(x)]
+        lines = text.split("\n")
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            text = plain(source)
-            other = _OTHER_MAGIC.match(text)
-            found["magic"] = other[1] if other else ""
-            tree = ast.parse(text)
-            functions = [x for x in tree.body if isinstance(x, ast.FunctionDef | ast.ClassDef)]
-            found["functions"] = [x.name for x in functions]
-            found["stubs"] = [x.name for x in functions if is_stub(x)]
-            lines = text.split("\n")
             definitions = [_definition(part, lines) for part in _parts(tree.body)]
-            binds = {name for definition in definitions for name in definition["binds"]}
-            outside = {name for definition in definitions for name in definition["outside"]}
-            found["binds"], found["uses"] = sorted(binds), sorted(outside - binds)
-            found["definitions"] = definitions
+        binds = {name for definition in definitions for name in definition["binds"]}
+        outside = {name for definition in definitions for name in definition["outside"]}
+        found["binds"], found["uses"] = sorted(binds), sorted(outside - binds)
+        found["definitions"] = definitions
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         found["broken"] = f"{type(error).__name__}: {error}"[:200]
     return found

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import ast
 import re
-import warnings
 from collections.abc import Iterable, Iterator, Mapping
 
-from ...course.source import dotted, imported, plain
+from ...course.source import dotted, imported, parsed
 
 MODULES = {
     "builtins", "code", "codeop", "ctypes", "dill", "gc", "imp", "importlib", "marshal",
@@ -32,6 +31,7 @@ INSIDE = (
 )
 OURS = ("labkit", "numpy", "pinocchio", "builtins", "sys")
 """Modules that no answer changes."""
+_TELLING = (ast.Import, ast.ImportFrom, ast.Name, ast.Attribute, ast.Call)
 STUDENTS = {"labkit.course"} | {
     f"labkit.course.{name}" for name in ("check", "hint", "predict", "use")
 }
@@ -47,16 +47,13 @@ def tricks(source: str) -> list[str]:
         The ends of sentences that begin with the cell: "imports pickle".
     """
     try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            tree = ast.parse(plain(source))
-            return list(dict.fromkeys(_found(tree)))
+        return list(dict.fromkeys(_found(parsed(source)[1])))
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return []
 
 
 def _found(tree: ast.AST) -> Iterator[str]:
-    nodes = list(ast.walk(tree))
+    nodes = [node for node in ast.walk(tree) if isinstance(node, _TELLING)]
     means = {"lk": "labkit", "np": "numpy"}
     for node in nodes:
         means |= imported(node)
