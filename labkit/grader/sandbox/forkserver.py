@@ -25,8 +25,11 @@ from .protocol import Connection, Disconnected
 
 MAGIC = "IPython.core.inputtransformer2"
 """What reads a notebook's own ``%`` and ``!`` lines."""
-LOADED = ("numpy", "scipy.interpolate", "scipy.linalg", "matplotlib.pyplot", MAGIC)
-"""What answers lean on, loaded once; not more, as a fork takes longer the more is loaded."""
+LOADED = ("numpy", "scipy.linalg", "matplotlib.pyplot", MAGIC)
+"""What answers lean on, loaded once; not more, as a fork takes longer the more is loaded.
+
+The rest of scipy would take 6 % of the processor time of each submission, used or not.
+"""
 
 Serve = Callable[[Connection, dict[str, Any]], None]
 """What a child does, given the connection and the request that it was forked for."""
