@@ -46,7 +46,7 @@ def plain(source: str) -> str:
 
 @lru_cache(maxsize=1)
 def parsed(source: str) -> tuple[str, ast.Module]:
-    """A cell as plain Python, and its syntax; kept for whoever looks at the same cell next.
+    """A cell as plain Python, and its syntax; kept until another is asked for.
 
     Raises:
         SyntaxError, ValueError, RecursionError, MemoryError: Python cannot read it.

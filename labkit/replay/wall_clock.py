@@ -16,7 +16,7 @@ class WallClock:
     """Keeps a run in step with the wall, and tells how well it does."""
 
     def __init__(self) -> None:
-        """A clock that stands at zero."""
+        """A clock at zero."""
         self._began, self._pictures, self._move = 0.0, deque([(0.0, 0.0)], maxlen=30), 0
 
     def set(self, t: float) -> None:
