@@ -3,7 +3,7 @@
 Their authors wrote them from the notebooks' stubs and the model answers, and had read neither the
 known mistakes nor the judges.  So they stand for answers that nobody has foreseen: never add a
 known mistake because it is here, or the measure is worth nothing.  Whoever improves the naming may
-look at the wrong answers that are not `held`, and at no others: those in ``second`` and ``third``,
+look at the wrong answers that are not `held`, and at no others: those in ``second`` and later sets,
 by other authors, are all held.
 
 There is a file for each notebook.  A line `# %% question wrong: what is wrong`, or `# %% question
@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 HERE = Path(__file__).parent
-AUTHORS = ("", "second", "third")
+AUTHORS = ("", "second", "third", "fourth")
 """Whose answers there are, by their folders."""
 _HEAD = re.compile(r"^# %% (\w+) (right|wrong): (.+)\n", re.M)
 
