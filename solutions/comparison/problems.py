@@ -867,7 +867,12 @@ VERDICTS = Problem(
                     }
                 ),
                 call({"I is worse than J": [[4.0, 3.5, 5.5], [3.0, 2.0, 5.0]]}),
-                call({"O is worse than P": [[6.1, 4.0, 7.8, 5.2, 3.5], _SEEDS]}),
+                call(
+                    {
+                        "S is worse than T": [[6.1, 4.0, 7.8, 5.2, 3.5], _SEEDS],
+                        "U is worse than V": [[2.8, 0.8, 4.8, 4.05, 6.9], _SEEDS],
+                    }
+                ),
                 call(
                     {
                         "O is worse than P": [_SEEDS, _NEAR_THE_EDGE[0]],
@@ -909,8 +914,8 @@ VERDICTS = Problem(
         Wrong(
             "an interval too narrow",
             "You decide a claim that five seeds do not settle. Check each factor: Student's t for "
-            "both sides (0.975, n - 1), where 1.96 is too small; the deviation with n - 1; and if "
-            "you compare squares, the squares of both.",
+            "both sides (0.975, n - 1), where 1.96 is too small; the deviation with n - 1, divided "
+            "by √n and not by n; and if you compare squares, the squares of both.",
             mistakes.VerdictsBy(mistakes.normal_quantile),
             "Five seeds are not many.",
         ),
@@ -991,6 +996,13 @@ VERDICTS = Problem(
             "all pairs must agree",
             "You ask whether all differences have one sign. The mean may be sure although one pair is against it.",
             mistakes.Said(sure=lambda d: not d.min() < 0.0 < d.max()),
+            "An interval is about the mean.",
+        ),
+        Wrong(
+            "the majority of the seeds decides",
+            "You count on how many seeds the first is larger. A majority says nothing of how sure "
+            "it is: three of five is little. Use the interval of the mean difference.",
+            mistakes.by_majority,
             "An interval is about the mean.",
         ),
         Wrong(

@@ -491,8 +491,8 @@ CORIOLIS = Problem(
         ),
         Wrong(
             "the minus on the wrong term",
-            "This is the transpose of C. The minus belongs to the slope along the row's own "
-            "joint, ∂M_jk/∂q_i.",
+            "This is the transpose of C. Either the entry is stored in C[j, i], or the minus is on the "
+            "wrong term: it belongs to the slope along the row's own joint, ∂M_jk/∂q_i.",
             mistakes.signs_mixed,
             "The minus is the slope of the kinetic energy along q_i.",
         ),
