@@ -44,6 +44,8 @@ class Stop(Exception):
 
 def main(words):
     """Make the environment where there is none, and open the notebooks."""
+    if words not in ([], ["install"]):
+        raise Stop("type start.py alone to open the notebooks, or start.py install to prepare them")
     if in_conda():
         python = Path(sys.executable)
         if not made():

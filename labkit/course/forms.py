@@ -123,7 +123,8 @@ class Number(_Form):
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction; "" if nothing is."""
         if isinstance(said, bool) or not isinstance(said, int | float):
-            return f"it is {said!r}; write one number ({self.unit})"
+            example = "with a point, such as 8.5" if "," in str(said) else f"({self.unit})"
+            return f"it is {said!r}; write one number {example}"
         if not self.least <= said <= self.most:
             return f"it is {said:g} {self.unit}; write {self.how}"
         return ""

@@ -34,13 +34,20 @@ def hand_in(name: str) -> None:
     sources = [cell["source"] for cell in read_cells(path)]
     saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
     lines = [
-        *str(found).splitlines(),
+        *_findings(found),
         f"receipt: {receipt(sources)} of {path.name}, saved {saved:%Y-%m-%d %H:%M %Z}",
         _last_word(
             path.name, found, max(datetime.now(UTC) - saved, timedelta()), _unsaved(found, sources)
         ),
     ]
     print("\n".join(map(wrapped, lines)))
+
+
+def _findings(found: HandIn) -> list[str]:
+    """What a look at the file finds; nothing of its tasks before a result of any was saved."""
+    if found.verdicts and not any(found.verdicts.values()):
+        return [f"[fix] {text}" for text in found.problems]
+    return str(found).splitlines()
 
 
 def _unsaved(found: HandIn, sources: Iterable[str]) -> list[str]:
@@ -64,6 +71,8 @@ def _last_word(file: str, found: HandIn, age: timedelta, unsaved: Collection[str
     again = "save it and run this cell again"
     if unsaved:
         return f"{says}, and does not hold the {', '.join(unsaved)} that you ran last: {again}."
+    if found.verdicts and not any(found.verdicts.values()):
+        return f"{says}, before any check had run: {again}."
     if found.problems:
         return f"{says}: correct what is marked with [fix], {again}."
     if not recent:

@@ -76,7 +76,9 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
     print(wrapped(f"You predicted: {form.words(said)}."))
     print(wrapped(f"The arm says:  {form.words(truth)}."))
     if isinstance(form, Number):
-        print(wrapped(f"Your number is {said / truth:.2g} times the arm's." if truth else ""))
+        times = f"{said / truth:.2g}" if truth else ""
+        says = {"": "", "1": "Your number is the arm's."}
+        print(wrapped(says.get(times, f"Your number is {times} times the arm's.")))
     else:
         agrees = form.same(said, truth)
         print("That is what you said." if agrees else "That is not what you said. Look again: why?")

@@ -220,10 +220,13 @@ def hint(name: str, level: int = 1) -> None:
         return
     hints = desk().question(name).hints
     if not isinstance(level, int) or not 1 <= level <= len(hints):
+        assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
-            "of them, ask the teacher or a forum; what to send there says, in a new cell: "
-            f"!labkit submit-check --forum {read_checks(Path.cwd())['assignment']}.ipynb"
+            "of them, ask the teacher or a forum. This line in a new cell prints what to send: "
+            f"!labkit submit-check --forum {assignment}.ipynb"
+            if hints
+            else f"{name} has no hints."
         )
         print(wrapped(text))
         return

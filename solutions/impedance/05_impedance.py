@@ -299,7 +299,9 @@ def after_two_seconds(log):
     """The displacement along y in words, if the run lasted so long."""
     if log.t[-1] < 1.99:
         return f"stopped at {log.t[-1]:.2f} s"
-    return f"{np.interp(1.99, log.t, displacement(log)[:, 1]):.1f} mm"
+    x, y, z = (np.interp(1.99, log.t, one) for one in displacement(log).T)
+    far = f", and {np.hypot(x, z):.0f} mm to the side" if np.hypot(x, z) > 100.0 else ""
+    return f"{y:.1f} mm{far}"
 
 
 lk.plotting.show(

@@ -459,9 +459,10 @@ WORKSPACE_IMPEDANCE = Problem(
     wrong=(
         Wrong(
             "the spring's sign reversed",
-            "The spring drives the tip away from its target: within a second the arm leaves its "
-            "workspace. With e as target minus actual, the stiffness has a plus. The report's "
-            "equation 21 has your sign; its program does not.",
+            "The spring drives the tip away from its target: as soon as anything disturbs it, the "
+            "arm leaves its workspace. With e as target minus actual, the stiffness has a plus. "
+            "(In the report that this lab grew out of, the equation has your sign, and the "
+            "program has not.)",
             mistakes.plus_in_front,
             "One convention: e = target - actual, and every gain with a plus.",
         ),

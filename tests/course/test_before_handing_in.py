@@ -13,7 +13,7 @@ from labkit.course.before_handing_in import HandIn, look
 from labkit.course.forms import OWN_ARM
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
 from labkit.course.own_arm import FILE
-from labkit.course.receipt import _last_word, receipt
+from labkit.course.receipt import _last_word, hand_in, receipt
 from labkit.course.verdict import Outcome, TestResult, Verdict
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
@@ -330,7 +330,8 @@ def test_an_empty_cell_leaves_the_receipt_as_it_is():
 
 def test_the_last_word_says_whether_to_hand_in(folder):
     """A file saved just now is handed in; one that lacks what ran last is saved first."""
-    found = look(folder / "01_paths.ipynb")
+    blank = look(folder / "01_paths.ipynb")
+    found = replace(blank, verdicts=dict.fromkeys(blank.verdicts, object()))
     clean = replace(found, notes=())
     says = [
         _last_word("f", clean, timedelta(seconds=5), []),
@@ -341,3 +342,14 @@ def test_the_last_word_says_whether_to_hand_in(folder):
     assert says[0] == "f was saved 5 s ago and is complete: hand it in now."
     assert "[note]" in says[1] and "if you have changed nothing" in says[2]
     assert "does not hold the circle that you ran last" in says[3]
+    word = "f was saved 5 s ago, before any check had run: save it and run this cell again."
+    assert _last_word("f", blank, timedelta(seconds=5), []) == word
+
+
+def test_a_file_without_any_result_is_not_told_task_by_task(folder, capsys, monkeypatch):
+    """After Run All the file is as it was before; a table of what did not run would be wrong."""
+    monkeypatch.chdir(folder)
+    hand_in("01_paths")
+    said = capsys.readouterr().out
+    assert "not run" not in said and "0 of" not in said
+    assert "save it and run this cell again" in " ".join(said.split())

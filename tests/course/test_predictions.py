@@ -95,3 +95,27 @@ def test_any_number_can_be_typed(monkeypatch, typed, said):
     box.children[0].value = typed
     assert made.chosen == ({} if said is None else {"x": said})
     assert ("not committed yet" in note.value) == (said is not None)
+
+
+def test_a_decimal_comma_is_told_how_to_be_written():
+    """Whoever types 8,3 has written one number, and reads which sign is wrong in it."""
+    form = Number("mm", 0.0, 9.0)
+    assert form.problem("8,3") == "it is '8,3'; write one number with a point, such as 8.5"
+    assert form.problem("many").endswith("write one number (mm)")
+
+
+def test_a_number_that_is_the_arms_own_is_told_so(monkeypatch, capsys):
+    """Rather than that it is 1 times the arm's."""
+    made = desk.Desk({"x": Prediction("x", "?", Number("mm", 0.0, 9.0), 8.3).question()})
+    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    predict("x", 8.3)
+    predict("x", truth=8.3)
+    assert "Your number is the arm's." in capsys.readouterr().out
+
+
+def test_a_prediction_has_no_hints(place, monkeypatch, capsys):
+    """And nobody is sent to a forum for them."""
+    monkeypatch.setattr("labkit.course.student.desk", lambda: place)
+    monkeypatch.setattr("labkit.course.student.read_checks", lambda _: {"assignment": "01_paths"})
+    desk.hint("x")
+    assert capsys.readouterr().out == "x has no hints.\n"

@@ -168,3 +168,10 @@ def test_the_guide_quotes_what_is_printed():
         )
     ]
     assert len(known) >= 9, set(quoted) - set(known)
+
+
+def test_other_words_are_refused_before_anything_is_made(start):
+    """`start.py --help` says what to type, and installs nothing."""
+    with pytest.raises(start.Stop, match=r"start\.py install"):
+        start.main(["--help"])
+    assert not start.said
