@@ -21,7 +21,7 @@ from .arms import give_arms
 from .attempts import move
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, alone, places, remember
-from .list_remarks import about_namesakes, about_teams
+from .list_remarks import about_names, about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
 from .worksheet import keep_numbers, keep_times
@@ -140,6 +140,7 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     if absent:
         still = f"{len(absent)} ({some(absent)})"
         told.append(f"not in this list, and still in the roster: {still}")
+    told += about_names(before, done.roster)
     told += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
         told.append(f"{assignment}: {numbered} participants; {times} hand-in times set")
