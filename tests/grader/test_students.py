@@ -213,6 +213,19 @@ def test_a_name_with_a_comma_stays_as_it_is(tmp_path, first):
         assert (sammy.first_name, sammy.last_name) == ("Sammy", "Davis, Jr.")
 
 
+def test_the_test_student_of_canvas_is_nobody(tmp_path):
+    """It gets no folder and no mark, and the import says so once; a person may be called so."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    tests = "".join(f'"Student, Test",{n},,0f{n}e,S{n}\n' for n in (98, 99))
+    file.write_text(CANVAS + tests)
+    told = import_list(course, file).told
+    assert [s.id for s in read_roster(course).students] == ["alovelace", "zobrien"]
+    assert sum("Test Student" in sentence for sentence in told) == 1
+    file.write_text("First name,Last name,Email address\nTest,Student,t@x\n")
+    import_list(course, file)
+    assert read_roster(course).students[-1].name == "Test Student"
+
+
 def test_the_import_says_whose_name_it_changed(tmp_path):
     """Two columns change a name that is known; what it was and what it is are both said."""
     course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"

@@ -100,6 +100,11 @@ class Entry:
     handed_in: str = ""
     guessed: bool = False
 
+    @property
+    def is_canvas_test_student(self) -> bool:
+        """Whether it is "Student, Test", which Canvas makes for a teacher to look as a student."""
+        return bool(self.student.lms_user_id) and self.student.name == "Test Student"
+
 
 def read_list(path: Path) -> tuple[Entry, ...]:
     """Read a list of students.
