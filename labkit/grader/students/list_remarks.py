@@ -38,7 +38,11 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
 def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) -> Iterator[str]:
     """Who is called alike, and the assignments in which their numbers tell them apart."""
     for group in roster.namesakes():
-        told_apart = [x for x, people in known.items() if all(one.id in people for one in group)]
+        told_apart = [
+            assignment
+            for assignment, users in known.items()
+            if all((user := users.get(x.id)) and user.system == "moodle" for x in group)
+        ]
         yield (
             f"{len(group)} students have the same name: {', '.join(map(str, group))}; Moodle's zip "
             "does not say which is which, so import the grading worksheet of each assignment, with "
