@@ -184,14 +184,58 @@ def test_a_second_list_adds_and_changes_but_takes_nobody_away(tmp_path):
 
 
 def test_a_guess_from_a_full_name_replaces_no_name(tmp_path):
-    """Which words are the last name, a worksheet does not say; a comma or two columns do."""
+    """Which words are the last name, one column does not say; two columns do."""
     roster = Roster((Student("ada", "Ada", "de la Cruz", "ada@x"), Student("b", email="b@x")))
     text = "Identifier,Full name,Email address\nParticipant 7,{},ada@x\nParticipant 8,Bo Li,b@x\n"
     ada, bo = enrolled(listed(tmp_path, text.format("Ada de la Cruz")), roster).students
     assert (ada.first_name, ada.last_name) == ("Ada", "de la Cruz")
     assert (bo.first_name, bo.last_name) == ("Bo", "Li"), "where there is none, it is taken"
     ada, _ = enrolled(listed(tmp_path, text.format('"Cruz, Ada de la"')), roster).students
-    assert (ada.first_name, ada.last_name) == ("Ada de la", "Cruz")
+    assert (ada.first_name, ada.last_name) == ("Ada", "de la Cruz")
+
+
+SAMMY = {
+    "participants": 'First name,Last name,Email address\nSammy,"Davis, Jr.",s@x\n',
+    "worksheet": 'Identifier,Full name,Email address\nParticipant 7,"Sammy Davis, Jr.",s@x\n',
+    "canvas": 'Student,ID,SIS Login ID,Section\n"Davis, Jr., Sammy",7,s,A\n',
+}
+
+
+@pytest.mark.parametrize("first", SAMMY)
+def test_a_name_with_a_comma_stays_as_it_is(tmp_path, first):
+    """Whichever list comes first, and whichever come after it."""
+    course = bare_course(tmp_path / "course")
+    for text in (SAMMY[first], *SAMMY.values()):
+        (tmp_path / "list.csv").write_text(text)
+        told = import_list(course, tmp_path / "list.csv").told
+        assert not any("changed" in sentence for sentence in told)
+        (sammy,) = read_roster(course).students
+        assert (sammy.first_name, sammy.last_name) == ("Sammy", "Davis, Jr.")
+
+
+def test_the_test_student_of_canvas_is_nobody(tmp_path):
+    """It gets no folder and no mark, and the import says so once; a person may be called so."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    tests = "".join(f'"Student, Test",{n},,0f{n}e,S{n}\n' for n in (98, 99))
+    file.write_text(CANVAS + tests)
+    told = import_list(course, file).told
+    assert [s.id for s in read_roster(course).students] == ["alovelace", "zobrien"]
+    assert sum("Test Student" in sentence for sentence in told) == 1
+    file.write_text("First name,Last name,Email address\nTest,Student,t@x\n")
+    import_list(course, file)
+    assert read_roster(course).students[-1].name == "Test Student"
+
+
+def test_the_import_says_whose_name_it_changed(tmp_path):
+    """Two columns change a name that is known; what it was and what it is are both said."""
+    course, file = bare_course(tmp_path / "course"), tmp_path / "list.csv"
+    for name in ("Ada de la,Cruz", "Ada,de la Cruz"):
+        file.write_text(f"First name,Last name,Email address\n{name},a@x\nBo,Li,b@x\n")
+        told = import_list(course, file).told
+    assert told[1] == (
+        "names that this list changed: 1 (Ada de la Cruz (Ada-de-la-Cruz) is now first name 'Ada', "
+        "last name 'de la Cruz')"
+    )
 
 
 def test_a_row_between_two_students_is_refused():
@@ -268,9 +312,10 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     assert (
         "2 students have the same name: Li Wei (Li-Wei-li), Wei Li (Wei-Li-wei); Moodle" in said.err
     )
-    remember(course, NAME, {n: LmsUser("moodle", n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
+    for name, system in ((NAME, "moodle"), ("05_impedance", "canvas")):
+        remember(course, name, {n: LmsUser(system, n, n) for n in ("Li-Wei-li", "Wei-Li-wei")})
     assert main(["students", "import", str(file), *where]) == 0
-    assert "with --assignment; this is done for 01_paths" in capsys.readouterr().err
+    assert "with --assignment; this is done for 01_paths\n" in capsys.readouterr().err
     with open_gradebook(course) as book:
         ada = book.find_student("Ada-Lovelace")
         about = (ada.first_name, ada.last_name, ada.email, ada.lms_user_id)

@@ -91,7 +91,7 @@ class Entry:
         student: Who it is; without an ``id``, which is for the roster to give.
         participant: Moodle's number of the participant in one assignment.
         handed_in: When the participant handed in, as Moodle's worksheet writes it.
-        guessed: Whether first and last name are a guess from the full name.
+        guessed: Whether first and last name are a guess from one column.
     """
 
     line: int
@@ -99,6 +99,11 @@ class Entry:
     participant: str = ""
     handed_in: str = ""
     guessed: bool = False
+
+    @property
+    def is_canvas_test_student(self) -> bool:
+        """Whether it is "Student, Test", which Canvas makes for a teacher to look as a student."""
+        return bool(self.student.lms_user_id) and self.student.name == "Test Student"
 
 
 def read_list(path: Path) -> tuple[Entry, ...]:
@@ -200,10 +205,9 @@ def _entries(
         if not (name or any(cells.values())) or name.casefold() == _NOT_A_STUDENT:
             continue  # an empty line, or Canvas's full marks
         if name and not (cells.get("first_name") or cells.get("last_name")):
-            last, comma, first = name.partition(",")
-            guessed = not comma
-            first, _, last = (first, "", last) if comma else name.rpartition(" ")
-            cells |= {"first_name": first.strip(), "last_name": last.strip()}
+            first, last = _split(name, first_is_first="participant" in columns)
+            cells |= {"first_name": first, "last_name": last}
+            guessed = True
         if cells.get("team", "").casefold() in _NO_TEAM:
             cells["team"] = ""
         number = _PARTICIPANT.fullmatch(cells.get("participant", ""))
@@ -213,3 +217,13 @@ def _entries(
         if not (student.name or student.login):
             raise LabkitError(f"{path}, line {line} has neither a name nor a login")
         yield Entry(line, student, **of_hand_in, guessed=guessed)
+
+
+def _split(name: str, first_is_first: bool) -> tuple[str, str]:
+    """First and last name: "Davis, Jr., Sammy" of Canvas's, "Sammy Davis, Jr." of Moodle's."""
+    last, comma, first = name.rpartition(",")
+    if comma and not first_is_first:
+        return first.strip(), last.strip()
+    before, comma, after = name.partition(",")
+    first, _, last = before.rpartition(" ")
+    return first.strip(), last + comma + after

@@ -21,7 +21,7 @@ from .arms import give_arms
 from .attempts import move
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, alone, places, remember
-from .list_remarks import about_namesakes, about_teams
+from .list_remarks import about_names, about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
 from .worksheet import keep_numbers, keep_times
@@ -115,7 +115,8 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     """
     if assignment:
         course.notebook_source(assignment)
-    entries = read_list(file)
+    rows = read_list(file)
+    entries = [entry for entry in rows if not entry.is_canvas_test_student]
     numbered = sum(bool(entry.participant) for entry in entries)
     if assignment and not numbered:
         raise LabkitError(
@@ -140,6 +141,9 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     if absent:
         still = f"{len(absent)} ({some(absent)})"
         told.append(f"not in this list, and still in the roster: {still}")
+    if len(entries) < len(rows):
+        told.append("not taken: Test Student, whom Canvas makes for a teacher's view as a student")
+    told += about_names(before, done.roster)
     told += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
         told.append(f"{assignment}: {numbered} participants; {times} hand-in times set")

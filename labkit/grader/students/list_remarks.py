@@ -6,8 +6,21 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from ..clean import some
+from .class_list import Student
 from .platforms import LmsUser
 from .roster import FILE, Roster
+
+
+def about_names(before: Roster, after: Roster) -> Iterator[str]:
+    """Who has another name than before."""
+    pairs = [(old, new) for new in after.students if (old := before.get(new.id)) and old.name]
+    changed = [f"{a} is now {_in_columns(b)}" for a, b in pairs if _in_columns(a) != _in_columns(b)]
+    if changed:
+        yield f"names that this list changed: {len(changed)} ({some(changed)})"
+
+
+def _in_columns(one: Student) -> str:
+    return f"first name {one.first_name!r}, last name {one.last_name!r}"
 
 
 def about_teams(named: Iterable[str]) -> Iterator[str]:
@@ -25,7 +38,11 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
 def about_namesakes(roster: Roster, known: Mapping[str, Mapping[str, LmsUser]]) -> Iterator[str]:
     """Who is called alike, and the assignments in which their numbers tell them apart."""
     for group in roster.namesakes():
-        told_apart = [x for x, people in known.items() if all(one.id in people for one in group)]
+        told_apart = [
+            assignment
+            for assignment, users in known.items()
+            if all((user := users.get(x.id)) and user.system == "moodle" for x in group)
+        ]
         yield (
             f"{len(group)} students have the same name: {', '.join(map(str, group))}; Moodle's zip "
             "does not say which is which, so import the grading worksheet of each assignment, with "
