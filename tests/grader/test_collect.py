@@ -13,6 +13,7 @@ from downloaded import (
     MOODLE,
     NAME,
     bare_course,
+    canvas_writes,
     counting,
     from_moodle,
     handed_in,
@@ -568,6 +569,50 @@ def test_the_command_says_what_wants_a_look_at_the_end(bare, tmp_path, capsys):
     assert "\x1b" not in said.out + said.err and "\x07" not in said.out + said.err
     assert "[2J.ipynb: not taken; its name does not say whose it is" in said.err
     assert f"Bob: {NAME}.ipynb: taken" in said.out
+
+
+@pytest.mark.parametrize("platform", ["moodle", "canvas"])
+def test_the_time_of_a_platforms_zip_makes_nobody_late(bare, tmp_path, capsys, platform):
+    """--at is when the zip was made: Moodle's shows nobody late, Canvas's those marked LATE."""
+    (bare.root / "course.toml").write_text(f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00\n")
+    who = ("Ada", 1), ("Bob", 2)
+    if platform == "moodle":
+        source = from_moodle(tmp_path / "1.zip", [(x, f"{NAME}.ipynb", x[0]) for x in who])
+    else:
+        entries = [canvas_writes(*x, 9, f"{NAME}.ipynb", late=x[0] == "Bob") for x in who]
+        source = zipped(tmp_path / "1.zip", [(entry, entry) for entry in entries])
+    words = ["collect", NAME, str(source), "--course", str(bare.root), "--at", "2026-03-05 12:00"]
+    assert main(words) == 0
+    stamps = [x.read_text() for x in bare.submitted.glob("*/*/timestamp.txt")]
+    assert stamps == ["2026-03-05 12:00:00+00:00"] * (platform == "canvas")
+    assert '"exact": true' not in "".join(
+        x.read_text() for x in bare.root.glob("attempts/**/*.json")
+    )
+    assert f"late by the time given: {len(stamps)} of 2" in capsys.readouterr().out
+
+
+def test_a_time_to_come_is_refused(bare, tmp_path, capsys):
+    """A year too late by a slip of the finger: the time, now, and what to write."""
+    source = zipped(tmp_path / "1.zip", [BOB])
+    words = ["collect", NAME, str(source), "--course", str(bare.root), "--at", "2098-03-05 12:00"]
+    assert main(words) == 2 and not counting(bare)
+    said = capsys.readouterr().err
+    assert "'2098-03-05 12:00' is in the future, it is now 20" in said
+    assert "write when the download was made" in said
+
+
+def test_loose_files_are_as_late_as_the_time_given(bare, tmp_path, capsys):
+    """Of files from no platform --at is the hand-in time, and who is late by it is counted."""
+    (bare.root / "course.toml").write_text(f"[assignments.{NAME}]\ndue = 2026-03-02T12:00:00\n")
+    for name in ("ada", "bob"):
+        (tmp_path / "in" / name).mkdir(parents=True)
+        (tmp_path / "in" / name / f"{NAME}.ipynb").write_text(name)
+    words = ["collect", NAME, str(tmp_path / "in"), "--named", "{student}/*.ipynb"]
+    words += ["--course", str(bare.root), "--at"]
+    assert main([*words, "2026-03-05 12:00"]) == 0
+    assert "late by the time given: 2 of 2" in capsys.readouterr().out
+    assert main([*words, "2026-03-01 12:00"]) == 0
+    assert "late by the time given: 0 of 2" in capsys.readouterr().out
 
 
 def test_two_do_not_collect_at_once(bare, tmp_path):

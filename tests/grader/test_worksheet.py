@@ -88,9 +88,9 @@ def test_times_of_what_was_not_collected_are_named(bare, tmp_path, capsys):
 
 
 def test_the_worksheet_is_nearer_than_the_time_of_the_download(bare, tmp_path, capsys):
-    """What was collected with --at counts from the hand-in once the worksheet says when it was."""
+    """Of what was collected with --at nobody knows when it came until the worksheet says so."""
     take(bare, tmp_path, at=read_time("2026-03-01 12:00"))
-    assert handed_in(bare) == "01 12:00"
+    assert handed_in(bare) == ""
     assert worksheet(bare, tmp_path, capsys, IN_TIME)[0] == 0
     assert handed_in(bare) == "01 11:30"
 

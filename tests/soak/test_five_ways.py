@@ -103,6 +103,15 @@ def table(course, capsys, *more):
     return list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
 
 
+def worksheet(course, folder, everybody, when):
+    """Import Moodle's grading worksheet, with the time that each handed in."""
+    sheet = ["Identifier,Full name,Email address,Last modified (submission)"]
+    sheet += [f"Participant {100 + x.k},{x.name},{x.login}@uni.org,{when(x)}" for x in everybody]
+    (folder / "sheet.csv").write_text("\n".join(sheet))
+    words = ["students", "import", str(folder / "sheet.csv"), "--assignment", NAME]
+    assert typed(course, *words) == 0
+
+
 def term(course, way, folder, everybody):
     """Roster, rules, both downloads, the older one once more, grades, a mark by hand."""
     course.root.joinpath("course.toml").write_text(
@@ -116,11 +125,7 @@ def term(course, way, folder, everybody):
     (folder / "list.csv").write_text("\n".join(rows))
     assert typed(course, "students", "import", str(folder / "list.csv")) == 0
     if way is moodle:  # which alone says who of the namesakes is who
-        sheet = ["Identifier,Full name,Email address"]
-        sheet += [f"Participant {100 + x.k},{x.name},{x.login}@uni.org" for x in everybody]
-        (folder / "sheet.csv").write_text("\n".join(sheet))
-        words = ["students", "import", str(folder / "sheet.csv"), "--assignment", NAME]
-        assert typed(course, *words) == 0
+        worksheet(course, folder, everybody, lambda x: "")
     first = [(x, 1) for x in everybody]
     second = [(x, 2 if x.again else 1) for x in everybody]
     for k, (present, when) in enumerate(((first, FIRST), (second, SECOND), (first, FIRST))):
@@ -128,6 +133,8 @@ def term(course, way, folder, everybody):
         if way is exchange and k == 1:  # nobody hands in there what they handed in before
             present = [(x, n) for x, n in present if n == 2]
         assert typed(course, "collect", NAME, *way(folder / str(k), present, when)) == 0
+    if way is moodle:  # whose zips do not say when work was handed in
+        worksheet(course, folder, everybody, lambda x: WHEN[SECOND if x.again else FIRST])
     for x in everybody:
         path = course.submitted / x.login / NAME / f"{NAME}.ipynb"
         about = json.loads(path.read_bytes())["metadata"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from datetime import UTC, datetime
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -161,7 +162,7 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
 @click.option(
     "--at",
     metavar="TIME",
-    help="Time of the download or clone; counts as the hand-in time of files without their own.",
+    help="Time of the download or clone: the hand-in time of files that come from no platform.",
 )
 @click.option(
     "--peer-review",
@@ -192,9 +193,15 @@ def collect(
     from ..timestamp import read_time
 
     assignment = sheet_of(assignment) if peer_review else assignment
-    when = read_time(at, ZoneInfo(read_rules(course).zone)) if at else None
+    zone = ZoneInfo(read_rules(course).zone)
+    when = read_time(at, zone) if at else None
     if at and when is None:
         raise LabkitError(f"{at!r} is not a time; write 2026-11-02 23:59")
+    if when and when > (now := datetime.now(UTC)):
+        raise LabkitError(
+            f"--at {at!r} is in the future, it is now {now.astimezone(zone):%Y-%m-%d %H:%M}; "
+            "write when the download was made"
+        )
     doubtful = []
     try:
         for source in sources:

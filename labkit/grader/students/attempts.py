@@ -174,7 +174,8 @@ def keep(
     newest = max((one.when for one in before.seen if one.origin == "exchange"), default=seen.when)
     if secret is not None and seen.when >= newest:
         _put(before.file.parent / SECRET, secret)
-    if all((x.when, x.origin, x.file) != (seen.when, seen.origin, seen.file) for x in before.seen):
+    same = (seen.when, seen.origin, seen.file, seen.exact)
+    if all((x.when, x.origin, x.file, x.exact) != same for x in before.seen):
         record = replace(before, seen=(*before.seen, seen))
         data = msgspec.json.encode(record, enc_hook=lambda file: file.name)
         text = msgspec.json.format(data, indent=1).decode()

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from ...course.layout import Course
@@ -19,6 +20,7 @@ from ...errors import LabkitError
 from ..clean import some
 from ..each import Failed, for_student
 from ..grading.results import digest
+from ..rules import read_rules
 from .attempts import Seen, adopt, called, install, keep, that_counts
 from .enrol import settle
 from .exchange import in_exchange
@@ -70,8 +72,8 @@ def collect(
             their word.
         named: How files are named that come from no platform, such as
             ``paths-{student}/*.ipynb``; then the source is a folder of them, or a zip.
-        at: When the source was made, if that is known; what has no time of its own was handed in
-            by then.
+        at: When the source was made, if that is known: the hand-in time of files that come from no
+            platform.  What a platform's zip holds was handed in by then, nobody knows when.
 
     Yields:
         What was done with each file.
@@ -95,7 +97,7 @@ def collect(
                 else:
                     files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
                 mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
-                yield from _take(course, assignment, source, [_made(x, at) for x in mine])
+                yield from _take(course, assignment, source, [_made(x, at, True) for x in mine], at)
         elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
             yield from _take(course, assignment, source, files)
@@ -105,16 +107,22 @@ def collect(
             )
         else:
             with open_zip(source) as archive:
-                files = [_made(file, at) for file in in_zip(archive, now)]
-                yield from _take(course, assignment, source, files)
+                files = [_made(file, at, False) for file in in_zip(archive, now)]
+                yield from _take(course, assignment, source, files, at)
 
 
-def _made(file: File, at: datetime | None) -> File:
-    """A file of a source that was made at a known time."""
-    return file if at is None or file.exact else replace(file, when=at, exact=True)
+def _made(file: File, at: datetime | None, exact: bool) -> File:
+    """A file of a source that was made at a known time, and whether it was handed in then."""
+    return file if at is None else replace(file, when=at, exact=exact)
 
 
-def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
+def _take(
+    course: Course,
+    assignment: str,
+    source: Path,
+    files: Sequence[File],
+    at: datetime | None = None,
+) -> Iterator[Taken]:
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
         raise LabkitError(
@@ -148,6 +156,17 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
     for student, mine in sorted(by_student.items()):
         yield from _keep(course, assignment, student, mine)
+    if at is not None:
+        late = [for_student(x, partial(_is_late_by, course, assignment, x, at)) for x in by_student]
+        yield Taken("", "", f"late by the time given: {late.count(True)} of {len(by_student)}")
+
+
+def _is_late_by(course: Course, assignment: str, student: str, at: datetime) -> bool:
+    """Whether what counts came too late, and the time that was given is the reason."""
+    due = read_rules(course).due_for(student, assignment)
+    chosen = that_counts(course, student, assignment)
+    seen = chosen and chosen.first
+    return bool(due and seen and seen.when == at > due and (seen.exact or seen.late))
 
 
 def _whose(file: File, roster: Roster) -> Named | str:

@@ -56,7 +56,7 @@ def keep_times(
         when = _time(said, zone, chosen, all)
         if isinstance(when, str):
             left.append(f"{student}: no hand-in time is set; the worksheet says {when}")
-        elif when != first.when:
+        elif when != first.when or not first.exact:
             data = chosen.attempt.file.read_bytes()
             keep(course, student.id, assignment, data, replace(first, when=when, exact=True))
             install(course, student.id, assignment)
