@@ -22,6 +22,8 @@ from labkit.grader.defence.draw import ASKED, Asked, draw
 from labkit.grader.defence.mark import await_mark, give_mark
 from labkit.grader.defence.page import write_page
 from labkit.grader.grading.results import Results
+from labkit.grader.marks.export import of_term, remarks
+from labkit.grader.marks.mark import Mark
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.nbgrader_api import nbgrader_api
@@ -84,6 +86,23 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
     assert (shown["student"], shown["score"], shown["needs_manual_grade"]) == ("ada", 6.0, False)
     written = course.root / "autograded/ada" / DEFENCE / f"{DEFENCE}.ipynb"
     nbformat.validate(nbformat.read(written, as_version=4))
+
+
+def test_who_had_no_defence_yet_has_the_percentage_of_all_else():
+    """The first defence takes nobody else's, and gives nobody a 0; --absent-zero gives one."""
+    ada, bob, eve = (Mark(name, points=10.0, raw=5.0) for name in ("ada", "bob", "eve"))
+    held, waits = replace(ada, raw=8.0), replace(bob, raw=None, missing="no mark for question_1")
+    absent, nothing = replace(eve, raw=None), Mark("zoe", points=10.0)
+    weights = {NAME: 1.0, DEFENCE: 2.0}
+
+    def percent(*defences):
+        table = of_term({NAME: [ada, bob, eve, nothing], DEFENCE: defences}, weights)
+        return [row[-1] for row in table[3:]]
+
+    assert percent(held, waits, absent, nothing) == [70.0, 50.0, 50.0, ""]
+    assert percent(held, waits, replace(absent, raw=0.0))[2] == 16.67
+    assert list(remarks("questions", [held, absent], DEFENCE)) == ["1 with no defence yet: eve"]
+    assert list(remarks("questions", [held, absent], NAME)) == ["1 handed in nothing: eve"]
 
 
 def test_the_front_says_what_the_law_is_given():

@@ -196,6 +196,8 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     for file in (hand_in, result):
         file.parent.mkdir(parents=True)
         file.write_text("{}")
+    rules = course.root / "course.toml"
+    rules.write_text("# of the last term\n")
     assert main(words) == 2
     said = capsys.readouterr().err
     assert "has 2 students, 1 submission, 1 graded mark; to hand out" in said
@@ -209,8 +211,12 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert str(seeds.seed_of(course)) not in said, "the terminal may be projected"
     commands = [line.strip() for line in said.splitlines() if line.startswith("    ")]
     assert commands.pop() == "labkit release 00_warmup"
+    rules.write_text("# of the new term\n")
     subprocess.run(["sh", "-e"], cwd=course.root, input="\n".join(commands).encode(), check=True)
     assert not list(old.folder.iterdir()), "the archive is back, whole"
+    assert rules.read_text() == "# of the last term\n"
+    undone = course.root / "course_private/undone" / rules.name
+    assert undone.read_text() == "# of the new term\n", "nothing is overwritten"
     assert main(["release", "00_warmup", "--course", str(course.root)]) == 0
     again = json.loads((course.bundle / "00_warmup.json").read_text())["hash"]
     assert again == json.loads(record)["bundles"]["00_warmup"], "results stay valid"

@@ -117,7 +117,7 @@ def export(
         if not term:
             raise LabkitError("nobody is graded in any assignment; type: labkit grade ASSIGNMENT")
         for name, marks in term.items():
-            tell((f"{name}: {says}" for says in remarks("questions", marks)), sys.stderr)
+            tell((f"{name}: {says}" for says in remarks("questions", marks, name)), sys.stderr)
         whole = {name: filled(name, marks) for name, marks in term.items()}
         write(as_csv(of_term(whole, {name: rules.weight(name) for name in term})), to)
         tell(doubts, sys.stderr)
@@ -125,7 +125,7 @@ def export(
     marks = read(assignment)
     if not marks:
         raise nobody(assignment, None)
-    tell(remarks(layout, marks), sys.stderr)
+    tell(remarks(layout, marks, assignment), sys.stderr)
     write(as_csv(LAYOUTS[layout](column or assignment, filled(assignment, marks))), to)
     tell(doubts, sys.stderr)
     lost, count = unmatched(layout, marks)

@@ -25,6 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
+from ...course.layout import DEFENCE
 from ..clean import no_formula, some
 from .mark import Mark
 
@@ -110,7 +111,7 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
     """All assignments side by side, and what they come to, in percent.
 
     What has no full marks, such as the cup, is a bonus: it adds its points, times its weight, to
-    the percentage.
+    the percentage.  Who had no defence yet has the percentage of all else.
 
     Args:
         marks: By assignment, the same students in each or not.
@@ -124,25 +125,19 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
     table.append(["(weight)", "", "", "", "", *(weights[name] for name in marks), ""])
     for student, who in sorted(known.items()):
         scores = [m.score if (m := cells.get((name, student))) else "" for name in marks]
-        shares = [
-            weights[name] * score / full[name]
-            for name, score in zip(marks, scores, strict=True)
-            if isinstance(score, float) and full[name]
-        ]
-        whole = sum(weights[name] for name in marks if full[name])
-        count = [score for name, score in zip(marks, scores, strict=True) if full[name]]
-        bonus = sum(
-            weights[name] * score
-            for name, score in zip(marks, scores, strict=True)
-            if isinstance(score, float) and not full[name]
-        )
-        percent = round(100 * sum(shares) / whole + bonus, 2) if whole and "" not in count else ""
+        scored = list(zip(marks, scores, strict=True))
+        counted = [(name, x) for name, x in scored if full[name] and (name, x) != (DEFENCE, "")]
+        whole = sum(weights[name] for name, _ in counted)
+        shares = [weights[n] * x / full[n] for n, x in counted if isinstance(x, float)]
+        bonus = sum(weights[n] * x for n, x in scored if isinstance(x, float) and not full[n])
+        certain = whole and len(shares) == len(counted)
+        percent = round(100 * sum(shares) / whole + bonus, 2) if certain else ""
         ids = (student, who.first, who.last, who.email, who.id_number)
         table.append([*ids, *scores, percent])
     return table
 
 
-def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
+def remarks(layout: str, marks: Sequence[Mark], assignment: str = "") -> Iterator[str]:
     """What should be known of a table: who has no mark, and whom the platform will not know."""
     for mark in marks:
         if mark.missing:
@@ -152,7 +147,8 @@ def remarks(layout: str, marks: Sequence[Mark]) -> Iterator[str]:
     if team := [f"{mark.student} ({mark.author})" for mark in marks if mark.author]:
         yield f"{len(team)} have the mark of a report that their team handed in: {some(team)}"
     if absent := [mark.student for mark in marks if mark.absent]:
-        yield f"{len(absent)} handed in nothing: {some(absent)}"
+        nothing = "with no defence yet" if assignment == DEFENCE else "handed in nothing"
+        yield f"{len(absent)} {nothing}: {some(absent)}"
     if layout == "canvas" and (lost := [m.student for m in marks if not (m.absent or m.canvas)]):
         yield (
             f"{len(lost)} have no Canvas ID, so Canvas must find them by SIS ID or login: "

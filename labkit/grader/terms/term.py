@@ -125,7 +125,7 @@ def archive(course: Course) -> Path | None:
 def way_back(course: Course, folder: str) -> Iterator[str]:
     """Where the last term is now, and the commands that return to it, a line each."""
     old = (_private(course) / folder).relative_to(course.root)
-    mine = (*PERSONAL_FILES, course.term.relative_to(course.root).as_posix())
+    mine = (*PERSONAL_FILES, course.term.relative_to(course.root).as_posix(), RULES)
     new = [name for name in mine if (course.root / name).exists()]
     by_place: dict[Path, list[str]] = {}
     for name in (Path(name) for name in mine):
