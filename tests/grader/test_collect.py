@@ -591,6 +591,21 @@ def test_the_time_of_a_platforms_zip_makes_nobody_late(bare, tmp_path, capsys, p
     assert f"late by the time given: {len(stamps)} of 2" in capsys.readouterr().out
 
 
+def test_a_notebook_of_another_assignment_is_named(bare, tmp_path, capsys):
+    """Whatever its file is called: its cells say it, and the exit code is 1."""
+    (bare.root / "assignments").symlink_to(ROOT / "assignments")
+    right, wrong = (
+        (ROOT / f"assignments/{x}/{x}.ipynb").read_bytes() for x in (NAME, "05_impedance")
+    )
+    files = [(("Ada", 1), f"{NAME}.ipynb", wrong), (("Bob", 2), "05_impedance.ipynb", right)]
+    source = from_moodle(tmp_path / "1.zip", files)
+    assert main(["collect", NAME, str(source), "--course", str(bare.root)]) == 1
+    assert capsys.readouterr().err == (
+        f"Ada: {NAME}.ipynb: this is notebook 05_impedance, not {NAME}; "
+        "ask the student for the right one\n"
+    )
+
+
 def test_a_time_to_come_is_refused(bare, tmp_path, capsys):
     """A year too late by a slip of the finger: the time, now, and what to write."""
     source = zipped(tmp_path / "1.zip", [BOB])

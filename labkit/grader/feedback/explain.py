@@ -10,14 +10,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ...course.bugs import Found, Telling
 from ...course.bundle import Bundle
+from ...course.forms import Measured
 from ...course.layout import Course
 from ...course.messages import summary, wrapped
+from ...course.own_arm import DEMO
 from ...course.serialize import question_data
 from ...course.verdict import Verdict
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
-from ..grading.grade import grade
+from ..grading.grade import PUBLIC_ARM, grade
 from ..grading.plan import imports
 from ..grading.results import Result
 from ..grading.worker import in_sandbox
@@ -42,6 +45,7 @@ class Explanation:
         found: The verdict with hidden cases laid open.
         source: The student's answer.
         page: With the numbers and runs, for the instructor.
+        judged: By which arm, and how near, where the question is about one's own.
     """
 
     mark: Mark
@@ -50,6 +54,7 @@ class Explanation:
     found: Verdict
     source: str
     page: Path
+    judged: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         return "\n".join(self._lines())
@@ -58,6 +63,7 @@ class Explanation:
         given = "not marked" if self.line.score is None else f"{self.line.score:g}"
         origin = f" ({self.line.origin})" if self.line.origin else ""
         yield f"{self.mark.student}, {self.told.name}: {given} of {self.line.points:g}{origin}"
+        yield from map(wrapped, self.judged)
         yield "\nWhat the student has read, and may be shown:"
         yield from map(wrapped, summary(self.told))
         hidden = {test.name for test in self.told.tests if test.hidden}
@@ -111,7 +117,21 @@ def explain(
     line = lines[0] if lines else MarkLine(question, told.verdict.points, told.verdict.earned)
     shown = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
     write(file, page(replace(result, notes=notes), shown))
-    return Explanation(mark, line, told.verdict, answer.verdict, told.source, file)
+    judged = _judged(bundle, student, question)
+    if judged and PUBLIC_ARM in mark.result.notes:
+        judged += (PUBLIC_ARM,)
+    return Explanation(mark, line, told.verdict, answer.verdict, told.source, file, judged)
+
+
+def _judged(bundle: Bundle, student: str, name: str) -> tuple[str, ...]:
+    """By which arm a question about one's own is judged, and how near a number has to be."""
+    judge = next(q.judge for q in bundle.questions if q.name == name)
+    if not isinstance(judge, Measured | Found | Telling):
+        return ()
+    given = bundle.arms.arm(student) is not None
+    arm = f"the arm that the course gave {student}" if given else f'the public arm "{DEMO}"'
+    near = f", within {judge.tolerance:g} {judge.unit}" if isinstance(judge, Measured) else ""
+    return (f"Judged by {arm}{near}.",)
 
 
 def _laid_open(bundle: Bundle, name: str) -> Bundle:

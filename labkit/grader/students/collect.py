@@ -1,7 +1,7 @@
 """Collect: downloads from Moodle and Canvas, or nbgrader's exchange, into ``submitted/``.
 
-Whose a file is comes from the platform's own field (``platforms``, ``downloads``) and from the
-roster (``identity``); which of a student's notebooks counts is settled in ``attempts``.
+Whose a file is comes from the platform's own field (``platforms``) and from the roster (``owner``,
+``identity``); which of a student's notebooks counts is settled in ``attempts``.
 """
 
 from __future__ import annotations
@@ -20,13 +20,14 @@ from ...errors import LabkitError
 from ..clean import some
 from ..each import Failed, for_student
 from ..grading.results import digest
-from ..rules import read_rules
-from .attempts import Seen, adopt, called, install, keep, that_counts
+from .attempts import Seen, adopt, called, install, keep, late_by, that_counts
 from .enrol import settle
 from .exchange import in_exchange
 from .identity import all_lms_users, alone, places, remember
+from .other_notebook import made_for, released
+from .owner import owner
 from .platforms import File, LmsUser, Named, in_folder, in_zip, open_zip, reader
-from .roster import Roster, read_roster
+from .roster import read_roster
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,7 @@ def _take(
     known = all_lms_users(course)
     handed_in: list[_HandedIn] = []
     for file in files:
-        named = _whose(file, roster)
+        named = owner(file, roster)
         if isinstance(named, str):
             yield Taken("", file.label, named, fine=False)
         else:
@@ -154,49 +155,12 @@ def _take(
     by_student: dict[str, list[_HandedIn]] = {}
     for file, named in handed_in:
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
+    asked = released(course)
     for student, mine in sorted(by_student.items()):
-        yield from _keep(course, assignment, student, mine)
+        yield from _keep(course, assignment, student, mine, asked)
     if at is not None:
-        late = [for_student(x, partial(_is_late_by, course, assignment, x, at)) for x in by_student]
+        late = [for_student(x, partial(late_by, course, x, assignment, at)) for x in by_student]
         yield Taken("", "", f"late by the time given: {late.count(True)} of {len(by_student)}")
-
-
-def _is_late_by(course: Course, assignment: str, student: str, at: datetime) -> bool:
-    """Whether what counts came too late, and the time that was given is the reason."""
-    due = read_rules(course).due_for(student, assignment)
-    chosen = that_counts(course, student, assignment)
-    seen = chosen and chosen.first
-    return bool(due and seen and seen.when == at > due and (seen.exact or seen.late))
-
-
-def _whose(file: File, roster: Roster) -> Named | str:
-    """The one reading of a file's name that is right, or why there is none."""
-    if file.refused or not file.readings:
-        return file.refused or "not taken; its name does not say whose it is"
-    if len(file.readings) == 1:
-        who = file.readings[0].who
-        if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
-            known = len(roster.whose(who)) or "no"
-            return (
-                f"not taken; the roster has {known} students who are {who.name!r}; correct it with "
-                "labkit students import LIST.csv, and collect again"
-            )
-        return file.readings[0]
-    fits = [named for named in file.readings if _is_called_so(named.who, roster)]
-    if len(fits) == 1:
-        return fits[0]
-    people = " or ".join(str(named.who) for named in file.readings)
-    return f"not taken; it is of {people}; the roster does not say which"
-
-
-def _is_called_so(who: LmsUser, roster: Roster) -> bool:
-    """Whether the roster has this user of Canvas, under this name."""
-    names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
-    return _letters(who.name) in map(_letters, names)
-
-
-def _letters(name: str) -> str:
-    return "".join(c for c in name.casefold() if c.isalnum())
 
 
 def _namesakes(people: Iterable[LmsUser]) -> Iterator[Taken]:
@@ -231,7 +195,11 @@ def _known_by_name(
 
 
 def _keep(
-    course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
+    course: Course,
+    assignment: str,
+    student: str,
+    mine: Sequence[_HandedIn],
+    asked: Mapping[str, frozenset[bytes]],
 ) -> Iterator[Taken]:
     """Keep one student's notebooks, and let the right one count."""
     notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
@@ -239,7 +207,7 @@ def _keep(
         if says := _no_notebook(named):
             yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
     done = for_student(
-        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
+        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks, asked))
     )
     if isinstance(done, Failed):
         done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
@@ -256,7 +224,11 @@ def _no_notebook(named: Named) -> str:
 
 
 def _keep_notebooks(
-    course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
+    course: Course,
+    assignment: str,
+    student: str,
+    notebooks: Sequence[_HandedIn],
+    asked: Mapping[str, frozenset[bytes]],
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
     adopt(course, student, assignment, now)
@@ -286,3 +258,7 @@ def _keep_notebooks(
             says = "taken" + (", in place of an earlier one, which is kept" if before else "")
             says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
         yield Taken(student, seen.file, says + (", late" if seen.late else ""))
+    counted = after.attempt.file.read_bytes() if after else b""
+    if after and (other := made_for(counted, assignment, asked)) != assignment:
+        says = f"this is notebook {other}, not {assignment}; ask the student for the right one"
+        yield Taken(student, after.first.file, says, fine=False)

@@ -1,0 +1,36 @@
+"""Whose a file of a download is, by its name and the roster."""
+
+from __future__ import annotations
+
+from .platforms import File, LmsUser, Named
+from .roster import Roster
+
+
+def owner(file: File, roster: Roster) -> Named | str:
+    """The one reading of a file's name that is right, or why there is none."""
+    if file.refused or not file.readings:
+        return file.refused or "not taken; its name does not say whose it is"
+    if len(file.readings) == 1:
+        who = file.readings[0].who
+        if who.system == "files" and roster.students and len(roster.whose(who)) != 1:
+            known = len(roster.whose(who)) or "no"
+            return (
+                f"not taken; the roster has {known} students who are {who.name!r}; correct it with "
+                "labkit students import LIST.csv, and collect again"
+            )
+        return file.readings[0]
+    fits = [named for named in file.readings if _is_called_so(named.who, roster)]
+    if len(fits) == 1:
+        return fits[0]
+    people = " or ".join(str(named.who) for named in file.readings)
+    return f"not taken; it is of {people}; the roster does not say which"
+
+
+def _is_called_so(who: LmsUser, roster: Roster) -> bool:
+    """Whether the roster has this user of Canvas, under this name."""
+    names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
+    return _letters(who.name) in map(_letters, names)
+
+
+def _letters(name: str) -> str:
+    return "".join(c for c in name.casefold() if c.isalnum())
