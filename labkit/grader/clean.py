@@ -10,7 +10,7 @@ from typing import Any
 from .sandbox.clean import clean_line, clean_text
 
 __all__ = ["LONGEST", "clean_data", "clean_line", "clean_text", "from_no_formula",
-           "no_formula", "safe_name", "some"]  # fmt: skip
+           "how_many", "no_formula", "safe_name", "some"]  # fmt: skip
 
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _FORMULAS = frozenset("=+-@\t\r")
@@ -50,6 +50,11 @@ def no_formula(cell: str) -> str:
 def from_no_formula(cell: str) -> str:
     """What `no_formula` was given."""
     return cell[1:] if cell[:1] == "'" and cell.lstrip("'")[:1] in _FORMULAS else cell
+
+
+def how_many(count: int, what: str) -> str:
+    """A number of things, for a sentence: 0 students, 1 student, 2 students."""
+    return f"{count} {what}{'s' * (count != 1)}"
 
 
 def some(names: Sequence[str], most: int = 5) -> str:

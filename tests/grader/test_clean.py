@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from labkit.grader.clean import clean_line, clean_text
+from labkit.grader.clean import clean_line, clean_text, how_many
 
 ANYTHING = st.text(alphabet=st.characters(exclude_categories=()))  # lone surrogates too
 
@@ -40,3 +40,8 @@ def test_a_clean_line_is_one_short_line(text):
 def test_what_people_write_stays(text, clean):
     """Accents, emoji, tabs and lines stay; what commands a terminal goes."""
     assert clean_text(text) == clean
+
+
+def test_one_thing_is_not_a_plural():
+    """Whoever handed in alone is one student, and nobody is no students."""
+    assert [how_many(n, "student") for n in (0, 1, 2)] == ["0 students", "1 student", "2 students"]

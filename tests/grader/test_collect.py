@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import struct
+import subprocess
 import tempfile
 import zipfile
 from pathlib import Path
@@ -648,6 +649,10 @@ def test_names_and_work_go_with_the_term(bare, tmp_path):
     take(bare, zipped(tmp_path / "1.zip", [BOB]))
     ignored = (ROOT / ".gitignore").read_text().split()
     assert {"/attempts/", "/course_private/", "/submitted/"} <= set(ignored)
+    written = ("term.csv", "01.csv", "class_report_01.md", "moodle.zip", "board.html")
+    found = subprocess.run(["git", "-C", str(ROOT), "check-ignore", "--no-index", *written],
+                           capture_output=True, text=True)  # fmt: skip
+    assert found.stdout.split() == list(written), "under any name that a lecturer may give"
     folder = archive(bare)
     assert {"attempts", "submitted", "roster.csv", "lms.json"} <= {x.name for x in folder.iterdir()}
     assert not (bare.root / "attempts").exists() and not (bare.root / ROSTER).exists()

@@ -54,4 +54,4 @@ def test_one_prediction_goes_all_the_way(tmp_path, monkeypatch, capsys):
     assert "feedback for Ada-Lovelace" in html and "1 of 14 points." in html
     assert f"<code>{receipt}</code>" in html
     section = html.partition(f'<h2 id="{asked}">')[2].partition("</section>")[0]
-    assert "1 of 1 points" in section
+    assert "1 of 1 point." in section

@@ -323,7 +323,7 @@ def test_the_command_imports_a_list_and_formgrader_shows_names(tmp_path, capsys)
     file.write_text("Identifier,Full name,Email address\nParticipant 7,Ada,ada@uni.org\n")
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 0
     said = capsys.readouterr().out
-    assert "0 of them new" in said and "01_paths: 1 participants; " in said
+    assert "0 of them new" in said and "01_paths: 1 participant; " in said
     assert "not in this list, and still in the roster: 3 (Zoë O'Brien (Zoë-OBrien), " in said
     file.write_text(CANVAS)
     assert main(["students", "import", str(file), "--assignment", NAME, *where]) == 2

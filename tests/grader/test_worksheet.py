@@ -49,7 +49,7 @@ def test_the_worksheets_time_is_when_it_was_handed_in(bare, tmp_path, capsys):
     take(bare, tmp_path)
     code, out, err = worksheet(bare, tmp_path, capsys, IN_TIME)
     assert (code, err, handed_in(bare)) == (0, "", "01 11:30")
-    assert "01_paths: 1 participants; 1 hand-in times set" in out
+    assert "01_paths: 1 participant; 1 hand-in time set" in out
     code, out, err = worksheet(bare, tmp_path, capsys, IN_TIME)
     assert (code, err, handed_in(bare)) == (0, "", "01 11:30")
 

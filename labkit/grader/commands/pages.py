@@ -12,7 +12,7 @@ import click
 from ...course.cli import PATH, verb
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..clean import some
+from ..clean import how_many, some
 from ..each import Failed, Failures
 from .course import of_assignment
 
@@ -124,8 +124,9 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
     waiting = [f"{mark.student} ({', '.join(mark.open)})" for mark in open_ones]
     if waiting:
         raise LabkitError(
-            f"{some(waiting)}: these answers wait for a mark by hand, {len(waiting)} students in "
-            "all; give it in formgrader, or add --unmarked to write the pages without these marks"
+            f"{some(waiting)}: these answers wait for a mark by hand, of "
+            f"{how_many(len(waiting), 'student')} in all; give it in formgrader, or add "
+            "--unmarked to write the pages without these marks"
         )
 
 

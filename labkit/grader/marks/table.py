@@ -13,7 +13,7 @@ from typing import Any
 
 from ...course.layout import Course
 from ...course.notebook import question_of
-from ..clean import clean_line, clean_text
+from ..clean import clean_line, clean_text, how_many
 from ..each import Failed
 from ..grading.results import Result
 from ..grading.standing import full_marks, grade_again, standing
@@ -166,7 +166,7 @@ def _span(seconds: float) -> str:
     days, rest = divmod(int(seconds), 86400)
     hours, minutes = rest // 3600, rest % 3600 // 60
     found = [(days, "day"), (hours, "hour")] if days else [(hours, "hour"), (minutes, "minute")]
-    said = [f"{n} {what}{'s' * (n != 1)}" for n, what in found if n]
+    said = [how_many(n, what) for n, what in found if n]
     return " ".join(said) or "less than a minute"
 
 

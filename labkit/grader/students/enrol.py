@@ -15,7 +15,7 @@ from pathlib import Path
 
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..clean import safe_name, some
+from ..clean import how_many, safe_name, some
 from ..seeds import seed_of
 from .arms import give_arms
 from .attempts import move
@@ -137,7 +137,8 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
             left += not_taken
     listed = {student.id for _, student in done.rows}
     absent = [str(student) for student in before.students if student.id not in listed]
-    told = [f"{FILE}: {len(done.roster.students)} students, {len(done.new)} of them new"]
+    everybody = how_many(len(done.roster.students), "student")
+    told = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
     if absent:
         still = f"{len(absent)} ({some(absent)})"
         told.append(f"not in this list, and still in the roster: {still}")
@@ -146,7 +147,8 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     told += about_names(before, done.roster)
     told += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
-        told.append(f"{assignment}: {numbered} participants; {times} hand-in times set")
+        set_now = f"{how_many(times, 'hand-in time')} set"
+        told.append(f"{assignment}: {how_many(numbered, 'participant')}; {set_now}")
     elif numbered:
         told.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
-from ..clean import some
+from ..clean import how_many, some
 from .class_list import Student
 from .platforms import LmsUser
 from .roster import FILE, Roster
@@ -27,9 +27,10 @@ def about_teams(named: Iterable[str]) -> Iterator[str]:
     """What follows from a list's teams, which may be groups that were made for something else."""
     teams = Counter(named)
     if teams:
+        most = how_many(max(teams.values()), "student")
         yield (
             f"teams in this list: {len(teams)} ({some(sorted(teams))}), the largest of "
-            f"{max(teams.values())} students; a team has one arm and hands in one report. If "
+            f"{most}; a team has one arm and hands in one report. If "
             "these are other groups, such as tutorials, delete their column from the list, clear "
             f"the column team of {FILE}, and import the list again"
         )

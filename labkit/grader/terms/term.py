@@ -18,6 +18,7 @@ from ...course.seed import PUBLIC_SEED
 from ...errors import LabkitError
 from .. import pseudonyms
 from ..atomic import write
+from ..clean import how_many
 from ..rules import FILE as RULES
 from ..rules import read_rules
 from ..seeds import seed_of
@@ -45,7 +46,7 @@ def running(course: Course) -> str:
     submitted = len({path.parent for path in course.submitted.glob("*/*/*")})
     graded = len(list(course.results.glob("*/*.json")))
     counts = ((enrolled, "student"), (submitted, "submission"), (graded, "graded mark"))
-    return ", ".join(f"{n} {what}{'s' * (n != 1)}" for n, what in counts if n)
+    return ", ".join(how_many(n, what) for n, what in counts if n)
 
 
 def refuse_running(course: Course) -> None:
@@ -163,7 +164,7 @@ class Archive:
     people: int
 
     def __str__(self) -> str:
-        return f"{self.folder.name}: ended {self.ended}, {self.people} students"
+        return f"{self.folder.name}: ended {self.ended}, {how_many(self.people, 'student')}"
 
 
 def archives(course: Course, older: float = 0.0) -> list[Archive]:
