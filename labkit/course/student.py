@@ -225,10 +225,8 @@ def hint(name: str, level: int = 1) -> None:
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
             "of them, ask the teacher or a forum. This line in a new cell prints what to send: "
             f"!labkit submit-check --forum {assignment}.ipynb"
-            if hints
-            else f"{name} has no hints."
         )
-        print(wrapped(text))
+        print(wrapped(text if hints else f"{name} has no hints."))
         return
     if level > 1 and level == len(hints) and name not in desk().attempted:
         text = (

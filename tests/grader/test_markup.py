@@ -19,7 +19,7 @@ from labkit.course.verdict import Outcome
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import page
 from labkit.grader.grading.results import Results
-from labkit.grader.marks.mark import Line
+from labkit.grader.marks.mark import MarkLine
 from labkit.grader.marks.table import mark_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.nbgrader.markup import clean
@@ -175,7 +175,7 @@ def test_a_report_on_its_authors_page_does_not_run(course, source):
     """What a person marks is rendered on the student's own page, too, and nothing in it acts."""
     result = result_of(course, "ada", written={"essay": source})
     mark = mark_of(result)
-    mark = replace(mark, lines=(*mark.lines, Line("essay", 3.0, 2.0)))
+    mark = replace(mark, lines=(*mark.lines, MarkLine("essay", 3.0, 2.0)))
     body = page(result, mark).partition("<body>")[2]
     assert Page(f'id="notebook-container"{body}').alive == []
 
@@ -185,7 +185,7 @@ def test_a_report_on_its_authors_page_is_rendered(course):
     text = "# Claim\n\n- **14 mm** of sag\n\n| a | b |\n|---|---|\n| 1 | 2 |"
     result = result_of(course, "ada", written={"essay": text})
     mark = mark_of(result)
-    shown = page(result, replace(mark, lines=(*mark.lines, Line("essay", 3.0, 2.0))))
+    shown = page(result, replace(mark, lines=(*mark.lines, MarkLine("essay", 3.0, 2.0))))
     assert "<h1>Claim</h1>" in shown and "<strong>14 mm</strong>" in shown and "<td>1</td>" in shown
     assert "# Claim" not in shown
 

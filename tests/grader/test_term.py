@@ -23,7 +23,7 @@ from labkit.grader.grading.batch import GradedSubmission, GradeOptions, grade_cl
 from labkit.grader.grading.changes import changes
 from labkit.grader.grading.results import Results
 from labkit.grader.marks.export import LAYOUTS, as_csv, left_out
-from labkit.grader.marks.mark import Line, Mark
+from labkit.grader.marks.mark import Mark, MarkLine
 from labkit.grader.marks.table import mark_of, marks_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.pseudonyms import pseudonyms
@@ -136,7 +136,7 @@ def test_tables(term, capsys):
 
 def test_nothing_becomes_a_formula():
     """A name that a spreadsheet would run is written as text."""
-    row = Mark("=1+1", "@a", "+b", "-c", "1", "", "", (Line("q", 2.0, 1.0),), 1.0, 0.0, 2.0)
+    row = Mark("=1+1", "@a", "+b", "-c", "1", "", "", (MarkLine("q", 2.0, 1.0),), 1.0, 0.0, 2.0)
     for layout in LAYOUTS.values():
         for cells in csv.reader(io.StringIO(as_csv(layout("x", [row])))):
             assert not [c for c in cells if c[:1] in set("=+@")]
@@ -241,5 +241,5 @@ def test_moodle_layouts():
 
 
 def row(student, *, first="", last="", email="", lms="", known=None):
-    line = Line("q", 2.0, 1.0)
+    line = MarkLine("q", 2.0, 1.0)
     return Mark(student, first, last, email, lms, "", "", (line,), 1.0, 0.0, 2.0, user=known)
