@@ -92,7 +92,7 @@ def test_rules_of_the_last_term_are_named(course):
     """Due dates that are over and extensions stay in force, so the command says so."""
     assert term.old_rules(course) == ""
     rules = course.root / "course.toml"
-    rules.write_text("[assignments.01_paths]\ndue = 2999-11-02T23:59:00\n")
+    rules.write_text("[assignments.01_paths]\ndue = 2099-11-02T23:59:00\n")
     assert term.old_rules(course) == ""
     more = '[assignments.02_model]\ndue = 2020-11-02\n[[extensions]]\nstudent = "ada"\ndays = 3\n'
     rules.write_text(rules.read_text() + more.replace("11-02", "11-02T23:59:00"))
