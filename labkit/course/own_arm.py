@@ -46,7 +46,7 @@ RANGES = {
 """From where to where each number is drawn; below `OwnArm` says what it is."""
 
 APART = {"payload": 0.15, "stiction": 0.1, "lag": 0.00625, "wall": 0.005}
-"""How far from the public arm's numbers those of any other arm lie: a measurement of the public
+"""How far from the public arm's numbers those of any other arm lie; a measurement of the public
 arm is then wrong everywhere else.  Where a number is asked for, it is 1.25 tolerances."""
 
 BUGS = 3
