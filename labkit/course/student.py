@@ -231,7 +231,7 @@ def hint(name: str, level: int = 1) -> None:
     if level > 1 and level == len(hints) and name not in desk().attempted:
         text = (
             f"Hint {level} of {name} opens after an attempt: write what you believe, run the "
-            "check, and ask again. What the check says about your attempt is often hint enough."
+            "check, and ask again."
         )
         print(wrapped(text))
         return

@@ -27,6 +27,9 @@ STEPS = {  # how fine each channel is kept
     "force": 1e-2,  # N
 }
 
+CRASH = 1000.0
+"""A force larger than this, in [N], is not told in numbers: an arm that ran away hit something."""
+
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -153,7 +156,9 @@ class Motion:
         if self.things:
             words += f"; beside it {_listed(list(self.things))}"
         if self.force is not None:
-            words += f"; up to {np.linalg.norm(self.force, axis=1).max():.0f} N act on the tip"
+            most = np.linalg.norm(self.force, axis=1).max()
+            size = f"up to {most:.0f}" if most < CRASH else f"over {CRASH:.0f}"
+            words += f"; {size} N act on the tip"
         return words + "."
 
     @cached_property

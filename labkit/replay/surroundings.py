@@ -70,10 +70,12 @@ class Surroundings:
     def seen(self) -> dict[str, Any]:
         """The arm and all around it, in plain numbers for who draws it."""
         arm, T_wd = self._arm, self.wanted()
+        most = arm.robot.effort * (1.0 - 1e-9)
         return {
             "t": round(arm.world.t, 4),
             "q": arm.truth().q.round(5).tolist(),
             "error": None if T_wd is None else float(np.linalg.norm(arm.tip()[0] - T_wd[:3, 3])),
+            "spent": np.flatnonzero(np.abs(arm.torque) >= most).tolist(),
             "things": self.things(),
         }
 

@@ -171,7 +171,7 @@ for axis, name in enumerate("xyz"):
     print(f"      {name}        {felt[axis]:5.2f} kg   {5.0 * log.t[-1] / speed:5.2f} kg")
 
 # %% [markdown]
-# Pushed sideways, the tip feels like 1 kg; pushed up or down, like 6 kg. And all this in one pose.
+# Along x and y the tip feels like less than 1 kg; up and down it feels like 6 kg. And all this in one pose.
 #
 # ## Springs at the tip
 #
@@ -244,7 +244,7 @@ def springs_in_the_joints(state, target, model, *, stiffness, damping):
 
 my_workspace_impedance = use("workspace_impedance", workspace_impedance, springs_in_the_joints)
 yours = my_workspace_impedance is workspace_impedance
-your_law = "your impedance" if yours else "a stand-in, springs in the joints"
+your_law = "your impedance" if yours else "a stand-in with springs in the joints"
 
 K = np.array([300.0, 300.0, 300.0, 20.0, 20.0, 20.0])
 
@@ -537,7 +537,9 @@ lk.plotting.show(
 # Your own arm carries something, and there is a wall somewhere in front of it. (Open the arm with the name that your
 # instructor gave you, as in notebook 03; `"demo"` is a public arm to practise on.) Find out both with experiments of
 # your own; the cell below is only a beginning. The torque sensors were set to zero with the load in the gripper, so
-# they feel the wall and not the load. Move slowly: a fast tip bounces off the wall and blurs the reading.
+# they feel the wall and not the load. Move slowly: a fast tip bounces off the wall and blurs the reading. And
+# do not look for the wall with springs as soft as those of *Feel it*: your arm's joints have dry friction, which
+# holds soft springs back before the tip arrives.
 
 # %%
 HANDLE = "demo"  # in a course: the name that your instructor gave you
@@ -600,7 +602,7 @@ def shaped_impedance(state, target, wrench, model, *, inertia, stiffness, dampin
 # Here is a push of 10 N again, with the same springs, on a tip that should feel like 1, 5 and 20 kg. Look at
 # the first tenths of a second. (In 0.1 s a push of 10 N moves 20 kg by 2.5 mm. Your tip goes farther, because
 # the law sees the push one tick late, and for these 5 ms the tip has only its own kilogram. With `rate =
-# 1000.0` it moves 2.6 mm.)
+# 1000.0`, where the plant is made near the top of this notebook, it moves 2.7 mm.)
 
 # %%
 def ignores_the_wrench(state, target, wrench, model, *, inertia, stiffness, damping):
@@ -664,8 +666,10 @@ predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.2
 # Press *Start* and drag the tip with the mouse: the arrow is your force. By how much must 10 N move the tip,
 # with K = 300 N/m? Change the stiffness and drag again. Then drag the elbow: your law says nothing about it, so
 # what holds it back? Push the tip against the wall and move the wall. Finally choose *position mode* and pull
-# as hard as you can, which is 60 N here: at which force does the arm give way, and what has it run out of? You
-# can do all this without a mouse: below the picture, choose where to push, how hard and along which axis.
+# as hard as you can, which is 60 N here, first sideways and then down: at which force does the arm give way, in
+# which direction does it hold, and which motor has reached its torque limit? (The line of numbers below the
+# buttons names it.) You can do all this without a mouse: below the picture, choose where to push, how hard and
+# along which axis.
 
 # %%
 def by_hand(state, target, stiffness):

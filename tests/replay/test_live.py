@@ -123,6 +123,17 @@ def test_a_hand_is_no_stronger_than_a_person():
         assert np.linalg.norm(hand.force) == pytest.approx(STRONGEST)
 
 
+def test_a_motor_at_its_torque_limit_is_named(live):
+    """Pulled forwards with 60 N the position mode gives way at w1; pulled down it holds."""
+    session, frames = live({"position mode": lambda state, target: lk.JointPosition(READY)})
+    session.tell({"kind": "go"})
+    push(session, [0.0, 0.0, -60.0])
+    down = until(frames, lambda f: f["force"] and f["t"] > 0.5, lambda: push(session, [0, 0, -60]))
+    assert (down["spent"], round(down["error"], 4)) == ([], 0.0)
+    forwards = until(frames, lambda f: f["error"] > 0.01, lambda: push(session, [60.0, 0, 0]))
+    assert forwards["spent"] == [5]
+
+
 def test_the_force_ends_when_nothing_is_heard(live):
     """A hand whose page fell silent lets go, and the pictures go on."""
     session, frames = live({"springs": springy})

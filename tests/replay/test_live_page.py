@@ -280,13 +280,13 @@ def test_force_and_sentence_are_shown_and_said(page, data):
     first = frame(data)
     tip = json.loads(data)["first"]["things"]["target"]["position"]
     told = frame(data, state="running", force=[0, 10, 0], at=tip, link=7, error=0.0333, t=1.0)
-    page.evaluate("(f) => tell(f)", told)
+    page.evaluate("(f) => tell(f)", told | {"spent": [5]})
     page.locator(".lk-tag", has_text="10.0 N").wait_for()
-    pulled = "33.3 mm from the target · your force 10.0 N at the tip"
+    pulled = "33.3 mm from the target · your force 10.0 N at the tip · at its torque limit: w1"
     assert pulled in page.inner_text(".lk-readout")
     page.evaluate("(f) => tell(f)", told | {"link": 3, "kept": [12.5], "t": 1.05})
     assert "your force 10.0 N at the elbow (e1) · 1 kept" in page.inner_text(".lk-readout")
-    assert page.inner_text(".lk-say") == "Kept as view.log: 12.5 s, since the last change."
+    assert page.inner_text(".lk-say") == "Kept as view.log: the run of 12.5 s under soft."
     words = "soft lost the arm at t = 1.000 s"
     page.evaluate("(f) => tell(f)", frame(data, state="stopped", note=words, t=1.1))
     assert page.inner_text(".lk-say") == words

@@ -39,7 +39,7 @@ export function entered(box, apply, known) {
  * A slider with a typed number beside it; `stops` holds the only values it can take.
  * `oninput` gets the value, and what was typed if it was typed.
  */
-export function dial({ label, unit = "", stops, min, max, step, value, digits = 3, oninput }) {
+export function dial({ label, unit = "", bounds = "", stops, min, max, step, value, digits = 3, oninput }) {
   const id = unique("dial");
   const nearest = (x) => stops.reduce((b, s, i) => (Math.abs(s - x) < Math.abs(stops[b] - x) ? i : b), 0);
   const show = (x) => String(+Number(x).toFixed(digits));
@@ -65,7 +65,7 @@ export function dial({ label, unit = "", stops, min, max, step, value, digits = 
   }, () => show(get()));
   set(value ?? (stops ? stops[0] : min));
   const element = h("div", { class: "lk-dial" },
-    h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, unit));
+    h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, bounds ? `${unit} (${bounds})`.trim() : unit));
   return { element, get, set, index: () => +range.value };
 }
 

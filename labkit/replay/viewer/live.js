@@ -58,7 +58,7 @@ export class LiveArm {
       onchange: (name) => this.send({ kind: "law", name }) }).element];
     return h("div", { class: "lk-bar" }, this.start, button("Step", "step", "Advance by 0.05 s"),
       button("Reset", "reset", "Back to where the arm began", release),
-      button("Keep this run", "keep", "The run since the last change becomes view.log; after 120 s a new run begins"),
+      button("Keep this run", "keep", "The present run becomes view.log. A run begins with Start, Reset, another controller or a dial, and anew after 120 s"),
       button("Stop", "close", "End it, and free the arm for other cells", release), laws);
   }
 
@@ -73,7 +73,7 @@ export class LiveArm {
       "aria-label": `Push along ${name.replace("−", "minus ").replace("+", "plus ")}`, title: "Push until it is pressed again",
       onclick: (e) => this.push(e.currentTarget, axis, name) }, name));
     return h("div", { class: "lk-bar", role: "group", "aria-label": "Push with keys" }, this.where.element,
-      this.newtons, h("span", { class: "lk-unit" }, "N along"), this.pushes);
+      this.newtons, h("span", { class: "lk-unit" }, "N (0 to 60) along"), this.pushes, h("span", { class: "lk-unit" }, "(press again to let go)"));
   }
 
   push(button, axis, name) {
@@ -121,7 +121,7 @@ export class LiveArm {
   }
 
   dials() {
-    const made = this.data.dials.map((d) => dial({ label: d.name, unit: d.unit, min: d.min, max: d.max, step: "any", value: d.value,
+    const made = this.data.dials.map((d) => dial({ label: d.name, unit: d.unit, bounds: `${d.min} to ${d.max}`, min: d.min, max: d.max, step: "any", value: d.value,
       oninput: (value) => this.turn(d.name, value) }).element);
     return h("div", { class: "lk-dials lk-livedials", hidden: !made.length }, made);
   }
@@ -181,7 +181,7 @@ export class LiveArm {
   show(frame) {
     const before = this.state, told = this.frame?.note;
     if (frame.kept.length > this.frame?.kept.length) {
-      this.kept = { t: frame.t, words: `Kept as view.log: ${frame.kept.at(-1)} s, since the last change.` };
+      this.kept = { t: frame.t, words: `Kept as view.log: the run of ${frame.kept.at(-1)} s under ${frame.law}.` };
       this.speak(this.kept.words, 0);
     }
     if (before !== frame.state && frame.state === "running") this.kept = null;
@@ -236,10 +236,11 @@ export class LiveArm {
   }
 
   numbers() {
-    const { t, error, force, link, pace, kept, law } = this.frame;
+    const { t, error, force, link, spent, pace, kept, law } = this.frame;
     const words = [law, `t = ${t.toFixed(2)} s`];
     if (error !== null) words.push(`${(1000 * error).toFixed(1)} mm from the target`);
     words.push(force ? `your force ${Math.hypot(...force).toFixed(1)} N at the ${this.links[link]}` : "your force 0.0 N");
+    if (spent.length) words.push(`at its torque limit: ${spent.map((k) => this.data.joints[k]).join(", ")}`);
     if (pace && pace < 0.95 && this.state === "running") words.push(`${pace.toFixed(2)} × real time`);
     if (kept.length) words.push(`${kept.length} kept`);
     return words.join(" · ");
