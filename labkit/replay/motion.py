@@ -28,7 +28,7 @@ STEPS = {  # how fine each channel is kept
 }
 
 CRASH = 1000.0
-"""A force larger than this, in [N], is not told in numbers: an arm that ran away hit something."""
+"""A force above this, in [N], is not told in numbers, since an arm that ran away hit something."""
 
 
 @dataclass(frozen=True, eq=False)
