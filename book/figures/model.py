@@ -230,7 +230,7 @@ def wrong_axes() -> None:
     turned = q + 0.5 * np.pi * np.eye(7)[0]
     entry = [float((model.mass_matrix(x) + extra(x))[1, 1]) for x in (q, turned)]
     right = float(np.abs(model.mass_matrix(turned) - model.mass_matrix(q)).max())
-    numbers({"axes_mw": 1e3 * missed}, ".2g")
+    number("axes_w", missed, ".2g")
     numbers({"axes_before": entry[0], "axes_after": entry[1]}, ".3f")
     claim(
         "so $M$ must not change when s0 turns",
