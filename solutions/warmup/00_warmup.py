@@ -362,13 +362,15 @@ lk.replay.show(turning) if farthest_off else None
 # tilt it.
 
 # %% [markdown] why="why_farthest_off"
-# What did you see the hand do when its error was given in the tool's axes, and why? The gripper points down:
-# say which components of the error change their sign, and what the controller then does.
+# What did you see the hand do when its error was given in the tool's axes, and why? Look at the columns of `T_wt`,
+# which is the target of these runs: say which components of the error change their sign, and what the controller
+# then does.
 #
 # ### BEGIN SOLUTION
-# The hand turned away from its target instead of towards it. With the gripper pointing down, the
-# tool's y and z axes point against the world's, so those two components of the error have the wrong sign:
-# the feedback about y and z is positive, and the error grows, while x still decays.
+# The hand turned away from its target instead of towards it. In these runs the gripper points down, and its x axis
+# points back, so the tool's x and z axes point against the world's, or nearly so. Those two components of the
+# error have the wrong sign: the feedback about x and z is positive, and the error grows, while y at first decays. (In
+# the prediction above the tool's x axis was the world's; there y and z have the wrong sign.)
 # ### END SOLUTION
 
 # %% [markdown]

@@ -5,8 +5,8 @@ from labkit.course import Choose, Prediction
 PREDICTIONS = (
     Prediction(
         "same_components",
-        "The gripper points straight down. An error of its orientation is a vector; you write it once "
-        "in the axes of the world and once in the axes of the tool. Which of the three numbers are "
+        "The gripper points straight down, and its x axis is parallel to the world's. An error of its "
+        "orientation is a vector; you write it once in the axes of the world and once in the axes of the tool. Which of the three numbers are "
         "the same in both?",
         Choose({"a": "all three", "b": "x alone", "c": "z alone", "d": "none"}),
         truth="b",

@@ -422,7 +422,7 @@ ORIENTATION_ERROR = Problem(
         ),
         Wrong(
             "Euler angles of the turn",
-            "The rotation is right. But roll, pitch and yaw are not rotation vector: read it with lk.se3.rotation_log.",
+            "The rotation is right. But roll, pitch and yaw are not a rotation vector: read it with lk.se3.rotation_log.",
             mistakes.euler_of_the_turn,
             "A rotation vector is angle times axis.",
         ),
