@@ -27,7 +27,7 @@ RESERVE = 1.3
 LINE_LIMIT = 3.5
 """Worst error allowed on the line, in [mm]: gains that pass unseen leave 3.0 there at most."""
 FAR = 1.6
-"""This multiple of the chosen Kp must reach it too; of gains that pass unseen it leaves 2.8."""
+"""This multiple of the chosen Kp must reach it too; gains that pass unseen leave 2.8 then."""
 
 
 def stiffer(trials: Trials, factor: float) -> Trials:

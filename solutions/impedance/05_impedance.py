@@ -388,8 +388,8 @@ into = lk.replay.motion_of(
 lk.replay.show(into) if wall_force is not None else None
 
 # %% [markdown]
-# Two springs in a row that give way by $\delta$ together press with $F = \delta/(1/K + 1/k_{wall})$. While the wall
-# is much stiffer than your spring, you decide the force.
+# Two springs in a row that give way by $\delta$ together press with $F = \delta/(1/K + 1/k_{wall})$, where $k_{wall}$
+# is the stiffness of the wall and the finger's tip together. While it is much larger than $K$, you decide the force.
 
 # %% [markdown]
 # ## A spring
