@@ -433,9 +433,10 @@ def witness(theta, duration):
 # why with the two terms of `compose`, and what follows for an arm whose motors are too weak for a path.
 #
 # ### BEGIN SOLUTION
-# It fell to a quarter. Both terms of the acceleration have the unit of 1/T²: the speed ds/dt halves
-# and enters squared in p''·ds², and dds itself falls to a quarter. So slowing down by a tenth saves a fifth
-# of the acceleration, whatever the path: weak motors are helped by time before anything else.
+# It fell to a quarter. Both terms of the acceleration change with 1/T²: the speed ds/dt halves
+# and enters squared in p''·ds², and dds itself falls to a quarter. So a tenth less speed saves nearly a fifth
+# of the acceleration, whatever the path: motors that are too weak for the motion are helped by time before
+# anything else. (Time does not help against the weight, which the motors must hold even at rest.)
 # ### END SOLUTION
 
 # %% [markdown]

@@ -68,17 +68,17 @@ BANG_BANG = Problem(
         ),
         Wrong(
             "no rest before the start and after the end",
-            "The formulas go on where the motion does not: s runs below 0 or back from 1. Hold the "
+            "The formulas go on where the motion does not: s is above 0 before the start, and runs back from 1 after the end. Hold the "
             "start before t = 0 and the goal from t = T on, both at rest.",
             mistakes.runs_past_the_ends,
             "A reference is asked at any time; outside the motion it stands still.",
         ),
         Wrong(
             "an acceleration of 2/T²",
-            "With this, s reaches only half of what it should. Speeding up lasts T/2, so choose a "
+            "With this, s reaches only 1/4 by the middle, where it should be 1/2. Speeding up lasts T/2, so choose a "
             "such that a (T/2)²/2 = 1/2.",
             mistakes.twice_too_slow,
-            "Check the end point of every time scaling: s(T) = 1.",
+            "Check the middle of every symmetric motion: s(T/2) = 1/2.",
         ),
         Wrong(
             "at rest, but still accelerating",
@@ -125,7 +125,7 @@ BANG_BANG = Problem(
         ),
         Wrong(
             "the time since the middle for the time that is left",
-            "t - T/2 counts from the middle. In 1 - a r²/2 belongs the time that is left until the end, T - t.",
+            "t - T/2 counts from the middle. In 1 - a r²/2 the r is the time that is left until the end, T - t.",
             mistakes.Bang(left=lambda t, T: t - T / 2.0),
             "Say for each time from where it is counted.",
         ),
@@ -155,7 +155,7 @@ BANG_BANG = Problem(
         ),
         Wrong(
             "an acceleration of 4/T",
-            "The acceleration has T squared below: (4/T²)(T/2)²/2 = 1/2. With 4/T the end is right only for T = 1.",
+            "The acceleration has T squared below: (4/T²)(T/2)²/2 = 1/2. With 4/T the middle is right only for T = 1.",
             mistakes.Bang(power=1.0),
             "Try a second duration: what is right for 1 s alone has lost a unit.",
         ),
@@ -241,8 +241,8 @@ TRAPEZOID = Problem(
         ),
         Wrong(
             "a triangle that is too high",
-            "√(2·distance·a_max) is the speed after speeding up all the way. Half of it is there to "
-            "speed up, and half to brake: √(distance·a_max).",
+            "√(2·distance·a_max) is the speed after speeding up all the way. Only half of the way "
+            "is there to speed up, the other half to brake: √(distance·a_max).",
             mistakes.speeds_up_all_the_way,
             "A triangle has two halves.",
         ),
@@ -404,8 +404,8 @@ CIRCLE = Problem(
         ),
         Wrong(
             "derivatives with respect to the angle",
-            "These are the derivatives with respect to the angle. With respect to s each has one "
-            "more factor 2π.",
+            "These are the derivatives with respect to the angle. With respect to s the first has one "
+            "more factor 2π, and the second has two.",
             mistakes.rates_without_two_pi,
             "The chain rule again: dφ/ds = 2π.",
         ),
@@ -425,7 +425,7 @@ CIRCLE = Problem(
         ),
         Wrong(
             "the arctangent of y/x",
-            "y/x is the same for opposite points, so a start behind the centre lands before it. "
+            "y/x is the same for opposite points, so a start on the side of smaller x lands on the other side. "
             "Use np.arctan2(y, x), or turn the spoke without any angle.",
             mistakes.half_an_arctangent,
             "atan2 knows the quadrant, atan does not.",
@@ -439,7 +439,7 @@ CIRCLE = Problem(
         ),
         Wrong(
             "the start's angle twice",
-            "The start's angle is added twice, so that the circle begins elsewhere. The report's circle did this. At s = 0 the answer must be start.",
+            "The start's angle is added twice, so that the circle begins elsewhere. The report's circle does this in its second half. At s = 0 the answer must be start.",
             mistakes.Spoke(start=2.0, rates=2.0),
             "Put s = 0 into every path: it must begin at the start.",
         ),
@@ -727,7 +727,7 @@ SEGMENT_AT = Problem(
         ),
         Wrong(
             "the earlier one where two meet",
-            "At the instant where two segments meet, the later one is on, and its local time is 0. So compare with < and not with <=.",
+            "At the instant where two segments meet, the later one is on, and its local time is 0. A segment holds its start but not its end: begun <= t < begun + duration.",
             mistakes.Segments(joint=True),
             "An interval holds its start and not its end.",
         ),
