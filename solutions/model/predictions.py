@@ -13,7 +13,7 @@ PREDICTIONS = (
     ),
     Prediction(
         "base_joint",
-        "The first joint, s0, carries the whole arm. Compared with the elbow e1, which carries half "
+        "The first joint, s0, carries the whole arm. Compared with the elbow e1, which carries a third "
         "of it, how much torque does s0 need to hold the arm still?",
         Choose({"a": "more than the elbow", "b": "about as much", "c": "none"}),
         truth="c",

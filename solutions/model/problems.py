@@ -113,7 +113,7 @@ JACOBIAN = Problem(
         ),
         Wrong(
             "every axis vertical",
-            "Only the first axis is vertical. Each joint has its own, axes[k].",
+            "Only the first axis is vertical in every pose. Each joint has its own, axes[k].",
             mistakes.vertical_axes,
             "Say which index belongs to which joint.",
         ),
@@ -321,8 +321,8 @@ GRAVITY = Problem(
         ),
         Wrong(
             "only the hand has weight",
-            "Gravity pulls at the hand alone here, as in the report's formula. Most of the weight "
-            "is in the upper arm: sum over all links.",
+            "Gravity pulls at the hand alone here, as in the report's formula. The hand has less than "
+            "a twentieth of the arm's mass: sum over all links.",
             mistakes.only_the_hand,
             "Sum over all links.",
         ),
