@@ -3,7 +3,7 @@
 #
 # The arm knows where it should be at every moment. Now it must get there, although it starts somewhere else,
 # answers late and measures with noise. The controllers of this notebook command the *speeds* of the joints,
-# and the motors keep these speeds. That is the gentlest method to drive an arm, and it is good enough for
+# and the motors keep these speeds. That is the easiest method to drive an arm, and it is good enough for
 # most tasks.
 #
 # | | |
@@ -276,7 +276,7 @@ if worst_elbow is None:
 else:
     lk.plotting.show(
         "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
-        f"straight at {straight:.2f} rad. The most, in rad/s: "
+        f"straight at {straight:.2f} rad, because the elbow's axis is beside the upper arm. The most, in rad/s: "
         + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items()) + "."
     )
 
@@ -497,7 +497,9 @@ lk.replay.show(
 # ### BEGIN SOLUTION
 # With more D the error died more slowly: its rate is kp/(1 + kd). Where the speed itself is commanded,
 # D subtracts a share of the speed from the command, so it simply makes the command smaller. A mass needs D to
-# lose its kinetic energy; a joint in velocity mode has no mass in the loop, so there is nothing to damp.
+# lose its kinetic energy; a joint that obeys its speed command at once cannot swing, so there is nothing to damp.
+# (A lag makes the loop one of second order, and there D does let you raise P. But with a lag of 50 ms the error
+# swings only from kp = 1/(4 · 0.05 s) = 5 1/s on; with kp = 3 the return is overdamped without any D.)
 # ### END SOLUTION
 
 # %% [markdown]

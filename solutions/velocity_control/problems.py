@@ -92,14 +92,14 @@ JOINT_VELOCITY_PD = Problem(
         Wrong(
             "a correction of the measured speed",
             "The corrections are added to the measured speed, so they pile up two hundred times a "
-            "second: the arm swings, barely damped. Add them to the target's speed. The report's "
+            "second: without kd the arm swings, and nothing damps it. Add them to the target's speed. The report's "
             "equation 17 has this mistake.",
             mistakes.adds_to_the_measured,
             "An integrator too many.",
         ),
         Wrong(
             "no feed-forward",
-            "The arm follows, but always late, by the target's speed over kp. The target says how "
+            "The arm follows, but stays behind by the target's speed over kp. The target says how "
             "fast it moves: add its speed to the command.",
             mistakes.no_feedforward,
             "Feedback waits for an error; feed-forward does not.",
@@ -152,7 +152,7 @@ JOINT_VELOCITY_PD = Problem(
         ),
         Wrong(
             "the feed-forward twice",
-            "The target's speed comes once as feed-forward; in the error of the speeds it stands already.",
+            "The target's speed is added once as feed-forward, apart from the one inside the error of the speeds.",
             mistakes.Fed(lambda ff, e, de, kp, kd, *_: 2.0 * ff + kp * e + kd * de),
             "Write each term once.",
         ),
@@ -347,7 +347,7 @@ DECAY_RATE = Problem(
         ),
         Wrong(
             "the gains for the whole",
-            "kp/(kp + kd) has no unit. Collect what stands before de/dt: 1 + kd.",
+            "kp is in 1/s and kd has no unit, so they cannot be added. Collect what stands before de/dt: 1 + kd.",
             mistakes.Rate(lambda kp, kd: kp / (kp + kd)),
             "Units: a rate is in 1/s.",
         ),
@@ -402,8 +402,8 @@ DAMPED_INVERSE = Problem(
         ),
         Wrong(
             "no damping",
-            "This is the plain pseudo-inverse, np.linalg.pinv(J), which near e1 = 0 asks for "
-            "speeds that no joint has. Put the damping in.",
+            "This is the plain pseudo-inverse, np.linalg.pinv(J), which asks for speeds that no "
+            "joint has when the elbow is nearly straight. Put the damping in.",
             mistakes.undamped,
             "Where no exact inverse exists, its formula does not help.",
         ),
@@ -601,7 +601,7 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "no feed-forward",
-            "The target's twist is missing, so the tip follows late, by the target's speed over "
+            "The target's twist is missing, so the tip stays behind by the target's speed over "
             "kp. Add target.twist.",
             mistakes.no_twist,
             "Feedback waits for an error; feed-forward does not.",
@@ -758,7 +758,7 @@ WORKSPACE_VELOCITY_PD = Problem(
         ),
         Wrong(
             "Euler angles of the turn",
-            "Roll, pitch and yaw of the right rotation are not rotation vector: read it with lk.se3.rotation_log.",
+            "Roll, pitch and yaw of the right rotation are not a rotation vector: read it with lk.se3.rotation_log.",
             mistakes.TwistLaw(turn=mistakes.euler_of_the_turn),
             "A rotation vector is angle times axis.",
         ),
