@@ -54,8 +54,8 @@ print("weight, [N m]      ", "  ".join(f"{x:6.2f}" for x in model.gravity(ready)
 print("torque limit, [N m]", "  ".join(f"{x:6.0f}" for x in model.robot.effort))
 
 # %% [markdown]
-# Keep two things in mind. The shoulder's `s1` needs 36 of its 100 N m only to hold the arm up. And a wrist
-# joint has a fortieth of the shoulder's inertia: the same torque is a nudge here and a kick there.
+# Keep two things in mind. The shoulder's `s1` needs 36 of its 100 N m only to hold the arm up. And the last
+# joint, `w2`, has a fortieth of the shoulder's inertia: the same torque is a nudge here and a kick there.
 #
 # ## Who carries the weight?
 #
@@ -99,8 +99,8 @@ for name, log in loose.items():
 # speed multiplies $C$: with the target's speed, the energy of the springs and of the error's motion never
 # grows. That alone does not prove that the arm arrives, because this energy is also constant while the error
 # does not change; Murray, Li and Sastry close the gap (proposition 4.10). The report that this lab grew out
-# of printed the arm's own speed instead. Then their proof does not apply, and the arm needs enough damping,
-# $K_d > \dot M / 2$.
+# of printed the arm's own speed instead. Then their proof does not apply: this energy may grow, unless there is enough
+# damping, $K_d > \dot M / 2$.
 
 # %% question="augmented_pd"
 def augmented_pd(state, target, model, *, kp, kd, arm_compensates):
@@ -421,14 +421,15 @@ for armature in (0.0, 0.05):
         print(f"{plant.name}: {error}".replace("; ", ";\n  "))
 
 # %% [markdown]
-# This is why every simulated Baxter that is driven by torques needs rotors in its data, although the data
-# sheet has none.
+# This is why a simulated Baxter needs rotors in its data if springs and dampers like those of the real arm are to
+# drive it, although the data sheet has none.
 
 # %% [markdown]
 # ## Find the bug
 #
-# Here are three runs of computed torque on your own arm, which nobody else has: put the name that your instructor gave
-# you in place of `"demo"` (notebook 03 introduces this arm; `"demo"` is a public one). In each run the law is right at first; then,
+# Here are three runs of computed torque that nobody else has: put the name that your instructor gave
+# you in place of `"demo"` (notebook 03 introduces it; `"demo"` is public). The arm in these runs is the textbook's, with
+# rotors, a little friction and noisy speeds, and the law carries its weight. In each run the law is right at first; then,
 # while the arm moves, a version with one mistake replaces it. You know how the right law behaves, because you
 # have written it. The suspects:
 #
@@ -455,7 +456,7 @@ for number, ax in enumerate(axes, start=1):
     ax.set_xlabel("time [s]")
 axes[0].set_ylabel("error [rad]")
 axes[2].legend(frameon=False, ncols=2, fontsize="small")
-lk.plotting.show(f"The errors of the seven joints in three misbehaving runs of the arm {HANDLE}.")
+lk.plotting.show(f"The errors of the seven joints in three misbehaving runs for the name {HANDLE}.")
 
 # %% find_out="bug_1"
 
@@ -702,9 +703,12 @@ lk.replay.show(
 # m/rad.
 #
 # ### BEGIN SOLUTION
-# It sagged by a good deal, far more than springs of the same number would. The load gives the torques
-# J^T F; computed torque answers with M kp e, so at rest e = M^-1 J^T F / kp. Where M is small, at the wrist,
-# the stiffness M kp is small too: kp in 1/s² fixes a frequency, not a stiffness.
+# It sagged by 21 mm. The load gives the torques J^T F; computed torque answers with M kp e, so at rest
+# e = M^-1 J^T F / kp: the inverse of M converts the torques to accelerations. So the stiffness is M kp, which
+# kp = 40 1/s² makes about 80 N m/rad at the shoulder and only 2 to 4 N m/rad at the wrist: kp in 1/s² fixes a
+# frequency, not a stiffness. Springs of 40 N m/rad in every joint would be at least ten times as stiff as this at the
+# wrist, but only half as stiff at the shoulder. This load pulls at s1 and e1, so with such springs the tip would
+# sag more, by 38 mm.
 # ### END SOLUTION
 
 # %% [markdown]

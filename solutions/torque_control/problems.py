@@ -146,8 +146,8 @@ AUGMENTED_PD = Problem(
         ),
         Wrong(
             "springs and dampers alone",
-            "The torque that the target's motion takes is missing, so the arm lags until the "
-            "springs provide it. Add M times the acceleration and C times the speed of the "
+            "The torque that the target's motion takes is missing, so the arm must be off its target "
+            "before the springs provide it. Add M times the acceleration and C times the speed of the "
             "target.",
             mistakes.no_motion_terms,
             "Feed-forward does the work, feedback corrects the rest.",
@@ -455,8 +455,8 @@ COMPUTED_TORQUE = Problem(
         ),
         Wrong(
             "the target's acceleration left out",
-            "Without the target's acceleration the arm is always late. Add it before you multiply "
-            "with M; a target at rest does not show this.",
+            "Without the target's acceleration the arm falls behind while the target speeds up, and "
+            "runs ahead while it brakes. Add the acceleration before you multiply with M; a target at rest does not show this.",
             mistakes.no_target_acceleration,
             "Feed-forward.",
         ),
@@ -767,7 +767,7 @@ GAINS_FOR = Problem(
         ),
         Wrong(
             "2ω for ω²",
-            "kp is the square of ω, not twice of it.",
+            "kp is the square of ω, not twice ω.",
             mistakes.GainsOf(lambda w, z: (2.0 * w, 2.0 * z * w)),
             "ω² is ω times ω.",
         ),
@@ -888,8 +888,8 @@ SAMPLED_JOINT = Problem(
         ),
         Wrong(
             "a series of the loop that is never sampled",
-            "I + A dt + (A dt)²/2 lets the torque change with the angle during the step. It is "
-            "held: only two terms of the angle, one of the speed, and nothing after.",
+            "I + A dt + (A dt)²/2 lets the torque change during the step. The torque "
+            "is held: it adds dt²/2 · a to the angle and dt · a to the speed, and nothing of higher order.",
             mistakes.second_order_series,
             "What stands still during the step?",
         ),
@@ -1253,8 +1253,8 @@ CHOOSE_GAINS = Problem(
         ),
         Wrong(
             "the same gains in every joint",
-            "A wrist joint has a fortieth of the shoulder's inertia, so gains that are mild there "
-            "are fierce here. Multiply them by each joint's inertia.",
+            "The last wrist joint has a fortieth of the shoulder's inertia, so gains that are mild at the "
+            "shoulder are fierce at the wrist. Multiply them by each joint's inertia.",
             mistakes.same_for_every_joint,
             "N m/rad means something only beside kg m².",
         ),
