@@ -18,7 +18,7 @@ from typing import Any
 from ..sim import chosen
 from .brief import WORDS
 from .forms import COMMITTED, OWN_ARM
-from .gaps import bring_back, changed_since, first_error, undefined
+from .gaps import bring_back, calculated, changed_since, first_error, undefined
 from .messages import head
 from .notebook import (
     PLACEHOLDER,
@@ -124,6 +124,11 @@ def look(path: Path) -> HandIn:
         problems += more
         notes += worth_knowing
     problems += undefined(cells, [question["name"] for question in questions])
+    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
+    measured = [
+        q["name"] for q in questions if any(t["name"] == OWN_ARM for t in q["tests"]["items"])
+    ]
+    problems += filter(None, (calculated(code, question) for question in measured))
     problems += filter(None, [first_error(cells)])
     verdicts = {question["name"]: _verdict(cells, question) for question in questions}
     predictions = [

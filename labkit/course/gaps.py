@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import builtins
 import textwrap
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from .notebook import checks, defines
@@ -13,6 +13,8 @@ from .unfinished import defined_in
 
 _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "___", "__file__"}
 """Names that every notebook has."""
+_OWN_ARM = {"my_arm", "my_bug"}
+"""What whoever marks a notebook cannot run."""
 
 Cell = Mapping[str, Any]
 
@@ -37,6 +39,29 @@ def undefined(cells: list[dict[str, Any]], asked: Collection[str]) -> Iterator[s
                 f"`{_first_line(source)}` uses; if you deleted a cell, copy it from a fresh "
                 "copy of the notebook, which is in the zip that you were given"
             )
+
+
+def calculated(sources: Iterable[str], question: str) -> str:
+    """A sentence if an answer comes from runs of one's own arm and is not typed, "" if it is typed.
+
+    Args:
+        sources: Of the cells, in the order in which they ran.
+        question: What the answer is called.
+    """
+    parts = [part for source in sources for part in look(source)["definitions"]]
+    waiting = [part for part in parts if question in part["binds"]][-1:]
+    seen: set[str] = set()
+    while waiting:
+        part = waiting.pop()
+        if any(name.rpartition(".")[2] in _OWN_ARM for name in part["uses"]):
+            return (
+                f"{question} is calculated from runs of your arm, which are not made again when "
+                "it is marked; type the value itself"
+            )
+        leans = {*part["outside"]} - seen
+        seen |= leans
+        waiting += [other for other in parts if leans.intersection(other["binds"])]
+    return ""
 
 
 def first_error(cells: list[dict[str, Any]]) -> str:

@@ -35,8 +35,7 @@ _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 def head(verdict: Verdict) -> str:
     """The verdict in one line."""
     points = f"{verdict.points:g} point{'' if verdict.points == 1 else 's'}"
-    committed = verdict.right and [test.name for test in verdict.tests] == [COMMITTED]
-    says = "committed" if committed else HEADS[verdict.outcome]
+    says = word(verdict)
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
     elif waits(verdict):
@@ -45,6 +44,16 @@ true of your own arm."
     elif verdict.outcome is Outcome.RIGHT and not verdict.complete:
         return f"{verdict.name}: {says} on all cases here; {points} if the teacher's cases agree."
     return f"{verdict.name}: {says}. {verdict.earned:g} of {points}."
+
+
+def word(verdict: Verdict) -> str:
+    """The word for an outcome; a prediction is committed, right or wrong."""
+    return "committed" if verdict.right and foretells(verdict) else HEADS[verdict.outcome]
+
+
+def foretells(verdict: Verdict) -> bool:
+    """Whether it is of a prediction, which earns its point for being made."""
+    return [test.name for test in verdict.tests] == [COMMITTED]
 
 
 def waits(verdict: Verdict) -> bool:

@@ -67,11 +67,13 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
     place = desk()
     said = place.committed.get(name)
     if said is None:
-        print(wrapped(f"{name}: commit to a prediction above, then run this cell again."))
+        text = f"{name}: commit to a prediction above, then run the cells from there to here again."
+        print(wrapped(text))
         return
-    place.revealed.add(name)
     if isinstance(form, Curve):
         _overlay(form, said, truth)
+    place.revealed.add(name)
+    if isinstance(form, Curve):
         return
     print(wrapped(f"You predicted: {form.words(said)}."))
     print(wrapped(f"The arm says:  {form.words(truth)}."))

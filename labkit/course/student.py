@@ -21,6 +21,7 @@ from ..formats import check_stamp
 from .advice import line_of
 from .calling import heard
 from .card import card
+from .gaps import calculated
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, message, waits, wrapped
 from .notebook import verdict_metadata
@@ -202,6 +203,8 @@ def check(name: str, function: Callable[..., Any]) -> float:
     verdict, printed, found = desk().verdict(name, function)
     says = message(question, verdict, printed, desk().leaning(name, function))
     _say(says, verdict, found if verdict.mistake else None)
+    if waits(verdict) and (how := calculated(cells_run(function), name)):
+        print(wrapped(f"But {how}."))
     return Points(verdict.earned)
 
 

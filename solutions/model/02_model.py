@@ -211,8 +211,8 @@ lk.plotting.show(
 # %% predict="heaviest_direction"
 
 # %%
-Jv = tip_jacobian(q0)[:3]
-felt_at_tip = 1.0 / np.diag(Jv @ np.linalg.inv(M(q0)) @ Jv.T)
+Jv = model.tip_jacobian(q0)[:3]
+felt_at_tip = 1.0 / np.diag(Jv @ np.linalg.inv(model.mass_matrix(q0)) @ Jv.T)
 if heaviest_direction is not None:
     print("a tap at the tip meets", ", ".join(f"{x:.1f} kg along {a}" for a, x in zip("xyz", felt_at_tip)))
 predict("heaviest_direction", truth="".join("xyz"[k] for k in np.argsort(-felt_at_tip)))

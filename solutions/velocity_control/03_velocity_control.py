@@ -171,11 +171,12 @@ for kd, style in ((0.0, "-"), (1.0, "--"), (3.0, "-.")):
         return lk.JointVelocity(3.0 * (target.position - state.q) - kd * state.dq)
 
     lagging.reset(q0)
-    log = lk.run(lagging, lk.Hold(q0 + 0.2 * np.eye(7)[0], 1.5), brakes)
-    e = log.target.position[:, 0] - log.q[:, 0]
-    line = plt.plot(log.t, e, style, linewidth=2, label=f"kd = {kd:g}")[0]
-    plt.plot(log.t, e[0] * np.exp(-my_decay_rate(3.0, kd) * log.t), ":", color=line.get_color())
-    shares[kd] = e[-1] / e[0]
+    braked = lk.run(lagging, lk.Hold(q0 + 0.2 * np.eye(7)[0], 1.5), brakes)
+    left = braked.target.position[:, 0] - braked.q[:, 0]
+    line = plt.plot(braked.t, left, style, linewidth=2, label=f"kd = {kd:g}")[0]
+    yours = left[0] * np.exp(-my_decay_rate(3.0, kd) * braked.t)
+    plt.plot(braked.t, yours, ":", color=line.get_color())
+    shares[kd] = left[-1] / left[0]
 plt.xlabel("time [s]")
 plt.ylabel("error of s0 [rad]")
 plt.legend(frameon=False)
@@ -189,7 +190,7 @@ else:
     )
 
 # %%
-predict("with_more_d", truth=(log.t, e))
+predict("with_more_d", truth=(braked.t, left))
 
 # %% [markdown]
 # Two things change with D. The arm keeps closer to the curve that you would expect of quick motors, because D
@@ -238,14 +239,17 @@ def damped_inverse(J, damping):
 
 # %% [markdown]
 # How fast would the joints have to turn to move the tip at 10 cm/s in the direction that is hardest, while
-# the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s. Without damping the joint
-# speeds become absurd near the pose where the arm is straight. With damping the joints give up there, because
-# they cannot do better.
+# the elbow stretches? The grey line is the limit of the larger joints, 1.5 rad/s.
 
 # %%
 def truncated_inverse(J, damping):
     """The stand-in: leaves out the directions that are nearly impossible, whatever the damping."""
     return np.linalg.pinv(J, rcond=0.03)
+
+
+def exact_inverse(J, damping):
+    """NumPy's pseudo-inverse: what no damping is, so that the prediction needs no answer of yours."""
+    return np.linalg.pinv(J, rcond=1e-12)
 
 
 my_damped_inverse = use("damped_inverse", damped_inverse, truncated_inverse)
@@ -255,15 +259,16 @@ stretched = [np.array([-0.3, -0.4, 0.0, e1, 0.0, 0.6, 0.0]) for e1 in angles]
 straight = angles[np.argmin([model.nearness_to_singularity(q) for q in stretched])]
 plt.figure(figsize=(8, 3), layout="constrained")
 speeds = {}
-for damping, style in ((1e-9, "-"), (0.0025, "--"), (0.02, "-.")):
+for damping, style in ((0.0, "-"), (0.0025, "--"), (0.02, "-.")):
+    inverse = my_damped_inverse if damping else exact_inverse
     fastest = []
     for q in stretched:
         J = model.tip_jacobian(q)
         worst = np.linalg.svd(J)[0][:, -1]
         worst = 0.1 * worst / np.linalg.norm(worst[:3])
-        fastest.append(np.abs(my_damped_inverse(J, damping) @ worst).max())
-    undamped = fastest if damping < 1e-6 else undamped
-    name = "no damping" if damping < 1e-6 else f"damping {damping:g}"
+        fastest.append(np.abs(inverse(J, damping) @ worst).max())
+    undamped = fastest if damping == 0.0 else undamped
+    name = "no damping" if damping == 0.0 else f"damping {damping:g}"
     plt.semilogy(angles, fastest, style, label=name)
     speeds[name] = max(fastest)
 plt.axhline(1.5, color="0.7", linewidth=3, zorder=0)
@@ -277,7 +282,8 @@ else:
     lk.plotting.show(
         "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
         f"straight at {straight:.2f} rad, because the elbow's axis is beside the upper arm. The most, in rad/s: "
-        + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items()) + "."
+        + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items())
+        + ". Without damping the speeds become absurd near this pose; with damping the joints give up there."
     )
 
 # %%

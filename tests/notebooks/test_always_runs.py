@@ -1,11 +1,14 @@
 """Every notebook runs from its first cell to its last, whatever is solved."""
 
 import json
+import re
 import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+
+from labkit.course.predictions import Prediction
 
 sys.path.insert(0, str(Path(__file__).parent))
 from student import BROKEN, COURSE, FORGETS, STUB, questions, run_here, run_kernel, solved
@@ -52,6 +55,18 @@ def test_it_runs_to_the_end(name, which, tmp_path, monkeypatch):
     for q in questions(name):
         assert sheet.earned[q] == (POINTS[name][q] if q in which else 0.0), q
         assert sheet.badges(q) == (q in sheet.used and q not in which), q
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_no_stand_in_tells_another_truth(name, tmp_path, monkeypatch):
+    """With nothing solved, what is shown for a prediction is what a solved notebook shows."""
+    foretold = {p.name: p for p in COURSE.predictions(name) if isinstance(p, Prediction)}
+    parts = {p.name: p.solved() for p in foretold.values()}
+    told = " ".join(run_here(name, parts, tmp_path, monkeypatch, shortest=np.inf).printed.split())
+    assert "That is not what you said" not in told and not re.search(
+        r"Your number is \S+ times", told
+    )
 
 
 @pytest.mark.parametrize("name", NAMES)

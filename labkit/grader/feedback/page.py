@@ -24,7 +24,7 @@ import numpy as np
 from markupsafe import Markup
 
 from ...course.layout import Course
-from ...course.messages import GATE, HEADS, why
+from ...course.messages import GATE, foretells, why, word
 from ...errors import LabkitError
 from ...metrics import SETTLED
 from ...replay import recorded_html
@@ -97,7 +97,9 @@ def page(
         reviews=reviews,
         lines=asked | {line.name: line for line in mark.lines},
         by_hand=[line for line in mark.lines if line.name not in asked],
-        heads=HEADS,
+        answers=[q.verdict for q in result.questions if not foretells(q.verdict)],
+        predictions=[q.verdict for q in result.questions if foretells(q.verdict)],
+        word=word,
         gate=GATE,
         why=why,
         style=style,

@@ -142,7 +142,10 @@ class Notebook:
     def _reply(self, name: str, args: list[Any], kwargs: dict[str, Any]) -> dict[str, Any]:
         seconds = self.limits["call"]
         if name not in self.functions:
-            raise NameError(f"the notebook defines no {name}")
+            why = f"the notebook defines no {name}"
+            if name in self.unmade:
+                why = f"{name} comes from runs of your arm, which are not made here; type the value"
+            raise NameError(why)
         try:
             with self._alarm(seconds):
                 return reply(self.functions[name], args, kwargs)
