@@ -246,6 +246,19 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert len(read_roster(course).students) == 2
 
 
+def test_who_handed_in_is_not_called_a_student_of_the_roster(course, capsys):
+    """Work that was kept apart is archived too, and makes no other number of students."""
+    save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
+    for name in ("ada", "bob", "Bob-2"):
+        (course.submitted / name / "00_warmup").mkdir(parents=True)
+        (course.submitted / name / "00_warmup/00_warmup.ipynb").write_text("{}")
+    assert main(["term", "new", "00_warmup", "--yes", "--course", str(course.root)]) == 0
+    assert "archived: 2 students, 3 submissions\n" in capsys.readouterr().out
+    assert main(["term", "list", "--course", str(course.root)]) == 0
+    said = capsys.readouterr().out
+    assert ", 3 handed in\n" in said and "student" not in said
+
+
 @pytest.mark.parametrize("seed", [PUBLIC_SEED])
 def test_a_known_seed_is_refused(course, seed):
     """The public seed makes no secret, and the sentence says so."""
