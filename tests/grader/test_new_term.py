@@ -209,7 +209,12 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     """What is there is said, with both commands; --yes archives it and says how to return."""
     words = ["term", "new", "00_warmup", "--course", str(course.root)]
     assert main(words) == 0
-    assert "archived" not in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "archived" not in said
+    guide = " ".join((ROOT / "book/instructor_guide.md").read_text().split())
+    first, quoted = said.splitlines()
+    assert first == "a new term begins, released: 00_warmup"
+    assert f"names the notebooks that were released, and says *{quoted}*." in guide
     record = course.term.read_text()
     seed = str(seeds.seed_of(course))
     save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
