@@ -15,12 +15,14 @@ from hypothesis import strategies as st
 
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import timestamp
+from labkit.grader.students import attempts as attempts_module
 from labkit.grader.students.attempts import attempts, install
 from labkit.grader.students.collect import collect
 from labkit.grader.students.exchange import SECRET
 from labkit.grader.students.roster import FILE as ROSTER
 
 ADA = ("Ada Lovelace", 101)
+plain = attempts_module._read
 
 
 @pytest.fixture
@@ -110,6 +112,18 @@ def test_the_same_download_twice_changes_nothing(bare, tmp_path):
     said = take(bare, download)
     assert everything() == before
     assert all("there already" in line for line in said)
+
+
+def test_many_hand_ins_of_one_student_take_no_more_than_their_number(bare, tmp_path, monkeypatch):
+    """The records are read a few times for each hand-in, however many there are."""
+    read, names = [], [f"{NAME}({number}).ipynb" for number in range(40)]
+    monkeypatch.setattr(attempts_module, "_read", lambda path: read.append(path) or plain(path))
+    source = shown(tmp_path / "1.zip", 1, *((name, name) for name in names))
+    for _ in range(2):
+        said = take(bare, source)
+        assert len(said) == len(names) == len(kept(bare, "Ada-Lovelace"))
+    assert len(read) <= 10 * len(names)
+    assert counting(bare) == {"Ada-Lovelace": names[-1]}
 
 
 def test_an_earlier_work_that_is_handed_in_again_counts_again(bare, tmp_path):
