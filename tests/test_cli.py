@@ -74,7 +74,18 @@ def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):
         (["feedback", "99_dance", "--course", ROOT], "'01_paths'"),
         (["export", "01_paths", "--layout", "cup", "--course", ROOT], "export --layout cup"),
         (["export", "--layout", "moodle", "--course", ROOT], "labkit export ASSIGNMENT --layout m"),
-        (["export", "--column", "Paths", "--course", ROOT], "without them, labkit export writes"),
+        (
+            ["export", "--layout", "moodle", "--column", "Paths", "--course", ROOT],
+            "without them, labkit export writes",
+        ),
+        *(
+            (
+                ["export", "01_paths", "--layout", layout, "--column", "Paths", "--course", ROOT],
+                f"--layout {layout} has no column that a platform knows by its name; --column is "
+                "for --layout canvas or moodle",
+            )
+            for layout in ("questions", "nbgrader", "moodle-worksheet", "gradescope")
+        ),
         (["export", "--final", "--course", ROOT], "type: labkit export --layout cup"),
         (["collect", "01_paths", ".", "--course", ROOT], "nothing in . was handed in for 01_paths"),
     ],

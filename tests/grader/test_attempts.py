@@ -12,15 +12,19 @@ import pytest
 from downloaded import NAME, bare_course, counting, from_moodle, handed_in, kept, zipped
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from made import notebook_of, result_of
 
 from labkit.errors import LabkitError
-from labkit.grader.nbgrader.gradebook import timestamp
+from labkit.grader.grading.results import Results
+from labkit.grader.nbgrader.gradebook import open_gradebook, record, timestamp
+from labkit.grader.students import attempts as attempts_module
 from labkit.grader.students.attempts import attempts, install
 from labkit.grader.students.collect import collect
 from labkit.grader.students.exchange import SECRET
 from labkit.grader.students.roster import FILE as ROSTER
 
 ADA = ("Ada Lovelace", 101)
+plain = attempts_module._read
 
 
 @pytest.fixture
@@ -110,6 +114,41 @@ def test_the_same_download_twice_changes_nothing(bare, tmp_path):
     said = take(bare, download)
     assert everything() == before
     assert all("there already" in line for line in said)
+
+
+def test_many_hand_ins_of_one_student_take_no_more_than_their_number(bare, tmp_path, monkeypatch):
+    """The records are read a few times for each hand-in, however many there are."""
+    read, names = [], [f"{NAME}({number}).ipynb" for number in range(40)]
+    monkeypatch.setattr(attempts_module, "_read", lambda path: read.append(path) or plain(path))
+    source = shown(tmp_path / "1.zip", 1, *((name, name) for name in names))
+    for _ in range(2):
+        said = take(bare, source)
+        assert len(said) == len(names) == len(kept(bare, "Ada-Lovelace"))
+    assert len(read) <= 10 * len(names)
+    assert counting(bare) == {"Ada-Lovelace": names[-1]}
+
+
+def test_collected_anew_a_hand_in_loses_a_time_that_nobody_knew(course, tmp_path):
+    """As the changelog says: an older labkit took --at for the hand-in's own time."""
+    data = notebook_of("ada")
+    download = shown(tmp_path / "1.zip", 5, (f"{NAME}.ipynb", data))
+    record_of, who = "attempts/Ada-Lovelace/01_paths/*/attempt.json", "Ada-Lovelace"
+
+    def in_the_gradebook():
+        take(course, download)
+        result = result_of(course, who, data=data)
+        Results(course, NAME).keep(result)
+        record(course, NAME, [result])
+        with open_gradebook(course) as book:
+            return book.find_submission(NAME, who).timestamp
+
+    take(course, download)
+    (path,) = course.root.glob(record_of)
+    path.write_text(path.read_text().replace('"exact": false', '"exact": true'))
+    assert in_the_gradebook().day == 5, "collecting once more is not enough"
+    for folder in ("attempts", "submitted"):
+        (course.root / folder / who / NAME).rename(tmp_path / folder)
+    assert in_the_gradebook() is None
 
 
 def test_an_earlier_work_that_is_handed_in_again_counts_again(bare, tmp_path):

@@ -607,6 +607,24 @@ def test_a_notebook_of_another_assignment_is_named(bare, tmp_path, capsys):
     )
 
 
+def test_what_a_mac_puts_beside_files_is_passed_over(bare, tmp_path):
+    """It is neither named nor taken, in a zip or in a folder; a file that begins alike is named."""
+    mine = f"{MOODLE.format('Bob Hope', 102)}/{NAME}.ipynb"
+    beside = ["__MACOSX/._x", ".DS_Store", "Bob Hope_102_assignsubmission_file/.DS_Store"]
+    beside += [f"{mine[: -len(NAME) - 6]}__MACOSX/._{NAME}.ipynb", f"__MACOSX/{mine}"]
+    odd = "x.DS_Store"
+    source = zipped(tmp_path / "1.zip", [(name, "{}") for name in (mine, *beside, odd)])
+    assert take(bare, source) == [
+        f"{odd}: not taken; its name does not say whose it is",
+        f"Bob-Hope: {NAME}.ipynb: taken",
+    ]
+    for name in ("bob/x.ipynb", "__MACOSX/._x.ipynb", "bob/.DS_Store"):
+        (tmp_path / "in" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "in" / name).write_text(name)
+    said = take(bare, tmp_path / "in", named="{student}/*.ipynb")
+    assert said == ["bob: x.ipynb: taken, as 01_paths.ipynb"]
+
+
 def test_a_time_to_come_is_refused(bare, tmp_path, capsys):
     """A year too late by a slip of the finger: the time, now, and what to write."""
     source = zipped(tmp_path / "1.zip", [BOB])

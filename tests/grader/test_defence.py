@@ -27,6 +27,8 @@ from labkit.grader.marks.mark import Mark
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.nbgrader_api import nbgrader_api
+from labkit.grader.students.class_list import Student
+from labkit.grader.students.roster import Roster, save_roster
 
 
 def accepted(course, student, notebook):
@@ -118,8 +120,11 @@ def test_what_cannot_be_asked_or_marked_is_a_sentence(course, solved, capsys):
     hand_in(course, NAME, "eve", solved)
     hand_in(course, NAME, "bob", solved)
     Results(course, NAME).keep(result_of(course, "bob", share=0.5, data=raw(solved)))
+    save_roster(course, Roster((Student("Ada-Lovelace", "Ada", "Lovelace"),)))
     for words, sentence in [
         (["zoe"], "there is no student 'zoe'"),
+        (["bbo"], "name of the student's folder; did you mean bob?"),
+        (["ada-lovelce"], "name of the student's folder; did you mean Ada-Lovelace?"),
         (["eve"], "eve has 0; 01_paths: handed in and not graded"),
         (["bob"], "3 accepted answers that a mistake can be put into are needed, and bob has 0"),
         (["bob", "--mark", "2,3"], "2,3 is not a mark; give 3 whole numbers from 0 to 3"),

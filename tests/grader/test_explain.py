@@ -6,11 +6,15 @@ import json
 
 import pytest
 from handmade import hand_in, put
+from made import WHY, notebook_of, result_of
 
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError, UnknownName
 from labkit.grader.feedback.explain import explain
+from labkit.grader.grading.results import Results
+from labkit.grader.nbgrader.gradebook import open_gradebook, record
+from labkit.grader.terms.release import release
 
 NAME = "01_paths"
 SLIGHTLY_WRONG = """def bang_bang(t, duration):
@@ -67,3 +71,45 @@ def test_what_cannot_be_explained_is_a_sentence(course):
         explain(course, "ada", "band_bang")
     with pytest.raises(LabkitError, match="nothing was handed in for 01_paths; type"):
         explain(course, "ada", "bang_bang")
+
+
+def test_what_a_person_marks_is_explained_from_the_gradebook(course, capsys):
+    """Its points, where they come from, the comment, the text, and where to mark it."""
+    for student in ("ada", "dan"):
+        data = notebook_of(student)
+        hand_in(course, NAME, student, data)
+        result = result_of(course, student, data=data)
+        Results(course, NAME).keep(result)
+        record(course, NAME, [result])
+    words = ["--course", str(course.root)]
+    where = "in formgrader: Manual Grading, 01_paths"
+    assert main(["explain", "ada", WHY, *words]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"ada, {WHY}: 2 of 2" in said and "not one of those that are drawn" in said
+    assert main(["explain", "dan", WHY, *words]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert f"dan, {WHY}: no mark of 2 (not marked yet) A person marks it, {where}" in said
+    assert "a quarter of the acceleration." in said and "Comment" not in said
+    with open_gradebook(course) as book:
+        grade = book.find_grade(WHY, NAME, NAME, "dan")
+        grade.manual_score, grade.needs_manual_grade = 1.5, False
+        book.find_comment(WHY, NAME, NAME, "dan").manual_comment = "And the speed?"
+        book.db.commit()
+    assert main(["explain", "dan", WHY, *words]) == 0
+    said = capsys.readouterr().out
+    assert f"dan, {WHY}: 1.5 of 2 (1.5 by hand)" in said and "Comment: And the speed?" in said
+
+
+@pytest.mark.slow
+def test_nothing_is_promised_where_nothing_was_attempted(course, capsys):
+    """No case decided it, neither a hidden one nor one that the student has seen."""
+    release(course, "03_velocity_control", 7)
+    path = course.release / "03_velocity_control/03_velocity_control.ipynb"
+    hand_in(course, "03_velocity_control", "ada", path.read_bytes())
+    words = ["--course", str(course.root)]
+    assert main(["grade", "03_velocity_control", *words]) == 0
+    capsys.readouterr()
+    assert main(["explain", "ada", "my_lag", *words]) == 0
+    said = capsys.readouterr().out
+    assert "my_lag: not attempted yet" in said and "The answer:\nmy_lag = None" in said
+    assert "decided" not in said

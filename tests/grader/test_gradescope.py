@@ -14,15 +14,17 @@ from types import SimpleNamespace
 
 import pytest
 from autograder import graded, packed, unpacked
-from handmade import FULL, add, raw
+from handmade import FULL, QUICK, ROOT, add, hand_in, raw
 from made import NAME, WHY, result_of
 
+from labkit.__main__ import main
 from labkit.course.bundle import Bundle
 from labkit.course.cli import FOR_INSTRUCTORS
 from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader.gradescope import run as gradescope
 from labkit.grader.gradescope import setup_zip as gradescope_zip
 from labkit.grader.gradescope.run import report
+from labkit.grader.grading.grade import OTHER_NOTEBOOK, grade
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.sandbox.limits import Limits
@@ -112,6 +114,23 @@ def test_a_report_has_points_and_words_for_each_question(course):
     assert [t["name"] for t in whole["tests"] if t["visibility"] == "hidden"] == [
         "for the instructor"
     ]
+
+
+@pytest.mark.slow
+def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solved, capsys):
+    """Where it is graded, here and at Gradescope; a right one with cells of its own is not."""
+    other = (ROOT / "assignments/05_impedance/05_impedance.ipynb").read_bytes()
+    note = f"{OTHER_NOTEBOOK}: only 2 of the 22 named cells are of {NAME}"
+    result = grade(other, "ada", bundle, sandbox, QUICK)
+    assert result.notes == (note,)
+    verdicts = {answer.verdict.name: answer.verdict for answer in result.questions}
+    assert f"Note: {note}." in report(bundle, verdicts, result)["output"]
+    assert grade(raw(add(solved, "x = 1")), "bob", bundle, sandbox, QUICK).notes == ()
+    hand_in(course, NAME, "ada", other)
+    hand_in(course, NAME, "bob", solved)
+    assert main(["grade", NAME, "--course", str(course.root)]) == 0
+    assert f"\nATTENTION: ada: {note}; ask for the right one\n" in (out := capsys.readouterr().out)
+    assert out.count("ATTENTION") == 1
 
 
 def test_a_file_that_cannot_be_graded_says_why(course):

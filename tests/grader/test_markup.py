@@ -205,6 +205,17 @@ def test_the_mean_says_whose_it_is(course):
     assert "\nMean of the 1 student marked in full: 22.0, median" in report(NAME, marks, {}, str)
 
 
+def test_the_table_of_questions_says_that_it_leaves_out_extra_credit(course):
+    """The mean has it and may exceed full marks; what the grader gave for a question has not."""
+    mark = mark_of(result_of(course, "ada"))
+    says = "extra credit comes on top of its 22 points.\n\n| question |"
+    assert says not in report(NAME, [mark], {}, str)
+    lines = (replace(mark.lines[0], extra=3.0), *mark.lines[1:])
+    text = report(NAME, [replace(mark, lines=lines, raw=25.0)], {}, str)
+    assert "\nMean 25.0, median 25.0 of 22 points" in text and says in text
+    assert f"\n| {lines[0].name} | 1 | 0 | 0 | 0 | 0 | 100% |" in text
+
+
 def test_the_same_text_of_three_is_listed_and_accuses_nobody(course):
     """Of answers of some lines, and of two or more, also where a fourth shares one of them."""
     long = "def f(t):\n" + "".join(f"    x{k} = {k} * t\n" for k in range(2))

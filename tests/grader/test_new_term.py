@@ -183,11 +183,38 @@ def test_files_in_the_course_folder_that_name_a_student_are_named(course, capsys
     assert main([*words, "--yes"]) == 0 and named in capsys.readouterr().out
 
 
+def test_downloads_are_read_as_collect_reads_them(course, capsys):
+    """A zip with a student's work is named whatever the platform calls them in it."""
+    mine = Student("ada", "Ada", "King-Noel", lms_user_id="4711")
+    save_roster(course, Roster((mine, Student("bob", "Bob", "Hope"))))
+    remember(course, "01_paths", {"ada": LmsUser("moodle", "101", "Participant 101")})
+    (course.root / "downloads").mkdir()
+    entries = {
+        "blind": "Participant 101_101_assignsubmission_file/01_paths.ipynb",
+        "name": "kingnoelada_LATE_9_88_01_paths.ipynb",
+        "number": "adaking_4711_89_01_paths.ipynb",
+        "other": "Participant 1010_1010_assignsubmission_file/101_4711.ipynb",
+        "bob": "hopebob_4712_4711_01_paths.ipynb",
+    }
+    for name, entry in entries.items():
+        with zipfile.ZipFile(course.root / f"downloads/{name}.zip", "w") as archive:
+            archive.writestr(entry, "{}")
+    (course.root / "downloads/damaged.zip").write_bytes(b"PK")
+    assert main(["term", "forget", "--student", "ada", "--course", str(course.root)]) == 0
+    found = "downloads/blind.zip, downloads/name.zip, downloads/number.zip"
+    assert f"for you to delete: {found}\n" in capsys.readouterr().out
+
+
 def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     """What is there is said, with both commands; --yes archives it and says how to return."""
     words = ["term", "new", "00_warmup", "--course", str(course.root)]
     assert main(words) == 0
-    assert "archived" not in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "archived" not in said
+    guide = " ".join((ROOT / "book/instructor_guide.md").read_text().split())
+    first, quoted = said.splitlines()
+    assert first == "a new term begins, released: 00_warmup"
+    assert f"names the notebooks that were released, and says *{quoted}*." in guide
     record = course.term.read_text()
     seed = str(seeds.seed_of(course))
     save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
@@ -222,6 +249,19 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert again == json.loads(record)["bundles"]["00_warmup"], "results stay valid"
     assert hand_in.exists() and result.exists() and str(seeds.seed_of(course)) == seed
     assert len(read_roster(course).students) == 2
+
+
+def test_who_handed_in_is_not_called_a_student_of_the_roster(course, capsys):
+    """Work that was kept apart is archived too, and makes no other number of students."""
+    save_roster(course, Roster((Student("ada", "Ada"), Student("bob", "Bob"))))
+    for name in ("ada", "bob", "Bob-2"):
+        (course.submitted / name / "00_warmup").mkdir(parents=True)
+        (course.submitted / name / "00_warmup/00_warmup.ipynb").write_text("{}")
+    assert main(["term", "new", "00_warmup", "--yes", "--course", str(course.root)]) == 0
+    assert "archived: 2 students, 3 submissions\n" in capsys.readouterr().out
+    assert main(["term", "list", "--course", str(course.root)]) == 0
+    said = capsys.readouterr().out
+    assert ", 3 handed in\n" in said and "student" not in said
 
 
 @pytest.mark.parametrize("seed", [PUBLIC_SEED])

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 TABLES = ("nbgrader", "questions", "canvas", "moodle", "moodle-worksheet")
 """Layouts of marks."""
+NAMED = ("canvas", "moodle")
+"""Layouts with a column that a platform knows by its name."""
 QUIZZES = ("paper", "moodle-quiz", "canvas-quiz")
 """Layouts of the concept test."""
 Form = Literal["a", "b"]
@@ -46,7 +48,9 @@ Form = Literal["a", "b"]
     "--final", is_flag=True, help="Cup: run on the seeds of the final, and give the bonus for it."
 )
 @click.option(
-    "--column", metavar="NAME", help="The platform's name of the assignment: 'Paths (4711)'."
+    "--column",
+    metavar="NAME",
+    help="canvas, moodle: the platform's name of the assignment: 'Paths (4711)'.",
 )
 @click.option(
     "--absent-zero",
@@ -73,6 +77,11 @@ def export(
     from ..marks.table import marks_of, unknown_extensions
     from ..rules import read_rules
 
+    if column and layout not in NAMED:
+        raise LabkitError(
+            f"--layout {layout} has no column that a platform knows by its name; --column is for "
+            f"--layout {' or '.join(NAMED)}"
+        )
     if layout == "gradescope":
         return _autograder(course, assignment, to)
     if layout in QUIZZES:
@@ -106,7 +115,7 @@ def export(
         return [replace(m, raw=0.0) if m.absent else m for m in marks]
 
     if assignment is None:
-        if layout != "questions" or column:
+        if layout != "questions":
             raise LabkitError(
                 "--layout and --column are for one assignment: type labkit export ASSIGNMENT "
                 f"--layout {layout}; without them, labkit export writes the table of the term"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from .pages import one_student, tell
 
 if TYPE_CHECKING:
     from ..grading.batch import GradedSubmission
+    from ..grading.results import Result
 
 jobs = click.option(
     "--jobs",
@@ -74,10 +75,11 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
 
     Each submission is graded in a sandbox of its own. After you have changed a test and released
     the assignment, all submissions are graded again. No mark is lowered unless you add --lower.
+    A notebook of another assignment that was handed in is named at the end.
     """
     from ..grading.batch import GradeOptions, common_failures, grade_class, watch
     from ..grading.changes import changes, summary
-    from ..grading.results import Result, Results
+    from ..grading.results import Results
     from ..lock import WHOLE, exclusive_run
     from ..nbgrader.gradebook import record
 
@@ -88,6 +90,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         if watching:
             for one in failures.sift(watch(course, assignment, options), "not graded"):
                 print(_line(one, as_json), flush=True)
+                tell(_other_notebooks([one.result]), said)
                 recorded = record(course, assignment, [one.result])
                 tell(failures.sift(recorded, "not in the gradebook"), said)
         who = _handed_in(course, assignment, student, failures)
@@ -107,10 +110,20 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             tell(failures.sift(recorded, "not in the gradebook"), said)
             everybody = graded if student else list(Results(course, assignment))
             tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
+        tell(_other_notebooks(graded), said)
         if graded and not as_json:
             tell(_on_top(course, assignment), sys.stdout)
             print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
     return failures.code
+
+
+def _other_notebooks(results: Iterable[Result]) -> Iterator[str]:
+    """Who handed in a notebook that does not belong here."""
+    from ..grading.grade import OTHER_NOTEBOOK
+
+    for result in results:
+        for note in (x for x in result.notes if x.startswith(OTHER_NOTEBOOK)):
+            yield f"ATTENTION: {result.student}: {note}; ask for the right one"
 
 
 def _on_top(course: Course, assignment: str) -> Iterator[str]:
@@ -143,6 +156,7 @@ def explain(course: Course, student: str, question: str, assignment: str | None)
 
     The answer runs once more in the sandbox. You see what the student may be shown, and then,
     for you alone, the hidden case that decided the mark. Numbers and runs are written to a page.
+    An answer that a person marks is not run: its mark and comment are those of the gradebook.
     """
     from ..feedback.explain import explain
 

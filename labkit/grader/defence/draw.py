@@ -30,7 +30,7 @@ from ..sandbox.limits import Limits, slowness
 from ..sandbox.session import RemoteFunction, Session
 from ..seeds import seed_of
 from ..students.roster import read_roster
-from ..submission import Submission
+from ..submission import Submission, is_name, meant
 from ..whys import rank
 from .edits import Edit, edits, shown
 
@@ -144,7 +144,8 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
     """
     found: list[Accepted] = []
     missing: list[str] = []
-    known = read_roster(course).get(student) is not None
+    roster = [one.id for one in read_roster(course).students]
+    known = student in roster
     for name in sorted(path.stem for path in course.bundle.glob("*.json")):
         for result in standing(course, name, student):
             known = True
@@ -159,9 +160,11 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
                 if question.name in answers and edits(answers[question.name].source)
             ]
     if not known:
+        folders = [path.name for path in course.submitted.glob("*") if is_name(path.name)]
         raise LabkitError(
             f"there is no student {student!r}: not in the roster, and nothing of theirs is in "
             "submitted/ or results/; give the name of the student's folder"
+            f"{meant(student, [*roster, *folders])}"
         )
     return found, missing
 

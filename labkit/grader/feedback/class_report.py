@@ -74,6 +74,7 @@ def report(
         points=max((mark.points for mark in counted), default=0.0),
         mean=mean,
         median=median,
+        changed=any(x.automatic not in (None, x.score) for mark in counted for x in mark.lines),
         questions=(questions := list(_questions(graded))),
         can=list(_can(questions, asked)),
         texts={q.name: _brief(q) for q in asked},

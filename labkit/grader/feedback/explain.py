@@ -8,16 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 
 from ...course.bugs import Found, Telling
 from ...course.bundle import Bundle
 from ...course.forms import Measured
 from ...course.layout import Course
+from ...course.messages import line as of_test
 from ...course.messages import summary, wrapped
 from ...course.own_arm import DEMO
 from ...course.serialize import question_data
-from ...course.verdict import Verdict
+from ...course.verdict import Outcome, Verdict
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
 from ..grading.grade import PUBLIC_ARM, grade
@@ -60,17 +62,17 @@ class Explanation:
         return "\n".join(self._lines())
 
     def _lines(self) -> Iterator[str]:
-        given = "not marked" if self.line.score is None else f"{self.line.score:g}"
-        origin = f" ({self.line.origin})" if self.line.origin else ""
-        yield f"{self.mark.student}, {self.told.name}: {given} of {self.line.points:g}{origin}"
+        yield _head(self.mark, self.line)
         yield from map(wrapped, self.judged)
         yield "\nWhat the student has read, and may be shown:"
         yield from map(wrapped, summary(self.told))
         hidden = {test.name for test in self.told.tests if test.hidden}
-        if hidden:
+        if self.told.outcome is Outcome.NOT_ATTEMPTED:
+            pass  # no case decided it
+        elif hidden:
             yield "\nThe hidden case that decided; do not show it before the term ends:"
-            tests = tuple(test for test in self.found.tests if test.name in hidden)
-            yield from map(wrapped, summary(replace(self.found, tests=tests))[1:])
+            tests = (test for test in self.found.tests if test.name in hidden)
+            yield from (wrapped(f"  {of_test(test)}") for test in tests)
         elif not self.told.right:
             yield ("\nThe tests that the student has seen decided this mark; no hidden case did.")
         if (self.told.right, self.told.earned) != (self.found.right, self.found.earned):
@@ -82,10 +84,47 @@ class Explanation:
         yield f"\nNumbers and runs, for you alone: {self.page}"
 
 
+@dataclass(frozen=True)
+class ByHand:
+    """Why an answer that a person marks has its mark: the mark of the whole, and this line of it.
+
+    Attributes:
+        mark: Of the whole submission.
+        line: Of this question.
+        assignment: Where formgrader has it.
+    """
+
+    mark: Mark
+    line: MarkLine
+    assignment: str
+
+    def __str__(self) -> str:
+        where = f"in formgrader: Manual Grading, {self.assignment}, Show All Names"
+        says = f"A person marks it, {where}."
+        if self.line.automatic == 0.0:
+            says = f"It was left blank or as it was handed out. If it earns more, give it {where}."
+        elif self.line.automatic is not None:
+            says = (
+                "This why is not one of those that are drawn for a person to mark, so it has its "
+                f"points for being there. A mark that you give counts instead, {where}."
+            )
+        written = self.mark.result.written.get(self.line.name) if self.mark.result else ""
+        lines = [_head(self.mark, self.line), wrapped(says)]
+        lines += [f"\nComment: {self.line.comment}"] * bool(self.line.comment)
+        return "\n".join([*lines, f"\nThe answer:\n{written or '(none)'}"])
+
+
+def _head(mark: Mark, line: MarkLine) -> str:
+    """Whose mark for what, and where it comes from."""
+    given = "no mark" if line.score is None else f"{line.score:g}"
+    origin = f" ({line.origin})" if line.origin else ""
+    return f"{mark.student}, {line.name}: {given} of {line.points:g}{origin}"
+
+
 def explain(
     course: Course, student: str, question: str, assignment: str | None = None
-) -> Explanation:
-    """Try an answer again with every hidden case laid open.
+) -> Explanation | ByHand:
+    """Try an answer again with every hidden case laid open; nothing is run that a person marks.
 
     Args:
         course: The course.
@@ -99,13 +138,19 @@ def explain(
         NoIsolation: No sandbox can be made here.
     """
     bundle = _bundle(course, question, assignment)
-    name = bundle.data["assignment"]
-    mark = next(marks_of(course, name, student), None)
+    name, by_hand = bundle.data["assignment"], question in _by_hand(bundle)
+    everybody = marks_of(course, name, None if by_hand else student)  # a team's mark is for all
+    mark = next((one for one in everybody if one.student == student), None)
     if mark is None or mark.result is None:
         why = (mark and mark.missing) or none_of(course, name, student)
         raise LabkitError(f"there is no mark to explain: {why}")
     if mark.result.rejected:
         raise LabkitError(f"{name} of {student} was rejected: {mark.result.rejected}")
+    if by_hand:
+        own = next((line for line in mark.lines if line.name == question), None)
+        if own is None:
+            raise LabkitError(f"there is no mark to explain: {mark.missing}")
+        return ByHand(mark, own, name)
     told = next((x for x in mark.result.questions if x.verdict.name == question), None)
     if told is None:
         raise LabkitError(f"{question} is newer than the mark; type: labkit grade {name}")
@@ -162,11 +207,16 @@ def _bundle(course: Course, question: str, assignment: str | None) -> Bundle:
     """The bundle that has a question."""
     names = [assignment] if assignment else [x.stem for x in sorted(course.bundle.glob("*.json"))]
     bundles = [Bundle.of(course, name) for name in names]
-    asked = {q["name"]: b for b in bundles for q in b.data["questions"]}
-    here = [b for b in bundles if question in {q["name"] for q in b.data["questions"]}]
+    asked = [[*(q["name"] for q in b.data["questions"]), *_by_hand(b)] for b in bundles]
+    here = [b for b, questions in zip(bundles, asked, strict=True) if question in questions]
     if not here:
-        raise UnknownName("question", question, tuple(asked))
+        raise UnknownName("question", question, dict.fromkeys(chain(*asked)))
     if len(here) > 1:
         several = ", ".join(b.data["assignment"] for b in here)
         raise LabkitError(f"{several} have {question}; say which with --assignment")
     return here[0]
+
+
+def _by_hand(bundle: Bundle) -> list[str]:
+    """The questions that a person marks."""
+    return [cell["grade_id"] for cell in bundle.data["cells"] if "points" in cell]

@@ -40,6 +40,8 @@ PUBLIC_ARM = (
     "gave this student"
 )
 
+OTHER_NOTEBOOK = "this looks like the notebook of another assignment"
+
 _THEIRS = {
     "tricks": ("tricks",),
     "cells": ("error", "output"),
@@ -85,6 +87,7 @@ def grade(
         return rejection(cells, student, bundle, sandbox.level, data)
     todo = plan(cells, bundle.data["cells"])
     public_arm = PUBLIC_ARM if given and opens_the_public_arm(x["source"] for x in cells) else ""
+    other = _other_notebook(cells, bundle)
     absent = bundle.added - todo.places.keys()
     todo = replace(todo, notes={**todo.notes, **dict.fromkeys(absent, (ADDED,))})
     tools = {q.name: withheld_tools(todo.looks, q.name, q.withheld) for q in bundle.questions}
@@ -112,7 +115,7 @@ def grade(
             )
             for question in bundle.questions
         ),
-        notes=(*filter(None, (note, public_arm)), *todo.notes.get("", ())),
+        notes=(*filter(None, (note, other, public_arm)), *todo.notes.get("", ())),
         cells=cast(tuple[FailedCell, ...], failed),
         own=cast(tuple[OwnCell, ...], todo.own),
         written=todo.written,
@@ -181,6 +184,16 @@ def parse(data: bytes, sandbox: Sandbox, limits: Limits) -> list[dict[str, Any]]
     if "cells" not in found:
         return str(found.get("rejected", "the file cannot be read"))
     return list(found["cells"])
+
+
+def _other_notebook(cells: list[dict[str, Any]], bundle: Bundle) -> str:
+    """That most cells with a name of nbgrader's are of another release, in a sentence, or ""."""
+    named = {cell["grade_id"] for cell in cells} - {""}
+    ours = named & {cell.get("grade_id") for cell in bundle.data["cells"]}
+    if 2 * len(ours) >= len(named):
+        return ""
+    name = bundle.data["assignment"]
+    return f"{OTHER_NOTEBOOK}: only {len(ours)} of the {len(named)} named cells are of {name}"
 
 
 def _public(function: RemoteFunction) -> Tried:

@@ -74,9 +74,8 @@ def _record(course: Course, book: Any, source: Any, result: Result) -> list[str]
     notebook = with_verdicts(in_release_form(source, result), result)
     written = as_text(notebook)
     when, note = timestamp(course, result)
-    known = {} if when is None else {"timestamp": when}
     book.update_or_create_student(result.student)
-    submission = book.update_or_create_submission(result.assignment, result.student, **known)
+    submission = book.update_or_create_submission(result.assignment, result.student, timestamp=when)
     notes = [f"{result.student}: {note}"] if note else []
     folder = course.root / "autograded" / result.student / result.assignment
     path = folder / f"{result.assignment}.ipynb"

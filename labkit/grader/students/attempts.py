@@ -154,6 +154,7 @@ def keep(
     data: bytes,
     seen: Seen,
     secret: bytes | None = None,
+    there: dict[str, Attempt] | None = None,
 ) -> bool:
     """Keep a notebook as an attempt.
 
@@ -164,6 +165,8 @@ def keep(
         data: The notebook.
         seen: When and where it was shown.
         secret: What the exchange knows the hand-in by.
+        there: The student's attempts as `adopt` returns them, to which this one is added; they are
+            read by default.
 
     Returns:
         Whether it is a new one, and not the same content as another.
@@ -171,9 +174,9 @@ def keep(
     Raises:
         LabkitError: The record of an attempt is damaged.
     """
+    there = _by_digest(course, student, assignment) if there is None else there
     sha256 = digest(data)
-    there = {one.sha256: one for one in attempts(course, student, assignment)}
-    before = there.get(sha256)
+    before, new = there.get(sha256), sha256 not in there
     if before is None:
         name = f"{seen.when:%Y-%m-%dT%H%M%SZ}-{sha256[:16]}"
         folder = course.root / FOLDER / student / assignment / name
@@ -188,10 +191,11 @@ def keep(
         data = msgspec.json.encode(record, enc_hook=lambda file: file.name)
         text = msgspec.json.format(data, indent=1).decode()
         write(before.file.parent / _RECORD, text + "\n")
-    return sha256 not in there
+        there[sha256] = record
+    return new
 
 
-def adopt(course: Course, student: str, assignment: str, now: str) -> None:
+def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, Attempt]:
     """Keep what somebody else put into ``submitted/``: a person, nbgrader, or an older labkit.
 
     Args:
@@ -200,6 +204,9 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
         assignment: Which.
         now: The time, in ISO 8601.
 
+    Returns:
+        All attempts of the student, by the digest of their bytes.
+
     Raises:
         LabkitError: It cannot be read, or a record is damaged.
     """
@@ -207,8 +214,8 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
     for path in (folder.parent, folder):
         if path.is_symlink():
             raise LabkitError(f"{path.relative_to(course.root)} is a link; put a folder there")
-    all = attempts(course, student, assignment)
-    ours, chosen = {one.sha256 for one in all}, that_counts(course, student, assignment)
+    there = _by_digest(course, student, assignment)
+    ours, chosen = set(there), that_counts(course, student, assignment)
     for path in sorted(folder.glob("*.ipynb")):
         if path.is_symlink() or not path.is_file():
             raise LabkitError(f"{path.relative_to(course.root)} is not a file; move it away")
@@ -222,7 +229,9 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> None:
             stated = read_time(read_stamp(folder)) if new else None
             when = stated or datetime.fromtimestamp(int(path.stat().st_mtime), UTC)
             seen = Seen(when, BY_HAND, "", path.name, exact=stated is not None, collected=now)
-            keep(course, student, assignment, data, seen, read_secret(folder) if new else None)
+            secret = read_secret(folder) if new else None
+            keep(course, student, assignment, data, seen, secret, there)
+    return there
 
 
 def install(course: Course, student: str, assignment: str) -> Counted | None:
@@ -292,6 +301,10 @@ def _rank(seen: Seen, assignment: str) -> tuple[bool, int, str]:
     """Which of several that were handed in together counts."""
     match = _REPEATED.search(seen.file)  # the number that a browser or platform put there
     return called(seen.file, assignment), int(match[1]) if match else 0, seen.collected
+
+
+def _by_digest(course: Course, student: str, assignment: str) -> dict[str, Attempt]:
+    return {one.sha256: one for one in attempts(course, student, assignment)}
 
 
 def _read(path: Path) -> Attempt:

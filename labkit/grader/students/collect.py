@@ -231,10 +231,10 @@ def _keep_notebooks(
     asked: Mapping[str, frozenset[bytes]],
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
-    adopt(course, student, assignment, now)
+    there = adopt(course, student, assignment, now)
     before = that_counts(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
-    kept: list[tuple[Seen, str, bool]] = []
+    done: list[tuple[Seen, str, bool]] = []
     for file, named in notebooks:
         try:
             data, secret = file.read(), file.secret()
@@ -243,11 +243,12 @@ def _keep_notebooks(
             continue
         when = file.when if file.exact else shown  # a download shows them all at once
         seen = Seen(when, *named.who.key, named.file, file.exact, named.late, now)
-        kept.append((seen, digest(data), keep(course, student, assignment, data, seen, secret)))
+        new = keep(course, student, assignment, data, seen, secret, there)
+        done.append((seen, digest(data), new))
     after = install(course, student, assignment)
-    for seen, sha256, new in kept:
+    beside = {x.when: x.file for x in after.attempt.seen} if after else {}
+    for seen, sha256, new in done:
         if after is None or after.attempt.sha256 != sha256:
-            beside = {x.when: x.file for x in after.attempt.seen} if after else {}
             which = beside.get(seen.when, "a later one")
             if after and which == seen.file:
                 which = f"another {which}, of {after.first.when:%Y-%m-%d %H:%M %Z},"

@@ -29,8 +29,9 @@ def owner(file: File, roster: Roster) -> Named | str:
 def _is_called_so(who: LmsUser, roster: Roster) -> bool:
     """Whether the roster has this user of Canvas, under this name."""
     names = [f"{s.last_name}{s.first_name}" for s in roster.whose(who)]
-    return _letters(who.name) in map(_letters, names)
+    return letters(who.name) in map(letters, names)
 
 
-def _letters(name: str) -> str:
+def letters(name: str) -> str:
+    """A name as it is left where a platform takes out spaces, signs and capitals."""
     return "".join(c for c in name.casefold() if c.isalnum())

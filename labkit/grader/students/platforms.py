@@ -54,6 +54,8 @@ _CANVAS = re.compile(
     r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<number>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>[^/]+)"
 )
 _NUMBER_FIRST = re.compile(r"([0-9]+)_([^/]+)")
+_OF_A_MAC = re.compile(r"(^|/)(__MACOSX/|\.DS_Store$|\._[^/]*$)")
+"""What a Mac puts beside files; it is nobody's work."""
 _ID = re.compile(r"[1-9][0-9]{0,18}")
 _DAMAGED = (
     *(zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error),
@@ -191,9 +193,9 @@ def in_zip(
     """
     names: set[str] = set()
     for entry in archive.infolist():
-        if entry.is_dir():
-            continue
         name = _name(entry)
+        if entry.is_dir() or _OF_A_MAC.search(name):
+            continue
         label, when = clean_line(name)[-120:], _when(entry, made)
         refused = _refused(entry, name)
         who = () if refused else read(name)

@@ -9,8 +9,9 @@ import json
 import re
 import shutil
 import tomllib
-import zipfile
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from datetime import UTC, datetime
 from pathlib import Path
 
 from nbgrader.api import Gradebook, MissingEntry
@@ -25,6 +26,8 @@ from ..pseudonyms import pseudonym
 from ..rules import FILE as RULES
 from ..students.identity import FILE as LMS
 from ..students.identity import alone
+from ..students.owner import letters
+from ..students.platforms import File, LmsUser, in_zip, open_zip
 from ..students.roster import FILE as ROSTER
 from ..students.roster import read_roster
 from ..submission import is_name, meant
@@ -112,32 +115,48 @@ def unknown(course: Course, student: str) -> LabkitError:
 
 
 def _naming(course: Course, student: str) -> Iterator[Path]:
-    """Downloads and tables in the course folder with a student's name, login or address."""
-    names = {re.escape(student)}
+    """Downloads and tables in the course folder with a student's name, login, address or number."""
+    names, called, keys = {re.escape(student)}, set[str](), set[tuple[str, str]]()
     for root in _terms(course):
         private = root / "course_private" if root == course.root else root
         if (private / Path(ROSTER).name).exists():
             rows = csv.DictReader(io.StringIO((private / Path(ROSTER).name).read_text("utf-8")))
             for row in rows:
                 if row.get("id") == student:
-                    keys = ("first_name", "last_name", "login", "email")
-                    first, last, *others = (re.escape(row.get(key) or "") for key in keys)
+                    known = ("first_name", "last_name", "login", "email")
+                    first, last, *others = (re.escape(row.get(key) or "") for key in known)
                     names |= {*others}
+                    keys.add(("canvas", row.get("lms_user_id") or ""))
                     if first and last:
                         names |= {rf"{first}[\W_]*{last}", rf"{last}[\W_]*{first}"}
+                        called.add(letters(f"{row['last_name']}{row['first_name']}"))
+        if (private / Path(LMS).name).exists():
+            users = json.loads((private / Path(LMS).name).read_text("utf-8")).values()
+            mine = [people[student] for people in users if student in people]
+            keys |= {(one["system"], one["number"]) for one in mine}
     words = "|".join(sorted(filter(None, names)))
     said = re.compile(rf"(?<![^\W_])(?<!-)({words})(?![^\W_]|-)")
+
+    def theirs(who: LmsUser) -> bool:
+        return who.key in keys or (who.system == "canvas" and letters(who.name) in called)
+
     for path in sorted(course.root.glob("*")):
         inside = path.rglob("*") if path.is_dir() and path.name in _KEPT_BY_HAND else [path]
-        yield from (x for x in sorted(inside) if x.is_file() and said.search(_words(x)))
+        for file in filter(Path.is_file, sorted(inside)):
+            text, people = _words(file)
+            if said.search(text) or any(map(theirs, people)):
+                yield file
 
 
-def _words(path: Path) -> str:
-    """The text of a table or page, the names in a zip; "" of anything else."""
-    if path.suffix == ".zip" and zipfile.is_zipfile(path):
-        with zipfile.ZipFile(path) as archive:
-            return "\n".join(archive.namelist())
-    return path.read_text("utf-8", "replace") if path.suffix in _TEXTS else ""
+def _words(path: Path) -> tuple[str, list[LmsUser]]:
+    """The text of a table or page; of a zip the names in it, and whom a platform means by them."""
+    if path.suffix != ".zip":
+        return path.read_text("utf-8", "replace") if path.suffix in _TEXTS else "", []
+    files: list[File] = []
+    with suppress(LabkitError), open_zip(path) as archive:
+        files = list(in_zip(archive, datetime.now(UTC)))
+    people = [named.who for file in files for named in file.readings]
+    return "\n".join([*(file.label for file in files), *(who.name for who in people)]), people
 
 
 def _read_by_others(course: Course, student: str) -> Iterator[Path]:

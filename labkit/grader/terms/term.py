@@ -156,7 +156,7 @@ class Archive:
     Attributes:
         folder: Where it lies.
         ended: The day on which the next one began.
-        people: Who handed in.
+        people: How many handed in, also such as are not in the roster.
     """
 
     folder: Path
@@ -164,7 +164,7 @@ class Archive:
     people: int
 
     def __str__(self) -> str:
-        return f"{self.folder.name}: ended {self.ended}, {how_many(self.people, 'student')}"
+        return f"{self.folder.name}: ended {self.ended}, {self.people} handed in"
 
 
 def archives(course: Course, older: float = 0.0) -> list[Archive]:
