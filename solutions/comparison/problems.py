@@ -378,7 +378,7 @@ OPEN_LOOP = Problem(
         ),
         Wrong(
             "a minus in the loop",
-            "The minus of the feedback is not part of the open loop: margins are read from L, and 1 + L is closed.",
+            "The minus of the feedback is not part of the open loop. It comes in where the loop is closed.",
             mistakes.Loop(lambda kp, lag: ([-kp], [lag, 1.0, 0.0])),
             "The open loop is what is between error and angle.",
         ),
@@ -498,7 +498,8 @@ KP_FOR_MARGIN = Problem(
         ),
         Wrong(
             "the root forgotten",
-            "The lag's gain is 1/√(1 + (w·lag)²); without the root it is squared.",
+            "The size of 1 + j·w·lag is √(1 + (w·lag)²). Yours adds 1 and w·lag as if they were lengths along "
+            "one line.",
             mistakes.Margin(gain=lambda w, lag, delay: w * (1.0 + lag * w)),
             "The size of 1 + jx is √(1 + x²).",
         ),
