@@ -590,8 +590,8 @@ CHOOSE_GAINS = Problem(
     wrong=(
         Wrong(
             "the best on the line, at the edge of the cliff",
-            "It has the smallest error where you tried it, and loses the arm when the state comes a "
-            "little later. Step back from the edge.",
+            "It has the smallest error where you tried it. With 1.3 times this Kp the error is many "
+            "times as large where you could not try it. Step back from the edge.",
             mistakes.best_on_the_training_path,
             "The best gain on one path is the most fragile one.",
         ),
@@ -603,15 +603,15 @@ CHOOSE_GAINS = Problem(
         ),
         Wrong(
             "the lowest error of all seeds, and no step back",
-            "The lowest point of the curve lies beside the cliff: a little more gain, or a state a little "
-            "older, and the arm is lost. Take a third of the largest Kp that was safe.",
+            "The lowest point of the curve lies near the cliff and leaves no reserve: with 1.3 times this Kp "
+            "the error is too large where you could not try it. Take a third of the largest Kp that was safe.",
             mistakes.Lowest(),
             "The best gain on one path is the most fragile one.",
         ),
         Wrong(
             "only a tenth below the lowest point",
-            "A tenth is too small a margin: a state that is a little older needs more. Take a third of the "
-            "largest Kp that was safe.",
+            "A tenth is too small a margin: with 1.3 times this Kp the error is too large where you could not "
+            "try it. Take a third of the largest Kp that was safe.",
             mistakes.Lowest(0.9),
             "Say how large your margin is, and against what.",
         ),
