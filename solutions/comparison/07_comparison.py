@@ -117,7 +117,7 @@ for name in recordings.names():
 # $$ L(s) = K_p \cdot \frac{1}{\tau s + 1} \cdot \frac1s \cdot e^{-s d} . $$
 #
 # python-control multiplies such things for you. A delay is not a ratio of polynomials, but
-# `control.pade(delay, 4)` gives one that is close enough below the frequencies that matter here.
+# `control.pade(delay, 4)` gives one that is close enough at the frequencies that matter here.
 
 # %% question="open_loop"
 def open_loop(kp, lag, delay):
@@ -304,8 +304,8 @@ print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")
 # differences have a mean, and the mean of a few numbers is itself uncertain: by Student's $t$, with 95 %
 # confidence, the true mean is within
 #
-# $$ \bar d \pm t_{0.975,\,n-1}\,\frac{\sigma_d}{\sqrt n}, \qquad
-#    \sigma_d^2 = \frac{1}{n-1}\sum_i (d_i - \bar d)^2 . $$
+# $$ \bar d \pm t_{0.975,\,n-1}\,\frac{s_d}{\sqrt n}, \qquad
+#    s_d^2 = \frac{1}{n-1}\sum_i (d_i - \bar d)^2 . $$
 
 # %% question="paired_difference"
 def paired_difference(errors_a, errors_b):
@@ -422,7 +422,7 @@ for claim, (a, b) in claims.items():
 # represented by its mean, and there are three or four of them, no matter how many seeds each had. (A claim about
 # the built-in method has three: with the tag it follows an old line of its own, so there it cannot be compared.)
 #
-# And five claims are five chances to be wrong: at 95 % each, about one in four such lists holds a verdict
+# And five claims are five chances to be wrong: at 95 % each, up to about one in four such lists holds a verdict
 # that is due to chance alone. Use $1 - 0.05/5$ instead of 0.95 for each interval, and 95 % holds for the five
 # together:
 
@@ -434,10 +434,10 @@ for n in (3, 4, 5):
     print(f"{n} units: an interval {wider:.2f} times as wide")
 
 # %% [markdown]
-# If your own verdicts are in place, you see that each of the report's two sentences is true for some task.
-# Whether its controllers are better than the built-in method depends on the controller and on the path. Over
-# the tasks some claims are undecided, and they would be undecided with five hundred seeds. A fourth and a
-# fifth path would tell more than any number of seeds. So name the two controllers, the task and the number,
+# If your own verdicts are in place, you see that each of the report's two sentences is true of some controller.
+# Whether a controller is better than the built-in method depends on the controller, and by how much depends on the
+# path. Over the tasks some claims are undecided, and they would be undecided with five hundred seeds. Two more
+# paths would tell more than any number of seeds. So name the two controllers, the task and the number,
 # say what your units are, and say how sure you are.
 
 # %% predict="twenty_pairs"
@@ -460,9 +460,11 @@ predict("twenty_pairs", truth="b" if pooled < 0.7 * by_task else "c" if pooled >
 # would tell you that a sixth seed would not, and which interval belongs to "controllers in general".
 #
 # ### BEGIN SOLUTION
-# The interval from 20 differences was much narrower. The five seeds of a task share path, speed and pose,
-# so they are nearly one observation repeated: they tell how noisy a task is, not how tasks differ. A claim about
-# tasks in general rests on four independent numbers, and has their wide interval.
+# The interval from 20 differences was much narrower: 1.1 mm to either side, where the means of the tasks give
+# 3.3 mm. The five seeds of a task share path, speed and pose, so they are not independent: they tell how noisy
+# this task is, not how tasks differ. A sixth seed makes the mean of this task surer; a second task shows how much
+# another task changes it. A claim about controllers in general rests on four independent numbers, and has their
+# wide interval.
 # ### END SOLUTION
 
 # %% [markdown]

@@ -378,7 +378,7 @@ OPEN_LOOP = Problem(
         ),
         Wrong(
             "a minus in the loop",
-            "The minus of the feedback is not part of the open loop: margins are read from L, and 1 + L is closed.",
+            "The minus of the feedback is not part of the open loop. It comes in where the loop is closed.",
             mistakes.Loop(lambda kp, lag: ([-kp], [lag, 1.0, 0.0])),
             "The open loop is what is between error and angle.",
         ),
@@ -498,7 +498,8 @@ KP_FOR_MARGIN = Problem(
         ),
         Wrong(
             "the root forgotten",
-            "The lag's gain is 1/√(1 + (w·lag)²); without the root it is squared.",
+            "The size of 1 + j·w·lag is √(1 + (w·lag)²). Yours adds 1 and w·lag as if they were lengths along "
+            "one line.",
             mistakes.Margin(gain=lambda w, lag, delay: w * (1.0 + lag * w)),
             "The size of 1 + jx is √(1 + x²).",
         ),
@@ -589,8 +590,8 @@ CHOOSE_GAINS = Problem(
     wrong=(
         Wrong(
             "the best on the line, at the edge of the cliff",
-            "It has the smallest error where you tried it, and loses the arm when the state comes a "
-            "little later. Step back from the edge.",
+            "It has the smallest error where you tried it. With 1.3 times this Kp the error is many "
+            "times as large where you could not try it. Step back from the edge.",
             mistakes.best_on_the_training_path,
             "The best gain on one path is the most fragile one.",
         ),
@@ -602,15 +603,15 @@ CHOOSE_GAINS = Problem(
         ),
         Wrong(
             "the lowest error of all seeds, and no step back",
-            "The lowest point of the curve lies beside the cliff: a little more gain, or a state a little "
-            "older, and the arm is lost. Take a third of the largest Kp that was safe.",
+            "The lowest point of the curve lies near the cliff and leaves no reserve: with 1.3 times this Kp "
+            "the error is too large where you could not try it. Take a third of the largest Kp that was safe.",
             mistakes.Lowest(),
             "The best gain on one path is the most fragile one.",
         ),
         Wrong(
             "only a tenth below the lowest point",
-            "A tenth is too small a margin: a state that is a little older needs more. Take a third of the "
-            "largest Kp that was safe.",
+            "A tenth is too small a margin: with 1.3 times this Kp the error is too large where you could not "
+            "try it. Take a third of the largest Kp that was safe.",
             mistakes.Lowest(0.9),
             "Say how large your margin is, and against what.",
         ),

@@ -600,9 +600,9 @@ def shaped_impedance(state, target, wrench, model, *, inertia, stiffness, dampin
 
 # %% [markdown]
 # Here is a push of 10 N again, with the same springs, on a tip that should feel like 1, 5 and 20 kg. Look at
-# the first tenths of a second. (In 0.1 s a push of 10 N moves 20 kg by 2.5 mm. Your tip goes farther, because
-# the law sees the push one tick late, and for these 5 ms the tip has only its own kilogram. With `rate =
-# 1000.0`, where the plant is made near the top of this notebook, it moves 2.7 mm.)
+# the first tenths of a second. (In 0.1 s a push of 10 N moves 20 kg on this spring and damper by 1.9 mm. Your
+# tip goes farther, because the law sees the push one tick late, and for these 5 ms the tip has only its own
+# kilogram. With `rate = 1000.0`, where the plant is made near the top of this notebook, it moves 2.7 mm.)
 
 # %%
 def ignores_the_wrench(state, target, wrench, model, *, inertia, stiffness, damping):
@@ -654,9 +654,10 @@ predict("four_times_the_mass", truth="abcd"[int(np.searchsorted([0.35, 0.75, 1.2
 # alone sets the force with which the tip rests against a wall.
 #
 # ### BEGIN SOLUTION
-# After 0.1 s the heavy tip had hardly moved; after two seconds it was as far away as the light one. At
-# first acceleration is all there is, so the inertia decides; once the tip rests, speed and acceleration are
-# zero, and only the spring balances the hand. A wall is met at rest, so it feels the stiffness alone.
+# After 0.1 s the tip of 20 kg had moved 5 mm and that of 1 kg 18 mm; after two seconds both were 33 mm away. At
+# the first moment acceleration is all there is, so the inertia decides. On the way the damping decides how
+# quickly the tip arrives, and whether it swings. Once it rests, speed and acceleration are zero, and only the
+# spring balances the hand. The tip rests against a wall too, so of the three the stiffness alone sets that force.
 # ### END SOLUTION
 
 # %% [markdown]

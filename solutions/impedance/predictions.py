@@ -14,7 +14,8 @@ PREDICTIONS = (
     Prediction(
         "four_times_the_mass",
         "A hand pushes with 10 N and keeps pushing. The tip behaves as if it weighed 5 kg, then as if "
-        "it weighed 20 kg; its springs stay the same. After two seconds, how far away is the heavy tip?",
+        "it weighed 20 kg. Its springs of 300 N/m stay the same, and the damping is critical for either "
+        "mass. After two seconds, how far away is the heavy tip?",
         Choose(
             {
                 "a": "a quarter as far as the light one",

@@ -345,7 +345,7 @@ OPERATIONAL_INERTIA = Problem(
         ),
         Wrong(
             "the mass matrix left out",
-            "The inverse of J Jᵀ knows nothing of masses: J M⁻¹ Jᵀ is what a wrench sets in motion.",
+            "The inverse of J Jᵀ knows nothing of masses. Put M⁻¹ between J and Jᵀ, then invert.",
             mistakes.MassesOf(lambda M, J: np.linalg.inv(J @ J.T)),
             "Say what each factor does to a wrench.",
         ),
@@ -357,7 +357,7 @@ OPERATIONAL_INERTIA = Problem(
         ),
         Wrong(
             "a root",
-            "The roots of the right eigenvalues stand here. The matrix itself is asked for.",
+            "This is the square root of the right matrix. The matrix itself is asked for.",
             mistakes.MassesOf(
                 lambda M, J: mistakes.root(np.linalg.inv(J @ np.linalg.inv(M) @ J.T))
             ),
@@ -365,13 +365,15 @@ OPERATIONAL_INERTIA = Problem(
         ),
         Wrong(
             "J M⁻¹ with a pseudo-inverse",
-            "The right factor is Jᵀ: a wrench at the tip becomes torques by the transpose.",
+            "The last factor should be Jᵀ: a wrench at the tip becomes torques by the transpose. "
+            "Then invert the whole product.",
             mistakes.MassesOf(lambda M, J: J @ np.linalg.inv(M) @ np.linalg.pinv(J)),
             "Forces go through the transpose.",
         ),
         Wrong(
             "pseudo-inverses and M⁻¹",
-            "Either invert the whole J M⁻¹ Jᵀ, or nothing of it.",
+            "Inverting M and the two Jacobians one by one does not invert their product. Form "
+            "J M⁻¹ Jᵀ, then invert the whole of it.",
             mistakes.MassesOf(
                 lambda M, J: np.linalg.pinv(J).T @ np.linalg.inv(M) @ np.linalg.pinv(J)
             ),
@@ -489,8 +491,9 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "the body Jacobian",
-            "The errors are in world axes, the body Jacobian is in the tool's. With the gripper down, two "
-            "of the three axes come out the other way round. Use tip_jacobian.",
+            "The errors are in world axes, the body Jacobian is in the tool's. With the gripper down, the "
+            "wrench is turned by 180 degrees about a horizontal axis: up comes out as down. Use "
+            "tip_jacobian.",
             mistakes.body_jacobian,
             "Name the Jacobian, always.",
         ),
@@ -654,13 +657,13 @@ WORKSPACE_IMPEDANCE = Problem(
         ),
         Wrong(
             "the springs inside the inertia",
-            "The springs are a wrench already: beside the tip's inertia, not behind it.",
+            "K e is a wrench already. Add it to Λ times the acceleration; do not multiply it by Λ.",
             mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ (a + K) + D) + C + g),
             "Units: K e is a wrench.",
         ),
         Wrong(
             "the dampers inside the inertia",
-            "The dampers are a wrench already: beside the tip's inertia, not behind it.",
+            "D ė is a wrench already. Add it to Λ times the acceleration; do not multiply it by Λ.",
             mistakes.TipTerms(lambda J, L, a, D, K, C, g, M: J.T @ (L @ (a + D) + K) + C + g),
             "Units: D ė is a wrench.",
         ),
@@ -744,8 +747,8 @@ SHAPED_IMPEDANCE = Problem(
         ),
         Wrong(
             "the wrench of the robot on the hand",
-            "The sign of the wrench is wrong, so a heavy arm feels light and a light one heavy. "
-            "`wrench` is what the hand does to the arm.",
+            "The sign of the wrench is wrong, so a tip that should feel heavy feels light, and the "
+            "other way round. `wrench` is what the hand does to the arm.",
             mistakes.wrench_of_the_robot,
             "Say always: force of whom, on what.",
         ),
@@ -760,15 +763,15 @@ SHAPED_IMPEDANCE = Problem(
         Wrong(
             "the inertia ignored",
             "This is the law with the arm's own inertia. Divide springs, dampers and wrench by M_d, then "
-            "multiply by Λ.",
+            "multiply by Λ; and subtract the hand's share, the wrench.",
             mistakes.own_inertia,
             "With M_d = Λ the two laws agree.",
         ),
         Wrong(
             "the report's equation 19",
             "The wrench is outside the braces as a force and inside as an acceleration, as in the "
-            "report's equation 19. Divide the one inside by M_d, so that the wrench cancels where "
-            "M_d = Λ.",
+            "report's equation 19. Divide the one inside by M_d and subtract the one outside, so that "
+            "the wrench cancels where M_d = Λ.",
             mistakes.the_reports_equation,
             "Units, and the special case M_d = Λ.",
         ),
@@ -1141,7 +1144,7 @@ APPARENT_STIFFNESS = Problem(
         ),
         Wrong(
             "differences of neighbours",
-            "Differences lose most of what the pushes tell, and double the noise. Fit all pushes at once.",
+            "Each difference holds the noise of two pushes. Fit all pushes at once, about their mean.",
             mistakes.FitOf(lambda F, x: mistakes.solved(np.diff(x, axis=0), np.diff(F, axis=0))),
             "A fit uses all data.",
         ),

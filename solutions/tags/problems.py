@@ -692,8 +692,8 @@ PREDICT = Problem(
         ),
         Wrong(
             "noise that does not know of time",
-            "The noise is the same whatever the step, so ten steps for one make the tag ten times "
-            "as unsure. Let Q grow with `age`.",
+            "The noise is the same whatever the step, so ten short steps add ten times the noise of "
+            "one long one. Let Q grow with `age`.",
             mistakes.noise_without_time,
             "Two half steps must make one step.",
         ),
