@@ -109,8 +109,7 @@ class Desk:
                     verdict, found = mark(question, here, tried), tried.evidence(question)
                     verdict = explained(question, verdict, tried, here)
         except KeyboardInterrupt as stop:
-            line = line_of(stop)
-            where = f" in the line `{line}`" if line else ""
+            where = f" in the line `{line}`" if (line := line_of(stop)) else ""
             raise KeyboardInterrupt(
                 f"{name} was stopped{where}; does every loop in it come to its end?"
             ) from None
@@ -223,11 +222,10 @@ def hint(name: str, level: int = 1) -> None:
         return
     hints = desk().question(name).hints
     if not isinstance(level, int) or not 1 <= level <= len(hints):
-        assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
             "of them, ask the teacher or a forum. This line in a new cell prints what to send: "
-            f"!labkit submit-check --forum {assignment}.ipynb"
+            f"!labkit submit-check --forum {read_checks(Path.cwd())['assignment']}.ipynb"
         )
         print(wrapped(text if hints else f"{name} has no hints."))
         return
