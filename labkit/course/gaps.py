@@ -14,7 +14,7 @@ from .unfinished import defined_in
 _KNOWN = {*vars(builtins), "get_ipython", "display", "In", "Out", "_", "__", "___", "__file__"}
 """Names that every notebook has."""
 _OWN_ARM = {"my_arm", "my_bug"}
-"""What whoever marks a notebook cannot run."""
+"""What the grader cannot run."""
 
 Cell = Mapping[str, Any]
 
