@@ -418,8 +418,8 @@ lk.replay.show(lk.replay.motion_of(log, "The elbow swings, the tip stays", refer
 # From here on you have your own arm. It is a Baxter, but its motors, the friction of its joints, its payload
 # and the wall in front of it are particular to this arm. Each team has an arm that nobody else has, and so has each
 # student without a team. Open it with the name that your instructor gave you: put the name in place of `"demo"`,
-# which is a public arm to practise on. The check compares the numbers
-# that you find with the true numbers of your arm, and the report of notebook 08 is about this arm.
+# which is a public arm to practise on. When it is marked, the numbers
+# that you find are compared with the true numbers of your arm, and the report of notebook 08 is about this arm.
 
 # %%
 HANDLE = "demo"  # in a course: the name that your instructor gave you
@@ -509,9 +509,9 @@ lk.replay.show(
 # ### END SOLUTION
 
 # %% [markdown]
-# Now the same in real time, and you can push. Press *Start*, drag the arm off its circle and let go: how long
-# does it take to come back, and with which kp? Velocity mode is stiff. However hard you pull, the motors give
-# all they have to keep the speed. Now choose a kp and raise *state_delay* until the arm begins to swing.
+# Now the same in real time, and you can push. Press *Start* and try to drag the arm off its circle. You hardly
+# can: velocity mode is stiff. However hard you pull, the motors give all they have to keep the speed. Now choose
+# a kp and raise *state_delay* until the arm begins to swing.
 # Repeat this with half the kp: how much more delay can the arm bear? (The sentence below the picture begins with
 # what moves the arm: your controller, or a stand-in. The stand-in has no kp.)
 
