@@ -80,7 +80,7 @@ ORDER = [
         "course.predictions",
         "course.identification",
     },
-    {"course.reply", "course.notebook", "course.card"},
+    {"course.reply", "course.notebook", "course.card", "course.checks_file"},
     {"course.gaps", "course.marking", "course.probes"},
     {"course.relations", "course.problem"},
     {"course.observed"},

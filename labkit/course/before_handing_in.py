@@ -17,6 +17,7 @@ from typing import Any
 
 from ..sim import chosen
 from .brief import WORDS
+from .checks_file import read_checks
 from .forms import COMMITTED, OWN_ARM
 from .gaps import bring_back, calculated, changed_since, first_error, undefined
 from .messages import head
@@ -32,7 +33,6 @@ from .notebook import (
 from .own_arm import arms_for, opens_the_public_arm
 from .serialize import decode
 from .source import look as look_at
-from .student import read_checks
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools
 
@@ -125,10 +125,9 @@ def look(path: Path) -> HandIn:
         notes += worth_knowing
     problems += undefined(cells, [question["name"] for question in questions])
     code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
-    measured = [
-        q["name"] for q in questions if any(t["name"] == OWN_ARM for t in q["tests"]["items"])
-    ]
-    problems += filter(None, (calculated(code, question) for question in measured))
+    for question in questions:
+        if any(test["name"] == OWN_ARM for test in question["tests"]["items"]):
+            problems += filter(None, [calculated(code, question["name"])])
     problems += filter(None, [first_error(cells)])
     verdicts = {question["name"]: _verdict(cells, question) for question in questions}
     predictions = [
@@ -141,7 +140,7 @@ def look(path: Path) -> HandIn:
         for verdict in verdicts.values()
         if verdict is not None and verdict.withheld
     ]
-    problems += _on_the_public_arm(path, cells, verdicts)
+    problems += _on_the_public_arm(path, code, verdicts)
     stale = [name for name in verdicts if changed_since(cells, name)]
     if stale:
         notes.append(
@@ -174,10 +173,9 @@ def look(path: Path) -> HandIn:
 
 
 def _on_the_public_arm(
-    path: Path, cells: list[dict[str, Any]], verdicts: Mapping[str, Verdict | None]
+    path: Path, code: list[str], verdicts: Mapping[str, Verdict | None]
 ) -> list[str]:
     """What to say where numbers of one's own arm were measured on the public one."""
-    code = [cell["source"] for cell in cells if cell["cell_type"] == "code"]
     measured = [
         name
         for name, verdict in verdicts.items()

@@ -104,7 +104,11 @@ PRINTED = "While it was tried, your code printed:"
 
 
 def message(
-    question: Question, verdict: Verdict, printed: str = "", leans_on: Sequence[str] = ()
+    question: Question,
+    verdict: Verdict,
+    printed: str = "",
+    leans_on: Sequence[str] = (),
+    lost: str = "",
 ) -> Message:
     """Everything that a student reads after a check.
 
@@ -113,8 +117,9 @@ def message(
         verdict: The verdict on the answer.
         printed: What the student's code printed while it was tried.
         leans_on: Names of other answers that this one uses and that are not right.
+        lost: Why the answer will not be there when it is marked.
     """
-    helps, hint = [], ""
+    helps, hint = [f"But {lost}."] if lost else [], ""
     if verdict.outcome is not Outcome.RIGHT:
         if question.hints:
             call = f'hint("{question.name}", 1)'

@@ -19,13 +19,13 @@ import nbformat
 from ..errors import LabkitError
 from ..formats import stamp
 from .bundle import write_bundle
+from .checks_file import FILE
 from .layout import Course
 from .notebook import Notebook, kind, manifest, source_notebook
 from .question import Question
 from .refusals import refusals
 from .serialize import question_data
 from .solved import solution_notebook
-from .student import FILE
 from .withheld import find
 
 

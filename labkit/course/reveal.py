@@ -72,9 +72,13 @@ def _reveal(name: str, form: Form, truth: Any) -> None:
         return
     if isinstance(form, Curve):
         _overlay(form, said, truth)
+    else:
+        _compare(form, said, truth)
     place.revealed.add(name)
-    if isinstance(form, Curve):
-        return
+
+
+def _compare(form: Form, said: Any, truth: Any) -> None:
+    """Say both, and how they differ."""
     print(wrapped(f"You predicted: {form.words(said)}."))
     print(wrapped(f"The arm says:  {form.words(truth)}."))
     if isinstance(form, Number):

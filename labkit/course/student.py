@@ -1,13 +1,12 @@
 """What a notebook says: ``check``, ``hint`` and ``use``.
 
-The questions lie in a file ``checks.json`` beside the notebook.
+The questions lie beside the notebook, see `checks_file`.
 """
 
 from __future__ import annotations
 
 import dis
 import inspect
-import json
 import linecache
 import os
 import sys
@@ -16,11 +15,11 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ..errors import LabkitError, UnknownName
-from ..formats import check_stamp
+from ..errors import UnknownName
 from .advice import line_of
 from .calling import heard
 from .card import card
+from .checks_file import read_checks
 from .gaps import calculated
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, message, waits, wrapped
@@ -33,28 +32,6 @@ from .source import look
 from .unfinished import watch
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools, withhold
-
-FILE = "checks.json"
-
-
-def read_checks(folder: Path) -> dict[str, Any]:
-    """What lies beside a notebook: the name of its ``assignment``, and its ``questions`` as data.
-
-    Raises:
-        LabkitError: It is not there, or damaged.
-    """
-    file = folder / FILE
-    remedy = "fetch the assignment's whole folder again"
-    try:
-        data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    except (FileNotFoundError, ValueError) as error:
-        there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
-        raise LabkitError(
-            f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
-            f"beside it, so {remedy}"
-        ) from None
-    check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
-    return data
 
 
 class Desk:
@@ -109,7 +86,8 @@ class Desk:
                     verdict, found = mark(question, here, tried), tried.evidence(question)
                     verdict = explained(question, verdict, tried, here)
         except KeyboardInterrupt as stop:
-            where = f" in the line `{line}`" if (line := line_of(stop)) else ""
+            line = line_of(stop)
+            where = f" in the line `{line}`" if line else ""
             raise KeyboardInterrupt(
                 f"{name} was stopped{where}; does every loop in it come to its end?"
             ) from None
@@ -200,10 +178,9 @@ def check(name: str, function: Callable[..., Any]) -> float:
         print(wrapped(_NOT_RUN.format(name=name)))
         return Points(0.0)
     verdict, printed, found = desk().verdict(name, function)
-    says = message(question, verdict, printed, desk().leaning(name, function))
+    lost = calculated(cells_run(function), name) if waits(verdict) else ""
+    says = message(question, verdict, printed, desk().leaning(name, function), lost)
     _say(says, verdict, found if verdict.mistake else None)
-    if waits(verdict) and (how := calculated(cells_run(function), name)):
-        print(wrapped(f"But {how}."))
     return Points(verdict.earned)
 
 
@@ -222,10 +199,11 @@ def hint(name: str, level: int = 1) -> None:
         return
     hints = desk().question(name).hints
     if not isinstance(level, int) or not 1 <= level <= len(hints):
+        assignment = read_checks(Path.cwd())["assignment"]
         text = (
             f"{name} has {len(hints)} hints, and no hint {level!r}. If it does not work with all "
             "of them, ask the teacher or a forum. This line in a new cell prints what to send: "
-            f"!labkit submit-check --forum {read_checks(Path.cwd())['assignment']}.ipynb"
+            f"!labkit submit-check --forum {assignment}.ipynb"
         )
         print(wrapped(text if hints else f"{name} has no hints."))
         return

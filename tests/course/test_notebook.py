@@ -15,6 +15,7 @@ from questions import DOUBLE, double, square
 import labkit
 from labkit.course import check, hint, question_data, use
 from labkit.course import student as notebook
+from labkit.course.checks_file import FILE
 from labkit.course.marking import mark, not_counted
 from labkit.course.notebook import verdict_in
 from labkit.course.serialize import record_data
@@ -31,7 +32,7 @@ def desk(tmp_path, monkeypatch):
     """A folder with questions in it."""
     questions = [question_data(DOUBLE), question_data(replace(DOUBLE, name="again"))]
     data = {**stamp(), "assignment": "sample", "questions": questions}
-    (tmp_path / notebook.FILE).write_text(json.dumps(data))
+    (tmp_path / FILE).write_text(json.dumps(data))
     monkeypatch.chdir(tmp_path)
     notebook._desks.clear()
     return tmp_path
@@ -93,7 +94,7 @@ def test_an_answer_that_uses_a_withheld_tool_is_not_counted(desk, capsys):
     """By its text where it has one, else by what it calls; the stand-in takes its place."""
     circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
     data = {**stamp(), "assignment": "sample", "questions": [question_data(circle)]}
-    (desk / notebook.FILE).write_text(json.dumps(data))
+    (desk / FILE).write_text(json.dumps(data))
     notebook._desks.clear()
     file = desk / "answers.py"
     file.write_text(
@@ -134,7 +135,7 @@ def test_in_a_notebook_the_cells_tell_and_the_output_keeps_the_verdict(desk):
     """What an answer leans on counts, by the cells that ran last; others may use what they like."""
     circle = replace(DOUBLE, name="double", withheld=("labkit.Circle",))
     data = {**stamp(), "assignment": "sample", "questions": [question_data(circle)]}
-    (desk / notebook.FILE).write_text(json.dumps(data))
+    (desk / FILE).write_text(json.dumps(data))
     program = KERNEL.format(folder=str(desk)) + (
         "run('def twice(x): return 2 * x or lk.Circle')\n"
         "run('%%time\\ndef double(x): return twice(x)')\n"
@@ -289,7 +290,7 @@ def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
 )
 def test_questions_of_another_version_are_refused(tmp_path, numbers, todo):
     """Questions of an older or newer labkit mark nothing; a sentence says what to do."""
-    file = tmp_path / notebook.FILE
+    file = tmp_path / FILE
     data = json.loads(file.read_text())
     kept = {key: data[key] for key in ("assignment", "questions")}
     file.write_text(json.dumps(kept | stamp() | numbers if numbers else kept))

@@ -14,6 +14,7 @@ import nbformat
 
 import labkit
 from labkit.course import student as desk
+from labkit.course.checks_file import FILE
 from labkit.course.layout import Course
 from labkit.course.solved import inlined
 
@@ -80,14 +81,14 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
         monkeypatch: pytest's.
         shortest: How long a simulation may last, in [s].
     """
-    checks = json.loads((COURSE.release / name / desk.FILE).read_text(encoding="utf-8"))
+    checks = json.loads((COURSE.release / name / FILE).read_text(encoding="utf-8"))
     for question in checks["questions"]:
         question["tests"]["items"] = [
             test
             for test in question["tests"]["items"]
             if all(case["$"] != "Loop" for case in test["cases"]["items"])
         ]
-    (folder / desk.FILE).write_text(json.dumps(checks), encoding="utf-8")
+    (folder / FILE).write_text(json.dumps(checks), encoding="utf-8")
     monkeypatch.chdir(folder)
     desk._desks.clear()
     run = labkit.run
@@ -121,7 +122,7 @@ def run_kernel(name, parts, folder):
     from nbclient import NotebookClient
     from traitlets.config import Config
 
-    shutil.copy(COURSE.release / name / desk.FILE, folder)
+    shutil.copy(COURSE.release / name / FILE, folder)
     notebook = fill(name, parts)
     nbformat.write(notebook, folder / f"{name}.ipynb")  # which its last cell looks at
     notebook.cells.append(

@@ -117,7 +117,7 @@ def export(
     if assignment is None:
         if layout != "questions":
             raise LabkitError(
-                "--layout and --column are for one assignment: type labkit export ASSIGNMENT "
+                "--layout is for one assignment: type labkit export ASSIGNMENT "
                 f"--layout {layout}; without them, labkit export writes the table of the term"
             )
         rules, names = read_rules(course), [x.stem for x in sorted(course.bundle.glob("*.json"))]

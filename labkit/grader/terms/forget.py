@@ -9,8 +9,9 @@ import json
 import re
 import shutil
 import tomllib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -114,38 +115,53 @@ def unknown(course: Course, student: str) -> LabkitError:
     return LabkitError(f"no student {student!r} in this term or an earlier one{near}")
 
 
-def _naming(course: Course, student: str) -> Iterator[Path]:
-    """Downloads and tables in the course folder with a student's name, login, address or number."""
+@dataclass(frozen=True)
+class _Known:
+    """What a student is called: in texts, in Canvas's entries, and by platforms' numbers."""
+
+    said: re.Pattern[str]
+    called: frozenset[str]
+    keys: frozenset[tuple[str, str]]
+
+    def named(self, text: str, people: Iterable[LmsUser]) -> bool:
+        """Whether a file with this text, or with work of these people, names the student."""
+        return bool(self.said.search(text)) or any(
+            one.key in self.keys or (one.system == "canvas" and letters(one.name) in self.called)
+            for one in people
+        )
+
+
+def _known(course: Course, student: str) -> _Known:
+    """What a student is called in the records of each term."""
     names, called, keys = {re.escape(student)}, set[str](), set[tuple[str, str]]()
     for root in _terms(course):
         private = root / "course_private" if root == course.root else root
-        if (private / Path(ROSTER).name).exists():
-            rows = csv.DictReader(io.StringIO((private / Path(ROSTER).name).read_text("utf-8")))
-            for row in rows:
+        roster, users = (private / Path(name).name for name in (ROSTER, LMS))
+        if roster.exists():
+            for row in csv.DictReader(io.StringIO(roster.read_text("utf-8"))):
                 if row.get("id") == student:
-                    known = ("first_name", "last_name", "login", "email")
-                    first, last, *others = (re.escape(row.get(key) or "") for key in known)
+                    columns = ("first_name", "last_name", "login", "email")
+                    first, last, *others = (re.escape(row.get(key) or "") for key in columns)
                     names |= {*others}
                     keys.add(("canvas", row.get("lms_user_id") or ""))
                     if first and last:
                         names |= {rf"{first}[\W_]*{last}", rf"{last}[\W_]*{first}"}
                         called.add(letters(f"{row['last_name']}{row['first_name']}"))
-        if (private / Path(LMS).name).exists():
-            users = json.loads((private / Path(LMS).name).read_text("utf-8")).values()
-            mine = [people[student] for people in users if student in people]
+        if users.exists():
+            of_each = json.loads(users.read_text("utf-8")).values()
+            mine = [people[student] for people in of_each if student in people]
             keys |= {(one["system"], one["number"]) for one in mine}
     words = "|".join(sorted(filter(None, names)))
     said = re.compile(rf"(?<![^\W_])(?<!-)({words})(?![^\W_]|-)")
+    return _Known(said, frozenset(called), frozenset(keys))
 
-    def theirs(who: LmsUser) -> bool:
-        return who.key in keys or (who.system == "canvas" and letters(who.name) in called)
 
+def _naming(course: Course, student: str) -> Iterator[Path]:
+    """Downloads and tables in the course folder with a student's name, login, address or number."""
+    known = _known(course, student)
     for path in sorted(course.root.glob("*")):
         inside = path.rglob("*") if path.is_dir() and path.name in _KEPT_BY_HAND else [path]
-        for file in filter(Path.is_file, sorted(inside)):
-            text, people = _words(file)
-            if said.search(text) or any(map(theirs, people)):
-                yield file
+        yield from (x for x in sorted(inside) if x.is_file() and known.named(*_words(x)))
 
 
 def _words(path: Path) -> tuple[str, list[LmsUser]]:

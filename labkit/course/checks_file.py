@@ -1,0 +1,32 @@
+"""The file beside a notebook that holds its questions, with their public cases."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ..errors import LabkitError
+from ..formats import check_stamp
+
+FILE = "checks.json"
+
+
+def read_checks(folder: Path) -> dict[str, Any]:
+    """What lies beside a notebook: the name of its ``assignment``, and its ``questions`` as data.
+
+    Raises:
+        LabkitError: It is not there, or damaged.
+    """
+    file = folder / FILE
+    remedy = "fetch the assignment's whole folder again"
+    try:
+        data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    except (FileNotFoundError, ValueError) as error:
+        there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
+        raise LabkitError(
+            f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
+            f"beside it, so {remedy}"
+        ) from None
+    check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
+    return data
