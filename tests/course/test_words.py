@@ -7,7 +7,7 @@ from questions import CALLS, DOUBLE, HIDDEN, double, square
 
 from labkit.course import Call, Test
 from labkit.course.marking import mark, not_counted
-from labkit.course.messages import head, summary, tell
+from labkit.course.messages import head, message, summary, tell
 
 COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
 """The same question without anything to be tried later."""
@@ -27,6 +27,13 @@ def test_the_verdict_comes_first():
     assert head(mark(DOUBLE, stub)) == "double: not attempted yet. 0 of 4 points."
     assert head(mark(DOUBLE, square)) == "double: not yet right. 0 of 4 points."
     assert head(mark(DOUBLE, lambda x: 1 / 0)) == "double: it stopped with an error. 0 of 4 points."
+
+
+def test_what_will_be_lost_is_said_beside_the_verdict():
+    """An answer that is there now, and will not be when it is marked, is told why."""
+    lines = tell(COMPLETE, mark(COMPLETE, double)).splitlines()
+    told = str(message(COMPLETE, mark(COMPLETE, double), lost="it is calculated")).splitlines()
+    assert told == [lines[0], "  But it is calculated.", *lines[1:]]
 
 
 def test_not_attempted_says_what_to_do():

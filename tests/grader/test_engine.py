@@ -83,6 +83,14 @@ def test_a_cell_that_runs_the_students_own_arm_is_not_said_to_fail(marks, solved
     assert failed["error"].startswith("name 'nobody' is not defined")
 
 
+def test_an_answer_from_the_students_own_arm_is_told_to_be_typed(marks, solved):
+    """Not that the notebook does not define it, for it does."""
+    put(solved, "witness", "import labkit as lk\nwitness = lk.my_arm('ada').state")
+    asked = next(q.verdict for q in marks(solved).questions if q.verdict.name == "witness")
+    said = why(asked.tests[0])
+    assert "witness comes from runs of your arm, which are not made here; type the value" in said
+
+
 def test_a_result_says_that_the_public_arm_was_measured(bundle, sandbox, blank):
     """Where a student has an arm of their own, and nowhere else; the last HANDLE counts."""
     given = replace(bundle, arms=Arms(7, {"ada": "ada"}))

@@ -17,8 +17,10 @@ from made import said_by_hand, saying
 import labkit as lk
 from labkit.control import springs
 from labkit.course import Call, Close, Loop, Question, Test, Tuned
+from labkit.course.forms import Number
 from labkit.course.judges import AtMost
 from labkit.course.marking import mark, try_public
+from labkit.course.predictions import Prediction
 from labkit.course.verdict import Misconception, Outcome
 from labkit.grader.feedback.drawing import curve, side_by_side
 from labkit.grader.feedback.page import MEASURES, page
@@ -182,6 +184,15 @@ def test_nothing_hidden_is_in_the_page(result):
     motion = json.loads(result.questions[0].runs[0]["motion"])
     asked = READY + 0.1
     assert np.abs(unpack(motion["ghosts"]["the target"])[-1] - asked).max() < 1e-3
+
+
+def test_a_prediction_is_committed_and_not_called_right(result):
+    """Whatever it says; and it is not counted among the answers that are right."""
+    asked = Prediction("guess", "How far?", Number("mm", 0.0, 9.0), truth=3.0).question()
+    text = page(replace(result, questions=(*result.questions, answered(asked, lambda: 7.0))))
+    words = " ".join(" ".join(Page(text).words).split())
+    assert "1 of 3 answers that tests check are right. 1 of 1 predictions were committed;" in words
+    assert words.count("Right.") == 1 and "Committed." in words
 
 
 def test_the_tests_are_folded_where_the_mistake_is_named(result):
