@@ -117,13 +117,19 @@ def _controls(name: str, form: Form) -> None:
     again = "click into the cell above this line and press Shift+Enter once more to commit."
     note = widgets.HTML(f"Choose; then {again}")  # a label would not break its line
     parts = _inputs(form, widgets)
+    waiting = list(parts)  # for a hand: where a slider stands at first, nobody has put it
 
-    def changed(_: Any) -> None:
+    def changed(change: Any) -> None:
+        if change["owner"] in waiting:
+            waiting.remove(change["owner"])
         values = [_number(part.value) for part in parts]
         said = values if isinstance(form, Curve) else values[0]
         desk().chosen.pop(name, None)
         if found := form.problem(said):
             note.value = escape(found)
+        elif waiting:
+            places = ", ".join(part.description for part in waiting)
+            note.value = f"Set the other heights too; these still wait: {places}."
         else:
             desk().chosen[name] = said
             note.value = f"{escape(form.words(said))}: not committed yet; {again}"

@@ -97,8 +97,8 @@ bang = Schedule(my_bang_bang, 3.0, 3.0)
 if peak_acceleration is not None:
     lk.plotting.scaling(("bang-bang", bang), ("cubic", lk.Cubic(3.0)), ("quintic", lk.Quintic(3.0)))
     lk.plotting.show(
-        "s, its speed and its acceleration over 3 s: bang-bang jumps in acceleration at the ends and in the "
-        "middle, the cubic at the ends, the quintic nowhere."
+        "Three schedules over 3 s: s, its speed and its acceleration. The acceleration of the cubic jumps at "
+        "the ends, that of the quintic nowhere. Where does yours jump?"
     )
 
 # %%
@@ -159,8 +159,8 @@ def within_limits(distance, v_max=0.2, a_max=0.4):
 long, short = within_limits(0.30), within_limits(0.05)
 lk.plotting.scaling(("0.30 m: a trapezoid", long), ("0.05 m: a triangle", short))
 lk.plotting.show(
-    f"Two distances within the same limits: 0.30 m takes {long.duration:.2f} s and cruises, 0.05 m takes "
-    f"{short.duration:.2f} s and never reaches the top speed."
+    f"Two distances within the same limits. A trapezoid over 0.30 m takes {long.duration:.2f} s and cruises; "
+    f"over 0.05 m it is a triangle of {short.duration:.2f} s, which never reaches the top speed."
 )
 
 # %% [markdown]
@@ -364,7 +364,9 @@ plt.axis("equal")
 plt.xlabel("x [m]")
 plt.ylabel("y [m]")
 plt.legend(frameon=False)
-lk.plotting.show(f"The square from above: four sides of 12 cm, gone round in {t[-1]:.1f} s.")
+lk.plotting.show(
+    f"Your path from above over {t[-1]:.1f} s, and the corners of a square with sides of 12 cm."
+)
 
 # %% [markdown]
 # Let the arm go round the square with your own functions: your trapezoid, your `compose`, your `segment_at`.

@@ -97,6 +97,23 @@ def test_any_number_can_be_typed(monkeypatch, typed, said):
     assert ("not committed yet" in note.value) == (said is not None)
 
 
+def test_a_curve_waits_for_each_of_its_sliders(monkeypatch):
+    """Nobody commits to a height that no hand has set; a slider may return to where it began."""
+    curve = Curve((0.0, 1.0), "t [s]", "e [rad]", 0.0, 1.0)
+    made = desk.Desk({"x": Prediction("x", "?", curve, [0.1, 0.2]).question()})
+    shown = []
+    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    monkeypatch.setattr("labkit.course.reveal.shell", lambda: True)
+    monkeypatch.setattr("IPython.display.display", shown.append)
+    predict("x")
+    box, note = shown[0].children
+    box.children[0].value = 0.2
+    assert made.chosen == {} and note.value.endswith("these still wait: 1.")
+    box.children[1].value = 0.9
+    box.children[1].value = 0.5
+    assert made.chosen == {"x": [0.2, 0.5]} and "not committed yet" in note.value
+
+
 def test_a_decimal_comma_is_told_how_to_be_written():
     """Whoever types 8,3 has written one number, and reads which sign is wrong in it."""
     form = Number("mm", 0.0, 9.0)

@@ -37,9 +37,9 @@ export function entered(box, apply, known) {
 
 /**
  * A slider with a typed number beside it; `stops` holds the only values it can take.
- * `oninput` gets the value, and what was typed if it was typed.
+ * `oninput` gets the value, and what was typed if it was typed; `ends` shows how far it goes.
  */
-export function dial({ label, unit = "", bounds = "", stops, min, max, step, value, digits = 3, oninput }) {
+export function dial({ label, unit = "", ends = false, stops, min, max, step, value, digits = 3, oninput }) {
   const id = unique("dial");
   const nearest = (x) => stops.reduce((b, s, i) => (Math.abs(s - x) < Math.abs(stops[b] - x) ? i : b), 0);
   const show = (x) => String(+Number(x).toFixed(digits));
@@ -64,8 +64,9 @@ export function dial({ label, unit = "", bounds = "", stops, min, max, step, val
     oninput?.(get(), typed);
   }, () => show(get()));
   set(value ?? (stops ? stops[0] : min));
+  const end = (x) => (ends ? [h("span", { class: "lk-end" }, show(x))] : []);
   const element = h("div", { class: "lk-dial" },
-    h("label", { for: id }, label), range, number, h("span", { class: "lk-unit" }, bounds ? `${unit} (${bounds})`.trim() : unit));
+    h("label", { for: id }, label), end(min), range, end(max), number, h("span", { class: "lk-unit" }, unit));
   return { element, get, set, index: () => +range.value };
 }
 

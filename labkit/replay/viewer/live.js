@@ -121,7 +121,7 @@ export class LiveArm {
   }
 
   dials() {
-    const made = this.data.dials.map((d) => dial({ label: d.name, unit: d.unit, bounds: `${d.min} to ${d.max}`, min: d.min, max: d.max, step: "any", value: d.value,
+    const made = this.data.dials.map((d) => dial({ label: d.name, unit: d.unit, ends: true, min: d.min, max: d.max, step: "any", value: d.value,
       oninput: (value) => this.turn(d.name, value) }).element);
     return h("div", { class: "lk-dials lk-livedials", hidden: !made.length }, made);
   }
