@@ -56,7 +56,6 @@ def test_the_list_of_verbs_says_what_each_does(capsys):
     [
         (["release", "--seed", "-1"], "-1 is not in the range x>=0"),
         (["grade", "01_paths", "--jobs", "0"], "0 is not in the range x>=1"),
-        (["grade", "01_paths", "--shard", "5/2"], "5/2 is not a part; write 1/4"),
     ],
 )
 def test_a_number_that_makes_no_sense_is_a_sentence(words, sentence, capsys):

@@ -1,4 +1,4 @@
-"""A lock on the results of an assignment: one run at a time, or the shards of one run."""
+"""Locks: one run at a time on the results of an assignment."""
 
 from __future__ import annotations
 
@@ -13,52 +13,47 @@ from ..errors import LabkitError
 
 PATIENCE = 2.0
 """Seconds to wait for another run, such as one that was stopped and is about to end."""
-WHOLE = (1, 1)
-"""The shard of a run on the whole class."""
 
 
 @contextmanager
-def exclusive_run(results: Path, shard: tuple[int, int] = WHOLE) -> Iterator[None]:
-    """Keep other runs on an assignment away, except other shards of the same split.
+def exclusive_run(results: Path) -> Iterator[None]:
+    """Keep other runs on an assignment away for a block.
 
     Args:
         results: The folder with the results of the assignment; made if need be.
-        shard: (i, n): which of n parts of the class this run works on.
 
     Raises:
         LabkitError: Another run is under way.
     """
-    results.mkdir(parents=True, exist_ok=True)
-    part, parts = shard
-    with (
-        open(results / ".running", "a+") as run,
-        open(results / f".running-{part}-of-{parts}", "w") as mine,
-    ):
+    busy = f"another run is grading {results.name}; wait for it to end"
+    with locked(results / ".running", busy):
+        yield
+
+
+@contextmanager
+def locked(file: Path, busy: str) -> Iterator[None]:
+    """Hold a lock for a block; it ends with the process that holds it.
+
+    Args:
+        file: What is locked; made if need be, with its folder.
+        busy: The sentence that is raised where somebody else still holds it after `PATIENCE`.
+
+    Raises:
+        LabkitError: Somebody else holds it.
+    """
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with open(file, "w") as mine:
         until = time.monotonic() + PATIENCE
-        while not (_joined(run, parts) and _locked(mine, fcntl.LOCK_EX)):
-            fcntl.flock(run, fcntl.LOCK_UN)
+        while not _taken(mine):
             if time.monotonic() > until:
-                raise LabkitError(f"another run is grading {results.name}; wait for it to end")
+                raise LabkitError(busy)
             time.sleep(0.1)
         yield
 
 
-def _joined(run: IO[str], parts: int) -> bool:
-    """Whether this run may go on: alone, or beside others that split the class into as many."""
-    if _locked(run, fcntl.LOCK_EX):
-        run.truncate(0)
-        run.write(str(parts))
-        run.flush()
-        return parts == 1 or _locked(run, fcntl.LOCK_SH)
-    if parts == 1 or not _locked(run, fcntl.LOCK_SH):
-        return False
-    run.seek(0)
-    return run.read() == str(parts)
-
-
-def _locked(file: IO[str], how: int) -> bool:
+def _taken(file: IO[str]) -> bool:
     try:
-        fcntl.flock(file, how | fcntl.LOCK_NB)
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:
         return False
     return True

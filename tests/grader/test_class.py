@@ -26,7 +26,6 @@ from labkit.grader.grading.batch import (
     GradeOptions,
     common_failures,
     grade_class,
-    in_shard,
 )
 from labkit.grader.grading.results import Results
 from labkit.grader.marks.table import marks_of
@@ -101,17 +100,12 @@ def test_class_is_drawn_from_its_seed(course):
 
 @pytest.mark.slow
 def test_serial_parallel_and_dask_agree(graded):
-    """Verdicts and scores are equal with one worker, with two, in shards, and through Dask."""
+    """Verdicts and scores are equal with one worker, with two, and through Dask."""
     from distributed import LocalCluster
 
     parallel = verdicts(graded)
     assert len(parallel) == PART
     grade_all(graded, again=True)
-    assert verdicts(graded) == parallel
-    for result in Path(Results(graded, NAME).folder).glob("*.json"):
-        result.unlink()
-    for k in (1, 2, 3):
-        grade_all(graded, shard=(k, 3))
     assert verdicts(graded) == parallel
     with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:
         grade_all(graded, dask=cluster.scheduler_address, again=True)
@@ -222,13 +216,6 @@ def test_loud_when_many_fail(graded):
     assert not list(common_failures([r for r in results if r.score == r.points] * 5))
 
 
-def test_shards_are_a_partition():
-    """Each student is in just one shard."""
-    for n in (1, 2, 7):
-        for k in range(50):
-            assert sum(in_shard(f"s{k}", (i, n)) for i in range(1, n + 1)) == 1
-
-
 def test_manual_grades_and_comments_survive(graded):
     """Grading again changes automatic scores only, and says where a hand was at work."""
     done = list(Results(graded, NAME))
@@ -328,8 +315,6 @@ def test_command(part, capsys):
     assert main(["grade", NAME, "--course", str(part.root), "--json"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert {json.loads(line)["student"] for line in lines} == set(students(part, NAME))
-    assert main(["grade", NAME, "--course", str(part.root), "--shard", "5/4"]) == 2
-    assert "5/4 is not a part; write 1/4, 2/4, 3/4 or 4/4" in capsys.readouterr().err
 
 
 def test_refuses_without_bubblewrap(part, capsys, monkeypatch):

@@ -713,7 +713,7 @@ STATES = {
     "result: nobody's": lambda root: (root / "results/01_paths/nobody.json").write_bytes(
         (root / _RESULT).read_bytes()
     ),
-    "lock is a folder": _as_folder("results/01_paths/.running-1-of-1"),
+    "lock is a folder": _as_folder("results/01_paths/.running"),
     "result: left half written": _write("results/01_paths/.zoe.json.99.new", b"{"),
     "gradebook: garbage": _write(_BOOK, b"garbage" * 1000),
     "gradebook: empty": _write(_BOOK, b""),

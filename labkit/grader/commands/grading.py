@@ -31,13 +31,6 @@ jobs = click.option(
 )
 
 
-def _shard(text: str) -> tuple[int, int]:
-    first, _, last = text.partition("/")
-    if not (first.isdigit() and last.isdigit() and 1 <= int(first) <= int(last)):
-        raise click.BadParameter(f"{text} is not a part; write 1/4, 2/4, 3/4 or 4/4")
-    return int(first), int(last)
-
-
 @verb("01_paths --student ada")
 @of_assignment
 @one_student
@@ -57,13 +50,6 @@ def _shard(text: str) -> tuple[int, int]:
     help="Address of a Dask scheduler whose workers share this folder.",
 )
 @click.option(
-    "--shard",
-    type=_shard,
-    default="1/1",
-    metavar="i/n",
-    help="Grade only the i-th of n parts of the class.",
-)
-@click.option(
     "--unsafe-no-isolation",
     "isolated",
     flag_value=False,
@@ -80,7 +66,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.batch import GradeOptions, common_failures, grade_class, watch
     from ..grading.changes import changes, summary
     from ..grading.results import Results
-    from ..lock import WHOLE, exclusive_run
+    from ..lock import exclusive_run
     from ..nbgrader.gradebook import record
 
     diff, watching = how.pop("diff"), how.pop("watch")
@@ -105,11 +91,10 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         for number, one in enumerate(done, start=1):
             graded.append(one.result)
             print(_line(one, as_json, f"[{number}/{len(who)}] "), flush=True)
-        if options.shard == WHOLE:
-            recorded = record(course, assignment, graded)
-            tell(failures.sift(recorded, "not in the gradebook"), said)
-            everybody = graded if student else list(Results(course, assignment))
-            tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
+        recorded = record(course, assignment, graded)
+        tell(failures.sift(recorded, "not in the gradebook"), said)
+        everybody = graded if student else list(Results(course, assignment))
+        tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
         tell(_other_notebooks(graded), said)
         if graded and not as_json:
             tell(_on_top(course, assignment), sys.stdout)

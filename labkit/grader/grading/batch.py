@@ -16,13 +16,13 @@ from ...course.layout import Course
 from ...course.verdict import Outcome
 from ...errors import LabkitError
 from ..each import Failed, for_student
-from ..lock import WHOLE, exclusive_run
+from ..lock import exclusive_run
 from ..sandbox.limits import Limits
 from ..sandbox.mounts import NoIsolation
 from ..submission import Submission, students
 from .executor import executor
 from .grade import hashes
-from .results import Result, Results, digest
+from .results import Result, Results
 from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3
@@ -43,7 +43,6 @@ class GradeOptions:
         jobs: Workers at once.
         isolated: False only if somebody typed ``--unsafe-no-isolation``.
         dask: Address of a scheduler, or None for this machine.
-        shard: (i, n): the i-th of n parts of the class, from 1.
         again: Whether to grade again what has a result that is up to date.
         lower: Whether the mark of an unchanged submission may fall.
         limits: What a submission may use, on a quick machine.
@@ -53,7 +52,6 @@ class GradeOptions:
     jobs: int = 1
     isolated: bool = True
     dask: str | None = None
-    shard: tuple[int, int] = WHOLE
     again: bool = False
     lower: bool = False
     limits: Limits = field(default_factory=Limits)
@@ -78,11 +76,6 @@ def workers() -> int:
     return max(1, len(os.sched_getaffinity(0)))
 
 
-def in_shard(student: str, shard: tuple[int, int]) -> bool:
-    """Whether a student is in this part of the class; the same wherever it is asked."""
-    return int(digest(student.encode())[:8], 16) % shard[1] == shard[0] - 1
-
-
 def grade_class(
     course: Course, assignment: str, who: Sequence[str], options: GradeOptions
 ) -> Iterator[GradedSubmission | LabkitError]:
@@ -103,8 +96,8 @@ def grade_class(
     """
     bundle, results = Bundle.of(course, assignment), Results(course, assignment)
     todo: list[Submission] = []
-    with exclusive_run(results.folder, options.shard):
-        for student in (x for x in who if in_shard(x, options.shard)):
+    with exclusive_run(results.folder):
+        for student in who:
             submission = Submission.of(course, assignment, student)
             before = None if options.again else still_good([results], submission, bundle, options)
             aside = None if before else still_good([results.aside], submission, bundle, options)
@@ -139,17 +132,14 @@ def watch(
         NoIsolation: No sandbox can be made here.
     """
     results, looked = Results(course, assignment), dict[str, tuple[float, int]]()
-    with (
-        exclusive_run(results.folder, options.shard),
-        executor(options.jobs, options.dask) as pool,
-    ):
+    with exclusive_run(results.folder), executor(options.jobs, options.dask) as pool:
         while True:
             bundle = Bundle.of(course, assignment)
             todo: list[Submission] = []
             for student in students(course, assignment):
                 submission = Submission.of(course, assignment, student)
                 seen = _look(submission.folder)
-                if looked.get(student) != seen and in_shard(student, options.shard):
+                if looked.get(student) != seen:
                     looked[student] = seen
                     if still_good([results], submission, bundle, options) is None:
                         todo.append(submission)
