@@ -6,7 +6,7 @@ from pathlib import Path
 c = get_config()  # noqa: F821  # nbgrader defines it
 
 rules = Path(__file__).with_name("course.toml")
-rules = tomllib.loads(rules.read_text(encoding="utf-8")) if rules.exists() else {}
+rules = tomllib.loads(rules.read_text(encoding="utf-8-sig")) if rules.exists() else {}
 c.CourseDirectory.course_id = rules.get("id", "trajectory_tracking")
 c.CourseDirectory.source_directory = "build/course/source"
 c.CourseDirectory.release_directory = "assignments"

@@ -129,6 +129,22 @@ def read_rules(course: Course) -> Rules:
         LabkitError: The file is not TOML, or it says what nobody can follow.
     """
     path = course.root / FILE
+    rules = rules_in(path)
+    unknown = {*rules.assignments, *(x.assignment for x in rules.extensions)} - {
+        "",
+        *UNRELEASED,
+        *course.names(),
+    }
+    if unknown:
+        raise LabkitError(
+            f"{path} names {min(unknown)!r}, which is not an assignment; there are "
+            f"{', '.join(course.names())}"
+        )
+    return rules
+
+
+def rules_in(path: Path) -> Rules:
+    """The rules of a file, whatever assignments there are; `read_rules` says the rest."""
     try:
         rules = msgspec.convert(tomllib.loads(path.read_text(encoding="utf-8-sig")), Rules)
     except FileNotFoundError:
@@ -140,16 +156,6 @@ def read_rules(course: Course) -> Rules:
     except (ValueError, OSError, ZoneInfoNotFoundError):
         says = f"{rules.zone[:60]!r} is not a time zone; write one such as 'Europe/Berlin'"
         raise LabkitError(f"{path}: {says}") from None
-    unknown = {*rules.assignments, *(x.assignment for x in rules.extensions)} - {
-        "",
-        *UNRELEASED,
-        *course.names(),
-    }
-    if unknown:
-        raise LabkitError(
-            f"{path} names {min(unknown)!r}, which is not an assignment; there are "
-            f"{', '.join(course.names())}"
-        )
     return rules
 
 

@@ -188,7 +188,9 @@ def test_results_outlive_a_crash_while_writing(graded):
     assert results.get(who) is None
     grade_all(graded)
     assert results.get(who) is not None
-    assert text[: len(text) // 2] in [x.read_text() for x in (results.folder / "old").iterdir()]
+    assert text[: len(text) // 2] in [
+        x.read_text() for x in (results.folder / "old" / who).iterdir()
+    ]
 
 
 @pytest.mark.slow

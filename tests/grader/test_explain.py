@@ -41,7 +41,7 @@ def test_the_hidden_case_that_decided_is_laid_open(course, solved, capsys):
     assert "may be shown" in shown and "expected" not in shown
     assert "bang_bang(" in secret and "expected" in secret
     assert "1.01 if duration > 4.2" in out and "ATTENTION" not in out
-    page = (course.build / "explain/ada-bang_bang.html").read_text()
+    page = (course.build / "explain/ada/bang_bang.html").read_text()
     assert "not for students" in page
     whole = json.loads((course.results / NAME / "ada.json").read_text())
     assert "not for students" not in json.dumps(whole), "nothing of it reaches the result"
@@ -60,7 +60,7 @@ def test_where_a_visible_case_decided_it_is_said(course, solved, capsys):
         "The tests that the student has seen decided this mark" in out
         and "do not show it" not in out
     )
-    page = (course.build / "explain/ada-bang_bang.html").read_text()
+    page = (course.build / "explain/ada/bang_bang.html").read_text()
     (points,) = (q.points for q in Bundle.of(course, NAME).questions if q.name == "bang_bang")
     assert f" of {points:g} points.</strong>" in page
 

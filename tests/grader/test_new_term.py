@@ -3,7 +3,6 @@
 import json
 import shutil
 import subprocess
-import zipfile
 from pathlib import Path
 
 import pytest
@@ -13,13 +12,15 @@ from labkit import LabkitError
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
+from labkit.course.own_arm import Arms
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import UnknownName
 from labkit.grader import seeds
 from labkit.grader.nbgrader.gradebook import open_gradebook
+from labkit.grader.nbgrader_api import nbgrader_api
 from labkit.grader.pseudonyms import pseudonyms
 from labkit.grader.students.class_list import Student
-from labkit.grader.students.identity import remember
+from labkit.grader.students.identity import all_lms_users, remember
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.students.roster import Roster, read_roster, save_roster, tell_gradebook
 from labkit.grader.terms import term
@@ -67,13 +68,13 @@ def test_a_public_seed_is_said_to_be_public(course, capsys):
 def test_the_next_term_archives_the_names_and_forgets_them(course, capsys):
     """What holds names moves into one folder, and one command deletes it."""
     (course.submitted / "ada" / "01_paths").mkdir(parents=True)
-    page, arms = course.build / "explain/ada-bang_bang.html", course.release / "03/arms.json"
+    page, arms = course.build / "explain/ada/bang_bang.html", course.release / "03/arms.json"
     for file in (page, arms):
         file.parent.mkdir(parents=True)
         file.write_text("{}")
     folder = term.archive(course)
     assert not course.submitted.exists() and not page.exists() and not arms.exists()
-    assert (folder / "explain" / page.name).exists()
+    assert (Course(folder).build / "explain/ada" / page.name).exists()
     assert term.archives(course)[0].people == 0, "a folder without a file is nobody's work"
     (folder / "submitted/ada/01_paths/01_paths.ipynb").touch()
     assert term.archives(course)[0].people == 1
@@ -118,18 +119,17 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
     results = course.results / "01_paths"
     old = "-".join(["0123abcd"] * 3) + ".json"
     for student in ("ada", "ada-2"):
-        (course.build / "explain").mkdir(parents=True, exist_ok=True)
-        (course.build / f"explain/{student}-bang_bang.html").write_text("")
-    for name in ("ada.json", f"old/ada-{old}", "aside/ada.json", "ada-2.json", f"old/ada-2-{old}"):
-        (results / name).parent.mkdir(parents=True, exist_ok=True)
-        (results / name).write_text("{}")
+        page = course.build / f"explain/{student}/bang_bang.html"
+        aside = (f"aside/{student}.json", f"aside/old/{student}/{old}")
+        names = (f"{student}.json", f"old/{student}/{old}", *aside)
+        for file in (page, *(results / name for name in names)):
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text("{}")
     save_roster(course, Roster((Student("ada", "Ada"), Student("ada-2", "Ada"))))
     tell_gradebook(course, read_roster(course))
     remember(course, "01_paths", {"ada": LmsUser("moodle", "7", "Ada")})
     archived = term.archive(course)
     shutil.copytree(archived, course.root, dirs_exist_ok=True)
-    shutil.copy(archived / "roster.csv", course.root / "course_private")
-    shutil.copy(archived / "lms.json", course.root / "course_private")
     for reader, author in (("bob", "ada"), ("eve", "ada-2")):
         sheet = course.root / "feedback" / reader / "08_report_review/08_report_review.ipynb"
         sheet.parent.mkdir(parents=True)
@@ -137,7 +137,7 @@ def test_one_student_is_forgotten_everywhere(course, capsys):
     words = ["term", "forget", "--student", "ada", "--course", str(course.root)]
     assert main(words) == 0
     before = capsys.readouterr().out
-    assert before.count("would go: ") == 16 and "nothing is deleted yet" in before
+    assert before.count("would go: ") == 18 and "nothing is deleted yet" in before
     assert main([*words, "--yes"]) == 0
     said = capsys.readouterr().out
     listed = before.replace("would go: ", "deleted: ").replace("would go from", "no more in")
@@ -165,44 +165,82 @@ def test_who_is_unknown_is_not_forgotten(course, capsys):
     assert "Bob-Hope" in read_roster(course)
 
 
-def test_files_in_the_course_folder_that_name_a_student_are_named(course, capsys):
-    """Downloads and tables, by folder, name, login or address; not those of a namesake's."""
-    mine = Student("ada", "Ada", "Lovelace", email="al@x.org")
-    save_roster(course, Roster((mine, Student("ada-2", "Ada", "Byron"))))
-    (course.root / "downloads").mkdir()
-    with zipfile.ZipFile(course.root / "downloads/moodle.zip", "w") as archive:
-        archive.writestr("Ada Lovelace_101_assignsubmission_file/01_paths.ipynb", "{}")
-    texts = {"marks.csv": "Lovelace, Ada,3\n", "mail.txt": "al@x.org", "term.csv": "ada,3\n"}
-    others = {"other.csv": "ada-2,3\nByron, Ada", "report.md": "Canada\n"}
-    for name, text in (texts | others).items():
-        (course.root / name).write_text(text)
-    words = ["term", "forget", "--student", "ada", "--course", str(course.root)]
+@pytest.mark.parametrize("form", ["name;id\nAda;ada\nEve;eve\n", "name,id\nAda,ada\nEve,eve\n"])
+def test_a_roster_that_a_person_saved_loses_the_student_too(course, form):
+    """With semicolons, and with its columns in another order."""
+    roster = course.root / "course_private/roster.csv"
+    roster.parent.mkdir()
+    roster.write_text(form.replace("name", "first_name"))
+    words = ["term", "forget", "--student", "ada", "--yes", "--course", str(course.root)]
     assert main(words) == 0
-    named = "name them, for you to delete: downloads/moodle.zip, mail.txt, marks.csv, term.csv\n"
-    assert named in capsys.readouterr().out
-    assert main([*words, "--yes"]) == 0 and named in capsys.readouterr().out
+    assert [x.id for x in read_roster(course).students] == ["eve"]
+    assert "ada" not in roster.read_text().lower()
 
 
-def test_downloads_are_read_as_collect_reads_them(course, capsys):
-    """A zip with a student's work is named whatever the platform calls them in it."""
-    mine = Student("ada", "Ada", "King-Noel", lms_user_id="4711")
-    save_roster(course, Roster((mine, Student("bob", "Bob", "Hope"))))
-    remember(course, "01_paths", {"ada": LmsUser("moodle", "101", "Participant 101")})
-    (course.root / "downloads").mkdir()
-    entries = {
-        "blind": "Participant 101_101_assignsubmission_file/01_paths.ipynb",
-        "name": "kingnoelada_LATE_9_88_01_paths.ipynb",
-        "number": "adaking_4711_89_01_paths.ipynb",
-        "other": "Participant 1010_1010_assignsubmission_file/101_4711.ipynb",
-        "bob": "hopebob_4712_4711_01_paths.ipynb",
-    }
-    for name, entry in entries.items():
-        with zipfile.ZipFile(course.root / f"downloads/{name}.zip", "w") as archive:
-            archive.writestr(entry, "{}")
-    (course.root / "downloads/damaged.zip").write_bytes(b"PK")
+def test_rules_with_a_byte_order_mark_are_read(course, capsys):
+    """By `term forget`, which names an extension, and by nbgrader, which takes the name."""
+    text = 'id = "robots"\n[[extensions]]\nstudent = "ada"\ndays = 3\n'
+    (course.root / "course.toml").write_text(text, encoding="utf-8-sig")
+    save_roster(course, Roster((Student("ada", "Ada"),)))
     assert main(["term", "forget", "--student", "ada", "--course", str(course.root)]) == 0
-    found = "downloads/blind.zip, downloads/name.zip, downloads/number.zip"
-    assert f"for you to delete: {found}\n" in capsys.readouterr().out
+    assert "course.toml names an extension of theirs" in capsys.readouterr().out
+    assert nbgrader_api(course).config.CourseDirectory.course_id == "robots"
+
+
+def test_rules_that_nobody_can_read_do_not_stop_it(course, capsys):
+    """Those of an archive are named with what is wrong, for a person to look."""
+    save_roster(course, Roster((Student("ada", "Ada"),)))
+    rules = term.archive(course) / "course.toml"
+    rules.write_text("late = 3 =")
+    assert main(["term", "forget", "--student", "ada", "--yes", "--course", str(course.root)]) == 0
+    said = capsys.readouterr().out
+    assert f"{rules}: " in said and "and see whether it names an extension of theirs" in said
+    assert "ada" not in (rules.parent / "course_private/roster.csv").read_text()
+
+
+def test_an_archive_without_a_date_is_listed_and_searched(course, capsys):
+    """It is not deleted by age, which nobody knows, and that is said."""
+    (course.submitted / "ada/01_paths").mkdir(parents=True)
+    folder = term.archive(course)
+    old = folder.rename(folder.with_name("archive-old"))
+    words = ["--course", str(course.root)]
+    assert main(["term", "list", *words]) == 0
+    assert "archive-old: its name has no date" in capsys.readouterr().out
+    assert main(["term", "forget", "--older", "0", "--yes", *words]) == 0
+    said = capsys.readouterr().out
+    assert "rename it archive-YYYY-MM-DD" in said and "there is nothing to forget" in said
+    assert main(["term", "forget", "--student", "ada", "--yes", *words]) == 0
+    assert old.exists() and not (old / "submitted/ada").exists()
+
+
+def test_what_an_older_labkit_archived_is_forgotten(course):
+    """Its archives had all files side by side; results and pages had the student in their name."""
+    folder = course.root / "course_private/archive-2025-02-03-101112"
+    key = "-".join(["0123abcd"] * 3)
+    for name in (
+        *("explain/{}-bang_bang.html", "defence/{}.html", "submitted/{}/01_paths/01_paths.ipynb"),
+        *(f"results/01_paths/old/{{}}-{key}.json", "results/01_paths/old/{}---.json"),
+    ):
+        for student in ("ada", "ada-2"):
+            file = folder / name.format(student)
+            file.parent.mkdir(parents=True, exist_ok=True)
+            file.write_text("{}")
+    (folder / "roster.csv").write_text("id,first_name\nada,Ada\nada-2,Ada\n")
+    (folder / "lms.json").write_text(
+        '{"01_paths": {"ada": {"system": "moodle", "number": "7", "name": "Ada"}}}'
+    )
+    (folder / "handles.json").write_text('{"secret": 3, "handles": {"ada": "a", "ada-2": "b"}}')
+    assert [str(x.ended) for x in term.archives(course)] == ["2025-02-03"]
+    words = ["term", "forget", "--student", "ada", "--yes", "--course", str(course.root)]
+    assert main(words) == 0
+    archived = Course(folder)
+    assert [x.id for x in read_roster(archived).students] == ["ada-2"]
+    assert Arms.of(folder).handles == {"ada-2": "b"} and all_lms_users(archived) == {"01_paths": {}}
+    left = [x.relative_to(folder).as_posix() for x in folder.rglob("*") if "ada" in x.as_posix()]
+    assert not [x for x in left if "ada-2" not in x]
+    files = {x.relative_to(folder).as_posix() for x in folder.rglob("*") if x.is_file()}
+    old = "results/01_paths/old/ada-2"
+    assert {"build/course/explain/ada-2/bang_bang.html", f"{old}/{key}.json"} <= files
 
 
 def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
@@ -240,10 +278,14 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     assert commands.pop() == "labkit release 00_warmup"
     rules.write_text("# of the new term\n")
     subprocess.run(["sh", "-e"], cwd=course.root, input="\n".join(commands).encode(), check=True)
-    assert not list(old.folder.iterdir()), "the archive is back, whole"
+    assert not [x for x in old.folder.rglob("*") if x.is_file()], "the archive is back, whole"
     assert rules.read_text() == "# of the last term\n"
-    undone = course.root / "course_private/undone" / rules.name
-    assert undone.read_text() == "# of the new term\n", "nothing is overwritten"
+    (undone,) = (x for x in term.archives(course) if x.folder.name.endswith("-undone"))
+    assert (undone.folder / rules.name).read_text() == "# of the new term\n", "all is kept"
+    assert "undone: ended" in str(undone) and (undone.folder / "build/course/bundle").is_dir()
+    save_roster(Course(undone.folder), Roster((Student("zoe", "Zoe"),)))
+    assert main(["term", "forget", "--student", "zoe", "--yes", "--course", str(course.root)]) == 0
+    assert "zoe" not in read_roster(Course(undone.folder))
     assert main(["release", "00_warmup", "--course", str(course.root)]) == 0
     again = json.loads((course.bundle / "00_warmup.json").read_text())["hash"]
     assert again == json.loads(record)["bundles"]["00_warmup"], "results stay valid"

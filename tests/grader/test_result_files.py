@@ -142,7 +142,7 @@ def test_what_is_no_file_is_none(marked):
     assert results.get("ada") is None
     results.keep(one)
     assert results.get("ada") == one
-    assert [x for x in (results.folder / "old").iterdir() if x.is_dir()]
+    assert [x for x in (results.folder / "old/ada").iterdir() if x.is_dir()]
 
 
 def test_a_damaged_result_is_kept_as_it_was(marked):
@@ -152,7 +152,7 @@ def test_a_damaged_result_is_kept_as_it_was(marked):
     path.write_bytes(b"\xff half")
     os.utime(path, (1_000_000, 1_000_000))
     results.keep(one)
-    (old,) = (results.folder / "old").iterdir()
+    (old,) = (results.folder / "old/ada").iterdir()
     assert (old.read_bytes(), old.stat().st_mtime) == (b"\xff half", 1_000_000)
     assert results.get("ada") == one
 

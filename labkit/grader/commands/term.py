@@ -61,7 +61,15 @@ def term(
     The law may say how long marks must be kept.
     """  # noqa: D301
     from ..terms.forget import entries_of, forget, left_by_hand, places_of, unknown
-    from ..terms.term import about, archives, new_term, old_rules, refuse_running, running, way_back
+    from ..terms.term import (
+        about,
+        archives,
+        new_term,
+        old_rules,
+        refuse_running,
+        restore_commands,
+        running,
+    )
 
     if action == "new":
         if not yes:
@@ -70,7 +78,7 @@ def term(
         record = new_term(course, seed, names)
         if record["archived"]:
             print(f"archived: {there or 'files without students'}")
-            tell(way_back(course, record["archived"]), sys.stdout)
+            tell(restore_commands(course, record["archived"]), sys.stdout)
         print(f"a new term begins, released: {', '.join(record['bundles'])}")
         print("its secret seed is in course_private/term.json; keep a copy")
         tell(filter(None, [old_rules(course)]), sys.stdout)
@@ -82,6 +90,7 @@ def term(
         entries, by_hand = [], []
         if student is None:
             found = [one.folder for one in archives(course, older or 0.0)]
+            by_hand = [str(one) for one in archives(course) if one.ended is None]
         else:
             found, entries = places_of(course, student), entries_of(course, student)
             if not (found or entries):

@@ -156,7 +156,7 @@ def explain(
         raise LabkitError(f"{question} is newer than the mark; type: labkit grade {name}")
     result = _again(course, student, _laid_open(bundle.of_student(student), question))
     (answer,) = result.questions
-    file = course.build / "explain" / f"{student}-{question}.html"
+    file = course.build / "explain" / student / f"{question}.html"
     lines = tuple(line for line in mark.lines if line.name == question)
     notes = (*result.notes, _ALONE)
     line = lines[0] if lines else MarkLine(question, told.verdict.points, told.verdict.earned)

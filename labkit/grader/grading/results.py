@@ -245,11 +245,11 @@ class Results:
             return None
 
     def keep(self, result: Result) -> None:
-        """Write a result; an older one that came from other contents goes to ``old/``."""
+        """Write a result; an older one that came from other contents goes to ``old/STUDENT/``."""
         path, before = self.path(result.student), self.get(result.student)
         if path.exists() and (before is None or before.hashes != result.hashes):
-            key = "--" if before is None else "-".join(str(x)[:8] for x in before.hashes.values())
-            old = self.folder / "old" / f"{result.student}-{key}.json"
+            keys = [] if before is None else [str(x)[:8] for x in before.hashes.values()]
+            old = self.folder / "old" / result.student / f"{'-'.join(keys) or 'damaged'}.json"
             old.parent.mkdir(parents=True, exist_ok=True)
             if path.is_file():
                 shutil.copy2(path, old)  # with the time at which it was written

@@ -34,6 +34,7 @@ PERSONAL_FILES = (
 
 All of it is ignored by git.
 """
+_TERM = "course_private/term.json"
 
 
 def _private(course: Course) -> Path:
@@ -105,39 +106,51 @@ def _keep(course: Course, record: dict[str, Any]) -> None:
 def archive(course: Course) -> Path | None:
     """Move what holds the last term's names into one folder; None if there is nothing.
 
-    The rules are copied, as most of them serve again; arms are deleted where students get them.
+    The archive is laid out as the course is.  The rules are copied, as most of them serve again;
+    arms are deleted where students get them.
     """
     for path in course.release.glob(f"*/{ARMS}"):
         path.unlink()
-    there = [course.root / name for name in PERSONAL_FILES if (course.root / name).exists()]
+    there = [name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None
-    folder = _private(course) / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
+    folder = _private(course) / _stamp()
     folder.mkdir(parents=True)
-    for path in there:
-        shutil.move(path, folder / path.name)
-    if course.term.exists():
-        shutil.move(course.term, folder / course.term.name)
+    for name in (*there, *[_TERM] * course.term.exists()):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.move(course.root / name, folder / name)
     if (course.root / RULES).exists():
         shutil.copy(course.root / RULES, folder)
     return folder
 
 
-def way_back(course: Course, folder: str) -> Iterator[str]:
-    """Where the last term is now, and the commands that return to it, a line each."""
-    old = (_private(course) / folder).relative_to(course.root)
-    mine = (*PERSONAL_FILES, course.term.relative_to(course.root).as_posix(), RULES)
-    new = [name for name in mine if (course.root / name).exists()]
-    by_place: dict[Path, list[str]] = {}
-    for name in (Path(name) for name in mine):
-        if (course.root / old / name.name).exists():
-            by_place.setdefault(name.parent, []).append(f"{old / name.name}")
-    names = sorted(x.stem for x in (course.root / old / "bundle").glob("*.json"))
+def _stamp() -> str:
+    """What an archive that is made now is called."""
+    return datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
+
+
+def restore_commands(course: Course, folder: str) -> Iterator[str]:
+    """Where the last term is now, and the commands that return to it, a line each.
+
+    The term under way becomes an archive by them, which `archives` lists.
+    """
+    last, new = Course(_private(course) / folder), Path("course_private", f"{_stamp()}-undone")
+    old = last.root.relative_to(course.root)
+    names = sorted(x.stem for x in last.bundle.glob("*.json"))
     yield f"the last term is in {old}; to return to it, type in the course's folder:"
-    yield "    mkdir course_private/undone"
-    yield f"    mv {' '.join(new)} course_private/undone"
-    yield from (f"    mv {' '.join(files)} {place}" for place, files in by_place.items())
+    yield f"    mkdir -p {new}/build/course {new}/course_private"
+    yield from _moves(course, Path(), new)
+    yield from _moves(last, old, Path())
     yield f"    labkit release {' '.join(names)}".rstrip()
+
+
+def _moves(term: Course, start: Path, to: Path) -> Iterator[str]:
+    """The commands that move a term from one folder to another, which is laid out alike."""
+    by_place: dict[Path, list[str]] = {}
+    for name in map(Path, (*PERSONAL_FILES, _TERM, RULES)):
+        if (term.root / name).exists():
+            by_place.setdefault(name.parent, []).append(str(start / name))
+    yield from (f"    mv {' '.join(files)} {to / place}" for place, files in by_place.items())
 
 
 def old_rules(course: Course) -> str:
@@ -155,27 +168,39 @@ class Archive:
 
     Attributes:
         folder: Where it lies.
-        ended: The day on which the next one began.
+        ended: The day on which the next one began; None if the folder's name does not say it.
         people: How many handed in, also such as are not in the roster.
     """
 
     folder: Path
-    ended: date
+    ended: date | None
     people: int
 
     def __str__(self) -> str:
-        return f"{self.folder.name}: ended {self.ended}, {self.people} handed in"
+        if self.ended is None:
+            when = "its name has no date, so --older leaves it; rename it archive-YYYY-MM-DD"
+        else:
+            when = f"ended {self.ended}"
+        return f"{self.folder.name}: {when}, {self.people} handed in"
 
 
-def archives(course: Course, older: float = 0.0) -> list[Archive]:
-    """The terms that ended at least ``older`` years ago; all of them by default."""
+def archives(course: Course, older: float | None = None) -> list[Archive]:
+    """The terms that ended at least ``older`` years ago; all by default, also without a date."""
     found = []
     for folder in sorted(_private(course).glob("archive-*")):
-        ended = date.fromisoformat(folder.name.removeprefix("archive-")[:10])
         people = len({path.parts[-3] for path in (folder / "submitted").glob("*/*/*")})
-        if (datetime.now(UTC).date() - ended).days >= 365.25 * older:
-            found.append(Archive(folder, ended, people))
+        one = Archive(folder, _date(folder.name), people)
+        days = (datetime.now(UTC).date() - one.ended).days if one.ended else -1
+        if older is None or days >= 365.25 * older:
+            found.append(one)
     return found
+
+
+def _date(name: str) -> date | None:
+    try:
+        return date.fromisoformat(name.removeprefix("archive-")[:10])
+    except ValueError:
+        return None
 
 
 def about(course: Course) -> Iterator[str]:
