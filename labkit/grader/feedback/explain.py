@@ -7,9 +7,8 @@ instructor alone.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import chain
-from pathlib import Path
 
 from ...course.bugs import Found, Telling
 from ...course.bundle import Bundle
@@ -19,7 +18,7 @@ from ...course.messages import line as of_test
 from ...course.messages import summary, wrapped
 from ...course.own_arm import DEMO
 from ...course.serialize import question_data
-from ...course.verdict import Outcome, Verdict
+from ...course.verdict import Outcome
 from ...errors import LabkitError, UnknownName
 from ..atomic import write
 from ..grading.grade import PUBLIC_ARM, grade
@@ -36,95 +35,11 @@ from .page import page
 _ALONE = "all cases are laid open here, so this page is for teachers and not for students"
 
 
-@dataclass(frozen=True)
-class Explanation:
-    """Why an answer has its mark.
+def explain(course: Course, student: str, question: str, assignment: str | None = None) -> str:
+    """Why an answer has its mark, for the instructor; nothing is run that a person marks.
 
-    Attributes:
-        mark: Of the whole submission.
-        line: Of this question.
-        told: The verdict that the student has seen.
-        found: The verdict with hidden cases laid open.
-        source: The student's answer.
-        page: With the numbers and runs, for the instructor.
-        judged: By which arm, and how near, where the question is about one's own.
-    """
-
-    mark: Mark
-    line: MarkLine
-    told: Verdict
-    found: Verdict
-    source: str
-    page: Path
-    judged: tuple[str, ...] = ()
-
-    def __str__(self) -> str:
-        return "\n".join(self._lines())
-
-    def _lines(self) -> Iterator[str]:
-        yield _head(self.mark, self.line)
-        yield from map(wrapped, self.judged)
-        yield "\nWhat the student has read, and may be shown:"
-        yield from map(wrapped, summary(self.told))
-        hidden = {test.name for test in self.told.tests if test.hidden}
-        if self.told.outcome is Outcome.NOT_ATTEMPTED:
-            pass  # no case decided it
-        elif hidden:
-            yield "\nThe hidden case that decided; do not show it before the term ends:"
-            tests = (test for test in self.found.tests if test.name in hidden)
-            yield from (wrapped(f"  {of_test(test)}") for test in tests)
-        elif not self.told.right:
-            yield ("\nThe tests that the student has seen decided this mark; no hidden case did.")
-        if (self.told.right, self.told.earned) != (self.found.right, self.found.earned):
-            yield "\nATTENTION: this time it came out otherwise:"
-            yield from map(wrapped, summary(self.found))
-        if self.line.comment:
-            yield f"\nComment: {self.line.comment}"
-        yield f"\nThe answer:\n{self.source or '(none)'}"
-        yield f"\nNumbers and runs, for you alone: {self.page}"
-
-
-@dataclass(frozen=True)
-class ByHand:
-    """Why an answer that a person marks has its mark: the mark of the whole, and this line of it.
-
-    Attributes:
-        mark: Of the whole submission.
-        line: Of this question.
-        assignment: Where formgrader has it.
-    """
-
-    mark: Mark
-    line: MarkLine
-    assignment: str
-
-    def __str__(self) -> str:
-        where = f"in formgrader: Manual Grading, {self.assignment}, Show All Names"
-        says = f"A person marks it, {where}."
-        if self.line.automatic == 0.0:
-            says = f"It was left blank or as it was handed out. If it earns more, give it {where}."
-        elif self.line.automatic is not None:
-            says = (
-                "This why is not one of those that are drawn for a person to mark, so it has its "
-                f"points for being there. A mark that you give counts instead, {where}."
-            )
-        written = self.mark.result.written.get(self.line.name) if self.mark.result else ""
-        lines = [_head(self.mark, self.line), wrapped(says)]
-        lines += [f"\nComment: {self.line.comment}"] * bool(self.line.comment)
-        return "\n".join([*lines, f"\nThe answer:\n{written or '(none)'}"])
-
-
-def _head(mark: Mark, line: MarkLine) -> str:
-    """Whose mark for what, and where it comes from."""
-    given = "no mark" if line.score is None else f"{line.score:g}"
-    origin = f" ({line.origin})" if line.origin else ""
-    return f"{mark.student}, {line.name}: {given} of {line.points:g}{origin}"
-
-
-def explain(
-    course: Course, student: str, question: str, assignment: str | None = None
-) -> Explanation | ByHand:
-    """Try an answer again with every hidden case laid open; nothing is run that a person marks.
+    Any other answer is tried again with every hidden case laid open, and a page is written with its
+    numbers and runs.
 
     Args:
         course: The course.
@@ -147,36 +62,85 @@ def explain(
     if mark.result.rejected:
         raise LabkitError(f"{name} of {student} was rejected: {mark.result.rejected}")
     if by_hand:
-        own = next((line for line in mark.lines if line.name == question), None)
-        if own is None:
-            raise LabkitError(f"there is no mark to explain: {mark.missing}")
-        return ByHand(mark, own, name)
-    told = next((x for x in mark.result.questions if x.verdict.name == question), None)
-    if told is None:
+        return "\n".join(_by_a_person(name, question, mark, mark.result))
+    return "\n".join(_by_the_grader(course, bundle, question, mark, mark.result))
+
+
+def _by_a_person(assignment: str, question: str, mark: Mark, result: Result) -> Iterator[str]:
+    """Why an answer that a person marks has its mark."""
+    line = next((line for line in mark.lines if line.name == question), None)
+    if line is None:
+        raise LabkitError(f"there is no mark to explain: {mark.missing}")
+    where = f"in formgrader: Manual Grading, {assignment}, Show All Names"
+    says = f"A person marks it, {where}."
+    if line.automatic == 0.0:
+        says = f"It was left blank or as it was handed out. If it earns more, give it {where}."
+    elif line.automatic is not None:
+        says = (
+            "This why is not one of those that are drawn for a person to mark, so it has its "
+            f"points for being there. A mark that you give counts instead, {where}."
+        )
+    yield _head(mark, line)
+    yield wrapped(says)
+    if line.comment:
+        yield f"\nComment: {line.comment}"
+    yield f"\nThe answer:\n{result.written.get(question) or '(none)'}"
+
+
+def _by_the_grader(
+    course: Course, bundle: Bundle, question: str, mark: Mark, result: Result
+) -> Iterator[str]:
+    """Why an answer that was tried has its mark."""
+    student = mark.student
+    before = next((x for x in result.questions if x.verdict.name == question), None)
+    if before is None:
+        name = bundle.data["assignment"]
         raise LabkitError(f"{question} is newer than the mark; type: labkit grade {name}")
-    result = _again(course, student, _laid_open(bundle.of_student(student), question))
-    (answer,) = result.questions
-    file = course.build / "explain" / student / f"{question}.html"
+    shown = before.verdict
+    again = _again(course, student, _laid_open(bundle.of_student(student), question))
+    now = again.questions[0].verdict
     lines = tuple(line for line in mark.lines if line.name == question)
-    notes = (*result.notes, _ALONE)
-    line = lines[0] if lines else MarkLine(question, told.verdict.points, told.verdict.earned)
-    shown = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
-    write(file, page(replace(result, notes=notes), shown))
-    judged = _judged(bundle, student, question)
-    if judged and PUBLIC_ARM in mark.result.notes:
-        judged += (PUBLIC_ARM,)
-    return Explanation(mark, line, told.verdict, answer.verdict, told.source, file, judged)
+    line = lines[0] if lines else MarkLine(question, shown.points, shown.earned)
+    yield _head(mark, line)
+    yield from map(wrapped, _judged(bundle, student, question, result))
+    yield "\nWhat the student has read, and may be shown:"
+    yield from map(wrapped, summary(shown))
+    hidden = {test.name for test in shown.tests if test.hidden}
+    if shown.outcome is Outcome.NOT_ATTEMPTED:
+        pass  # no case decided it
+    elif hidden:
+        yield "\nThe hidden case that decided; do not show it before the term ends:"
+        yield from (wrapped(f"  {of_test(test)}") for test in now.tests if test.name in hidden)
+    elif not shown.right:
+        yield "\nThe tests that the student has seen decided this mark; no hidden case did."
+    if (shown.right, shown.earned) != (now.right, now.earned):
+        yield "\nATTENTION: this time it came out otherwise:"
+        yield from map(wrapped, summary(now))
+    if line.comment:
+        yield f"\nComment: {line.comment}"
+    yield f"\nThe answer:\n{before.source or '(none)'}"
+    file = course.build / "explain" / student / f"{question}.html"
+    head = replace(mark, lines=lines, penalty=0.0, late="", raw=line.score, points=line.points)
+    write(file, page(replace(again, notes=(*again.notes, _ALONE)), head))
+    yield f"\nNumbers and runs, for you alone: {file}"
 
 
-def _judged(bundle: Bundle, student: str, name: str) -> tuple[str, ...]:
+def _head(mark: Mark, line: MarkLine) -> str:
+    """Whose mark for what, and where it comes from."""
+    given = "no mark" if line.score is None else f"{line.score:g}"
+    origin = f" ({line.origin})" if line.origin else ""
+    return f"{mark.student}, {line.name}: {given} of {line.points:g}{origin}"
+
+
+def _judged(bundle: Bundle, student: str, name: str, result: Result) -> Iterator[str]:
     """By which arm a question about one's own is judged, and how near a number has to be."""
     judge = next(q.judge for q in bundle.questions if q.name == name)
-    if not isinstance(judge, Measured | Found | Telling):
-        return ()
-    given = bundle.arms.arm(student) is not None
-    arm = f"the arm that the course gave {student}" if given else f'the public arm "{DEMO}"'
-    near = f", within {judge.tolerance:g} {judge.unit}" if isinstance(judge, Measured) else ""
-    return (f"Judged by {arm}{near}.",)
+    if isinstance(judge, Measured | Found | Telling):
+        given = bundle.arms.arm(student) is not None
+        arm = f"the arm that the course gave {student}" if given else f'the public arm "{DEMO}"'
+        near = f", within {judge.tolerance:g} {judge.unit}" if isinstance(judge, Measured) else ""
+        yield f"Judged by {arm}{near}."
+        yield from (note for note in result.notes if note == PUBLIC_ARM)
 
 
 def _laid_open(bundle: Bundle, name: str) -> Bundle:
