@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from base64 import b64encode
 from functools import cache
 from hashlib import sha256
@@ -10,7 +11,7 @@ from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, select_autoescape
 
-from ..replay import viewer_scripts
+from ..replay import recorded_html, viewer_scripts
 
 TEMPLATES = Path(__file__).parent / "templates"
 
@@ -30,6 +31,28 @@ def _environment() -> Environment:
 def render(template: str, **values: Any) -> str:
     """Fill a template, such as "feedback.html.j2", with values."""
     return _environment().get_template(template).render(values)
+
+
+def render_page(template: str, style: str = "", *, replays: bool = False, **values: Any) -> str:
+    """Fill the template of a page, which loads nothing but its own style and scripts.
+
+    Args:
+        template: Such as "feedback.html.j2".
+        style: What the page adds to the style of all pages.
+        replays: Whether it shows any, and so needs the viewer and the robot.
+        values: What else the template names.  It has ``recorded_html`` for a motion, which
+            ``motion_of`` reads from the text in a result.
+    """
+    style, code = file("feedback.css") + style, scripts() if replays else ()
+    return render(
+        template,
+        style=style,
+        scripts=code,
+        policy=policy(style, code),
+        motion_of=lambda text: json.loads(text or "null"),
+        recorded_html=recorded_html,
+        **values,
+    )
 
 
 @cache

@@ -129,7 +129,7 @@ def test_twelve_items_for_all_outcomes_in_two_forms():
     assert len(ITEMS) == 12 and {item.outcome for item in ITEMS} == set(OUTCOMES)
     assert all(item.a.asks != item.b.asks for item in ITEMS)
     for form in FORMS:
-        keys = [item.key for item in asked(COURSE, form)]
+        keys = [item["key"] for item in asked(COURSE, form)]
         assert set(keys) == set("abcd") and max(map(keys.count, "abcd")) <= 6, keys
 
 
@@ -142,14 +142,16 @@ def test_every_distractor_has_its_reason():
     assert set(named) <= known | {x for x in named if x.endswith(".")}
     assert sum(reason in known for reason in reasons) >= 14
     for form in FORMS:
-        assert all(o.says for item in asked(COURSE, form) for o in item.options if not o.right)
+        assert all(
+            o["says"] for item in asked(COURSE, form) for o in item["options"] if not o["right"]
+        )
 
 
 def test_every_layout_has_all_items_and_the_right_key(tmp_path, capsys):
     """Moodle's XML and Canvas's QTI are read back; the paper has its key on another page."""
     for form in FORMS:
         test = asked(COURSE, form)
-        right = {item.asks: next(o.text for o in item.options if o.right) for item in test}
+        right = {q["asks"]: next(o["text"] for o in q["options"] if o["right"]) for q in test}
         quiz = ET.fromstring(LAYOUTS["moodle-quiz"](COURSE, form))
         found = {q.findtext("questiontext/text"): q.findtext("answer[@fraction='100']/text")
                  for q in quiz.iterfind("question[@type='multichoice']")}  # fmt: skip

@@ -31,6 +31,8 @@ COUNTED = (
     *(Outcome.NOT_COUNTED, Outcome.NOT_ATTEMPTED),
 )
 """Outcomes that have a column."""
+_Row = dict[str, Any]
+"""A row for the template, by the names that it uses."""
 
 
 def report(
@@ -110,13 +112,6 @@ class _QuestionRow(NamedTuple):
     """Of the points, on average; None where the question has none."""
 
 
-class _MistakeRow(NamedTuple):
-    students: int
-    question: str
-    name: str
-    say: str
-
-
 def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
     verdicts: dict[str, list[Verdict]] = defaultdict(list)
     for result in graded:
@@ -128,32 +123,20 @@ def _questions(graded: Sequence[Result]) -> Iterator[_QuestionRow]:
         yield _QuestionRow(name, [count[x] for x in COUNTED], mean(shares) if shares else None)
 
 
-class _OutcomeRow(NamedTuple):
-    says: str
-    questions: str
-    share: float
-
-
-def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_OutcomeRow]:
+def _can(rows: Sequence[_QuestionRow], asked: Sequence[Question]) -> Iterator[_Row]:
     """For each outcome of the course, what the questions say that are evidence of it."""
     shares = {row.name: row.share for row in rows if row.share is not None}
     for outcome, says in OUTCOMES.items():
         names = [q.name for q in asked if outcome in q.outcomes and q.name in shares]
         if names:
             text = ", ".join(f"`{name}`" for name in names)
-            yield _OutcomeRow(says, text, mean(shares[name] for name in names))
-
-
-class _Prediction(NamedTuple):
-    name: str
-    asks: str
-    truth: str
-    said: list[str]
+            share = mean(shares[name] for name in names)
+            yield {"says": says, "questions": text, "share": share}
 
 
 def _believed(
     graded: Sequence[Result], asked: Sequence[Question], fewest: int, truths: Mapping[str, Any]
-) -> Iterator[_Prediction]:
+) -> Iterator[_Row]:
     """For each prediction, what is true and what the class committed to, the commonest first."""
     sources = [{q.verdict.name: q.source for q in result.questions} for result in graded]
     for question in asked:
@@ -162,7 +145,7 @@ def _believed(
             values = (_committed(source.get(question.name, "")) for source in sources)
             counts = Counter(form.words(x) for x in values if not form.problem(x))
             truth = form.words(truths[question.name]) if question.name in truths else ""
-            told = [
+            common = [
                 f"{n} x {_as_text(words)}{', which is true' * (words == truth)}"
                 for words, n in counts.most_common()
                 if n >= fewest
@@ -170,8 +153,9 @@ def _believed(
             rest = len(sources) - sum(n for n in counts.values() if n >= fewest)
             alike = f", fewer than {fewest} of them alike," if fewest > 1 else ""
             others = f"{rest} {'other' if rest == 1 else 'others'}{alike} or no answer"
-            said = [*told, *[others] * bool(rest)]
-            yield _Prediction(question.name, " ".join(question.asks.split()), truth, said)
+            said = [*common, *[others] * bool(rest)]
+            asks = " ".join(question.asks.split())
+            yield {"name": question.name, "asks": asks, "truth": truth, "said": said}
 
 
 def _committed(source: str) -> Any:
@@ -186,13 +170,14 @@ def _committed(source: str) -> Any:
     return None
 
 
-def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_MistakeRow]:
+def _mistakes(graded: Sequence[Result], problems: Mapping[str, Problem]) -> Iterator[_Row]:
+    """How many made each known mistake, and what to say of it, the commonest first."""
     verdicts = (question.verdict for result in graded for question in result.questions)
     made = Counter((v.name, v.mistake.name) for v in verdicts if v.mistake)
     for (name, mistake), count in made.most_common():
         known = problems[name].wrong if name in problems else ()
         say = next((w.lecture or w.says for w in known if w.name == mistake), "")
-        yield _MistakeRow(count, name, mistake, say)
+        yield {"students": count, "question": name, "name": mistake, "say": say}
 
 
 def _tools(graded: Sequence[Result], who: Mapping[str, str]) -> Iterator[str]:

@@ -11,7 +11,6 @@ Moodle takes pages back as a zip, and knows a participant by the number in the n
 
 from __future__ import annotations
 
-import json
 import re
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -27,7 +26,6 @@ from ...course.layout import Course
 from ...course.messages import GATE, foretells, why, word
 from ...errors import LabkitError
 from ...metrics import SETTLED
-from ...replay import recorded_html
 from ...replay.motion import unpack
 from ..atomic import write
 from ..each import Failed, for_student
@@ -35,7 +33,7 @@ from ..grading.results import Result
 from ..marks.mark import Mark
 from ..marks.table import mark_of
 from ..nbgrader.markup import markdown
-from ..pages import file, policy, render, scripts
+from ..pages import render_page
 from ..peers.readers import Review, reviews
 from ..rules import read_rules
 from ..students.identity import lms_users
@@ -88,9 +86,9 @@ def page(
     mark = mark or mark_of(result)
     asked = {line.name: line for line in mark_of(result).lines}
     replays = any(run["motion"] for q in result.questions for run in q.runs)
-    style, code = file("feedback.css"), scripts() if replays else ()
-    return render(
+    return render_page(
         "feedback.html.j2",
+        replays=replays,
         result=result,
         mark=mark,
         course=course,
@@ -102,14 +100,9 @@ def page(
         word=word,
         gate=GATE,
         why=why,
-        style=style,
-        scripts=code,
-        policy=policy(style, code),
-        motion_of=lambda run: json.loads(run["motion"] or "null"),
         error_over_time=error_over_time,
         measures=measures,
         number_by_number=number_by_number,
-        recorded_html=recorded_html,
         markdown=lambda text: Markup(markdown({}, text)),
     )
 

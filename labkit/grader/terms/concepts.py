@@ -7,20 +7,19 @@ format of the 1EdTech consortium (imsglobal.org/question/qtiv1p2), with its own 
 
 from __future__ import annotations
 
-import hashlib
 import io
 import tomllib
 import zipfile
-from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Sequence
+from hashlib import sha256
+from typing import Any, Literal
 
 import msgspec
 
 from ...course.layout import Course
 from ...course.outcomes import OUTCOMES
 from ...errors import LabkitError
-from ..pages import file, policy, render
+from ..pages import file, render, render_page
 
 FILE = "solutions/concepts.toml"
 Form = Literal["a", "b"]
@@ -52,32 +51,6 @@ class Item(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     b: Wording
 
 
-@dataclass(frozen=True)
-class Option:
-    """An answer to choose: its letter, its text, what to say of it, whether it is right."""
-
-    letter: str
-    text: str
-    says: str
-    right: bool
-
-
-@dataclass(frozen=True)
-class FormItem:
-    """One item as it is asked in a form."""
-
-    number: int
-    name: str
-    outcome: str
-    asks: str
-    options: tuple[Option, ...]
-
-    @property
-    def key(self) -> str:
-        """The letter of the right answer."""
-        return next(option.letter for option in self.options if option.right)
-
-
 def items(course: Course) -> tuple[Item, ...]:
     """The items of the course.
 
@@ -99,42 +72,44 @@ def items(course: Course) -> tuple[Item, ...]:
     return found
 
 
-def asked(course: Course, form: Form) -> tuple[FormItem, ...]:
-    """One form of the test; its options have the same order each time."""
+def asked(course: Course, form: Form) -> list[dict[str, Any]]:
+    """One form of the test, for the templates; its options have the same order each time.
+
+    Returns:
+        For each item the ``number``, its ``name``, ``outcome``, what it ``asks``, the ``options``
+        with ``letter``, ``text``, what it ``says`` of a wrong one and whether it is ``right``, and
+        the ``key``, which is the letter of the right one.
+    """
     known = {
         f"{problem.name}: {wrong.name}": wrong.says
         for name in course.names()
         for problem in course.problems(name)
         for wrong in problem.wrong
     }
-    return tuple(
-        FormItem(
-            number, item.name, item.outcome, wording.asks, tuple(_options(wording, item, known))
-        )
-        for number, item in enumerate(items(course), start=1)
-        for wording in [item.a if form == "a" else item.b]
-    )
+    test = []
+    for number, item in enumerate(items(course), start=1):
+        wording = item.a if form == "a" else item.b
+        options = _options(wording, [known.get(because, because) for because in item.because])
+        (key,) = (option["letter"] for option in options if option["right"])
+        about = {"number": number, "name": item.name, "outcome": item.outcome, "key": key}
+        test.append(about | {"asks": wording.asks, "options": options})
+    return test
 
 
-def _options(wording: Wording, item: Item, known: dict[str, str]) -> Iterator[Option]:
-    texts = {wording.right: "", **dict(zip(wording.wrong, item.because, strict=True))}
-    order = sorted(
-        texts, key=lambda text: hashlib.sha256(f"{wording.asks}{text}".encode()).digest()
-    )
-    for letter, text in zip("abcd", order, strict=True):
-        because = texts[text]
-        yield Option(letter, text, known.get(because, because), text == wording.right)
+def _options(wording: Wording, because: Sequence[str]) -> list[dict[str, Any]]:
+    """The answers to choose from, in an order that follows from their texts alone."""
+    says = {wording.right: "", **dict(zip(wording.wrong, because, strict=True))}
+    order = sorted(says, key=lambda text: sha256(f"{wording.asks}{text}".encode()).digest())
+    return [
+        {"letter": letter, "text": text, "says": says[text], "right": text == wording.right}
+        for letter, text in zip("abcd", order, strict=True)
+    ]
 
 
 def paper(course: Course, form: Form) -> bytes:
     """A form to print, as HTML, and the key on a page of its own."""
-    style = file("feedback.css") + file("concepts.css")
     test = asked(course, form)
-    page = render(
-        "concepts.html.j2", form=form, test=test, style=style, policy=policy(style, ()),
-        outcomes=OUTCOMES,
-    )  # fmt: skip
-    return page.encode()
+    return render_page("concepts.html.j2", file("concepts.css"), form=form, test=test).encode()
 
 
 def moodle(course: Course, form: Form) -> bytes:
