@@ -130,4 +130,6 @@ def write_bundle(
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"), sort_keys=True)
     data["hash"] = hashlib.sha256(text.encode()).hexdigest()
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(data) + "\n", encoding="utf-8")
+    new = path.with_suffix(".new")
+    new.write_text(json.dumps(data) + "\n", encoding="utf-8")
+    new.replace(path)  # so that a grading under way reads the old one or the new one

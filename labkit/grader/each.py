@@ -64,10 +64,15 @@ def for_student(
 
 
 class Failures:
-    """What failed in a verb, and for whom; named on stderr when the verb ends."""
+    """What failed in a verb, and for whom; named on stderr when the verb ends.
 
-    def __init__(self) -> None:
+    Args:
+        at_once: Name it as it happens, in a verb that only the user ends.
+    """
+
+    def __init__(self, *, at_once: bool = False) -> None:
         self.sentences: list[str] = []
+        self._at_once = at_once
 
     @property
     def code(self) -> int:
@@ -76,7 +81,10 @@ class Failures:
 
     def add(self, what: str, failed: Iterable[LabkitError]) -> None:
         """Keep failures; ``what`` says what they mean, such as "not graded"."""
-        self.sentences += [f"{what}: {one}" for one in failed]
+        sentences = [f"{what}: {one}" for one in failed]
+        self.sentences += sentences
+        if self._at_once:
+            _name(sentences)
 
     def sift(self, outcomes: Iterable[T | LabkitError], what: str) -> Iterator[T]:
         """Yield what was done, and keep what failed.
@@ -95,5 +103,10 @@ class Failures:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for sentence in self.sentences:
-            print(sentence, file=sys.stderr, flush=True)
+        if not self._at_once:
+            _name(self.sentences)
+
+
+def _name(sentences: Iterable[str]) -> None:
+    for sentence in sentences:
+        print(sentence, file=sys.stderr, flush=True)

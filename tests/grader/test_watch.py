@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import json
+
+import pytest
 from handmade import hand_in
 from made import NAME, notebook_of, result_of
 
+from labkit.__main__ import main
+from labkit.grader.each import Failed
 from labkit.grader.grading import batch
 from labkit.grader.grading.batch import GradeOptions, watch
 
 
-def test_each_notebook_is_graded_once_as_it_comes(course, monkeypatch):
-    """One that was there and those that come later are graded; so is what is handed in again."""
+@pytest.fixture
+def tasks(monkeypatch):
+    """Whom each look has graded, with results made by hand."""
     tasks = []
 
     def graded(pool, course, bundle, submissions, options):
@@ -18,6 +24,11 @@ def test_each_notebook_is_graded_once_as_it_comes(course, monkeypatch):
         return (result_of(course, x.student, data=x.read(1 << 20)[0]) for x in submissions)
 
     monkeypatch.setattr(batch, "_graded", graded)
+    return tasks
+
+
+def test_each_notebook_is_graded_once_as_it_comes(course, tasks):
+    """One that was there and those that come later are graded; so is what is handed in again."""
     hand_in(course, NAME, "ada", notebook_of("ada"))
     queue = watch(course, NAME, GradeOptions(), pause=0.01)
     assert next(queue).result.student == "ada"
@@ -27,3 +38,39 @@ def test_each_notebook_is_graded_once_as_it_comes(course, monkeypatch):
     assert next(queue).result.student == "ada"
     queue.close()
     assert [one for one in tasks if one] == [["ada"], ["bob"], ["ada"]]
+
+
+def test_a_new_release_grades_everybody_again(course, tasks):
+    """Also arms that are given out: what a submission is held against is looked at each time."""
+    hand_in(course, NAME, "ada", notebook_of("ada"))
+    queue = watch(course, NAME, GradeOptions(), pause=0.01)
+    assert next(queue).result.student == "ada"
+    bundle = course.bundle / f"{NAME}.json"
+    bundle.write_text(json.dumps(json.loads(bundle.read_text()) | {"hash": "0" * 64}))
+    hand_in(course, NAME, "bob", notebook_of("bob"))
+    assert {next(queue).result.student, next(queue).result.student} == {"ada", "bob"}
+    queue.close()
+    assert [one for one in tasks if one] == [["ada"], ["ada", "bob"]]
+
+
+def test_a_failure_is_named_as_it_happens(course, monkeypatch, capsys):
+    """While it is watching, and not only after Ctrl-C; so is a folder whose name is not allowed."""
+    said = []
+
+    def failing(*_):
+        yield Failed("ada", "memory ran out")
+        said.append(capsys.readouterr().err)
+        raise KeyboardInterrupt
+
+    hand_in(course, NAME, "<b>", notebook_of("b"))
+    monkeypatch.setattr(batch, "watch", failing)
+    assert main(["grade", NAME, "--watch", "--course", str(course.root)]) == 130
+    assert "not graded: '<b>': a folder in submitted/ has this name" in said[0]
+    assert "not graded: ada: memory ran out\n" in said[0]
+    assert "not graded" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["--student", "ada"], ["--again"], ["--diff"]])
+def test_what_watching_would_ignore_is_refused(course, words, capsys):
+    assert main(["grade", NAME, "--watch", *words, "--course", str(course.root)]) == 2
+    assert f"for {words[0]} leave out --watch" in capsys.readouterr().err

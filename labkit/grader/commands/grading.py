@@ -68,12 +68,18 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
     from ..grading.results import Results
     from ..lock import exclusive_run
     from ..nbgrader.gradebook import record
+    from ..submission import misnamed
 
     diff, watching = how.pop("diff"), how.pop("watch")
     said = sys.stderr if as_json else sys.stdout
     options = GradeOptions(**how, tell=partial(print, file=sys.stderr, flush=True))
-    with Failures() as failures:
+    not_watched = {"--student": student, "--again": options.again, "--diff": diff}
+    if watching and any(not_watched.values()):
+        given = " and ".join(name for name, value in not_watched.items() if value)
+        raise LabkitError(f"--watch grades whatever comes in; for {given} leave out --watch")
+    with Failures(at_once=watching) as failures:
         if watching:
+            failures.add("not graded", misnamed(course, assignment))
             for one in failures.sift(watch(course, assignment, options), "not graded"):
                 print(_line(one, as_json), flush=True)
                 tell(_other_notebooks([one.result]), said)

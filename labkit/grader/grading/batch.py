@@ -116,7 +116,8 @@ def watch(
     """Grade submissions as they come, in workers that stay warm, until somebody stops it.
 
     What is handed in and has no result of its own is the queue, so a run that is killed loses
-    nothing.  One whose grading failed is tried again once something else was handed in.
+    nothing.  A new release puts everybody back into it.  One whose grading failed is tried again
+    once this student hands in something else, or the assignment is released again.
 
     Args:
         course: The course.
@@ -131,16 +132,16 @@ def watch(
         LabkitError: The assignment was not released, or another run is under way.
         NoIsolation: No sandbox can be made here.
     """
-    results, looked = Results(course, assignment), dict[str, tuple[float, int]]()
+    results, looked = Results(course, assignment), dict[str, tuple[object, ...]]()
     with exclusive_run(results.folder), executor(options.jobs, options.dask) as pool:
         while True:
             bundle = Bundle.of(course, assignment)
             todo: list[Submission] = []
             for student in students(course, assignment):
                 submission = Submission.of(course, assignment, student)
-                seen = _look(submission.folder)
-                if looked.get(student) != seen:
-                    looked[student] = seen
+                now = (*_look(submission.folder), bundle.data["hash"], bundle.arms)
+                if looked.get(student) != now:
+                    looked[student] = now
                     if still_good([results], submission, bundle, options) is None:
                         todo.append(submission)
             yield from _kept(results, _graded(pool, course, bundle, todo, options), options)
@@ -180,15 +181,15 @@ def _graded(
     key = bundle.data["hash"]
     tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
     whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
-    began = told = time.monotonic()
+    began = said = time.monotonic()
     left = set(whose)
     while left:
         done, left = wait(left, EVERY, FIRST_COMPLETED)
         for future in done:
             yield for_student(whose[future], future.result, of_all=(NoIsolation,))
         now, count = time.monotonic(), len(tasks) - len(left)
-        if left and now >= told + EVERY:
-            told, minutes = now, (now - began) * len(left) / max(1, count) / 60
+        if left and now >= said + EVERY:
+            said, minutes = now, (now - began) * len(left) / max(1, count) / 60
             rest = f", about {max(1, round(minutes))} min left" if count else ""
             options.tell(f"{count} of {len(tasks)} graded{rest}")
 
