@@ -12,7 +12,7 @@ from handmade import hand_in
 from labkit import Sample, State
 from labkit.__main__ import main
 from labkit.course.baxter_cup import MARKS, PUBLIC_SEEDS
-from labkit.course.layout import CUP
+from labkit.course.layout import CUP, DEFENCE
 from labkit.grader.cup import entries as cup
 from labkit.grader.cup.entries import A_DAY, SEEDS, Entry, entries, latest, play, seeds
 from labkit.grader.cup.table import as_text, give_bonus, page
@@ -191,3 +191,13 @@ def test_the_final_has_other_seeds_and_its_marks_beaten_are_extra_credit(
                     {CUP: 0.5, "01_paths": 1.0})  # fmt: skip
     assert [row[-1] for row in table[3:]] == [52.0, 51.0]
     assert "mark: joint torque" in "\n".join(as_text([slow]))
+
+
+def test_other_verbs_name_the_cups_own(course, capsys):
+    """`grade`, `feedback` and an empty table say which verb gives the bonus or the mark."""
+    for words in (["grade", CUP], ["feedback", CUP], ["class-report", CUP], ["export", CUP]):
+        assert main([*words, "--course", str(course.root)]) == 2
+        said = capsys.readouterr().err
+        assert "labkit export --layout cup --final" in said and "labkit release" not in said
+    assert main(["grade", DEFENCE, "--course", str(course.root)]) == 2
+    assert "09_defence is marked by: labkit defence STUDENT --mark" in capsys.readouterr().err

@@ -13,10 +13,15 @@ from zoneinfo import ZoneInfo
 import click
 
 from ...course.cli import PATH, verb
-from ...course.layout import CUP, Course
+from ...course.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
 
 SEED = click.IntRange(min=0)
+MARKED_BY = {
+    CUP: "labkit export --layout cup --final",
+    DEFENCE: "labkit defence STUDENT --mark A,B,C",
+}
+"""The command that gives the marks of an assignment that has no notebook of the course's."""
 
 
 def of_course(command: Callable[..., int]) -> Callable[..., int]:
@@ -36,14 +41,15 @@ def of_course(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def of_assignment(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command an assignment's name; the course must have an assignment of that name."""
+    """Give a command an assignment's name; the course must have a notebook of that name."""
 
     @click.argument("assignment")
     @of_course
     @wraps(command)
     def on_assignment(course: Course, assignment: str, **given: Any) -> int:
-        if assignment != CUP:
-            course.notebook_source(assignment)
+        if assignment in MARKED_BY:
+            raise LabkitError(f"{assignment} is marked by: {MARKED_BY[assignment]}")
+        course.notebook_source(assignment)
         return command(course=course, assignment=assignment, **given)
 
     return on_assignment
@@ -147,7 +153,8 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
 
 
 @verb("01_paths moodle.zip")
-@of_assignment
+@click.argument("assignment")
+@of_course
 @click.argument("sources", nargs=-1, required=True, type=PATH, metavar="ZIP|DIR...")
 @click.option(
     "--unverified",
@@ -193,6 +200,8 @@ def collect(
     from ..students.collect import collect
     from ..timestamp import read_time
 
+    if assignment != CUP:
+        course.notebook_source(assignment)
     assignment = sheet_of(assignment) if peer_review else assignment
     zone = ZoneInfo(read_rules(course).zone)
     when = read_time(at, zone) if at else None

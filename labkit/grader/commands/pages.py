@@ -14,7 +14,7 @@ from ...course.layout import Course
 from ...errors import LabkitError
 from ..clean import how_many, some
 from ..each import Failed, Failures
-from .course import of_assignment
+from .course import MARKED_BY, of_assignment
 
 if TYPE_CHECKING:
     from ..marks.mark import Mark
@@ -133,7 +133,7 @@ def _wait_for_marks(marks: Iterable[Mark]) -> None:
 def nobody(assignment: str, student: str | None, why: str = "") -> LabkitError:
     """The error where nothing is graded yet, or ``why`` no result can be read."""
     who = f"{student} is not" if student else "nobody is"
-    why = why or f"type: labkit grade {assignment}"
+    why = why or f"type: {MARKED_BY.get(assignment, f'labkit grade {assignment}')}"
     return LabkitError(f"{who} graded in {assignment}; {why}")
 
 
