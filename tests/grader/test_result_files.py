@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from handmade import QUICK, raw
@@ -15,6 +16,7 @@ from hypothesis import strategies as st
 from made import NAME, graded, result_of, saying
 from made import changed as changed_in
 
+import labkit
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
 from labkit.errors import LabkitError
@@ -24,7 +26,7 @@ from labkit.grader.atomic import write
 from labkit.grader.clean import clean_data
 from labkit.grader.each import Failed
 from labkit.grader.grading.grade import grade
-from labkit.grader.grading.results import Result, Results
+from labkit.grader.grading.results import Result, Results, engine_files
 from labkit.grader.grading.standing import standing
 
 WRONG = {
@@ -131,6 +133,22 @@ def test_what_is_no_json_of_a_result_is_none(marked, text):
     assert Results(marked, NAME).get("ada") is None
     with pytest.raises(LabkitError, match=r"ada\.json (is|has)"):
         Results(marked, NAME).read("ada")
+
+
+def test_a_key_hashes_what_a_worker_loads_and_no_page_or_command():
+    """All that can change a mark, but for what shows replays; a word in a page changes none."""
+    code = (
+        "import sys, labkit.grader.grading.worker; from labkit.grader.sandbox import forkserver\n"
+    )
+    code += "from labkit.grader.sandbox import runner, stubs, parse\n"
+    code += "print(*(m.__file__ for k, m in sys.modules.items() if k.startswith('labkit')))"
+    asked = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    root, files = Path(labkit.__file__).parent, set(engine_files())
+    loaded = set(map(Path, asked.stdout.split()))
+    assert {x for x in loaded - files if "replay" not in x.parts} <= {root / "grader/__init__.py"}
+    parts = {x.relative_to(root).parts for x in files}
+    assert {x[1] for x in parts if x[0] == "grader" and len(x) == 3} == {"grading", "sandbox"}
+    assert ("__main__.py",) not in parts and ("course", "marking.py") in parts
 
 
 def test_what_is_no_file_is_none(marked):

@@ -25,6 +25,10 @@ from ...sim import ENGINES
 from ..atomic import write
 from ..clean import clean_data, clean_line
 
+_LABKIT = Path(labkit.__file__).parent
+_OF_A_WORKER = ("grading", "sandbox", "atomic.py", "clean.py", "each.py", "submission.py")
+"""Parts of the grader that a worker loads."""
+
 
 class Run(TypedDict):
     """A run of the arm on a public case; see `seen.runs`."""
@@ -282,12 +286,22 @@ def digest(data: bytes) -> str:
 @cache
 def engine() -> str:
     """A name for the code that grades: another version, another mark."""
-    root = Path(labkit.__file__).parent
     whole = hashlib.sha256()
-    for path in sorted(root.rglob("*.py")):
-        if "replay" not in path.parts:
-            whole.update(str(path.relative_to(root)).encode() + path.read_bytes())
+    for path in engine_files():
+        whole.update(str(path.relative_to(_LABKIT)).encode() + path.read_bytes())
     return whole.hexdigest()
+
+
+def engine_files() -> Iterator[Path]:
+    """The code that a mark can depend on.
+
+    It is the lab and the course, without what shows replays, and of the grader what a worker loads.
+    A corrected word in a page or in a command changes no mark, so nobody is graded again for it.
+    """
+    for path in sorted(_LABKIT.rglob("*.py")):
+        first, *more = path.relative_to(_LABKIT).parts
+        if first not in {"replay", "__main__.py", "grader"} or (more and more[0] in _OF_A_WORKER):
+            yield path
 
 
 @cache
