@@ -218,3 +218,9 @@ for place, folders, files in os.walk("/"):
 """
     for _ in range(2):
         assert sorted(run(sandbox, source).splitlines()) == ["written /dev/shm", "written /tmp"]
+
+
+def test_a_parser_waits_for_its_file_no_longer_than_the_limit(sandbox):
+    """Where the worker sends nothing, the process is not left for half a minute."""
+    with sandbox.spawn("parse", Limits(parse=0.2), size=10) as inside:
+        assert "timed out" in inside.connection.read(10.0)["failed"]

@@ -134,7 +134,7 @@ def _load(modules: Sequence[str]) -> Serve:
 def _parse(connection: Connection, request: dict[str, Any]) -> None:
     """Read a notebook of ``size`` bytes that follow, and send its cells."""
     data = bytearray()
-    connection.socket.settimeout(30.0)
+    connection.socket.settimeout(request["limits"]["parse"])
     while len(data) < request["size"]:
         piece = connection.socket.recv(min(1 << 20, request["size"] - len(data)))
         if not piece:
