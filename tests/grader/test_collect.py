@@ -672,7 +672,8 @@ def test_names_and_work_go_with_the_term(bare, tmp_path):
                            capture_output=True, text=True)  # fmt: skip
     assert found.stdout.split() == list(written), "under any name that a lecturer may give"
     folder = archive(bare)
-    assert {"attempts", "submitted", "roster.csv", "lms.json"} <= {x.name for x in folder.rglob("*")}
+    names = {x.name for x in folder.rglob("*")}
+    assert {"attempts", "submitted", "roster.csv", "lms.json"} <= names
     assert not (bare.root / "attempts").exists() and not (bare.root / ROSTER).exists()
 
 
