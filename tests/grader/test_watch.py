@@ -9,9 +9,16 @@ from handmade import hand_in
 from made import NAME, notebook_of, result_of
 
 from labkit.__main__ import main
+from labkit.course.bundle import Bundle
+from labkit.course.own_arm import Arms
 from labkit.grader.each import Failed
-from labkit.grader.grading import batch
+from labkit.grader.grading import batch, worker
 from labkit.grader.grading.batch import GradeOptions, watch
+from labkit.grader.sandbox.limits import Limits
+from labkit.grader.students.arms import give_arms
+from labkit.grader.students.class_list import Student
+from labkit.grader.students.roster import Roster
+from labkit.grader.submission import Submission
 
 
 @pytest.fixture
@@ -74,3 +81,22 @@ def test_a_failure_is_named_as_it_happens(course, monkeypatch, capsys):
 def test_what_watching_would_ignore_is_refused(course, words, capsys):
     assert main(["grade", NAME, "--watch", *words, "--course", str(course.root)]) == 2
     assert f"for {words[0]} leave out --watch" in capsys.readouterr().err
+
+
+def test_a_worker_knows_arms_that_are_given_out_later(course, monkeypatch):
+    """It keeps the bundle for many submissions, but not with arms of an earlier roster."""
+    known = []
+
+    def graded(data, student, bundle, *_):
+        known.append(bundle.arms.arm(student))
+        return result_of(course, student, data=data)
+
+    monkeypatch.setattr(worker, "grade", graded)
+    monkeypatch.setattr(worker, "in_sandbox", lambda do, *_, **__: do(None))
+    hand_in(course, NAME, "ada", notebook_of("ada"))
+    one, key = Submission.of(course, NAME, "ada"), Bundle.of(course, NAME).data["hash"]
+    task = worker.Task(course, one, key, True, Limits())
+    for _ in range(2):
+        worker._grade(task, task.limits)
+        give_arms(course, Roster((Student("ada", "Ada"),)), 7)
+    assert known[0] is None and known[1] == Arms.of(course.root).arm("ada")

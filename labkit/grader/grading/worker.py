@@ -13,6 +13,7 @@ from typing import TypeVar
 
 from ...course.bundle import Bundle
 from ...course.layout import Course
+from ...course.own_arm import Arms
 from ...errors import LabkitError
 from ..sandbox.cgroup import MEMORY, limit_memory
 from ..sandbox.launch import Sandbox, SandboxLost
@@ -86,7 +87,8 @@ def grade_submission(task: Task) -> Result:
 
 
 def _grade(task: Task, limits: Limits) -> Result:
-    bundle = _bundle(task.course, task.submission.assignment, task.bundle_hash)
+    arms = Arms.of(task.course.root).text()
+    bundle = _bundle(task.course, task.submission.assignment, task.bundle_hash, arms)
     student = task.submission.student
     data, note, why = task.submission.read(limits.notebook)
 
@@ -144,7 +146,8 @@ def close_sandbox() -> None:
 
 
 @lru_cache(maxsize=4)
-def _bundle(course: Course, assignment: str, key: str) -> Bundle:
+def _bundle(course: Course, assignment: str, key: str, arms: str) -> Bundle:
+    """The bundle with a hash; ``arms`` are those that it has, as they may be given out later."""
     bundle = Bundle.of(course, assignment)
     if bundle.data["hash"] != key:
         raise LabkitError(f"{assignment} was released again while it was graded; grade again")
