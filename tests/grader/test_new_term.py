@@ -209,6 +209,7 @@ def test_an_archive_without_a_date_is_listed_and_searched(course, capsys):
     assert main(["term", "forget", "--older", "0", "--yes", *words]) == 0
     said = capsys.readouterr().out
     assert "rename it archive-YYYY-MM-DD" in said and "there is nothing to forget" in said
+    folder.with_suffix(".zip").write_text("a copy, which nobody can look into")
     assert main(["term", "forget", "--student", "ada", "--yes", *words]) == 0
     assert old.exists() and not (old / "submitted/ada").exists()
 

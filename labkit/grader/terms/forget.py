@@ -126,7 +126,8 @@ def _read_by_others(course: Course, student: str) -> Iterator[Path]:
 
 def _terms(course: Course) -> list[Course]:
     """The term under way and the archived ones, each laid out as a course is."""
-    terms = [course, *(Course(one.folder) for one in archives(course))]
+    folders = [one.folder for one in archives(course) if one.folder.is_dir()]
+    terms = [course, *map(Course, folders)]
     for term in terms:
         relocate(term, archived=term != course)
     return terms
