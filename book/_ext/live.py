@@ -64,8 +64,8 @@ class LiveArm(SphinxDirective):
             raise self.error(f"static/stills has no {still}: build the book once, then: make film")
         html = (
             f'<figure class="lk-live" role="group" aria-label="{escape(title)}">'
-            f'<img class="lk-still" src="{static}stills/{still}" width="1360" height="720" '
-            f'alt="{escape(title)}: the first view" loading="lazy">'
+            f'<img class="lk-still dark-light" src="{static}stills/{still}" width="1360" '
+            f'height="720" alt="{escape(title)}: the first view" loading="lazy">'
             f'<script type="application/json">{data}</script>'
             f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div></figure>'
             f'<script defer src="{static}live/boot.js"></script>'
