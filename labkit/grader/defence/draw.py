@@ -77,9 +77,7 @@ class Asked:
 
     Attributes:
         of: The answer that it is about.
-        edit: The mistake.
-        lines: The function with the mistake in it, without docstrings.
-        at: Which of these lines has the mistake, from 1.
+        edit: The mistake, and the functions with it.
         run: What the arm does now, if one runs.
         own: What the arm did with the answer as it was handed in.
         numbers: Otherwise, what is returned now beside what is expected.
@@ -88,8 +86,6 @@ class Asked:
 
     of: Accepted
     edit: Edit
-    lines: tuple[str, ...]
-    at: int
     run: Run | None
     own: Run | None
     numbers: Numbers | None
@@ -185,8 +181,8 @@ def _ask(
     todo = plan(cells, one.bundle.data["cells"])
     source = todo.source(one.question.name)
     secret = partial(rank, seed_of(course), student)
-    mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.line}/{e.now}"))
-    found = (_with(edit, one, source, todo, sandbox, limits) for edit in mistakes[:TRIES])
+    mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.at}/{e.now}"))
+    found = (_with(edit, one, todo, sandbox, limits) for edit in mistakes[:TRIES])
     first: Asked | None = None
     for asked in filter(None, found):
         if asked.known:
@@ -195,15 +191,12 @@ def _ask(
     return first
 
 
-def _with(
-    edit: Edit, one: Accepted, source: str, todo: Plan, sandbox: Sandbox, limits: Limits
-) -> Asked | None:
+def _with(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limits) -> Asked | None:
     """A question with this mistake; None if the checks accept it, or it only raises an error."""
     question = one.question
     place = todo.places[question.name]
     steps = [
-        replace(step, source=edit.put_into(source)) if step.number == place else step
-        for step in todo.steps
+        replace(step, source=edit.cell) if step.number == place else step for step in todo.steps
     ]
     with closing(Session(sandbox, steps, limits)) as session:
         session.right = [name for name in one.right if name != question.name]
@@ -215,13 +208,9 @@ def _with(
     run, numbers = _worst(question, tried), seen.numbers(question, tried)
     if run is None and (one.drives or numbers is None):
         return None
-    lines = edit.put_into(source).split("\n")
-    there = shown(source)
     return Asked(
         one,
         edit,
-        tuple(lines[k - 1] for k in there),
-        there.index(edit.line) + 1,
         run,
         next((x for x in one.answer.runs if run and x["test"] == run["test"]), None),
         None if run else numbers,
