@@ -223,7 +223,7 @@ def collect(
 def doctor() -> int:
     """Check whether this machine can grade safely.
 
-    The sandbox is tried from inside. Each missing part is named with the command that installs it.
+    The sandbox is tried from inside. If it cannot be made, what your machine needs is printed.
     """
     from ..doctor import examine
 
