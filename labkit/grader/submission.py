@@ -143,4 +143,4 @@ def read_file(path: Path, most: int) -> bytes:
 def check_size(size: int, most: int) -> None:
     """Refuse a file that is larger than ``most``, in [MiB]."""
     if size > most * 2**20:
-        raise LabkitError(f"the file has {size / 2**20:.0f} MB, the limit is {most} MB")
+        raise LabkitError(f"the file has {size / 2**20:.0f} MiB, the limit is {most} MiB")

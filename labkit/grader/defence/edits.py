@@ -128,7 +128,7 @@ def _places(functions: list[ast.FunctionDef]) -> Iterator[tuple[ast.AST, Callabl
 
 
 def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
-    """The mistakes that fit into one place, each as the node that stands there instead."""
+    """The mistakes that fit into one place, each as the node that takes its place."""
     match node:
         case ast.If(test=ast.Name()) | ast.IfExp(test=ast.Name()):
             yield _but(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"

@@ -22,6 +22,7 @@ from ...errors import LabkitError
 from ..atomic import write
 from ..clean import clean_text
 from ..each import Failed, for_student
+from ..nbgrader.autograded_notebook import as_typed
 from ..pseudonyms import pseudonyms
 from ..sandbox.limits import Limits
 from ..students.class_list import Student
@@ -116,17 +117,14 @@ def _report(
         elif kind == "own" and grade_id(cell) not in answers:
             text = without_names(text, team, "author")
             code = cell["cell_type"] == "code"
-            shown = _as_text(text) if code else _PICTURE.sub("", text.replace("<", "&lt;"))
+            shown = (
+                as_typed(text, "python") if code else _PICTURE.sub("", text.replace("<", "&lt;"))
+            )
             pictures = dict(_pictures(cell, code))
             if code:
                 shown += "".join(f"\n\n![figure](attachment:{name})" for name in pictures)
             told.append(v4.new_markdown_cell(shown, attachments=pictures))
     return told
-
-
-def _as_text(code: str) -> str:
-    fence = "`" * (max(map(len, re.findall("`+", code)), default=0) + 3)
-    return f"{fence}python\n{code}\n{fence}"
 
 
 def _pictures(cell: Mapping[str, Any], code: bool) -> Iterator[tuple[str, dict[str, str]]]:
