@@ -31,8 +31,8 @@ from ..atomic import write
 from ..clean import clean_line
 from ..each import Failed, for_student
 from ..grading.grade import parse
+from ..grading.public_evidence import fitting, motion
 from ..grading.results import digest
-from ..grading.seen import fitting, motion
 from ..grading.worker import in_sandbox
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness

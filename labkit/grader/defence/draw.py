@@ -19,7 +19,7 @@ from ...course.question import Call, Loop, Question, Tuned
 from ...course.verdict import Misconception, Outcome
 from ...errors import LabkitError
 from ..each import Failed
-from ..grading import seen
+from ..grading import public_evidence
 from ..grading.grade import parse
 from ..grading.plan import Plan, imports, plan
 from ..grading.results import Answer, Numbers, Run
@@ -205,7 +205,7 @@ def _with(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limit
         function.session.close_question()
     if tried.outcome is not Outcome.WRONG:
         return None
-    run, numbers = _worst(question, tried), seen.numbers(question, tried)
+    run, numbers = _worst(question, tried), public_evidence.numbers(question, tried)
     if run is None and (one.drives or numbers is None):
         return None
     return Asked(
@@ -221,7 +221,9 @@ def _with(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limit
 def _worst(question: Question, tried: Tried) -> Run | None:
     """The first public run that is not as good as it must be."""
     failed = {x.name for x in tried.results if x.outcome in (Outcome.WRONG, Outcome.ERROR)}
-    return next((run for run in seen.runs(question, tried) if run["test"] in failed), None)
+    return next(
+        (run for run in public_evidence.runs(question, tried) if run["test"] in failed), None
+    )
 
 
 def _known(question: Question, tried: Tried) -> Misconception | None:
