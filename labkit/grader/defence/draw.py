@@ -18,7 +18,7 @@ from ...course.marking import Tried, recognise, try_public
 from ...course.question import Call, Loop, Question, Tuned
 from ...course.verdict import Misconception, Outcome
 from ...errors import LabkitError
-from ..each import Failed
+from ..each import Failure
 from ..grading import public_evidence
 from ..grading.grade import parse
 from ..grading.plan import Plan, imports, plan
@@ -145,7 +145,7 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
     for name in sorted(path.stem for path in course.bundle.glob("*.json")):
         for result in standing(course, name, student):
             known = True
-            if isinstance(result, Failed):
+            if isinstance(result, Failure):
                 missing.append(f"{name}: {result.why}")
                 continue
             answers = {q.verdict.name: q for q in result.questions if q.verdict.right}

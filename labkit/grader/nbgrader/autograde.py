@@ -21,7 +21,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from ...course.bundle import Bundle
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..each import for_student
+from ..each import Failure, for_student
 from ..grading.batch import GradeOptions, grade_aside
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
@@ -124,11 +124,11 @@ def _grade(about: dict[str, Any]) -> Result:
         results = Results(course, about["assignment"])
         with exclusive_run(results.folder):
             (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
-            if isinstance(graded, LabkitError):
-                raise graded
+            if isinstance(graded, Failure):
+                raise LabkitError(str(graded))
             kept = for_student(graded.student, partial(results.keep, graded))
-            if isinstance(kept, LabkitError):
-                raise kept
+            if isinstance(kept, Failure):
+                raise LabkitError(str(kept))
         result = graded
         _known[key] = result
     return result

@@ -21,7 +21,7 @@ from ...course.notebook import Notebook, grade_id, read_cells
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import clean_text
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..nbgrader.autograded_notebook import as_typed
 from ..pseudonyms import pseudonyms
 from ..sandbox.limits import Limits
@@ -43,7 +43,7 @@ _PICTURE = re.compile(r"!(?=\[[^\]]*\](?!\(attachment:))")
 _BASE64 = re.compile(r"[A-Za-z0-9+/=\s]+")
 
 
-def hand_out(course: Course, assignment: str) -> Iterator[str | Failed]:
+def hand_out(course: Course, assignment: str) -> Iterator[str | Failure]:
     """Write a sheet for each student who has none yet; what somebody was given stays.
 
     Yields:
@@ -63,7 +63,7 @@ def hand_out(course: Course, assignment: str) -> Iterator[str | Failed]:
         members = team_of(author, people, roster)
         step = partial(_report, course, assignment, author, members, cells)
         done = for_student(author, step)
-        if isinstance(done, Failed):
+        if isinstance(done, Failure):
             del reports[team]
             yield done
         else:
