@@ -9,7 +9,7 @@ import pytest
 from handmade import ROOT
 
 from labkit.course.layout import Course
-from labkit.grader.defence.edits import edits, shown
+from labkit.grader.defence.edits import MOST, edits, shown
 
 LAW = '''import numpy as np
 
@@ -92,3 +92,8 @@ def test_what_is_nested_too_deep_to_be_written_out_has_no_edits():
 def test_every_answer_of_the_course_has_a_place_for_a_mistake():
     """So each function that a student writes can be asked about."""
     assert [answer.__name__ for answer in ANSWERS if not edits(inspect.getsource(answer))] == []
+
+
+def test_a_function_as_long_as_the_limit_allows_keeps_nobody_busy():
+    """Every mistake is written out whole, so their number is bounded."""
+    assert len(edits(f"def f(a):\n    return [{'a + a, ' * 1000}]")) <= MOST
