@@ -30,7 +30,7 @@ from ...metrics import SETTLED
 from ...replay import recorded_html
 from ...replay.motion import unpack
 from ..atomic import write
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..grading.results import Result
 from ..marks.mark import Mark
 from ..marks.table import mark_of
@@ -114,7 +114,7 @@ def page(
     )
 
 
-def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> list[Path | Failed]:
+def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> list[Path | Failure]:
     """Write the pages where ``nbgrader release_feedback`` looks for them.
 
     Args:

@@ -27,7 +27,7 @@ from ..clean import clean_data, clean_line
 
 
 class Run(TypedDict):
-    """A run of the arm on a public case; see `seen.runs`."""
+    """A run of the arm on a public case; see `public_evidence.runs`."""
 
     test: str
     says: str
@@ -40,7 +40,7 @@ class Run(TypedDict):
 
 
 class Numbers(TypedDict):
-    """The numbers of an answer beside those expected; see `seen.numbers`."""
+    """The numbers of an answer beside those expected; see `public_evidence.numbers`."""
 
     call: str
     expected: list[float]
