@@ -63,7 +63,8 @@ book-zip: .venv/.course build/campaign.json ## the book as one file to hand out
 book-pdf: for-tests .venv/.dev browser ## the book to print
 	@$(BIN)/python book/_tools/build_book.py --pdf
 
-film: for-tests .venv/.dev browser ## make the film on the book's first page again, from the built book
+film: for-tests .venv/.dev browser ## photograph the built book: the first page's film, the stills of the live arm
+	@$(BIN)/python book/_tools/make_stills.py
 	@$(BIN)/python book/_tools/make_film.py
 
 vendor: .venv/.dev ## make the book's browser files again (node 20)

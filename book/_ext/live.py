@@ -8,12 +8,16 @@ Its argument is the kind of panel, its options are settings, its text is the cap
     :path: circle
     Drag the arm.
     :::
+
+Before the click the figure shows a still of the panel, which `make film` photographs: one for each
+page, named after it.
 """
 
 from __future__ import annotations
 
 import json
 from html import escape
+from pathlib import Path
 from typing import Any, ClassVar
 
 from docutils import nodes
@@ -23,6 +27,7 @@ from sphinx.util.docutils import SphinxDirective
 
 PIECES = ("open", "stiffness", "age", "singular")
 SETTINGS = ("controller", "path")
+STILLS = Path(__file__).parents[1] / "static" / "stills"
 WITHOUT = "In print, or without JavaScript, the recorded runs and the text show the same thing."
 
 
@@ -53,12 +58,17 @@ class LiveArm(SphinxDirective):
         settings = {k: v for k, v in self.options.items() if k in SETTINGS}
         title = own.setdefault("title", "The live arm")
         data = json.dumps({"piece": piece, **own, "settings": settings}).replace("<", "\\u003c")
-        root = "../" * self.env.docname.count("/") + "_static/live/"
+        static = "../" * self.env.docname.count("/") + "_static/"
+        still = self.env.docname.replace("/", "_") + ".webp"
+        if not (STILLS / still).exists():
+            raise self.error(f"static/stills has no {still}: build the book once, then: make film")
         html = (
             f'<figure class="lk-live" role="group" aria-label="{escape(title)}">'
+            f'<img class="lk-still dark-light" src="{static}stills/{still}" width="1360" '
+            f'height="720" alt="{escape(title)}: the first view" loading="lazy">'
             f'<script type="application/json">{data}</script>'
             f'<div class="lk-offer"><p class="lk-without">{WITHOUT}</p></div></figure>'
-            f'<script defer src="{root}boot.js"></script>'
+            f'<script defer src="{static}live/boot.js"></script>'
         )
         caption = nodes.container(classes=["lk-caption"])
         self.state.nested_parse(self.content, self.content_offset, caption)

@@ -24,6 +24,7 @@ async function open(host, button, status) {
     const config = JSON.parse(host.querySelector('script[type="application/json"]').textContent);
     const place = document.createElement("div");
     host.querySelector(".lk-offer").replaceWith(place);
+    host.querySelector(".lk-still").remove();
     host.live = await globalThis.labkitLive.mount(place, config, viewer, globalThis.labkitRobot, began);
     place.querySelector("button, input, select")?.focus({ preventScroll: true });
   } catch (problem) {

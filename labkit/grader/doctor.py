@@ -8,17 +8,10 @@ import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import Path
 from textwrap import wrap
 
 from ..sim import installed
 from .pages import render
-
-_APPARMOR = Path("/proc/sys/kernel/apparmor_restrict_unprivileged_userns")
-_SWITCHES = (
-    (Path("/proc/sys/kernel/unprivileged_userns_clone"), "0", "kernel.unprivileged_userns_clone=1"),
-    (Path("/proc/sys/user/max_user_namespaces"), "0", "user.max_user_namespaces=10000"),
-)
 
 DOCKER = (
     "--security-opt=seccomp=unconfined",
@@ -74,10 +67,9 @@ def _linux() -> Iterator[Finding]:
     says = f"missing {', '.join(missing)}; type: pip install 'labkit[instructor]'"
     yield Finding("instructor's packages", not missing, says if missing else "installed")
     program = shutil.which("bwrap")
-    yield Finding("bubblewrap", program is not None, program or f"missing; {_install()}")
+    yield Finding("bubblewrap", program is not None, program or "missing")
     fine = seccomp.supported()
     yield Finding("filter of system calls", fine, platform.machine())
-    yield from _namespaces()
     yield from sandbox()
     yield Finding(
         "speed", True, f"time limits are multiplied by {slowness():g} on this machine", needed=False
@@ -140,37 +132,6 @@ if ctypes.CDLL(None).unshare(0x10000000) == 0:
 if bad:
     raise RuntimeError("; ".join(bad))
 """
-
-
-def _namespaces() -> Iterator[Finding]:
-    """Whether users other than root may make user namespaces."""
-    if os.geteuid() == 0:
-        return
-    for switch, off, command in _SWITCHES:
-        if switch.exists() and switch.read_text().strip() == off:
-            says = f"switched off; type: sudo sysctl {command}"
-            yield Finding("user namespaces", False, says)
-            return
-    if _APPARMOR.exists() and _APPARMOR.read_text().strip() == "1":
-        says = (
-            "Ubuntu's AppArmor restricts them; give bubblewrap a profile (as below), or for this "
-            "boot: sudo sysctl kernel.apparmor_restrict_unprivileged_userns=0"
-        )
-        profile = Path("/etc/apparmor.d/bwrap").exists()
-        yield Finding("user namespaces", profile, says, needed=False)
-    else:
-        yield Finding("user namespaces", True, "allowed")
-
-
-def _install() -> str:
-    for tool, line in (
-        ("apt-get", "sudo apt-get install bubblewrap"),
-        ("dnf", "sudo dnf install bubblewrap"),
-        ("pacman", "sudo pacman -S bubblewrap"),
-    ):
-        if shutil.which(tool):
-            return f"type: {line}"
-    return "your system's packages have it"
 
 
 def elsewhere() -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 from typing import TypeVar
 
 from ..errors import LabkitError
@@ -15,18 +16,17 @@ _OF_THE_MACHINE = {errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EMFILE, errno.
 """Errors that every student's step would meet, such as a full or read-only disk."""
 
 
-class Failed(LabkitError):
-    """A step failed for one student.
+@dataclass(frozen=True)
+class Failure:
+    """What a step gives in the place of its result where it failed for one student.
 
     Attributes:
         student: For whom.
         why: A sentence.
     """
 
-    def __init__(self, student: str, why: str) -> None:
-        """Name the student, and say what failed."""
-        super().__init__(student, why)
-        self.student, self.why = student, why
+    student: str
+    why: str
 
     def __str__(self) -> str:
         return f"{self.student}: {self.why}"
@@ -34,7 +34,7 @@ class Failed(LabkitError):
 
 def for_student(
     student: str, step: Callable[[], T], of_all: tuple[type[Exception], ...] = ()
-) -> T | Failed:
+) -> T | Failure:
     """Do a step for one student.
 
     Args:
@@ -53,14 +53,14 @@ def for_student(
     except of_all:
         raise
     except LabkitError as error:
-        return Failed(student, clean_line(str(error)))
+        return Failure(student, clean_line(str(error)))
     except OSError as error:
         if error.errno in _OF_THE_MACHINE:
             raise
         where = "" if error.filename is None else f"{error.filename}: "
-        return Failed(student, clean_line(f"{where}{error.strerror or error}"))
+        return Failure(student, clean_line(f"{where}{error.strerror or error}"))
     except Exception as error:
-        return Failed(student, clean_line(f"{type(error).__name__}: {error}"))
+        return Failure(student, clean_line(f"{type(error).__name__}: {error}"))
 
 
 class Failures:
@@ -79,14 +79,14 @@ class Failures:
         """The exit code: 1 if something failed."""
         return 1 if self.sentences else 0
 
-    def add(self, what: str, failed: Iterable[LabkitError]) -> None:
+    def add(self, what: str, failed: Iterable[object]) -> None:
         """Keep failures; ``what`` says what they mean, such as "not graded"."""
         sentences = [f"{what}: {one}" for one in failed]
         self.sentences += sentences
         if self._at_once:
             _name(sentences)
 
-    def sift(self, outcomes: Iterable[T | LabkitError], what: str) -> Iterator[T]:
+    def sift(self, outcomes: Iterable[T | Failure], what: str) -> Iterator[T]:
         """Yield what was done, and keep what failed.
 
         Args:
@@ -94,7 +94,7 @@ class Failures:
             what: What a failure means, such as "not graded".
         """
         for one in outcomes:
-            if isinstance(one, LabkitError):
+            if isinstance(one, Failure):
                 self.add(what, [one])
             else:
                 yield one

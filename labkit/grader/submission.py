@@ -12,7 +12,7 @@ from pathlib import Path
 from ..course.layout import Course
 from ..errors import LabkitError
 from .clean import clean_line, some
-from .each import Failed
+from .each import Failure
 
 
 @dataclass(frozen=True)
@@ -62,14 +62,14 @@ def students(course: Course, name: str) -> list[str]:
     return [student for student in _folders(course, name) if is_name(student)]
 
 
-def misnamed(course: Course, name: str) -> list[Failed]:
+def misnamed(course: Course, name: str) -> list[Failure]:
     """Folders whose name no database, page or terminal should be given; named in plain letters."""
     return [unfit(student) for student in _folders(course, name) if not is_name(student)]
 
 
-def unfit(student: str) -> Failed:
+def unfit(student: str) -> Failure:
     """What is said of such a folder."""
-    return Failed(
+    return Failure(
         plain_name(student),
         "a folder in submitted/ has this name, in which a page would see markup or a terminal "
         "commands; rename the folder and grade again",
@@ -143,4 +143,4 @@ def read_file(path: Path, most: int) -> bytes:
 def check_size(size: int, most: int) -> None:
     """Refuse a file that is larger than ``most``, in [MiB]."""
     if size > most * 2**20:
-        raise LabkitError(f"the file has {size / 2**20:.0f} MB, the limit is {most} MB")
+        raise LabkitError(f"the file has {size / 2**20:.0f} MiB, the limit is {most} MiB")

@@ -8,7 +8,7 @@ from accessibility import COLOURS, violations
 from test_pages import too_wide
 
 pytestmark = pytest.mark.slow
-PAGES = ("live", "live_stiffness", "live_age", "live_singular")
+PAGES = ("index", "live", "live_stiffness", "live_age", "live_singular")
 ERROR = "document.querySelector('.lk-live').live.now.error"  # of the tip, in [m]
 OFF, BACK = f"{ERROR} > 0.01", f"{ERROR} < 0.003"
 
@@ -62,9 +62,11 @@ def test_a_live_page_is_quiet_accessible_and_fits(live, name):
     assert violations(page, only=COLOURS) == [], "dark"
 
 
-def test_a_page_that_nobody_clicked_loads_no_physics(visit):
-    """Before the click there is neither MuJoCo nor the live arm's bundle."""
-    page = visit("live.html")
+@pytest.mark.parametrize("name", ["index", "live"])
+def test_a_page_that_nobody_clicked_loads_no_physics(visit, name):
+    """Before the click there is a picture, and neither MuJoCo nor the live arm's bundle."""
+    page = visit(f"{name}.html")
+    assert page.locator("img.lk-still").evaluate("e => e.complete && e.naturalWidth") == 1360
     loaded = page.evaluate("performance.getEntriesByType('resource').map(e => e.name).join(' ')")
     assert "mujoco" not in loaded
     assert "live.js" not in loaded

@@ -84,7 +84,8 @@ def test_reduced_motion_stops_the_themes_transitions(visit):
 
 
 def test_without_webgl_words_and_plots_remain(visit, blind_chromium):
-    page = visit("index.html", browser=blind_chromium)
+    page = visit("chapters/torque.html", browser=blind_chromium)
+    page.locator(".lk-embed").first.scroll_into_view_if_needed()
     page.wait_for_selector("[data-ready]")
     assert page.is_visible(".lk-embed img.lk-poster")
     assert "left arm" in page.get_attribute(".lk-embed img.lk-poster", "alt")
@@ -142,8 +143,8 @@ def test_a_wide_formula_is_moved_by_keyboard(visit):
 
 
 def test_a_phone_loads_the_arm_on_tap(visit):
-    page = visit("index.html", phone=True)
+    page = visit("gallery/line.html", phone=True)
     page.wait_for_timeout(300)
     assert page.locator("canvas").count() == 0
-    page.get_by_role("button", name="Tap to load").click()
+    page.get_by_role("button", name="Tap to load").first.click()
     page.wait_for_selector("[data-ready]")

@@ -373,7 +373,7 @@ def test_collect_waits_for_nothing_and_follows_nobody(bare, tmp_path, monkeypatc
     for folder in folders:
         written_at(folder, "2026-03-01 10:00:00 UTC")
     said = troubles(bare, tmp_path / "in", unverified=True)
-    words = ("is not a file", "is a link or cannot be opened", "has 2 MB, the limit is 1 MB")
+    words = ("is not a file", "is a link or cannot be opened", "has 2 MiB, the limit is 1 MiB")
     assert [word in x for word, x in zip(words, said, strict=True)] == [True] * 3
     assert not counting(bare)
 
@@ -442,7 +442,7 @@ def changed(path, *changes):
     [
         ([(8, "<H", 1)], "it is locked with a password"),
         ([(24, "<L", 10)], "damaged: Bad CRC-32"),  # says it is smaller than it is
-        ([(24, "<L", 2**31)], "has 2048 MB, the limit is 200 MB"),
+        ([(24, "<L", 2**31)], "has 2048 MiB, the limit is 200 MiB"),
         ([(16, "<L", 0)], "damaged: Bad CRC-32"),
         ([(10, "<H", 99)], "damaged: "),  # an unknown way of packing
         ([(-30, "<B", 90)], "damaged: File name in directory"),  # another name in its own header
@@ -464,7 +464,7 @@ def test_a_bomb_is_not_unpacked(bare, tmp_path, monkeypatch):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr(ADA, b" " * 2**22)
         archive.writestr(*BOB)
-    assert "has 4 MB, the limit is 1 MB" in troubles(bare, path)[0]
+    assert "has 4 MiB, the limit is 1 MiB" in troubles(bare, path)[0]
     data = bytearray(path.read_bytes())
     struct.pack_into("<L", data, data.index(b"PK\1\2") + 24, 2**19)
     path.write_bytes(data)

@@ -56,11 +56,11 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
     for one in asked:
         names = {"lk": lk, "np": np}
         own = "".join(cell_of(solved, one.of.question.name)["source"])
-        exec(one.edit.put_into(own), names)
+        exec(one.edit.cell, names)
         assert try_public(one.of.question, names[one.of.question.name]).outcome != "right"
         exec(own, names)
         assert try_public(one.of.question, names[one.of.question.name]).outcome == "right"
-        assert one.lines[one.at - 1] == one.edit.now and '"""' not in "".join(one.lines)
+        assert one.edit.now != one.edit.was and '"""' not in "".join(one.edit.lines)
     other = [(one.of.question.name, one.edit) for one in draw(course, "bob")]
     assert other != [(one.of.question.name, one.edit) for one in asked]
 
@@ -111,7 +111,7 @@ def test_the_front_says_what_the_law_is_given():
     """The gains of the run, and whether the arm carries itself: without them nobody can answer."""
     loop = Loop(None, {"kp": 40.0, "arm_compensates": False})
     question = SimpleNamespace(tests=[SimpleNamespace(name="circle", cases=[loop])])
-    asked = Asked(SimpleNamespace(question=question), None, (), 1, {"test": "circle"}, *[None] * 3)
+    asked = Asked(SimpleNamespace(question=question), None, {"test": "circle"}, *[None] * 3)
     assert asked.given == "(kp=40.0, arm_compensates=False)"
 
 

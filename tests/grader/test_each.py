@@ -15,7 +15,7 @@ from made import NAME, changed, graded, handed_in, result_of
 
 from labkit.__main__ import main
 from labkit.errors import LabkitError
-from labkit.grader.each import Failed, Failures, for_student
+from labkit.grader.each import Failure, Failures, for_student
 from labkit.grader.feedback import page as feedback
 from labkit.grader.grading import batch, results
 from labkit.grader.grading.results import Results
@@ -161,7 +161,7 @@ def test_what_concerns_everybody_is_raised():
 def test_failures_are_told_at_the_end(capsys):
     """Sifting passes on what was done; the exit code and stderr have the rest, also on an error."""
     with pytest.raises(LabkitError, match="later"), Failures() as failures:
-        assert list(failures.sift([1, Failed("ada", "why"), 2], "not done")) == [1, 2]
+        assert list(failures.sift([1, Failure("ada", "why"), 2], "not done")) == [1, 2]
         assert (failures.code, capsys.readouterr().err) == (1, "")
         raise LabkitError("later")
     assert capsys.readouterr().err == "not done: ada: why\n"

@@ -9,7 +9,7 @@ import pytest
 from handmade import ROOT
 
 from labkit.course.layout import Course
-from labkit.grader.defence.edits import edits, shown
+from labkit.grader.defence.edits import MOST, edits, shown
 
 LAW = '''import numpy as np
 
@@ -17,8 +17,9 @@ def law(state, target, *, kp, kd):
     """Says what it does,
     in two lines."""
     q = state.q
-    e, de = (target.position - q), target.velocity - state.dq  # the errors: ü
-    tau = kp * e + kd * de
+    e, de = (target.position-q), target.velocity - state.dq  # the errors: ü
+    tau = (kp*e +
+           kd*de)
     tau += model.gravity(q)
     if carried:
         return tau[0] @ R.T
@@ -26,41 +27,55 @@ def law(state, target, *, kp, kd):
 
 print(1 - 2)
 '''
+COURSE = Course(ROOT)
+ANSWERS = [p.answer for name in COURSE.names()[:-1] for p in COURSE.problems(name)]
 
 
 def test_the_mistakes_that_people_make_are_among_the_edits():
     """A sign, an order, a term, a factor, an index, a condition, a transpose, another function."""
-    found = {(edit.line, edit.now.strip()) for edit in edits(LAW)}
-    errors = "target.velocity - state.dq  # the errors: ü"
+    found = {(edit.at, edit.now.strip()) for edit in edits(LAW)}
     assert found >= {
-        (7, f"e, de = (q - target.position), {errors}"),
-        (7, "e, de = (target.position - q), -state.dq  # the errors: ü"),
-        (8, "tau = kp * e - kd * de"),
-        (8, "tau = kp * e"),
-        (8, "tau = e + kd * de"),
-        (9, "tau -= model.gravity(q)"),
-        (10, "if not carried:"),
-        (11, "return tau[-1] @ R.T"),
-        (11, "return tau[0] @ R"),
-        (12, "return min(tau, 0.5 * (q + de))"),
-        (12, "return max(tau, (q + de))"),
+        (3, "e, de = (q - target.position, target.velocity - state.dq)"),
+        (3, "e, de = (target.position - q, -state.dq)"),
+        (4, "tau = kp * e - kd * de"),
+        (4, "tau = kp * e"),
+        (4, "tau = e + kd * de"),
+        (5, "tau -= model.gravity(q)"),
+        (6, "if not carried:"),
+        (7, "return tau[-1] @ R.T"),
+        (7, "return tau[0] @ R"),
+        (8, "return min(tau, 0.5 * (q + de))"),
+        (8, "return max(tau, q + de)"),
     }
 
 
-def test_an_edit_changes_one_line_of_a_function_and_leaves_python():
-    """What stands outside of functions stays, whatever it is."""
-    for edit in edits(LAW):
-        lines = edit.put_into(LAW).split("\n")
-        differ = [k for k, pair in enumerate(zip(LAW.split("\n"), lines, strict=True), 1)
+@pytest.mark.parametrize("text, now", [("a[:3]", "a[3:]"), ("a[:, 2:]", "a[:, :2]"),
+                                        ("a[0, i]", "a[-1, i]"), ("-a[i]", "a[i]"),
+                                        ("not a", "a"), ("a <= i", "a >= i")])  # fmt: skip
+def test_a_mistake_with_an_index_a_sign_or_a_comparison(text, now):
+    """The other half of a vector, the last one, a sign that is left out, a condition reversed."""
+    found = edits(f"def f(a, i):\n    return {text}")
+    assert f"return {now}" in [edit.now.strip() for edit in found]
+
+
+@pytest.mark.parametrize("text", [LAW, *map(inspect.getsource, ANSWERS)])
+def test_an_edit_changes_one_shown_line_and_leaves_python(text):
+    """What stands outside of functions stays; so does each other line."""
+    before = shown(text)
+    for edit in edits(text):
+        differ = [k for k, pair in enumerate(zip(before, edit.lines, strict=True), 1)
                   if pair[0] != pair[1]]  # fmt: skip
-        assert differ == [edit.line]
-        assert 6 <= edit.line <= 12
-        ast.parse("\n".join(lines))
+        assert differ == [edit.at] and edit.was == before[edit.at - 1]
+        assert shown(edit.cell) == list(edit.lines)
+        assert "print(1 - 2)" in edit.cell or text != LAW
 
 
 def test_the_functions_are_shown_without_their_docstrings():
-    """Line for line, and nothing of what stands around them."""
-    assert shown(LAW) == [3, *range(6, 13)]
+    """And as Python writes them, so that spacing and comments do not give the mistake away."""
+    function = ast.parse(LAW).body[1]
+    del function.body[0]
+    assert shown(LAW) == ast.unparse(function).split("\n")
+    assert shown('def f():\n    """Nothing else."""') == ["def f():", "    pass"]
 
 
 @pytest.mark.parametrize("text", ["", "def law(:", "x = 1 + 2", "(" * 300, "%%bash\nls", "\0"])
@@ -69,9 +84,16 @@ def test_a_text_without_functions_has_no_edits(text):
     assert edits(text) == [] and shown(text) == []
 
 
-def test_almost_every_answer_of_the_course_has_a_place_for_a_mistake():
-    """Of all questions that ask for a function, at most two have none."""
-    course = Course(ROOT)
-    texts = [inspect.getsource(p.answer) for name in course.names()[:-1]
-             for p in course.problems(name)]  # fmt: skip
-    assert sum(not edits(text) for text in texts) <= 2
+def test_what_is_nested_too_deep_to_be_written_out_has_no_edits():
+    """Python reads a long sum, and cannot write it."""
+    assert edits(f"def f(a):\n    return {'a + ' * 2000}a") == []
+
+
+def test_every_answer_of_the_course_has_a_place_for_a_mistake():
+    """So each function that a student writes can be asked about."""
+    assert [answer.__name__ for answer in ANSWERS if not edits(inspect.getsource(answer))] == []
+
+
+def test_a_function_as_long_as_the_limit_allows_keeps_nobody_busy():
+    """Every mistake is written out whole, so their number is bounded."""
+    assert len(edits(f"def f(a):\n    return [{'a + a, ' * 1000}]")) <= MOST

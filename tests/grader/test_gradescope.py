@@ -23,7 +23,7 @@ from labkit.course.cli import FOR_INSTRUCTORS
 from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader.gradescope import run as gradescope
 from labkit.grader.gradescope import setup_zip as gradescope_zip
-from labkit.grader.gradescope.run import report
+from labkit.grader.gradescope.run import gradescope_results
 from labkit.grader.grading.grade import OTHER_NOTEBOOK, grade
 from labkit.grader.sandbox.apart import alive
 from labkit.grader.sandbox.launch import Sandbox
@@ -102,11 +102,11 @@ def test_a_report_has_points_and_words_for_each_question(course):
     bundle, result = Bundle.of(course, NAME), result_of(course, "ada")
     verdicts = {answer.verdict.name: answer.verdict for answer in result.questions}
     first = dict(list(verdicts.items())[:2])
-    early = report(bundle, first)
+    early = gradescope_results(bundle, first)
     assert early["score"] == sum(v.earned for v in first.values())
     assert [t["score"] > 0 for t in early["tests"][:4]] == [True, True, False, False]
     assert "not graded yet" in early["tests"][2]["output"]
-    whole = report(bundle, verdicts, result)
+    whole = gradescope_results(bundle, verdicts, result)
     assert whole["score"] == FULL == sum(t.get("max_score", 0) for t in whole["tests"])
     (why,) = (t for t in whole["tests"] if t["name"] == WHY)
     assert "score" not in why and "A person marks" in why["output"]
@@ -124,7 +124,7 @@ def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solv
     result = grade(other, "ada", bundle, sandbox, QUICK)
     assert result.notes == (note,)
     verdicts = {answer.verdict.name: answer.verdict for answer in result.questions}
-    assert f"Note: {note}." in report(bundle, verdicts, result)["output"]
+    assert f"Note: {note}." in gradescope_results(bundle, verdicts, result)["output"]
     assert grade(raw(add(solved, "x = 1")), "bob", bundle, sandbox, QUICK).notes == ()
     hand_in(course, NAME, "ada", other)
     hand_in(course, NAME, "bob", solved)
@@ -136,7 +136,7 @@ def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solv
 def test_a_file_that_cannot_be_graded_says_why(course):
     """It has 0 points, and the reason stands above the questions."""
     refused = result_of(course, "ada", rejected="the file is empty")
-    found = report(Bundle.of(course, NAME), {}, refused)
+    found = gradescope_results(Bundle.of(course, NAME), {}, refused)
     assert found["score"] == 0 and "the file is empty" in found["output"]
     assert "yet" not in found["tests"][0]["output"]
 
@@ -192,7 +192,7 @@ def test_what_was_graded_until_a_limit_counts(archive, course, monkeypatch, end,
     (answer, *_) = result_of(course, "ada").questions
 
     def grade(bundle, place, results):
-        found = report(bundle, {answer.verdict.name: answer.verdict})
+        found = gradescope_results(bundle, {answer.verdict.name: answer.verdict})
         results.write_text(json.dumps(found))
         end()
 

@@ -154,10 +154,12 @@ def test_one_refusal_stops_no_other_release(monkeypatch, capsys):
 
     monkeypatch.setattr("labkit.grader.terms.release.release", release)
     words = ["00_warmup", "01_paths", "08_report", "--course", str(COURSE.root), "--seed", "7"]
-    assert main(["release", *words]) == 2
+    assert main(["release", *words]) == 1
     said = capsys.readouterr()
-    assert said.out == "00_warmup is made\n08_report is made\n"
-    assert "01_paths: the first cell says 24 points" in said.err
+    assert said.out.startswith("00_warmup is made\n08_report is made\ntried: ")
+    assert said.err == "01_paths is not released: the first cell says 24 points\n"
+    assert main(["release", "01_paths", *words[3:]]) == 1
+    assert capsys.readouterr().out == ""
 
 
 def test_the_public_file_is_small_and_valid():

@@ -24,7 +24,7 @@ from labkit.formats import FORMAT, stamp
 from labkit.grader import atomic as module
 from labkit.grader.atomic import write
 from labkit.grader.clean import clean_data
-from labkit.grader.each import Failed
+from labkit.grader.each import Failure
 from labkit.grader.grading.grade import grade
 from labkit.grader.grading.results import Result, Results, engine_files
 from labkit.grader.grading.standing import standing
@@ -102,7 +102,7 @@ def test_results_of_another_version_are_refused(marked, numbers):
         LabkitError, match=r"^ada\.json has (format|physics) \d+, this labkit reads"
     ):
         results.read("ada")
-    (failed,) = [x for x in standing(marked, NAME) if isinstance(x, Failed)]
+    (failed,) = [x for x in standing(marked, NAME) if isinstance(x, Failure)]
     assert str(failed).endswith(f"type: labkit grade {NAME} --student ada")
 
 

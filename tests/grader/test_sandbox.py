@@ -74,6 +74,19 @@ def test_containers_state_the_same_options():
     assert all(option in elsewhere() for option in DOCKER)
 
 
+def test_where_no_sandbox_can_be_made_doctor_says_what_each_system_needs(monkeypatch):
+    """The sandbox that is tried decides; settings of the kernel are not judged by themselves."""
+
+    def fails(*_):
+        raise NoIsolation("the sandbox did not start")
+
+    monkeypatch.setattr(Sandbox, "__enter__", fails)
+    (found,) = [x for x in examine() if x.needed and not x.fine]
+    assert found.says == f"the sandbox did not start\n\n{elsewhere()}"
+    for command in ("apt-get install", "unprivileged_userns_clone", "max_user_namespaces"):
+        assert command in found.says
+
+
 @pytest.mark.parametrize("added", [DOCKER, DOCKER[:-1], ()], ids=["all", "one less", "none"])
 def test_dockers_rights_suffice(added):
     """With the rights that a container is given there is a sandbox; with one less, a way out."""

@@ -11,7 +11,7 @@ from made import NAME, notebook_of, result_of
 from labkit.__main__ import main
 from labkit.course.bundle import Bundle
 from labkit.course.own_arm import Arms
-from labkit.grader.each import Failed
+from labkit.grader.each import Failure
 from labkit.grader.grading import batch, worker
 from labkit.grader.grading.batch import GradeOptions, watch
 from labkit.grader.sandbox.limits import Limits
@@ -65,7 +65,7 @@ def test_a_failure_is_named_as_it_happens(course, monkeypatch, capsys):
     said = []
 
     def failing(*_):
-        yield Failed("ada", "memory ran out")
+        yield Failure("ada", "memory ran out")
         said.append(capsys.readouterr().err)
         raise KeyboardInterrupt
 

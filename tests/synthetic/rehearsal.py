@@ -13,7 +13,7 @@ from labkit.course.layout import Course
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import LabkitError
 from labkit.grader.atomic import write
-from labkit.grader.each import Failed, Failures
+from labkit.grader.each import Failure, Failures
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import write_feedback
 from labkit.grader.grading.batch import GradeOptions, common_failures, grade_class
@@ -32,7 +32,7 @@ LAYOUTS_TO_TRY = ("questions", "moodle-worksheet", "canvas")
 
 def rehearse(
     course: Course, name: str, to: Path, count: int, options: GradeOptions
-) -> Iterator[str | LabkitError]:
+) -> Iterator[str | Failure]:
     """Play a term through in a folder of its own; what is done already is not done again.
 
     Args:
@@ -70,7 +70,7 @@ def rehearse(
     notes = list(failures.sift(record(stage, name, results), "not in the gradebook"))
     yield clock.says(f"in the gradebook: {len(results)}, {len(notes)} to look at")
     marks = list(marks_of(stage, name))
-    failures.add("no mark", (Failed(row.student, row.missing) for row in marks if row.missing))
+    failures.add("no mark", (Failure(row.student, row.missing) for row in marks if row.missing))
     written = write_feedback(stage, name, [mark for mark in marks if not mark.missing])
     pages = list(failures.sift(written, "no page"))
     size = sum(page.stat().st_size for page in pages) / 1e6
@@ -83,7 +83,7 @@ def rehearse(
     for layout in LAYOUTS_TO_TRY:
         write(stage.root / f"marks-{layout}.csv", as_csv(LAYOUTS[layout](name, marks)))
     yield clock.says(f"exported: {', '.join(f'marks-{x}.csv' for x in LAYOUTS_TO_TRY)}")
-    yield from map(LabkitError, failures.sentences)
+    yield from (Failure("the class", sentence) for sentence in failures.sentences)
     wrong = list(differences(stage, name))
     if wrong:
         raise LabkitError(f"{len(wrong)} marks are not what was deserved: {'; '.join(wrong[:3])}")

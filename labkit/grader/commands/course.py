@@ -70,8 +70,9 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     """Make the students' notebooks.
 
     Each NAME is an assignment, such as 01_paths. Without a NAME all assignments are made. One that
-    is refused stops none of the others; the reasons come at the end, with exit code 2.
+    is refused stops none of the others; the reasons come at the end, with exit code 1.
     """
+    from ..each import Failures
     from ..seeds import public_warning, seed_for
     from ..terms.release import release
 
@@ -79,21 +80,23 @@ def release(course: Course, names: tuple[str, ...], seed: int | None) -> int:
     for name in names:
         course.notebook_source(name)
     seeds: set[int] = set()
-    refused: list[str] = []
-    for name in names:
-        used = seed_for(course, name) if seed is None else seed
-        try:
-            print(release(course, name, used), flush=True)
-            seeds.add(used)
-        except LabkitError as error:
-            refused.append(str(error) if name in str(error) else f"{name}: {error}")
-    if refused:
-        raise LabkitError("\n".join(refused))
-    print("tried: known mistakes, stand-ins, public cases from memory; more by: labkit report-card")
-    for warning in filter(None, map(public_warning, seeds)):
-        print(warning)
-    print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
-    return 0
+    with Failures() as failures:
+        for name in names:
+            try:
+                used = seed_for(course, name) if seed is None else seed
+                print(release(course, name, used), flush=True)
+                seeds.add(used)
+            except LabkitError as error:
+                failures.add(f"{name} is not released", [error])
+        if seeds:
+            print(
+                "tried: known mistakes, stand-ins, public cases from memory; "
+                "more by: labkit report-card"
+            )
+            for warning in filter(None, map(public_warning, seeds)):
+                print(warning)
+            print(f"for students: {course.release}\nfor graders, with hidden cases: {course.build}")
+    return failures.code
 
 
 @verb("00_warmup 01_paths --to week1.zip")
@@ -232,7 +235,7 @@ def collect(
 def doctor() -> int:
     """Check whether this machine can grade safely.
 
-    The sandbox is tried from inside. Each missing part is named with the command that installs it.
+    The sandbox is tried from inside. If it cannot be made, what your machine needs is printed.
     """
     from ..doctor import examine
 

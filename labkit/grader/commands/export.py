@@ -14,7 +14,7 @@ from ...course.cli import verb
 from ...course.layout import CUP, UNRELEASED, Course
 from ...errors import LabkitError
 from ..clean import some
-from ..each import Failed, Failures
+from ..each import Failure, Failures
 from .course import of_course
 from .pages import nobody, tell, to_file, write
 
@@ -163,7 +163,7 @@ def _autograder(course: Course, assignment: str | None, to: Path | None) -> int:
     with Failures() as failures:
         unknown = autograder(course, assignment, to)
         why = "the roster has no e-mail address, by which Gradescope tells whose arm it is"
-        failures.add("not known to Gradescope", [Failed(x.id, why) for x in unknown])
+        failures.add("not known to Gradescope", [Failure(x.id, why) for x in unknown])
         print(f"written: {to}; it holds the hidden cases, so give it to Gradescope alone")
     return failures.code
 

@@ -13,7 +13,7 @@ from ...course.cli import PATH, verb
 from ...course.layout import Course
 from ...errors import LabkitError
 from ..clean import how_many, some
-from ..each import Failed, Failures
+from ..each import Failure, Failures
 from .course import MARKED_BY, of_assignment
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def class_report(
         if not any(mark.result for mark in marks):
             raise nobody(assignment, None, next((m.missing for m in marks if m.missing), ""))
         out = [mark for mark in marks if mark.missing and not mark.lines]
-        failures.add("left out", [Failed(mark.student, mark.missing) for mark in out])
+        failures.add("left out", [Failure(mark.student, mark.missing) for mark in out])
         problems = {p.name: p for p in course.problems(assignment)}
         pseudonym = pseudonyms(course)
         called, fewest = str if names else pseudonym, 1 if names else FEWEST

@@ -29,10 +29,10 @@ from ...run import Controller
 from ...trajectory import AnySample
 from ..atomic import write
 from ..clean import clean_line
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..grading.grade import parse
+from ..grading.public_evidence import fitting, motion
 from ..grading.results import digest
-from ..grading.seen import fitting, motion
 from ..grading.worker import in_sandbox
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
@@ -111,7 +111,7 @@ def seeds(course: Course, final: bool) -> tuple[int, ...]:
     return tuple(int.from_bytes(draw(f"{CUP}/{k}")[:4], "big") for k in range(SEEDS))
 
 
-def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failed]:
+def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failure]:
     """Run each notebook that was not run yet; of a handle at most `A_DAY` on the board in a day.
 
     Yields:
@@ -131,12 +131,12 @@ def play(course: Course, today: date, final: bool) -> Iterator[Entry | Failed]:
         if any((x.notebook, x.final) == (new.notebook, final) for x in past):
             continue
         if not final and had[handle] >= A_DAY:
-            yield Failed(student, f"{handle} had {A_DAY} runs today; type the same tomorrow")
+            yield Failure(student, f"{handle} had {A_DAY} runs today; type the same tomorrow")
             continue
         run = partial(_run, new, data, limits, seeds(course, final))
         step = partial(in_sandbox, run, course, ("labkit", "numpy"))
         done = new if why else for_student(student, step, (NoIsolation,))
-        if not isinstance(done, Failed):
+        if not isinstance(done, Failure):
             had[handle] += 1
             _keep(course, [*(replace(x, motion="") for x in past), done])
         yield done

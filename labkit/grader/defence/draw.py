@@ -18,8 +18,8 @@ from ...course.marking import Tried, recognise, try_public
 from ...course.question import Call, Loop, Question, Tuned
 from ...course.verdict import Misconception, Outcome
 from ...errors import LabkitError
-from ..each import Failed
-from ..grading import seen
+from ..each import Failure
+from ..grading import public_evidence
 from ..grading.grade import parse
 from ..grading.plan import Plan, imports, plan
 from ..grading.results import Answer, Numbers, Run
@@ -77,9 +77,7 @@ class Asked:
 
     Attributes:
         of: The answer that it is about.
-        edit: The mistake.
-        lines: The function with the mistake in it, without docstrings.
-        at: Which of these lines has the mistake, from 1.
+        edit: The mistake, and the functions with it.
         run: What the arm does now, if one runs.
         own: What the arm did with the answer as it was handed in.
         numbers: Otherwise, what is returned now beside what is expected.
@@ -88,8 +86,6 @@ class Asked:
 
     of: Accepted
     edit: Edit
-    lines: tuple[str, ...]
-    at: int
     run: Run | None
     own: Run | None
     numbers: Numbers | None
@@ -149,7 +145,7 @@ def accepted(course: Course, student: str) -> tuple[list[Accepted], list[str]]:
     for name in sorted(path.stem for path in course.bundle.glob("*.json")):
         for result in standing(course, name, student):
             known = True
-            if isinstance(result, Failed):
+            if isinstance(result, Failure):
                 missing.append(f"{name}: {result.why}")
                 continue
             answers = {q.verdict.name: q for q in result.questions if q.verdict.right}
@@ -185,8 +181,8 @@ def _ask(
     todo = plan(cells, one.bundle.data["cells"])
     source = todo.source(one.question.name)
     secret = partial(rank, seed_of(course), student)
-    mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.line}/{e.now}"))
-    found = (_with(edit, one, source, todo, sandbox, limits) for edit in mistakes[:TRIES])
+    mistakes = sorted(edits(source), key=lambda e: secret(f"{one.question.name}/{e.at}/{e.now}"))
+    found = (_with(edit, one, todo, sandbox, limits) for edit in mistakes[:TRIES])
     first: Asked | None = None
     for asked in filter(None, found):
         if asked.known:
@@ -195,15 +191,12 @@ def _ask(
     return first
 
 
-def _with(
-    edit: Edit, one: Accepted, source: str, todo: Plan, sandbox: Sandbox, limits: Limits
-) -> Asked | None:
+def _with(edit: Edit, one: Accepted, todo: Plan, sandbox: Sandbox, limits: Limits) -> Asked | None:
     """A question with this mistake; None if the checks accept it, or it only raises an error."""
     question = one.question
     place = todo.places[question.name]
     steps = [
-        replace(step, source=edit.put_into(source)) if step.number == place else step
-        for step in todo.steps
+        replace(step, source=edit.cell) if step.number == place else step for step in todo.steps
     ]
     with closing(Session(sandbox, steps, limits)) as session:
         session.right = [name for name in one.right if name != question.name]
@@ -212,16 +205,12 @@ def _with(
         function.session.close_question()
     if tried.outcome is not Outcome.WRONG:
         return None
-    run, numbers = _worst(question, tried), seen.numbers(question, tried)
+    run, numbers = _worst(question, tried), public_evidence.numbers(question, tried)
     if run is None and (one.drives or numbers is None):
         return None
-    lines = edit.put_into(source).split("\n")
-    there = shown(source)
     return Asked(
         one,
         edit,
-        tuple(lines[k - 1] for k in there),
-        there.index(edit.line) + 1,
         run,
         next((x for x in one.answer.runs if run and x["test"] == run["test"]), None),
         None if run else numbers,
@@ -232,7 +221,9 @@ def _with(
 def _worst(question: Question, tried: Tried) -> Run | None:
     """The first public run that is not as good as it must be."""
     failed = {x.name for x in tried.results if x.outcome in (Outcome.WRONG, Outcome.ERROR)}
-    return next((run for run in seen.runs(question, tried) if run["test"] in failed), None)
+    return next(
+        (run for run in public_evidence.runs(question, tried) if run["test"] in failed), None
+    )
 
 
 def _known(question: Question, tried: Tried) -> Misconception | None:

@@ -1,17 +1,20 @@
 """Known mistakes as edits: one place of somebody's own function, changed as people get it wrong.
 
-Only the text is looked at; nothing of it runs here.
+Functions are shown as Python writes them out, without docstrings and comments; so neither the
+spacing nor a comment tells which line was changed.  Nothing of them runs here.
 """
 
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from copy import copy, deepcopy
 from dataclasses import dataclass
-from itertools import chain
+from functools import partial
+from itertools import islice
 from typing import Any
 
-from ...course.source import plain
+from ...course.source import parsed
 
 EXCHANGED = {
     "acceleration": "velocity",
@@ -25,168 +28,174 @@ EXCHANGED = {
     "tip_jacobian": "body_jacobian",
 }
 """Names that are taken for one another, such as the two Jacobians, or sine and cosine."""
-_SIGNS: dict[type[ast.operator], str] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.MatMult: "@",
-    ast.Pow: "**",
+MOST = 300
+"""So many mistakes are looked at in one cell; in functions that people write there are fewer."""
+_TURNED = {
+    ast.Add: ast.Sub,
+    ast.Sub: ast.Add,
+    ast.Lt: ast.Gt,
+    ast.Gt: ast.Lt,
+    ast.LtE: ast.GtE,
+    ast.GtE: ast.LtE,
 }
-_TURNED = {"+": "-", "-": "+"}
-_Piece = tuple[Any, str, str]
-"""The node that is replaced, by which text, and which mistake that is."""
+_UNREADABLE = SyntaxError, ValueError, RecursionError, MemoryError
 
 
 @dataclass(frozen=True)
 class Edit:
-    """One line of a cell with a mistake in it.
+    """A cell with a mistake in one line of its functions.
 
     Attributes:
-        line: Its number in the cell, from 1.
-        was: The line as it was handed in.
-        now: The line with the mistake.
+        cell: The cell with the mistake.
+        lines: Its functions alone, with the mistake.
+        at: Which of these lines has it, from 1.
+        was: The same line without the mistake.
         says: Which mistake it is, in a few words.
     """
 
-    line: int
+    cell: str
+    lines: tuple[str, ...]
+    at: int
     was: str
-    now: str
     says: str
 
-    def put_into(self, source: str) -> str:
-        """The cell with the mistake in it."""
-        lines = plain(source).split("\n")
-        lines[self.line - 1] = self.now
-        return "\n".join(lines)
+    @property
+    def now(self) -> str:
+        """The line with the mistake."""
+        return self.lines[self.at - 1]
 
 
 def edits(source: str) -> list[Edit]:
     """All mistakes that fit into the functions of a cell, in order of their place.
 
     Args:
-        source: The cell's text; one that is not Python has no functions.
+        source: The cell's text; one that Python cannot read has no functions.
     """
-    lines = plain(source).split("\n")
     found: dict[tuple[int, str], Edit] = {}
-    for function in _functions(source):
-        for node in chain.from_iterable(map(ast.walk, function.body)):
-            for piece, now, says in _mistakes(node, lines):
-                edit = _edit(piece, now, says, lines)
-                if edit and edit.now != edit.was and _is_python(edit.put_into(source)):
-                    found.setdefault((edit.line, edit.now), edit)
-    return sorted(found.values(), key=lambda edit: (edit.line, edit.now))
-
-
-def shown(source: str) -> list[int]:
-    """The lines of a cell's functions without their docstrings, numbers from 1."""
-    numbers: list[int] = []
-    for function in _functions(source):
-        first = min([function.lineno, *(x.lineno for x in function.decorator_list)])
-        left_out: range = range(0)
-        if ast.get_docstring(function, clean=False) is not None:
-            text = function.body[0]
-            left_out = range(text.lineno, (text.end_lineno or text.lineno) + 1)
-        whole = range(first, (function.end_lineno or first) + 1)
-        numbers += [k for k in whole if k not in left_out]
-    return numbers
-
-
-def _functions(source: str) -> list[ast.FunctionDef]:
     try:
-        body = ast.parse(plain(source)).body
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        cell, functions = _parsed(source)
+        before = _written(functions)
+        mistakes = ((*x, *wrong) for x in _places(functions) for wrong in _mistakes(x[0]))
+        for node, put, wrong, says in islice(mistakes, MOST):
+            put(wrong)
+            lines = _written(functions)
+            differ = [k for k, line in enumerate(lines) if before[k : k + 1] != [line]]
+            if len(differ) == 1 and len(before) == len(lines):
+                (k,) = differ
+                edit = Edit(ast.unparse(cell), tuple(lines), k + 1, before[k], says)
+                found.setdefault((k, lines[k]), edit)
+            put(node)
+    except _UNREADABLE:
         return []
-    return [x for x in body if isinstance(x, ast.FunctionDef)]
+    return [found[place] for place in sorted(found)]
 
 
-def _is_python(source: str) -> bool:
+def shown(source: str) -> list[str]:
+    """The lines of a cell's functions, as a defence shows them."""
     try:
-        ast.parse(source)
-    except SyntaxError:
-        return False
-    return True
+        return _written(_parsed(source)[1])
+    except _UNREADABLE:
+        return []
 
 
-def _edit(node: Any, now: str, says: str, lines: list[str]) -> Edit | None:
-    """A line in which a node's text is another one; None if the node has several lines."""
-    if node.lineno != node.end_lineno:
-        return None
-    was = lines[node.lineno - 1]
-    data = was.encode()
-    text = data[: node.col_offset] + now.encode() + data[node.end_col_offset :]
-    return Edit(node.lineno, was, text.decode(), says)
+def _parsed(source: str) -> tuple[ast.Module, list[ast.FunctionDef]]:
+    """A cell, and the functions in it, which have lost their docstrings."""
+    cell = deepcopy(parsed(source)[1])
+    functions = [x for x in cell.body if isinstance(x, ast.FunctionDef)]
+    for function in functions:
+        if ast.get_docstring(function, clean=False) is not None:
+            function.body = function.body[1:] or [ast.Pass()]
+    return cell, functions
 
 
-def _mistakes(node: Any, lines: list[str]) -> Iterator[_Piece]:
-    """The mistakes that fit into one place, each as what is written there instead."""
+def _written(functions: list[ast.FunctionDef]) -> list[str]:
+    return [line for function in functions for line in ast.unparse(function).split("\n")]
 
-    def text(node: Any) -> str:
-        line = lines[node.lineno - 1].encode()
-        return bytes(line[node.col_offset : node.end_col_offset]).decode()
 
-    if isinstance(node, ast.If | ast.IfExp) and isinstance(node.test, ast.Name):
-        yield node.test, f"not {node.test.id}", "a condition is reversed"
-    if getattr(node, "lineno", None) is None or node.lineno != node.end_lineno:
-        return
+def _places(functions: list[ast.FunctionDef]) -> Iterator[tuple[ast.AST, Callable[[Any], None]]]:
+    """All nodes in the functions' bodies, each with what puts another node in its place."""
+    waiting: list[ast.AST] = [ast.Module(function.body, []) for function in functions]
+    while waiting:
+        parent = waiting.pop()
+        for name, value in ast.iter_fields(parent):
+            there = [(value, partial(setattr, parent, name))]
+            if isinstance(value, list):
+                there = [(part, partial(value.__setitem__, k)) for k, part in enumerate(value)]
+            for node, put in there:
+                if isinstance(node, ast.AST):
+                    waiting.append(node)
+                    yield node, put
+
+
+def _mistakes(node: ast.AST) -> Iterator[tuple[ast.AST, str]]:
+    """The mistakes that fit into one place, each as the node that takes its place."""
     match node:
-        case ast.BinOp(op=op) if type(op) in _SIGNS:
-            yield from _of_two(node, _SIGNS[type(op)], *_sides(node, text(node)))
-        case ast.AugAssign(op=ast.Add() | ast.Sub()):
-            sign = _SIGNS[type(node.op)]
-            now = text(node).replace(f"{sign}=", f"{_TURNED[sign]}=", 1)
-            yield node, now, "the sign of a term is reversed"
+        case ast.If(test=ast.Name()) | ast.IfExp(test=ast.Name()):
+            yield _but(node, test=ast.UnaryOp(ast.Not(), node.test)), "a condition is reversed"
         case ast.UnaryOp(op=ast.Not()):
-            yield node, text(node.operand), "a condition is reversed"
+            yield node.operand, "a condition is reversed"
         case ast.UnaryOp(op=ast.USub()):
-            yield node, text(node)[1:].lstrip(), "a sign is left out"
+            yield node.operand, "a sign is left out"
+        case ast.AugAssign(op=ast.Add() | ast.Sub()):
+            yield _but(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
+        case ast.Compare(ops=[op]) if type(op) in _TURNED:
+            yield _but(node, ops=[_TURNED[type(op)]()]), "a comparison is reversed"
+        case ast.BinOp():
+            yield from _of_two(node)
         case ast.Attribute(attr="T"):
-            yield node, text(node)[: -len(".T")], "a transpose is left out"
+            yield node.value, "a transpose is left out"
         case ast.Attribute(attr=name) if name in EXCHANGED:
-            now = text(node).removesuffix(name) + EXCHANGED[name]
-            yield node, now, f"{EXCHANGED[name]} stands for {name}"
+            yield _but(node, attr=EXCHANGED[name]), f"{EXCHANGED[name]} stands for {name}"
         case ast.Call(func=ast.Name(id=name)) if name in EXCHANGED:
-            yield node.func, EXCHANGED[name], f"{EXCHANGED[name]} stands for {name}"
+            func = ast.Name(EXCHANGED[name])
+            yield _but(node, func=func), f"{EXCHANGED[name]} stands for {name}"
+        case ast.Subscript(slice=ast.Tuple(elts=parts) as indices):
+            for k, part in enumerate(parts):
+                for wrong, says in _of_index(part):
+                    elts = [*parts[:k], wrong, *parts[k + 1 :]]
+                    yield _but(node, slice=_but(indices, elts=elts)), says
         case ast.Subscript():
-            parts = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-            for part in parts:
-                yield from _of_index(part, text)
+            for wrong, says in _of_index(node.slice):
+                yield _but(node, slice=wrong), says
 
 
-def _sides(node: ast.BinOp, whole: str) -> tuple[str, str]:
-    """The texts on both sides of an operator, with the brackets around them."""
-    data = whole.encode()
-    end = (node.left.end_col_offset or 0) - node.col_offset
-    begin = node.right.col_offset - node.col_offset
-    before, _, after = data[end:begin].decode().partition(_SIGNS[type(node.op)])
-    left, right = data[:end].decode() + before, after + data[begin:].decode()
-    return left.rstrip(), right.lstrip()
+def _but(node: ast.AST, **fields: Any) -> Any:
+    """A node with some fields changed."""
+    new = copy(node)
+    for name, value in fields.items():
+        setattr(new, name, value)
+    return new
 
 
-def _of_two(node: ast.BinOp, sign: str, left: str, right: str) -> Iterator[_Piece]:
+def _of_two(node: ast.BinOp) -> Iterator[tuple[ast.AST, str]]:
     """The mistakes with an operator: a sign, an order, a side that is left out."""
-    of_terms = isinstance(node.left, ast.BinOp) and isinstance(node.left.op, ast.Add | ast.Sub)
-    match sign:
-        case "+" | "-" if of_terms or sign == "+":
-            yield node, f"{left} {_TURNED[sign]} {right}", "the sign of a term is reversed"
-            yield node, left, "a term is left out"
+    left, right = node.left, node.right
+    of_terms = isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub)
+    match node.op:
+        case ast.Add() | ast.Sub() if of_terms or isinstance(node.op, ast.Add):
+            yield _but(node, op=_TURNED[type(node.op)]()), "the sign of a term is reversed"
+            yield left, "a term is left out"
             if not of_terms:
-                yield node, right, "a term is left out"
-        case "-":
-            yield node, f"{right} - {left}", "a difference is reversed"
-            yield node, f"-{right}", "a term is left out"
-        case "*" | "@":
-            yield node, right, f"a {'factor' if sign == '*' else 'matrix'} is left out"
-        case "/" | "**":
-            yield node, left, f"{'a divisor' if sign == '/' else 'an exponent'} is left out"
+                yield right, "a term is left out"
+        case ast.Sub():
+            yield _but(node, left=right, right=left), "a difference is reversed"
+            yield ast.UnaryOp(ast.USub(), right), "a term is left out"
+        case ast.Mult():
+            yield right, "a factor is left out"
+        case ast.MatMult():
+            yield right, "a matrix is left out"
+        case ast.Div():
+            yield left, "a divisor is left out"
+        case ast.Pow():
+            yield left, "an exponent is left out"
 
 
-def _of_index(part: Any, text: Any) -> Iterator[_Piece]:
+def _of_index(part: ast.expr) -> Iterator[tuple[ast.expr, str]]:
     """The mistakes with an index: the last one, or the other half of a vector."""
     match part:
         case ast.Constant(value=int()) if not isinstance(part.value, bool):
-            yield part, "-1", "the last one is taken (index -1)"
+            yield ast.Constant(-1), "the last one is taken (index -1)"
         case ast.Slice(lower=None, upper=ast.Constant(), step=None):
-            yield part, f"{text(part.upper)}:", "the other part of a vector is taken"
+            yield ast.Slice(part.upper), "the other part of a vector is taken"
         case ast.Slice(lower=ast.Constant(), upper=None, step=None):
-            yield part, f":{text(part.lower)}", "the other part of a vector is taken"
+            yield ast.Slice(None, part.lower), "the other part of a vector is taken"

@@ -57,6 +57,8 @@ def _grades(submission: Any) -> list[Any]:
 
 def _text(number: int, one: Asked) -> str:
     """A question as formgrader shows it."""
-    head = f"**{number + 1} · {one.of.question.name}**, line {one.at}: {one.edit.says}"
+    head = f"**{number + 1} · {one.of.question.name}**, line {one.edit.at}: {one.edit.says}"
     change = f"handed in: {one.edit.was.strip()}\nnow:       {one.edit.now.strip()}"
-    return "\n\n".join((head, as_typed(change, "text"), as_typed("\n".join(one.lines), "python")))
+    return "\n\n".join(
+        (head, as_typed(change, "text"), as_typed("\n".join(one.edit.lines), "python"))
+    )

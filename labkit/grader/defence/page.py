@@ -54,7 +54,7 @@ def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
 
 def _print_size(asked: Sequence[Asked]) -> str:
     """The size of code in print with which all three functions fit one side of A4."""
-    lines = sum(1 + len(line) // WIDTH for one in asked for line in one.lines)
+    lines = sum(1 + len(line) // WIDTH for one in asked for line in one.edit.lines)
     return f"@media print {{ .code {{ font-size: {min(8.0, ROOM / lines):.2f}pt }} }}"
 
 

@@ -28,7 +28,7 @@ from ...errors import LabkitError
 from ...metrics import SETTLED
 from ...replay.motion import unpack
 from ..atomic import write
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..grading.results import Result
 from ..marks.mark import Mark
 from ..marks.table import mark_of
@@ -107,7 +107,7 @@ def page(
     )
 
 
-def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> list[Path | Failed]:
+def write_feedback(course: Course, assignment: str, marks: Iterable[Mark]) -> list[Path | Failure]:
     """Write the pages where ``nbgrader release_feedback`` looks for them.
 
     Args:

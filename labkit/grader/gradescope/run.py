@@ -1,4 +1,4 @@
-"""Gradescope: what runs in its container for each submission; `gradescope_zip` brings it there.
+"""Gradescope: what runs in its container for each submission; `setup_zip` brings it there.
 
 The container has no namespaces to give, so a submission is kept apart by user id, see
 `sandbox.apart.ByUser`.  Files and their meaning: gradescope-autograders.readthedocs.io, "Autograder
@@ -51,7 +51,7 @@ def main() -> None:
     source = Course(place / "source")
     (path,) = source.bundle.glob("*.json")
     bundle, results = Bundle.of(source, path.stem), place / "results" / "results.json"
-    write(results, json.dumps(report(bundle, {}, says="It is not graded yet.")))
+    write(results, json.dumps(gradescope_results(bundle, {}, says="It is not graded yet.")))
     grader = get_context("fork").Process(target=_grade, args=(bundle, place, results))
     grader.start()
     grader.join(SECONDS)
@@ -74,7 +74,10 @@ def _grade(bundle: Bundle, place: Path, results: Path) -> None:
 
     def reached(verdict: Verdict) -> None:
         verdicts[verdict.name] = verdict
-        write(results, json.dumps(report(bundle, verdicts, says="It is still being graded.")))
+        write(
+            results,
+            json.dumps(gradescope_results(bundle, verdicts, says="It is still being graded.")),
+        )
 
     with Sandbox(imports(bundle.data["cells"]), isolation=Isolation.USER) as sandbox:
         if why:
@@ -82,7 +85,7 @@ def _grade(bundle: Bundle, place: Path, results: Path) -> None:
         else:
             result = grade(data, student, bundle, sandbox, LIMITS, note, reached)
     verdicts = {answer.verdict.name: answer.verdict for answer in result.questions}
-    write(results, json.dumps(report(bundle, verdicts, result, says)))
+    write(results, json.dumps(gradescope_results(bundle, verdicts, result, says)))
     print(result, result.isolation, sep="\n")
 
 
@@ -98,7 +101,7 @@ def _student(path: Path, bundle: Bundle) -> tuple[str, str]:
     return (known or mails)[0], unknown if bundle.arms.handles and not known else ""
 
 
-def report(
+def gradescope_results(
     bundle: Bundle, verdicts: Mapping[str, Verdict], result: Result | None = None, says: str = ""
 ) -> dict[str, Any]:
     """What Gradescope reads: points and words for each question, then what a person marks.

@@ -14,8 +14,7 @@ from pathlib import Path
 from ...course.bundle import Bundle
 from ...course.layout import Course
 from ...course.verdict import Outcome
-from ...errors import LabkitError
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..lock import exclusive_run
 from ..sandbox.limits import Limits
 from ..sandbox.mounts import NoIsolation
@@ -78,7 +77,7 @@ def workers() -> int:
 
 def grade_class(
     course: Course, assignment: str, who: Sequence[str], options: GradeOptions
-) -> Iterator[GradedSubmission | LabkitError]:
+) -> Iterator[GradedSubmission | Failure]:
     """Grade submissions, each into a result file of its own.
 
     Args:
@@ -112,7 +111,7 @@ def grade_class(
 
 def watch(
     course: Course, assignment: str, options: GradeOptions, pause: float = 1.0
-) -> Iterator[GradedSubmission | LabkitError]:
+) -> Iterator[GradedSubmission | Failure]:
     """Grade submissions as they come, in workers that stay warm, until somebody stops it.
 
     What is handed in and has no result of its own is the queue, so a run that is killed loses
@@ -157,7 +156,7 @@ def _look(folder: Path) -> tuple[float, int]:
 
 def grade_aside(
     course: Course, bundle: Bundle, submissions: Iterable[Submission], options: GradeOptions
-) -> Iterator[Result | Failed]:
+) -> Iterator[Result | Failure]:
     """Grade submissions and keep nothing of it.
 
     Yields:
@@ -177,7 +176,7 @@ def _graded(
     bundle: Bundle,
     submissions: Iterable[Submission],
     options: GradeOptions,
-) -> Iterator[Result | Failed]:
+) -> Iterator[Result | Failure]:
     key = bundle.data["hash"]
     tasks = [Task(course, x, key, options.isolated, options.limits) for x in submissions]
     whose = {pool.submit(grade_submission, x): x.submission.student for x in tasks}
@@ -195,10 +194,10 @@ def _graded(
 
 
 def _kept(
-    results: Results, graded: Iterable[Result | Failed], options: GradeOptions
-) -> Iterator[GradedSubmission | LabkitError]:
+    results: Results, graded: Iterable[Result | Failure], options: GradeOptions
+) -> Iterator[GradedSubmission | Failure]:
     for result in graded:
-        if isinstance(result, LabkitError):
+        if isinstance(result, Failure):
             yield result
         else:
             yield for_student(result.student, partial(_keep, results, result, options.lower))

@@ -9,7 +9,7 @@ from functools import partial
 from ...course.bundle import Bundle
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..submission import Submission
 from .batch import GradeOptions, grade_aside, still_good
 from .results import Result, Results
@@ -50,7 +50,7 @@ class Change:
 
 def changes(
     course: Course, assignment: str, students: Sequence[str], options: GradeOptions
-) -> Iterator[Change | LabkitError]:
+) -> Iterator[Change | Failure]:
     """Grade aside, and compare with the results that count; no mark is changed.
 
     What was graded is kept aside, so that `grade_class` need not do it again.
@@ -70,12 +70,12 @@ def changes(
         else:
             yield Change(now.get(student), done)
     for result in grade_aside(course, bundle, todo, options):
-        if isinstance(result, LabkitError):
+        if isinstance(result, Failure):
             yield result
         else:
             kept = for_student(result.student, partial(aside.keep, result))
-            if isinstance(kept, Failed):  # a name that is too long, a full disk
-                yield LabkitError(f"{kept.student}: {kept.why}")
+            if isinstance(kept, Failure):  # a name that is too long, a full disk
+                yield kept
             else:
                 yield Change(now.get(result.student), result)
 

@@ -26,7 +26,7 @@ from ..sandbox.launch import Sandbox
 from ..sandbox.limits import TRICKS, Limits, TextBudget
 from ..sandbox.protocol import Disconnected, ProtocolError
 from ..sandbox.session import RemoteFunction, Session
-from . import seen
+from . import public_evidence
 from .plan import Plan, plan
 from .results import Answer, FailedCell, Hashes, OwnCell, Result, digest, engine, versions
 
@@ -240,7 +240,9 @@ def _answer(question: Question, verdict: Verdict, tried: Tried | None, todo: Pla
         return answer
     try:
         return replace(
-            answer, runs=seen.runs(question, tried), numbers=seen.numbers(question, tried)
+            answer,
+            runs=public_evidence.runs(question, tried),
+            numbers=public_evidence.numbers(question, tried),
         )
     except Exception:  # it is too odd to be drawn
         return answer

@@ -31,7 +31,7 @@ _OF_A_WORKER = ("grading", "sandbox", "atomic.py", "clean.py", "each.py", "submi
 
 
 class Run(TypedDict):
-    """A run of the arm on a public case; see `seen.runs`."""
+    """A run of the arm on a public case; see `public_evidence.runs`."""
 
     test: str
     says: str
@@ -44,7 +44,7 @@ class Run(TypedDict):
 
 
 class Numbers(TypedDict):
-    """The numbers of an answer beside those expected; see `seen.numbers`."""
+    """The numbers of an answer beside those expected; see `public_evidence.numbers`."""
 
     call: str
     expected: list[float]

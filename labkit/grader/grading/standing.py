@@ -9,7 +9,7 @@ from functools import partial
 from ...course.bundle import Bundle
 from ...course.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..sandbox.limits import Limits
 from ..submission import Submission, is_name, misnamed, plain_name, students
 from .results import Result, Results, digest
@@ -17,7 +17,7 @@ from .results import Result, Results, digest
 
 def standing(
     course: Course, assignment: str, student: str | None = None
-) -> Iterator[Result | Failed]:
+) -> Iterator[Result | Failure]:
     """The result of everybody who handed in or was graded.
 
     Args:
@@ -37,7 +37,7 @@ def standing(
         yield from misnamed(course, assignment)
     for name in sorted(handed_in | set(results.students())):
         if not is_name(name):
-            yield Failed(plain_name(name), f"a file in {results.folder} has this name; delete it")
+            yield Failure(plain_name(name), f"a file in {results.folder} has this name; delete it")
         elif student in {None, name}:
             yield for_student(name, partial(_counts, course, results, name, name in handed_in))
 

@@ -14,7 +14,7 @@ from typing import Any
 from ...course.layout import Course
 from ...course.notebook import question_of
 from ..clean import clean_line, clean_text, how_many
-from ..each import Failed
+from ..each import Failure
 from ..grading.results import Result
 from ..grading.standing import full_marks, grade_again, standing
 from ..nbgrader.gradebook import open_gradebook
@@ -91,9 +91,9 @@ def _named(row: Mark) -> Mark:
     return replace(row, first=who.first_name, last=who.last_name, email=who.email)
 
 
-def _marked(row: Mark, submission: Any, one: Result | Failed | None, assignment: str) -> Mark:
+def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment: str) -> Mark:
     """A row with what the gradebook says, or why that does not count."""
-    if isinstance(one, Failed):
+    if isinstance(one, Failure):
         row = replace(row, missing=one.why)
     elif one is not None:
         row = replace(row, result=one)

@@ -21,7 +21,7 @@ from nbgrader.preprocessors import NbGraderPreprocessor
 from ...course.bundle import Bundle
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..each import for_student
+from ..each import Failure, for_student
 from ..grading.batch import GradeOptions, grade_aside
 from ..grading.results import Result, Results
 from ..lock import exclusive_run
@@ -91,7 +91,7 @@ def unlink_foreign(notebooks: Iterable[str], **_: str) -> None:
 
 
 def _foreign(folder: Path) -> list[Path]:
-    """Links and special files elf."""
+    """Links and special files in a folder; none if the folder is a link itself, see `_check`."""
     if folder.is_symlink() or folder.parent.is_symlink():
         return []
     found = (Path(top, name) for top, *names in os.walk(folder) for part in names for name in part)
@@ -99,7 +99,10 @@ def _foreign(folder: Path) -> list[Path]:
 
 
 def _check(course: Course, assignment: str, student: str) -> None:
-    """Refuse a submission of which nbgrader must not copy anything."""
+    """Refuse a submission of which nbgrader must not copy anything.
+
+    `unlink_foreign` may have failed; nbgrader makes a note of it and goes on.
+    """
     folder = Submission.of(course, assignment, student).folder
     if folder.is_symlink() or folder.parent.is_symlink():
         raise LabkitError(f"the folder {folder} is a link; put the student's own files there")
@@ -121,11 +124,11 @@ def _grade(about: dict[str, Any]) -> Result:
         results = Results(course, about["assignment"])
         with exclusive_run(results.folder):
             (graded,) = grade_aside(course, bundle, [submission], GradeOptions())
-            if isinstance(graded, LabkitError):
-                raise graded
+            if isinstance(graded, Failure):
+                raise LabkitError(str(graded))
             kept = for_student(graded.student, partial(results.keep, graded))
-            if isinstance(kept, LabkitError):
-                raise kept
+            if isinstance(kept, Failure):
+                raise LabkitError(str(kept))
         result = graded
         _known[key] = result
     return result

@@ -22,7 +22,7 @@ from ...course.layout import Course
 from ...course.notebook import about, by_hand, grade_id, question_of, read_cells
 from ...errors import LabkitError
 from ..atomic import write
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..grading.results import Result
 from ..nbgrader_api import nbgrader_api
 from ..rules import settle_lateness
@@ -31,7 +31,7 @@ from ..whys import settle_whys
 from .autograded_notebook import as_text, in_release_form, release_source, with_verdicts
 
 
-def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failed]:
+def record(course: Course, assignment: str, results: Iterable[Result]) -> list[str | Failure]:
     """Write results into the gradebook, and a notebook for each; each student separately.
 
     Args:
@@ -45,7 +45,7 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
     Raises:
         LabkitError: The gradebook does not know the assignment, or cannot be used.
     """
-    said: list[str | Failed] = []
+    said: list[str | Failure] = []
     source = release_source(course, assignment)
     with open_gradebook(course) as book:
         if assignment not in {known.name for known in book.assignments}:
@@ -57,9 +57,9 @@ def record(course: Course, assignment: str, results: Iterable[Result]) -> list[s
         for result in results:
             step = partial(_record, course, book, source, result)
             done = for_student(result.student, step, of_all=(OperationalError,))
-            if isinstance(done, Failed):
+            if isinstance(done, Failure):
                 book.db.rollback()
-            said += [done] if isinstance(done, Failed) else done
+            said += [done] if isinstance(done, Failure) else done
         settle_whys(course, book, assignment)
         settle_lateness(course, book, assignment)
     return said

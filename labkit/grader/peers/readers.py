@@ -1,15 +1,16 @@
 """Peer review: who reads whose report, and what readers said, without their names.
 
-A reader's sheet is made by `peer_sheet`.  The course's copy of it, in ``feedback/``, is the record
-of which two reports somebody was given; what the student hands in is read cell by cell against it.
+A reader's sheet is made by `sheet.hand_out`.  The course's copy of it, in ``feedback/``, is the
+record of which two reports somebody was given; what the student hands in is read cell by cell
+against it.
 """
 
 from __future__ import annotations
 
-import hmac
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ...course.layout import Course
@@ -21,6 +22,7 @@ from ..sandbox.limits import Limits
 from ..students.class_list import Student
 from ..students.roster import Roster, read_roster
 from ..submission import Submission, students
+from ..whys import rank
 
 EACH = 2
 """So many reports each student reads."""
@@ -72,17 +74,14 @@ def readers(
             f"{len(reports)} teams handed in a report; peer review needs {EACH + 1}, so that each "
             f"student reads {EACH} reports of others"
         )
-
-    def rank(name: str) -> bytes:
-        return hmac.digest(str(seed).encode(), f"peer review/{name}".encode(), "sha256")
-
-    circle, n = sorted(reports, key=rank), len(reports)
+    secret = partial(rank, seed, "peer review")
+    circle, n = sorted(reports, key=secret), len(reports)
     teams: dict[str, list[str]] = {}
-    for student in sorted(people, key=rank):
+    for student in sorted(people, key=secret):
         teams.setdefault(people[student], []).append(student)
     found = {}
     for team, members in teams.items():
-        own = circle.index(team) if team in reports else int.from_bytes(rank(team)) % n
+        own = circle.index(team) if team in reports else int.from_bytes(secret(team)) % n
         others = [reports[circle[(own + step) % n]] for step in range(1, n)]
         for number, student in enumerate(members):
             at = (EACH * number + k for k in range(EACH))
@@ -149,7 +148,7 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
             if cell["cell_type"] == "raw":
                 who, _, row = cell["id"].partition("_")
                 asked.setdefault(who, []).append(row)
-        said, wrong = _handed_in(course, name, student)
+        said, wrong = _sheet_texts(course, name, student)
         me = [roster.get(student) or Student(student)]
         whole = 0
         for who, rows in asked.items():
@@ -162,7 +161,7 @@ def reviews(course: Course, assignment: str) -> tuple[dict[str, list[Review]], l
     return found, waiting
 
 
-def _handed_in(course: Course, name: str, student: str) -> tuple[dict[str, str], str]:
+def _sheet_texts(course: Course, name: str, student: str) -> tuple[dict[str, str], str]:
     """The texts of a student's sheet by their cells' names; and why there are none."""
     submission = Submission.of(course, name, student)
     if not submission.folder.exists():

@@ -21,7 +21,8 @@ from ...course.notebook import Notebook, grade_id, read_cells
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import clean_text
-from ..each import Failed, for_student
+from ..each import Failure, for_student
+from ..nbgrader.autograded_notebook import as_typed
 from ..pseudonyms import pseudonyms
 from ..sandbox.limits import Limits
 from ..students.class_list import Student
@@ -42,7 +43,7 @@ _PICTURE = re.compile(r"!(?=\[[^\]]*\](?!\(attachment:))")
 _BASE64 = re.compile(r"[A-Za-z0-9+/=\s]+")
 
 
-def hand_out(course: Course, assignment: str) -> Iterator[str | Failed]:
+def hand_out(course: Course, assignment: str) -> Iterator[str | Failure]:
     """Write a sheet for each student who has none yet; what somebody was given stays.
 
     Yields:
@@ -62,7 +63,7 @@ def hand_out(course: Course, assignment: str) -> Iterator[str | Failed]:
         members = team_of(author, people, roster)
         step = partial(_report, course, assignment, author, members, cells)
         done = for_student(author, step)
-        if isinstance(done, Failed):
+        if isinstance(done, Failure):
             del reports[team]
             yield done
         else:
@@ -116,17 +117,14 @@ def _report(
         elif kind == "own" and grade_id(cell) not in answers:
             text = without_names(text, team, "author")
             code = cell["cell_type"] == "code"
-            shown = _as_text(text) if code else _PICTURE.sub("", text.replace("<", "&lt;"))
+            shown = (
+                as_typed(text, "python") if code else _PICTURE.sub("", text.replace("<", "&lt;"))
+            )
             pictures = dict(_pictures(cell, code))
             if code:
                 shown += "".join(f"\n\n![figure](attachment:{name})" for name in pictures)
             told.append(v4.new_markdown_cell(shown, attachments=pictures))
     return told
-
-
-def _as_text(code: str) -> str:
-    fence = "`" * (max(map(len, re.findall("`+", code)), default=0) + 3)
-    return f"{fence}python\n{code}\n{fence}"
 
 
 def _pictures(cell: Mapping[str, Any], code: bool) -> Iterator[tuple[str, dict[str, str]]]:

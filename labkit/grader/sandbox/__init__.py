@@ -1,1 +1,4 @@
-"""What runs inside the sandbox: nothing in here knows an answer or a hidden case."""
+"""The sandbox of a submission; what runs inside knows no answer and no hidden case.
+
+`launch`, `mounts`, `cgroup`, `limits` and `session` are the worker's side of it, outside.
+"""

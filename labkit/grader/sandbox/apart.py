@@ -1,7 +1,4 @@
-"""What keeps the children of a forkserver apart: namespaces, a user id alone, or nothing.
-
-Each has a way to fork, to confine the child, and to kill it with all that it started.
-"""
+"""What keeps the children of a forkserver apart: namespaces, a user id alone, or nothing."""
 
 from __future__ import annotations
 
@@ -27,12 +24,17 @@ class Bare:
         return os.fork()
 
     def enter(self, limits: dict[str, Any], uid: int) -> None:
-        """Go to a new folder, within limits."""
+        """Confine this process, a child; here it goes to a new folder, within limits.
+
+        Args:
+            limits: See `labkit.grader.sandbox.limits.Limits`.
+            uid: Of a user that is this sandbox's alone; 0 if nobody can be given one.
+        """
         os.chdir(tempfile.mkdtemp(prefix="labkit-"))
         confine.set_limits(limits | {"processes": 4096})
 
     def kill(self, child: int, *, whole: bool) -> None:
-        """Kill what descends from a child and, if ``whole``, the child."""
+        """Kill what a child started and, if ``whole``, the child too."""
         for pid in _family(child) - (set() if whole else {child}):
             with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
@@ -41,7 +43,7 @@ class Bare:
                 os.waitpid(child, 0)
 
     def close(self) -> None:
-        """Nothing: what a child started ends with the sandbox."""
+        """Clear away what is left, at the end; here that ends with the sandbox."""
 
 
 class Namespaces(Bare):

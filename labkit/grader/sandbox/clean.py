@@ -1,4 +1,7 @@
-"""Text that a stranger wrote, made safe to store and to show; done once, where it enters."""
+"""Text that a stranger wrote, made safe to store and to show, where it enters.
+
+A result is cleaned as a whole, too, when it is made and when it is read.
+"""
 
 from __future__ import annotations
 

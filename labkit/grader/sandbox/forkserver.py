@@ -17,7 +17,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from importlib import import_module
-from typing import Any, Protocol
+from typing import Any
 
 from . import confine, parse
 from .apart import Bare, ByUser, Namespaces
@@ -35,38 +35,14 @@ Serve = Callable[[Connection, dict[str, Any]], None]
 """What a child does, given the connection and the request that it was forked for."""
 
 
-class Confinement(Protocol):
-    """What keeps the children of a forkserver apart."""
-
-    def fork(self) -> int:
-        """Fork; as `os.fork`."""
-        ...
-
-    def enter(self, limits: dict[str, Any], uid: int) -> None:
-        """Confine this process, a child.
-
-        Args:
-            limits: See `labkit.grader.sandbox.limits.Limits`.
-            uid: Of a user that is this sandbox's alone; 0 if nobody can be given one.
-        """
-        ...
-
-    def kill(self, child: int, *, whole: bool) -> None:
-        """Kill what a child started and, if ``whole``, the child too."""
-        ...
-
-    def close(self) -> None:
-        """Clear away what is left, at the end."""
-        ...
-
-
 def main() -> None:
     """Serve the worker until it closes its end: stdin's is for students, stdout's for parsers.
 
     Modules named on the command line are loaded too.  With ``--bare`` nothing is confined, see
-    `labkit grade --unsafe-no-isolation`; with ``--by-user`` by user id alone, see `by_user`.
+    `labkit grade --unsafe-no-isolation`; with ``--by-user`` by user id alone, see
+    `apart.ByUser`.
     """
-    kinds: dict[str, Callable[[], Confinement]] = {"--bare": Bare, "--by-user": ByUser}
+    kinds: dict[str, type[Bare]] = {"--bare": Bare, "--by-user": ByUser}
     kind = next((kinds[word] for word in sys.argv if word in kinds), Namespaces)
     modules = [word for word in sys.argv[1:] if word not in kinds]
     students, parsers = (socket.socket(fileno=os.dup(number)) for number in (0, 1))

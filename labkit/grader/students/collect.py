@@ -18,7 +18,7 @@ from pathlib import Path
 from ...course.layout import Course
 from ...errors import LabkitError
 from ..clean import some
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..grading.results import digest
 from .attempts import Seen, adopt, called, install, keep, late_by, that_counts
 from .enrol import settle
@@ -209,7 +209,7 @@ def _keep(
     done = for_student(
         student, lambda: list(_keep_notebooks(course, assignment, student, notebooks, asked))
     )
-    if isinstance(done, Failed):
+    if isinstance(done, Failure):
         done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
     yield from done
 

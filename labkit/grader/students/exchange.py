@@ -17,7 +17,7 @@ from pathlib import Path
 
 from ...course.layout import Course
 from ..clean import clean_line
-from ..each import Failed, for_student
+from ..each import Failure, for_student
 from ..sandbox.limits import Limits
 from ..submission import read_file
 from ..timestamp import TIMESTAMP, read_time
@@ -139,7 +139,7 @@ def read_secret(folder: Path) -> bytes | None:
     return read_file(path, _LARGEST) if path.exists() or path.is_symlink() else None
 
 
-def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list[bool | Failed]:
+def for_exchange(course: Course, assignment: str, pages: Iterable[Path]) -> list[bool | Failure]:
     """Lay beside students' pages what ``nbgrader release_feedback`` asks for.
 
     Args:

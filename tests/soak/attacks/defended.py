@@ -21,7 +21,7 @@ from soak.attacks.undefended import COMMANDS, started
 
 from labkit.__main__ import main
 from labkit.course.layout import Course
-from labkit.errors import LabkitError
+from labkit.grader.each import Failure
 from labkit.grader.grading.batch import GradeOptions, grade_class
 from labkit.grader.sandbox.limits import Limits
 
@@ -111,7 +111,7 @@ def _hand_in_solved(here: Place, who: str) -> bytes:
 def _grade(here: Place, students: list[str], jobs: int, made: Class) -> None:
     how = GradeOptions(jobs=jobs, limits=LIMITS)
     done = grade_class(here.course, NAME, students, how) if students else ()
-    made.failed += [str(one) for one in done if isinstance(one, LabkitError)]
+    made.failed += [str(one) for one in done if isinstance(one, Failure)]
 
 
 def _run(verb: str, here: Place, made: Class) -> None:

@@ -1,4 +1,4 @@
-"""What students may see of their own work: runs of the arm and numbers, on public cases alone.
+"""The evidence that students may see: runs of the arm and numbers, on public cases alone.
 
 It goes into the result file, small, so that a page can be made from the result and nothing else.
 """
