@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 
 from ...course.layout import CUP, Course
 from ...course.own_arm import Arms
-from ...replay import recorded_html
 from ..nbgrader.gradebook import open_gradebook
 from ..nbgrader.unreleased import enter
-from ..pages import file, policy, render, scripts
+from ..pages import render_page
 from ..rules import read_rules
 from .entries import Entry, marks
 
@@ -35,18 +33,13 @@ def as_text(found: Sequence[Entry]) -> Iterator[str]:
 
 def page(course: Course, found: Sequence[Entry], final: bool) -> str:
     """The table as one file, with a replay of each entry's first run."""
-    code, style = scripts(), file("feedback.css")
-    return render(
+    return render_page(
         "cup.html.j2",
+        replays=True,
         course=read_rules(course).name,
         title="The Baxter Cup: " + ("the final" if final else "the board"),
         lines=list(lines(found)),
         most=len(marks()),
-        style=style,
-        scripts=code,
-        policy=policy(style, code),
-        motion_of=lambda entry: json.loads(entry.motion or "null"),
-        recorded_html=recorded_html,
     )
 
 

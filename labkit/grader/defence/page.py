@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from ...course.layout import Course
-from ...replay import recorded_html
 from ..atomic import write
 from ..feedback.page import error_over_time, measures, number_by_number
-from ..pages import file, policy, render, scripts
+from ..pages import file, render_page
 from ..rules import read_rules
 from .draw import ASKED, FULL, Asked
 
@@ -27,25 +25,19 @@ WIDTH, ROOM = 95, 400.0
 
 def write_page(course: Course, student: str, asked: Sequence[Asked]) -> Path:
     """Write the page of a student, and return its file."""
-    style = file("feedback.css") + file("defence.css") + _print_size(asked)
-    replays = any(one.run and one.run["motion"] for one in asked)
-    code = scripts() if replays else ()
-    page = render(
+    page = render_page(
         "defence.html.j2",
+        file("defence.css") + _print_size(asked),
+        replays=any(one.run and one.run["motion"] for one in asked),
         student=student,
         course=read_rules(course).name,
         asked=asked,
         rubric=RUBRIC,
         full=FULL,
         command=f"labkit defence {shlex.quote(student)} --mark {','.join(['?'] * ASKED)}",
-        style=style,
-        scripts=code,
-        policy=policy(style, code),
-        motion_of=lambda run: json.loads(run["motion"] or "null"),
         error_over_time=error_over_time,
         rows=rows,
         number_by_number=number_by_number,
-        recorded_html=recorded_html,
     )
     path = course.build / "defence" / f"{student}.html"
     write(path, page)

@@ -12,7 +12,6 @@ Git ignores the file, and it goes with the term.
 
 from __future__ import annotations
 
-import fcntl
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -26,6 +25,7 @@ from ...course.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import clean_line, safe_name
+from ..lock import locked
 from .platforms import LmsUser
 from .roster import Roster, same_name
 
@@ -81,8 +81,13 @@ def remember(course: Course, assignment: str, found: Mapping[str, LmsUser]) -> N
         if one.system in {"moodle", "canvas"} or folder not in kept:
             kept[folder] = one
     if kept != mine:
-        data = msgspec.json.encode(known | {assignment: kept}, order="sorted")
-        write(course.root / FILE, msgspec.json.format(data, indent=1).decode() + "\n")
+        save_lms_users(course, known | {assignment: kept})
+
+
+def save_lms_users(course: Course, known: Mapping[str, Mapping[str, LmsUser]]) -> None:
+    """Write who was collected, as `all_lms_users` reads it."""
+    data = msgspec.json.encode(known, order="sorted")
+    write(course.root / FILE, msgspec.json.format(data, indent=1) + b"\n")
 
 
 @contextmanager
@@ -92,13 +97,8 @@ def alone(course: Course) -> Iterator[None]:
     Raises:
         LabkitError: Somebody else is at it.
     """
-    lock = course.root / "course_private" / ".identity"
-    lock.parent.mkdir(exist_ok=True)
-    with open(lock, "w") as file:
-        try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            raise LabkitError("somebody else is collecting; wait for it to end") from None
+    busy = "somebody else is collecting or changes who is in the class; wait for it to end"
+    with locked(course.root / "course_private" / ".identity", busy):
         yield
 
 

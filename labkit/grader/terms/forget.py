@@ -9,7 +9,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import msgspec
 from nbgrader.api import Gradebook, MissingEntry
 
 from ...course.layout import Course
@@ -22,7 +21,7 @@ from ..pseudonyms import pseudonym
 from ..rules import FILE as RULES
 from ..rules import rules_in
 from ..students.identity import FILE as LMS
-from ..students.identity import all_lms_users, alone
+from ..students.identity import all_lms_users, alone, save_lms_users
 from ..students.roster import FILE as ROSTER
 from ..students.roster import Roster, read_roster, save_roster
 from ..submission import is_name, meant
@@ -144,8 +143,7 @@ def _entries(term: Course, student: str) -> Iterator[tuple[Path, Callable[[], ob
     known = all_lms_users(term)
     left = {name: {k: v for k, v in users.items() if k != student} for name, users in known.items()}
     if left != known:
-        text = msgspec.json.format(msgspec.json.encode(left, order="sorted"), indent=1) + b"\n"
-        yield term.root / LMS, partial(write, term.root / LMS, text)
+        yield term.root / LMS, partial(save_lms_users, term, left)
     if student in arms.handles:
         handles = {who: handle for who, handle in arms.handles.items() if who != student}
         text = replace(arms, handles=handles).text().encode()
