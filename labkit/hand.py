@@ -16,6 +16,7 @@ import numpy as np
 
 from .arm import Arm
 from .shapes import Array, as_array
+from .world import World
 
 STIFFNESS = 400.0
 """Of the spring, in [N/m]."""
@@ -41,10 +42,9 @@ class Hand:
     _to: Array | None
 
     def __init__(self, arm: Arm) -> None:
-        """A hand that holds nothing yet."""
+        """A hand that holds nothing yet; ``arm.world.put(hand)`` puts it beside the arm."""
         self._arm = arm
         self.let_go()
-        arm.world.add(self.act)
 
     def take(self, body: int, point: Any, to: Any) -> None:
         """Pull a point towards a place.
@@ -79,7 +79,7 @@ class Hand:
         at, force = self.at.round(4).tolist(), self.force.round(3).tolist()
         return {"at": at, "force": force, "link": self._point[0]}
 
-    def act(self) -> None:
+    def act(self, world: World) -> None:
         """Pull during the next physics step."""
         if self._point is None:
             return

@@ -97,14 +97,17 @@ class Session(Simulated):
     # In the thread
 
     def _main(self) -> None:
-        self.arm.world.owner, self.state = threading.get_ident(), "ready"
+        world = self.arm.world
+        world.put(self._hand)
+        world.owner, self.state = threading.get_ident(), "ready"
         try:
             while self.state != "closed":
                 self._one_run()
             self._picture()
         finally:
+            world.things.remove(self._hand)  # another session may follow with its own
             self.arm.become(self._usual)
-            self.arm.world.owner = None
+            world.owner = None
 
     def _one_run(self) -> None:
         """From a start to whatever ends it: a dial, another law, "keep", an error."""

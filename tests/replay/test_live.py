@@ -91,6 +91,7 @@ def test_a_hand_pushes_any_link_as_statics_says():
     for body in (3, 7):
         with lk.Arm("left", TEXTBOOK, q0=READY) as arm:
             hand = Hand(arm)
+            arm.world.put(hand)
             point, force = np.array([0.02, 0.0, 0.05]), np.array([3.0, -8.0, 4.0])
             hand.push(body, point, force)
             lk.run(arm, lk.Hold(READY, 6.0), springy)
@@ -118,9 +119,41 @@ def test_a_hand_is_no_stronger_than_a_person():
     """A pointer dragged across the room pulls with the strongest force, not like a spring."""
     with lk.Arm("left", TEXTBOOK, q0=READY) as arm:
         hand = Hand(arm)
+        arm.world.put(hand)
         hand.take(7, [0, 0, 0], T_READY[:3, 3] + [0.0, 0.0, 2.0])
         lk.run(arm, lk.Hold(READY, 0.05), springy)
         assert np.linalg.norm(hand.force) == pytest.approx(STRONGEST)
+
+
+def test_the_arm_feels_the_hand_in_a_world_without_things(live):
+    """While the hand pulls with 40 N, tau_ext of the law's state is J^T f."""
+    felt = []
+
+    def feeling(state, target):
+        felt.append(state)
+        return springy(state, target)
+
+    session, frames = live({"feeling": feeling})
+    session.tell({"kind": "go"})
+    push(session, [0.0, 0.0, -40.0])
+    until(frames, lambda f: f["force"] and f["t"] > 0.1, lambda: push(session, [0, 0, -40]))
+    session.close()
+    state = max(felt, key=lambda state: np.abs(state.tau_ext).max())
+    expected = lk.Model("left").tip_jacobian(state.q).T @ [0, 0, -40, 0, 0, 0]
+    np.testing.assert_allclose(state.tau_ext, expected, atol=0.05)
+
+
+def test_a_session_that_ended_leaves_no_hand_behind(live):
+    """Another view of the same arm brings its own hand."""
+    session, frames = live({"springs": springy}, things=[lk.Table()])
+    for _ in range(2):
+        session.tell({"kind": "go"})
+        until(frames, lambda f: f["state"] == "running")
+        session.close()
+        frames.clear()
+        assert [type(thing) for thing in session.arm.world.things] == [lk.Table]
+        session = Session(session.arm, {"springs": springy}, lk.Hold(T_READY, 1.0), {}, 200.0,
+                          frames.append)  # fmt: skip
 
 
 def test_a_motor_at_its_torque_limit_is_named(live):
