@@ -1,6 +1,7 @@
 """The live session: what a hand, a dial and a bad law do to the arm, without a browser."""
 
 import re
+import sys
 import threading
 import time
 
@@ -14,6 +15,7 @@ from labkit.replay.dials import read_dials
 from labkit.replay.grip import FRESH, SLOW_PAGE, STEADY
 from labkit.replay.session import Session
 from labkit.replay.wall_clock import FRAME
+from labkit.replay.watch import _LOOK, TURN, Watch
 
 READY = np.array(lk.robot("left").ready)
 T_READY = lk.Model("left").pose(READY)
@@ -391,6 +393,23 @@ def test_stop_is_told_and_start_begins_again(live, first):
     frames.clear()
     session.tell({"kind": "go"})
     assert until(frames, lambda f: f["state"] == "running")["note"] == ""
+
+
+def test_the_last_of_two_live_arms_leaves_the_threads_as_they_were():
+    """While one is live, threads change often."""
+    time.sleep(6 * _LOOK)  # the watch of the test before has ended
+    usual, ends = sys.getswitchinterval(), (threading.Event(), threading.Event())
+    for end in ends:
+        thread = threading.Thread(target=end.wait)
+        thread.start()
+        Watch(0.005, print).over(thread)
+        time.sleep(6 * _LOOK)
+    ends[0].set()
+    time.sleep(6 * _LOOK)
+    assert sys.getswitchinterval() == pytest.approx(TURN)
+    ends[1].set()
+    time.sleep(6 * _LOOK)
+    assert sys.getswitchinterval() == pytest.approx(usual)
 
 
 def test_other_cells_are_told_while_the_arm_is_live(live):
