@@ -108,7 +108,7 @@ FOLDERS = [
 UPSTAIRS = {"grader", "__main__"}
 """The grader and the command line, which neither lab nor course knows."""
 # What simulates, what knows the equations, what draws and what sees.
-MODEL = {"kinematics", "model", "urdf"}
+MODEL = {"kinematics", "model", "se3", "urdf"}
 DRAW = {"plotting", "replay", "grader.feedback.drawing", "course.reveal"}
 SEE = {
     "tags.rendering",
