@@ -10,11 +10,10 @@ import pytest
 
 import labkit as lk
 from labkit.errors import Closed, NothingKept, OutOfRange, TypeMismatch, UnknownName
-from labkit.hand import STRONGEST, Hand
 from labkit.replay.dials import read_dials
-from labkit.replay.grip import FRESH, SLOW_PAGE, STEADY
+from labkit.replay.hand import FRESH, SLOW_PAGE, STEADY, STRONGEST, Hand
+from labkit.replay.pacer import FRAME
 from labkit.replay.session import Session
-from labkit.replay.wall_clock import FRAME
 from labkit.replay.watch import _LOOK, TURN, Watch
 
 READY = np.array(lk.robot("left").ready)
