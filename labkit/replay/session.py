@@ -261,13 +261,7 @@ class Session(Simulated):
     def numbers(self) -> dict[str, Any]:
         """The session as the page draws it."""
         return {
-            "kind": "frame",
-            "state": self.state,
-            "note": self.note,
-            "law": self._law.name,
-            "pace": self._clock.pace,
-            "kept": [round(float(log.t[-1]), 1) for log in self.logs],
-            "move": self._hand.move,
-            **self.around.seen(),
-            **self._hand.seen(),
-        }
+            "kind": "frame", "state": self.state, "note": self.note, "law": self._law.name,
+            "pace": self._clock.pace, "kept": [round(float(log.t[-1]), 1) for log in self.logs],
+            "move": self._hand.move, **self.around.seen(), **self._hand.seen(),
+        }  # fmt: skip

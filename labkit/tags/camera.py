@@ -67,7 +67,8 @@ class Camera:
             seed: Of the noise.
 
         Raises:
-            TypeMismatch: The world is not a `World`, the lens not `Intrinsics`, or seed no seed.
+            TypeMismatch: The world is not a `World`, the lens not `Intrinsics`, or the seed not a
+                number.
             OutOfRange: ``noise`` or ``samples`` is not what it may be.
         """
         if not isinstance(world, World):
