@@ -16,7 +16,7 @@ from .motors import Motors
 from .plant import IDEAL, Plant
 from .robot import Robot
 from .sensors import Reports, TorqueSensors
-from .shapes import Array, as_array, locked, shown
+from .shapes import Array, as_array, as_random, locked, shown
 from .sim import new_arm
 from .springs import Springs
 from .world import World
@@ -62,12 +62,7 @@ class Arm:
         self.model = Model(robot, plant)
         self.world = World() if world is None else world
         self._check_place()
-        try:
-            self._random = np.random.default_rng(seed)
-        except (TypeError, ValueError):
-            raise TypeMismatch(
-                f"seed is {shown(seed)}, expected a whole number from 0 up"
-            ) from None
+        self._random = as_random(seed)
         if q0 is not None:
             self.model.within_limits(q0, "q")
         self._build(self.model)

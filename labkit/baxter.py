@@ -5,12 +5,9 @@ from __future__ import annotations
 import json
 from functools import cache
 from importlib.resources import files
-from typing import Literal
 
 from .errors import UnknownName
 from .robot import SIDES, Robot
-
-Side = Literal["left", "right"]
 
 
 @cache

@@ -10,7 +10,7 @@ import numpy as np
 
 from .arm import Arm
 from .control import Command, JointPosition, JointTorque, State
-from .errors import ArmLost, JointLimitExceeded, LabkitError
+from .errors import ArmLost, LabkitError
 from .plant import Plant
 from .robot import Robot
 from .shapes import Array, as_array, as_number
@@ -146,12 +146,7 @@ class Real:
         """Send a command, cut to the robot's limits."""
         x, robot = command.value, self.robot  # of one shape, as the loop has seen
         if type(command) is JointPosition:
-            outside = (x < robot.lower) | (x > robot.upper)
-            if outside.any():
-                i = int(outside.argmax())
-                raise JointLimitExceeded(
-                    "JointPosition", robot.joint_names[i], x[i], robot.lower[i], robot.upper[i]
-                )
+            robot.check_range(x, "JointPosition")
         else:
             most = robot.effort if type(command) is JointTorque else robot.speed
             kept = np.clip(x, -most, most)

@@ -8,7 +8,7 @@ from typing import Any
 from .errors import LabkitError
 
 FORMAT = 2
-"""Of checks.json, bundles and results; files of version 0.1 have no number and count as 1."""
+"""Of checks.json, bundles, results and logs; files of version 0.1 have no number and count as 1."""
 PHYSICS = 2
 """Of the plant and its engines; under another number the same run gives another log."""
 

@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .errors import LabkitError
 from .model import Model
 from .shapes import Array
 
@@ -63,6 +64,9 @@ def joint_torques(
 
     Returns:
         The torques, shape (n,) in [N m], and where each joint stands.
+
+    Raises:
+        LabkitError: They were not found; the inertias of an arm never came near to that.
     """
     end, unit = np.full(len(u), inf), np.eye(len(u))
     goal = np.minimum(np.maximum(target, slowest), fastest)
@@ -86,8 +90,11 @@ def joint_torques(
                 if count >= _TOGETHER:
                     break
         if not wrong:
-            break
-    return y, stands
+            return y, stands
+    raise LabkitError(
+        f"the joints' torques were not found in {_ROUNDS} rounds: the inertias in G differ by "
+        f"a factor of {np.linalg.cond(G):.1g}; check those of the robot, or take a smaller dt"
+    )
 
 
 @cache

@@ -18,7 +18,7 @@ import numpy as np
 import pinocchio as pin
 
 from . import se3
-from .errors import JointLimitExceeded, LabkitWarning, TypeMismatch, Unreachable
+from .errors import LabkitWarning, TypeMismatch, Unreachable
 from .paths import Spline
 from .robot import Robot
 from .shapes import Array, as_array
@@ -196,11 +196,7 @@ class Kinematics:
             JointLimitExceeded: A joint is outside its range.
         """
         angles: Array = as_array(q, self._joints, name)
-        low, high = self.robot.lower, self.robot.upper
-        outside = (angles < low - _SLACK) | (angles > high + _SLACK)
-        if outside.any():
-            i = int(outside.argmax())
-            raise JointLimitExceeded(name, self.robot.joint_names[i], angles[i], low[i], high[i])
+        self.robot.check_range(angles, name, _SLACK)
         return angles
 
     def inverse_kinematics(self, T_wt: Any, q0: Any, *, posture: Any = None) -> Array:

@@ -13,6 +13,7 @@ import numpy as np
 from .baxter import as_robot
 from .control import COMMANDS, Command, State
 from .errors import LabkitError
+from .formats import check_stamp, stamp
 from .plant import Plant
 from .robot import SIDES, Robot
 from .shapes import Array, locked
@@ -79,7 +80,8 @@ class Log:
             "command": self.command_type.__name__,
             "controller": self.controller,
             "plant": asdict(self.plant),
-            "robot": self.robot.name if self.robot.name in SIDES else self.robot.data(),
+            "robot": self.robot.name if _is_baxters(self.robot) else self.robot.data(),
+            **stamp(),
         }
         if single:
             columns = {
@@ -92,12 +94,13 @@ class Log:
         """The log that `save` wrote.
 
         Raises:
-            LabkitError: The file cannot be read, or holds no log.
+            LabkitError: The file cannot be read, holds no log, or holds that of another labkit.
         """
         try:
             with np.load(path) as file:
                 about = json.loads(str(file["about"]))
                 columns: dict[str, Any] = {x: file[x] for x in file.files if x != "about"}
+            check_stamp(stamp() | about, str(path), "run it again")  # the first ones have no number
             return cls(**_read(about, columns))
         except (OSError, EOFError, ValueError, KeyError, TypeError, BadZipFile) as error:
             raise LabkitError(f"{path} is not a log that labkit saved: {error}") from None
@@ -106,11 +109,16 @@ class Log:
 _ROWS = ("t", "q", "dq", "tau", "command", "saturated")
 
 
+def _is_baxters(robot: Robot) -> bool:
+    """Whether it is one of Baxter's arms, with nothing replaced."""
+    return robot.name in SIDES and robot.data() == as_robot(robot.name).data()
+
+
 def _read(about: dict[str, Any], columns: dict[str, Any]) -> dict[str, Any]:
     """The fields of a log from the contents of its file."""
     wide = {x: locked(a if a.dtype == bool else a.astype(np.float64)) for x, a in columns.items()}
     target = {c.__name__: c for c in (Sample, PoseSample)}[about["target"]]
-    robot = about.get("robot") or about["side"]  # the name until 0.2
+    robot = about["robot"]
     return {
         **{name: wide[name] for name in _ROWS},
         "target": target(*(wide[f"target.{x}"] for x in target._fields)),

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf, radians
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import control
 import numpy as np
@@ -20,8 +20,6 @@ import numpy as np
 from .errors import OutOfRange
 from .plant import Plant
 from .shapes import as_number
-
-_PADE = 4  # order of the rational stand-in for the delay; where a delay can be exact, it is
 
 
 @dataclass(frozen=True)
@@ -39,11 +37,6 @@ class VelocityJoint:
     def __post_init__(self) -> None:
         as_number(self.lag, "lag", least=0.0)
         as_number(self.delay, "delay", least=0.0)
-
-    @property
-    def denominator(self) -> tuple[float, ...]:
-        """Of its transfer function without the delay, highest power first."""
-        return (self.lag, 1.0, 0.0) if self.lag else (1.0, 0.0)
 
 
 def velocity_joint_of(plant: Plant, rate: float = 200.0) -> VelocityJoint:
@@ -87,50 +80,32 @@ class Margins(NamedTuple):
     stable: bool
 
 
-@dataclass(frozen=True)
-class PDLoop:
-    """A joint under proportional and derivative feedback with feed-forward.
+def margins(joint: VelocityJoint, Kp: float, Kd: float = 0.0) -> Margins:
+    """Gain, phase and delay margins of a joint under feedback, by its exact frequency response.
 
-    Attributes:
+    Args:
         joint: What is controlled.
         Kp: Proportional gain, at least 0.
         Kd: Derivative gain, at least 0.
+
+    Raises:
+        OutOfRange: A gain is negative, or both are zero, so there is no loop.
     """
-
-    joint: VelocityJoint
-    Kp: float
-    Kd: float = 0.0
-
-    def __post_init__(self) -> None:
-        as_number(self.Kp, "Kp", least=0.0)
-        as_number(self.Kd, "Kd", least=0.0)
-
-    def open(self) -> Any:
-        """The loop L(s), the delay by Padé's approximation: a control.TransferFunction."""
-        L = control.tf((self.Kd, self.Kp), self.joint.denominator)
-        return L * control.tf(*control.pade(self.joint.delay, _PADE)) if self.joint.delay else L
-
-    def margins(self) -> Margins:
-        """Gain, phase and delay margins from the exact frequency response.
-
-        Raises:
-            OutOfRange: Both gains are zero, so there is no loop.
-        """
-        if self.Kp == 0.0 and self.Kd == 0.0:
-            raise OutOfRange("Kp and Kd are both 0, so there is no loop that could have margins")
-        omega = np.logspace(-2, 4, 1000)
-        s = 1j * omega
-        L = (self.Kp + self.Kd * s) / np.polyval(self.joint.denominator, s)
-        L = L * np.exp(-s * self.joint.delay)
-        data = control.FrequencyResponseData(L, omega, smooth=True)
-        gain, phase, _, _, crossover, _ = (
-            inf if x is None or np.isnan(x) else float(x) for x in control.stability_margins(data)
-        )
-        room = radians(phase) / crossover if crossover < inf else inf
-        # An integrator and falling gain: stable exactly when both margins are on the right side.
-        return Margins(gain, phase, crossover, room, stable=gain > 1.0 and phase > 0.0)
+    Kp, Kd = as_number(Kp, "Kp", least=0.0), as_number(Kd, "Kd", least=0.0)
+    if Kp == 0.0 and Kd == 0.0:
+        raise OutOfRange("Kp and Kd are both 0, so there is no loop that could have margins")
+    omega = np.logspace(-2, 4, 1000)
+    s = 1j * omega
+    L = (Kp + Kd * s) / np.polyval((joint.lag, 1.0, 0.0), s) * np.exp(-s * joint.delay)
+    data = control.FrequencyResponseData(L, omega, smooth=True)
+    gain, phase, _, _, crossover, _ = (
+        inf if x is None or np.isnan(x) else float(x) for x in control.stability_margins(data)
+    )
+    room = radians(phase) / crossover if crossover < inf else inf
+    # An integrator and falling gain: stable exactly when both margins are on the right side.
+    return Margins(gain, phase, crossover, room, stable=gain > 1.0 and phase > 0.0)
 
 
 def ultimate_gain(joint: VelocityJoint) -> float:
     """The proportional gain at which the joint would oscillate for ever; infinite if none does."""
-    return PDLoop(joint, 1.0).margins().gain
+    return margins(joint, 1.0).gain

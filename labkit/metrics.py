@@ -32,15 +32,6 @@ def joint_error(log: Log) -> Array:
     return np.asarray(_joint_target(log).position - log.q)
 
 
-def joint_speed_error(log: Log) -> Array:
-    """Target minus actual joint speeds of a run after joint angles, shape (N, n) in [rad/s].
-
-    Raises:
-        TypeMismatch: The run followed something else.
-    """
-    return np.asarray(_joint_target(log).velocity - log.dq)
-
-
 def _joint_target(log: Log) -> Sample:
     target = log.target
     if isinstance(target, PoseSample):

@@ -9,7 +9,7 @@ Pinocchio's.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -21,27 +21,6 @@ from .kinematics import Kinematics
 from .plant import IDEAL, Plant
 from .robot import Robot
 from .shapes import Array, as_array, shown
-
-
-class Terms(NamedTuple):
-    r"""The equations of motion at one instant; see the `Model` methods of the same quantities.
-
-    Attributes:
-        T_wt: `Kinematics.pose`, shape (4, 4).
-        J: `Kinematics.tip_jacobian`, shape (6, n).
-        drift: The tip's acceleration while the joints turn evenly, :math:`\dot J\,\dot q`, shape
-            (6,).
-        M: `Model.mass_matrix`, shape (n, n) in [kg m^2].
-        c: Coriolis and centrifugal torque, C @ dq, shape (n,) in [N m].
-        g: `Model.gravity`, shape (n,) in [N m].
-    """
-
-    T_wt: Array
-    J: Array
-    drift: Array
-    M: Array
-    c: Array
-    g: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,21 +202,6 @@ class Model(Kinematics):
         """
         tau_ext = as_array(tau_ext, self._joints, "tau_ext")
         return np.asarray(np.linalg.lstsq(self.tip_jacobian(q).T, tau_ext, rcond=None)[0])
-
-    def terms(self, q: Any, dq: Any) -> Terms:
-        """All that a controller of torques needs at one instant, in one sweep over the arm.
-
-        Args:
-            q: Joint angles, shape (n,) in [rad].
-            dq: Joint speeds, shape (n,) in [rad/s].
-        """
-        q, dq = as_array(q, self._joints, "q"), as_array(dq, self._joints, "dq")
-        m, d = self._pin, self._data
-        pin.forwardKinematics(m, d, q, dq, self.robot.zeros)
-        T_wt = pin.updateFramePlacement(m, d, self._tip).homogeneous
-        drift = pin.getFrameClassicalAcceleration(m, d, self._tip, pin.LOCAL_WORLD_ALIGNED).vector
-        M, g = self.mass_matrix(q), self.gravity(q)
-        return Terms(T_wt, self.tip_jacobian(q), drift, M, self.bias(q, dq) - g, g)
 
     def operational_inertia(self, q: Any) -> Array:
         r"""The inertia felt at the tip, :math:`\Lambda = (J M^{-1} J^T)^{-1}`, in world axes.

@@ -72,7 +72,7 @@ class Circle:
 
     def __post_init__(self) -> None:
         lock_vectors(self, 3, "start", "centre")
-        as_number(self.turns, "turns")
+        object.__setattr__(self, "turns", as_number(self.turns, "turns"))
         if self.radius < 1e-9:
             x, y = self.centre[:2]
             raise OutOfRange(
@@ -182,7 +182,8 @@ class Spline:
             raise ShapeError("values", (self.s.size, n), self.values.shape)
         spline = make_interp_spline(self.s, self.values, k=5)
         self._knots = np.unique(spline.t)[:-1]
-        # Each piece as a polynomial, highest power first: scipy's own evaluation takes 30 us a time
+        # Each piece as a polynomial, highest power first: SciPy's own evaluation takes twice as
+        # long, and a closed loop asks at each tick
         taylor = [spline(self._knots, nu=k) / factorial(k) for k in range(5, -1, -1)]
         self._pieces = np.ascontiguousarray(np.stack(taylor, axis=1))  # (pieces, 6, n)
 
@@ -314,9 +315,9 @@ class Trapezoid:
     a_max: float
 
     def __post_init__(self) -> None:
-        as_number(self.distance, "distance", least=0.0)
-        as_number(self.v_max, "v_max", above=0.0)
-        as_number(self.a_max, "a_max", above=0.0)
+        object.__setattr__(self, "distance", as_number(self.distance, "distance", least=0.0))
+        for name in ("v_max", "a_max"):
+            object.__setattr__(self, name, as_number(getattr(self, name), name, above=0.0))
 
     @property
     def peak_speed(self) -> float:

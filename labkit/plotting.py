@@ -1,4 +1,6 @@
-"""Figures from a log.  Each takes the value and `ax=None`, returns what it drew on, shows nothing.
+"""Figures from a log: each takes it, and axes to draw on or None, and returns what it drew on.
+
+`show`, `dials` and `progress` are for notebooks: what they are given appears below the cell.
 
 Curves differ by line style as well as by colour, and `describe` gives each figure words.
 """

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import LabkitError
+from .errors import JointLimitExceeded, LabkitError
 from .plant import IDEAL, Plant
 from .shapes import Array, locked
 
@@ -82,7 +82,9 @@ class Robot:
         made = read_urdf(file, tip, ready, name)
         if made["name"] in SIDES:
             raise LabkitError(f"{made['name']!r} is a Baxter's arm; give this robot another name=")
-        return cls(**made)
+        robot = cls(**made)
+        robot.check_range(robot.ready, "ready")
+        return robot
 
     def data(self) -> dict[str, Any]:
         """What it is made of, as plain data: ``Robot(**robot.data())`` is the same robot."""
@@ -123,6 +125,20 @@ class Robot:
     def zeros(self) -> Array:
         """No speed, or no torque, at any joint, shape (n,)."""
         return locked(np.zeros(self.n))
+
+    def check_range(self, q: Array, name: str, slack: float = 0.0) -> None:
+        """Raise `JointLimitExceeded` where a joint is out of its range.
+
+        Args:
+            q: Joint angles, shape (n,) in [rad].
+            name: What to call them in the sentence.
+            slack: How far out of it is near enough, in [rad].
+        """
+        outside = (q < self.lower - slack) | (q > self.upper + slack)
+        if outside.any():
+            i = int(outside.argmax())
+            lower, upper = self.lower[i], self.upper[i]
+            raise JointLimitExceeded(name, self.joint_names[i], q[i], lower, upper)
 
     def _each(self, limit: str) -> Array:
         return locked(np.array([body[limit] for body in self.bodies]))

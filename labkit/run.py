@@ -70,15 +70,15 @@ def run(
             raise TypeMismatch(
                 f"{name} is {shown(given)}, expected a function: run(arm, target, controller)"
             )
-    return loop(_driven(arm, rate), target, controller, duration)
+    return run_driven(_driven(arm, rate), target, controller, duration)
 
 
-def loop(
+def run_driven(
     driven: Simulated | Real, target: Target, controller: Controller, duration: float | None
 ) -> Log:
     """`run`, of what is driven already; `live` has a clock of its own."""
     robot, period = driven.robot, driven.period
-    who, whom = _name(controller), f"the target {_name(target)}"
+    who, whom = name_of(controller), f"the target {name_of(target)}"
     last = _ticks(target, duration, period) - 1
     lost = driven.lost_ticks(last + 1)
     samples = _Samples(target, whom)
@@ -208,8 +208,8 @@ def _ticks(target: Target, duration: float | None, period: float) -> int:
         duration = getattr(target, "duration", None)
         if duration is None:
             raise OutOfRange(
-                f"how long? the target {_name(target)} has no duration; give duration=..., unless "
-                "target and controller were swapped: run(arm, target, controller)"
+                f"how long? the target {name_of(target)} has no duration; give duration=..., "
+                "unless target and controller were swapped: run(arm, target, controller)"
             )
     return round(as_number(duration, "duration", least=0.0) / period + 1e-9) + 1
 
@@ -256,5 +256,6 @@ def _runaway(robot: Robot, dq: Array, who: str, t: float) -> str:
     )
 
 
-def _name(f: object) -> str:
+def name_of(f: object) -> str:
+    """What a controller or a target is called in logs and sentences."""
     return getattr(f, "__name__", type(f).__name__)

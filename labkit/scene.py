@@ -19,7 +19,7 @@ from . import se3
 from .errors import OutOfRange, UnknownName
 from .joints import Touch
 from .shapes import Array, as_number, lock_vectors, locked
-from .world import Actor, Standing, World
+from .world import Standing, World
 
 TIP_RADIUS = 0.01
 """Radius of the ball about the tip's origin, in [m]; contact begins this far from it."""
@@ -51,15 +51,10 @@ class _Slab:
     damping: float
     friction: float
 
-    def put_into(self, world: World) -> Actor:
-        """Build it."""
-
-        def act() -> None:
-            for arm in world.arms:
-                p, v = arm.tip()
-                self._meet(arm, world.dt, p, v)
-
-        return act
+    def act(self, world: World) -> None:
+        """Push back the tips that are in it."""
+        for arm in world.arms:
+            self._meet(arm, world.dt, *arm.tip())
 
     def _meet(self, arm: Standing, dt: float, p: Array, v: Array) -> None:
         """Push back a tip that is in it, as a spring and a damper of its own and the pad's."""
@@ -174,15 +169,10 @@ class Push:
         if not self.duration > 0.0:
             raise OutOfRange(f"duration is {self.duration}, it must be greater than 0")
 
-    def put_into(self, world: World) -> Actor:
-        """Wait for the window."""
-        half = 0.5 * world.dt
-
-        def act() -> None:
-            if self.start - half < world.t < self.start + self.duration - half:
-                _arm_of(world, self.side).push(self.force, self.moment)
-
-        return act
+    def act(self, world: World) -> None:
+        """Push during the window."""
+        if self.start - 0.5 * world.dt < world.t < self.start + self.duration - 0.5 * world.dt:
+            _arm_of(world, self.side).push(self.force, self.moment)
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,16 +200,12 @@ class Spring:
         """On the arm, for a tip at ``p`` [m] moving at ``v`` [m/s], shape (3,) in [N]."""
         return np.asarray(self.stiffness * (self.anchor - p) - self.damping * v)
 
-    def put_into(self, world: World) -> Actor:
-        """Hook it on."""
-
-        def act() -> None:
-            arm = _arm_of(world, self.side)
-            give = self.damping + self.stiffness * world.dt  # its force at the end of the step
-            pull = self.stiffness * (self.anchor - arm.tip()[0])
-            arm.touch(Touch(np.append(pull, np.zeros(3)), give * np.eye(3)))
-
-        return act
+    def act(self, world: World) -> None:
+        """Pull as it will at the end of the step."""
+        arm = _arm_of(world, self.side)
+        give = self.damping + self.stiffness * world.dt
+        pull = self.stiffness * (self.anchor - arm.tip()[0])
+        arm.touch(Touch(np.append(pull, np.zeros(3)), give * np.eye(3)))
 
 
 def _arm_of(world: World, side: str | None) -> Standing:

@@ -2,21 +2,21 @@ r"""Rigid motion: rotations, poses, twists, and the maps between them.
 
 A pose is a 4 x 4 matrix `T_ab` that turns coordinates in b into a, ``p_a = T_ab @ p_b``;
 the subscripts cancel.  A twist is (v, w), linear part first, as in Murray, Li & Sastry (MLS) and
-Pinocchio.  Formulas: MLS chapter 2; Lynch & Park, *Modern Robotics*, chapter 3.
+Pinocchio, which computes exponentials and logarithms.  Formulas: MLS chapter 2; Lynch & Park,
+*Modern Robotics*, chapter 3.
 """
 
 from __future__ import annotations
 
-from math import atan2, cos, sin, sqrt
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 from .errors import OutOfRange
 from .shapes import Array, as_array
 
 _IDENTITY = np.eye(3)
-_SMALL = 1e-4  # below this angle the closed forms lose digits and the series are exact
 
 
 def hat(w: Any) -> Array:
@@ -54,10 +54,8 @@ def rotation(phi: Any) -> Array:
     Returns:
         Shape (3, 3).
     """
-    phi = as_array(phi, (3,), "phi")
-    S, theta = hat(phi), sqrt(phi @ phi)
-    a, b, _ = _coefficients(theta)
-    return np.eye(3) + a * S + b * (S @ S)
+    R: Array = pin.exp3(as_array(phi, (3,), "phi"))
+    return R
 
 
 def rotation_log(R: Any) -> Array:
@@ -75,21 +73,8 @@ def rotation_log(R: Any) -> Array:
     Raises:
         OutOfRange: R is not a rotation matrix.
     """
-    R = as_rotation(R, "R")
-    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R.tolist()  # quicker than arrays of three
-    v = np.array([0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)])  # sin(theta) * axis
-    s, c = sqrt(v @ v), 0.5 * (xx + yy + zz - 1.0)
-    theta = atan2(s, c)
-    if theta < _SMALL:
-        return v * (1.0 + theta * theta / 6.0)
-    if theta < 3.0:
-        return v * (theta / s)
-    B = 0.5 * (R + R.T) - cos(theta) * np.eye(3)  # (1 - cos(theta)) * axis axis^T
-    k = int(np.argmax(np.diag(B)))
-    axis: Array = B[:, k] / np.linalg.norm(B[:, k])
-    if axis @ v < 0.0:
-        axis = -axis
-    return axis * theta
+    phi: Array = pin.log3(as_rotation(R, "R"))
+    return phi
 
 
 def orientation_error(R_wd: Any, R_wt: Any) -> Array:
@@ -161,12 +146,7 @@ def exp(V: Any) -> Array:
     Returns:
         Pose :math:`e^{\hat V}`, shape (4, 4).
     """
-    V = as_array(V, (6,), "V")
-    S, theta = hat(V[3:]), sqrt(V[3:] @ V[3:])
-    a, b, c = _coefficients(theta)
-    S2, T = S @ S, np.eye(4)
-    T[:3, :3] = np.eye(3) + a * S + b * S2
-    T[:3, 3] = (np.eye(3) + b * S + c * S2) @ V[:3]
+    T: Array = pin.exp6(as_array(V, (6,), "V")).homogeneous
     return T
 
 
@@ -180,30 +160,9 @@ def log(T: Any) -> Array:
         Twist (v, w), shape (6,).
     """
     T = as_array(T, (4, 4), "T")
-    w = rotation_log(T[:3, :3])
-    S, theta = hat(w), sqrt(w @ w)
-    a, b, _ = _coefficients(theta)
-    k = 1.0 / 12.0 if theta < _SMALL else (1.0 - 0.5 * a / b) / theta**2
-    left_inverse = np.eye(3) - 0.5 * S + k * (S @ S)
-    return np.concatenate([left_inverse @ T[:3, 3], w])
-
-
-def adjoint(T_ab: Any) -> Array:
-    r"""The matrix that turns a twist seen in b into the same twist seen in a (MLS eq. 2.58).
-
-    With (v, w) order it is :math:`[[R, \hat p R], [0, R]]`; the product is of matrices.
-
-    Args:
-        T_ab: Pose, shape (4, 4).
-
-    Returns:
-        Shape (6, 6).
-    """
-    T_ab = as_array(T_ab, (4, 4), "T_ab")
-    R, Ad = T_ab[:3, :3], np.zeros((6, 6))
-    Ad[:3, :3] = Ad[3:, 3:] = R
-    Ad[:3, 3:] = hat(T_ab[:3, 3]) @ R
-    return Ad
+    as_rotation(T[:3, :3], "T[:3, :3]")
+    V: Array = pin.log6(pin.SE3(T)).vector
+    return V
 
 
 def angle_between(R_a: Any, R_b: Any) -> float:
@@ -220,10 +179,8 @@ def quaternion(R: Any) -> Array:
     Returns:
         Shape (4,).
     """
-    phi = rotation_log(R)
-    angle = sqrt(phi @ phi)
-    scale = 0.5 if angle < _SMALL else sin(0.5 * angle) / angle
-    return np.array([*(scale * phi), cos(0.5 * angle)])
+    x: Array = pin.Quaternion(as_rotation(R, "R")).normalized().coeffs()
+    return -x if x[3] < 0.0 else x
 
 
 def as_rotation(x: Any, name: str) -> Array:
@@ -270,12 +227,3 @@ def as_pose(x: Any, name: str) -> Array:
         raise OutOfRange(f"{name}'s last row is {T[3]}, a pose has (0, 0, 0, 1); is it transposed?")
     as_rotation(T[:3, :3], f"{name}[:3, :3]")
     return T
-
-
-def _coefficients(theta: float) -> tuple[float, float, float]:
-    """sin(t)/t, (1 - cos t)/t^2 and (t - sin t)/t^3, by their series near zero."""
-    if theta < _SMALL:
-        t2 = theta * theta
-        return 1.0 - t2 / 6.0, 0.5 - t2 / 24.0, 1.0 / 6.0 - t2 / 120.0
-    s, h = sin(theta), sin(0.5 * theta)  # 1 - cos t = 2 sin^2(t/2), without the cancellation
-    return s / theta, 2.0 * (h / theta) ** 2, (theta - s) / theta**3

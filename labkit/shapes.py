@@ -146,6 +146,21 @@ def as_number(
     return value
 
 
+def as_random(seed: Any) -> np.random.Generator:
+    """The random numbers of a seed.
+
+    Args:
+        seed: A whole number from 0 up, or a generator that was made already.
+
+    Raises:
+        TypeMismatch: It is neither.
+    """
+    try:
+        return np.random.default_rng(seed)
+    except (TypeError, ValueError):
+        raise TypeMismatch(f"seed is {shown(seed)}, expected a whole number from 0 up") from None
+
+
 def locked(a: Array) -> Array:
     """The same array, made read-only."""
     a.setflags(write=False)

@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pinocchio as pin
 
-from .errors import JointLimitExceeded, LabkitError, UnknownName
+from .errors import LabkitError, UnknownName
 from .quiet import quiet
 from .shapes import as_vector
 
@@ -42,10 +42,6 @@ def read_urdf(file: Any, tip: str, ready: Any, name: str | None) -> dict[str, An
     hand = model.frames[model.getFrameId(tip, pin.FrameType.BODY)].placement
     bodies, turn = _bodies(model, limits, path.name)
     q = as_vector(ready, len(bodies), "ready")
-    for body, angle in zip(bodies, q.tolist(), strict=True):
-        low, high = body["lower"], body["upper"]
-        if not low <= angle <= high:
-            raise JointLimitExceeded("ready", body["joint"], angle, low, high)
     T = (turn.inverse() * hand).homogeneous
     return {"name": name, "bodies": bodies, "T_hand_tip": T, "ready": q, "neutral": q}
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import Any, Protocol, Self
 
 from .errors import Closed, OutOfRange, TypeMismatch
@@ -11,15 +11,12 @@ from .joints import Touch
 from .shapes import Array, as_number, shown
 from .sim import chosen
 
-Actor = Callable[[], None]
-"""Applies forces for the next physics step."""
-
 
 class Thing(Protocol):
-    """Something to put into a world: a value that builds itself there."""
+    """Something to put into a world, where it acts on the arms."""
 
-    def put_into(self, world: World) -> Actor | None:
-        """Build it; what it returns, if anything, acts before each physics step from now on."""
+    def act(self, world: World) -> None:
+        """Do to its arms what it does in the next physics step."""
 
 
 class Standing(Protocol):
@@ -90,8 +87,6 @@ class World:
         self.dt = as_number(dt, "dt", above=0.0)
         self.engine = chosen(engine)
         self.steps = 0
-        self._actors: list[Actor] = []
-        self._acting: dict[int, Actor | None] = {}
         self.things: list[Thing] = []
         self.arms: list[Standing] = []
         self.shown: list[Shown] = []
@@ -113,24 +108,12 @@ class World:
         """
         if self.closed:
             raise Closed("this world was closed; make a new World")
-        if isinstance(thing, type) or not hasattr(thing, "put_into"):
+        if isinstance(thing, type) or not hasattr(thing, "act"):
             raise TypeMismatch(
-                f"cannot add {shown(thing)}; expected an object with put_into(), such as "
+                f"cannot add {shown(thing)}; expected an object with act(world), such as "
                 "lk.Table() or lk.Wall(...)"
             )
-        actor = thing.put_into(self)
         self.things.append(thing)
-        self._acting[id(thing)] = actor
-        if actor is not None:
-            self.add(actor)
-
-    def exchange(self, old: Thing, new: Thing) -> None:
-        """Put ``new`` in the place of ``old``, which is one of `things`: so a wall is moved."""
-        self.things[self.things.index(old)] = new
-        before = self._acting.pop(id(old))
-        after = self._acting[id(new)] = new.put_into(self)
-        if before is not None and after is not None:
-            self._actors[self._actors.index(before)] = after
 
     def check_owner(self) -> None:
         """Raise `Closed` if another thread moves this world."""
@@ -138,10 +121,6 @@ class World:
             raise Closed(
                 "this arm is live in a cell of this notebook; make a new Arm, or press Stop there"
             )
-
-    def add(self, actor: Actor) -> None:
-        """Call ``actor`` before each physics step from now on."""
-        self._actors.append(actor)
 
     def show(self, thing: Shown) -> None:
         """Let cameras see ``thing`` from now on."""
@@ -157,8 +136,8 @@ class World:
             raise Closed("this world was closed; make a new World, or a new Arm")
         self.check_owner()
         for _ in range(count):
-            for act in self._actors:
-                act()
+            for thing in self.things:
+                thing.act(self)
             for arm in self.arms:
                 arm.step()
             self.steps += 1

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from labkit.metrics import joint_error, joint_speed_error, model_of
+from labkit.metrics import joint_error, model_of
 
 
 class Balance(NamedTuple):
@@ -37,7 +37,7 @@ def energy_balance(log):
 
 def lyapunov(log, Kp, inertia=None):
     """Energy of the error, V = de^T M de / 2 + e^T Kp e / 2 (MLS, Proposition 4.10), shape (N,)."""
-    e, de = joint_error(log), joint_speed_error(log)
+    e, de = joint_error(log), log.target.velocity - log.dq
     model = model_of(log)
     M = np.array([model.mass_matrix(q) if inertia is None else inertia for q in log.q])
     return 0.5 * np.einsum("ki,kij,kj->k", de, M, de) + 0.5 * (e * e) @ Kp

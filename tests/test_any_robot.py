@@ -191,7 +191,8 @@ def test_a_camera_sees_a_capsule_for_each_link(robot, model):
     links, frames = capsules(robot), link_frames(robot, robot.ready)
     assert len(links) == robot.n + 1
     last = frames[links[-1].parent]
-    assert_allclose(last @ [*links[-1].end, 1.0], model.pose(robot.ready)[:, 3], atol=1e-9)
+    tip = (np.linalg.inv(last) @ model.pose(robot.ready))[:3, 3]
+    assert_allclose(links[-1].ball[0], 0.5 * tip, atol=1e-9)
     with lk.World() as world:
         lk.Arm(robot, world=world, q0=robot.ready)
         eye = lk.looking_at((1.5, 1.0, 0.6), (0.3, 0.0, 0.3))

@@ -33,7 +33,7 @@ ORDER = [
     {"sensors", "springs"},
     {"motors"},
     {"arm"},
-    {"log", "driven", "hand"},
+    {"log", "driven"},
     {"run"},
     {"metrics", "recordings", "loop"},
     {"tags.tag", "tags.intrinsics", "tags.estimation", "tags.surface"},
@@ -43,16 +43,15 @@ ORDER = [
     {"tags.detection"},
     {"tags.stream"},
     {"tags"},
-    {"replay.saved"},
+    {"replay.saved", "replay.figure"},
     {"plotting"},
     {"replay.motion", "replay.surroundings"},
     {
         "replay.recorded",
-        "replay.figure",
         "replay.dials",
-        "replay.grip",
+        "replay.hand",
+        "replay.pacer",
         "replay.pull",
-        "replay.wall_clock",
         "replay.watch",
     },
     {"replay.widget", "replay.session"},
@@ -108,7 +107,7 @@ FOLDERS = [
 UPSTAIRS = {"grader", "__main__"}
 """The grader and the command line, which neither lab nor course knows."""
 # What simulates, what knows the equations, what draws and what sees.
-MODEL = {"kinematics", "model", "urdf"}
+MODEL = {"kinematics", "model", "se3", "urdf"}
 DRAW = {"plotting", "replay", "grader.feedback.drawing", "course.reveal"}
 SEE = {
     "tags.rendering",

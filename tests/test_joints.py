@@ -44,6 +44,14 @@ def test_every_joint_obeys_its_law_wherever_the_search_begins(random, where):
         assert ((slowest - 1e-9 <= v) & (v <= fastest + 1e-9)).all()
 
 
+def test_a_search_without_an_end_is_a_sentence(random, monkeypatch):
+    """It does not return torques that nobody found."""
+    (problem,) = problems(random, 1)
+    monkeypatch.setattr("labkit.joints._ROUNDS", 1)
+    with pytest.raises(lk.LabkitError, match=r"not found in 1 rounds.*check those of the robot"):
+        joint_torques(*problem, [LOW] * 7)
+
+
 def test_no_motor_leaves_the_range_of_its_joint():
     """A torque into the stop ends on it and stays there; away from it, the joint comes free."""
     with lk.Arm(q0=MODEL.robot.ready) as arm:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.loop import PDLoop, VelocityJoint, mean_age, ultimate_gain, velocity_joint_of
+from labkit.loop import VelocityJoint, margins, mean_age, ultimate_gain, velocity_joint_of
 from solutions.study.report_procedure import decay_ratio
 from solutions.study.tuning import trial_on
 
@@ -17,18 +17,18 @@ INTEGRATOR = VelocityJoint(0.0, delay=0.05)
 def test_margins_of_an_integrator_with_delay_are_the_closed_form():
     """L = K e^{-sd}/s: crossover K, phase margin 90 deg - K d, gain margin pi / (2 K d)."""
     K, d = 4.0, INTEGRATOR.delay
-    found = PDLoop(INTEGRATOR, K).margins()
+    found = margins(INTEGRATOR, K)
     assert found.crossover == pytest.approx(K, rel=1e-6)
     assert found.phase == pytest.approx(90.0 - np.degrees(K * d), rel=1e-6)
     assert found.gain == pytest.approx(np.pi / (2 * K * d), rel=1e-5)
     assert found.delay == pytest.approx(np.pi / (2 * K) - d, rel=1e-5)
-    assert found.stable and not PDLoop(INTEGRATOR, 40.0).margins().stable
+    assert found.stable and not margins(INTEGRATOR, 40.0).stable
 
 
 def test_without_delay_the_margins_of_a_lagging_joint_are_the_closed_form():
     """PD on a joint with lag: phase margin 90 deg + atan(w Kd / Kp) - atan(w lag)."""
     Kp, Kd, lag = 20.0, 0.5, 0.1
-    found = PDLoop(VelocityJoint(lag), Kp, Kd).margins()
+    found = margins(VelocityJoint(lag), Kp, Kd)
     w = found.crossover
     assert Kp**2 + (Kd * w) ** 2 == pytest.approx(w**2 * (1.0 + (lag * w) ** 2), rel=1e-6)
     phase = 90.0 + np.degrees(np.arctan2(Kd * w, Kp) - np.arctan(lag * w))
@@ -38,18 +38,21 @@ def test_without_delay_the_margins_of_a_lagging_joint_are_the_closed_form():
 
 def test_a_loop_whose_gain_is_nowhere_1_has_nothing_to_lose():
     """Damping alone below 1: whatever the phase."""
-    found = PDLoop(VelocityJoint(0.1), 0.0, 0.5).margins()
+    found = margins(VelocityJoint(0.1), 0.0, 0.5)
     assert found.crossover == found.phase == found.delay == np.inf
 
 
-def step_response(found, t):
+def step_response(joint, Kp, t):
     """The joint's angle after a unit step of the wanted angle, without feed-forward."""
-    return control.step_response(control.feedback(found.open()), T=t).outputs
+    loop = Kp / (control.tf("s") * (joint.lag * control.tf("s") + 1.0))
+    if joint.delay:
+        loop *= control.tf(*control.pade(joint.delay, 4))
+    return control.step_response(control.feedback(loop), T=t).outputs
 
 
 def test_the_step_response_of_a_plain_integrator_is_the_exponential():
     t = np.linspace(0.0, 2.0, 200)
-    found = step_response(PDLoop(VelocityJoint(0.0), 3.0), t)
+    found = step_response(VelocityJoint(0.0), 3.0, t)
     np.testing.assert_allclose(found, 1.0 - np.exp(-3.0 * t), atol=1e-6)
 
 
@@ -79,7 +82,7 @@ def test_the_arm_overshoots_as_its_loop_says(Kp):
     """Joint velocity control on Baxter's plant, back to rest, against the step response."""
     trial = trial_on(0, replace(lk.BAXTER, velocity_noise=0.0, lost_ticks=0.0))
     t, e = trial(Kp, 0.0)
-    predicted = 1.0 - step_response(PDLoop(velocity_joint_of(lk.BAXTER), Kp), t)
+    predicted = 1.0 - step_response(velocity_joint_of(lk.BAXTER), Kp, t)
     actual = e / e[0]
     assert actual.min() == pytest.approx(predicted.min(), abs=0.03)
     assert t[actual.argmin()] == pytest.approx(t[predicted.argmin()], abs=0.015)
@@ -88,9 +91,9 @@ def test_the_arm_overshoots_as_its_loop_says(Kp):
 @pytest.mark.parametrize(
     ("make", "sentence"),
     [
-        (lambda: PDLoop(INTEGRATOR, -1.0), "Kp is -1, it must be at least 0"),
-        (lambda: PDLoop(INTEGRATOR, 1.0, float("nan")), "Kd is nan"),
-        (lambda: PDLoop(INTEGRATOR, 0.0).margins(), "Kp and Kd are both 0"),
+        (lambda: margins(INTEGRATOR, -1.0), "Kp is -1, it must be at least 0"),
+        (lambda: margins(INTEGRATOR, 1.0, float("nan")), "Kd is nan"),
+        (lambda: margins(INTEGRATOR, 0.0), "Kp and Kd are both 0"),
         (lambda: VelocityJoint(0.1, -0.1), "delay is -0.1"),
     ],
 )

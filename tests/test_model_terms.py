@@ -21,19 +21,6 @@ def motions(draw):
 
 
 @given(motions())
-def test_terms_are_the_single_quantities(motion):
-    """Pose, Jacobian, drift, M, C dq and g, each equal to its own method."""
-    q, dq, _ = motion
-    T_wt, J, drift, M, c, g = MODEL.terms(q, dq)
-    assert pytest.approx(MODEL.pose(q), abs=1e-12) == T_wt
-    assert pytest.approx(MODEL.tip_jacobian(q), abs=1e-12) == J
-    assert drift == pytest.approx(MODEL.tip_jacobian_rate(q, dq) @ dq, abs=1e-9)
-    assert pytest.approx(MODEL.mass_matrix(q), abs=1e-12) == M
-    assert c == pytest.approx(MODEL.coriolis(q, dq) @ dq, abs=1e-9)
-    assert g == pytest.approx(MODEL.gravity(q), abs=1e-12)
-
-
-@given(motions())
 def test_inverse_dynamics_is_the_equation_of_motion(motion):
     """M ddq + C dq + g."""
     q, dq, ddq = motion
@@ -66,7 +53,7 @@ def test_wrong_shapes_are_sentences():
     with pytest.raises(ShapeError, match="tau_ext"):
         MODEL.tip_wrench(MODEL.robot.ready, np.zeros(6))
     with pytest.raises(ShapeError, match="dq"):
-        MODEL.terms(MODEL.robot.ready, np.zeros(6))
+        MODEL.bias(MODEL.robot.ready, np.zeros(6))
 
 
 def _limits():

@@ -1,5 +1,7 @@
 """Recorded runs and trials: what was recorded, what lies between, what nobody recorded."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -27,6 +29,35 @@ def test_a_saved_log_reads_back_to_single_precision(tmp_path):
     assert (back.plant, back.robot.name, back.controller) == (log.plant, log.robot.name, "forward")
     assert back.command_type is lk.JointVelocity
     assert metrics.summary(back).rms_mm == pytest.approx(metrics.summary(log).rms_mm, rel=1e-3)
+
+
+def short():
+    with lk.Arm(REPLACED, q0=REPLACED.ready) as arm:
+        return lk.run(arm, lk.Hold(REPLACED.ready, 0.02), lk.control.hold(REPLACED.ready))
+
+
+REPLACED = dataclasses.replace(lk.robot("left"), T_hand_camera=np.eye(4))
+
+
+def test_what_was_replaced_in_a_robot_is_saved_with_its_log(tmp_path):
+    """Such as the place of the hand's camera in Baxter's left arm."""
+    short().save(tmp_path / "run.npz")
+    back = lk.Log.load(tmp_path / "run.npz")
+    assert back.robot.data() == REPLACED.data()
+
+
+def test_a_log_of_another_physics_is_refused_and_one_without_a_number_is_read(
+    tmp_path, monkeypatch
+):
+    """The first logs, such as those that ship, have no number."""
+    with monkeypatch.context() as past:
+        past.setattr("labkit.formats.PHYSICS", 1)
+        short().save(tmp_path / "old.npz")
+        past.setattr("labkit.log.stamp", dict)
+        short().save(tmp_path / "first.npz")
+    with pytest.raises(lk.LabkitError, match=r"old.npz has physics 1, this labkit reads 2; run it"):
+        lk.Log.load(tmp_path / "old.npz")
+    assert len(lk.Log.load(tmp_path / "first.npz")) == len(short())
 
 
 def test_every_recording_that_ships_is_a_run_one_can_study():

@@ -6,7 +6,7 @@ from curves import assert_slopes
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from labkit import BangBang, Cubic, Quintic, Trapezoid
+from labkit import BangBang, Circle, Cubic, Quintic, Trapezoid
 from labkit.errors import LabkitError, NotFinite, OutOfRange, ShapeError, TypeMismatch
 
 PROFILES = (BangBang, Cubic, Quintic)
@@ -140,3 +140,10 @@ def test_a_scaling_is_a_value():
     assert Cubic(2.0) != Quintic(2.0)
     with pytest.raises(AttributeError):
         Cubic(2.0).duration = 3.0
+
+
+def test_numbers_of_any_kind_are_kept_as_floats():
+    """An array without a dimension, such as the sum of one, is a number too."""
+    one = np.array(1)
+    kept = vars(Trapezoid(one, one, 2)), {"turns": Circle([1, 0, 0], [0, 0, 0], one).turns}
+    assert {type(x) for values in kept for x in values.values()} == {float}

@@ -36,7 +36,7 @@ def main() -> None:
         line = lk.Trajectory(PosePath(lk.Line(start, goal), T_wt[:3, :3]), lk.Quintic(3.0))
         log = lk.run(arm, line, WorkspaceVelocityPD(arm.model), duration=2.4)
         tip = lk.metrics.tip_poses(log)[:, :3, 3]
-        lens = lk.Intrinsics(WIDTH, HEIGHT, 930.0, 930.0).resized(FINE)
+        lens = lk.Intrinsics(FINE * WIDTH, FINE * HEIGHT, FINE * 930.0, FINE * 930.0)
         camera = lk.Camera(world, lk.looking_at(EYE, AT), lens)
         picture = np.array(camera.image())
         T_cw = np.linalg.inv(camera.T_wc)

@@ -57,7 +57,7 @@ def motion_html(
             f"the motion {motion.title!r} is {size / 1000:.0f} kB, more than"
             f" {LIMIT / 1000:.0f} kB: give fewer ghosts, a shorter run or a lower rate"
         )
-    return figure_html(text, caption or motion.title, motion.alt, motion.description, poster, root)
+    return figure_html(text, motion.description, caption or motion.title, motion.alt, poster, root)
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ def explorer_html(
     names = ", ".join(d.label for d in explorer.dials)
     alt = f"{explorer.title}: {len(explorer.runs)} recorded runs to choose from by {names}."
     words = f"{alt} {_described(explorer)}"
-    return figure_html(compact(data), caption or explorer.title, alt, words, poster, root)
+    return figure_html(compact(data), words, caption or explorer.title, alt, poster, root)
 
 
 def _described(explorer: Explorer) -> str:
@@ -193,7 +193,7 @@ def demo_html(
         raise UnknownName("demo", name, DEMOS)
     words = DEMOS[name]
     data = compact({"kind": name, "alt": words})
-    return figure_html(data, caption or words, words, words, poster, root)
+    return figure_html(data, words, caption or words, words, poster, root)
 
 
 def _key(indices: tuple[int, ...]) -> str:

@@ -231,7 +231,7 @@ def predict() -> HTML:
 
 def following() -> HTML:
     """The arm above a board that goes round, and as a ghost the arm that looks, then moves."""
-    logs, misses, counts = {}, {}, {}
+    logs, misses, unseen = {}, {}, {}
     start, law = ready_pose(), known(lk.Model("left", lk.BAXTER), lk.BAXTER)["workspace velocity"]
     for way, follower, dials in (
         ("predicts", TagFollower(start, OFFSET), {}),
@@ -239,12 +239,12 @@ def following() -> HTML:
         ("looks, then moves", SequentialServoing(start, OFFSET), {"rate": 0.2, "delay": 1.0}),
     ):
         made = closed_loop(SEED, law.controller, follower, **dials)
-        logs[way], misses[way], counts[way] = made
+        logs[way], misses[way], unseen[way] = made
     late = logs["predicts"].t >= 2.0
     rms = {way: 1e3 * lk.metrics.rms(miss[late]) for way, miss in misses.items()}
     holds(rms["predicts"] < 0.3 * rms["looks, then moves"], "prediction follows, looking lags")
     holds(rms["predicts"] < 5.0 and rms["loses readings"] < 10.0, "to millimetres")
-    holds(counts["predicts"].unseen == 0, "the arm does not hide the tag from this camera")
+    holds(unseen["predicts"] == 0, "the arm does not hide the tag from this camera")
     numbers({"follow_rms": rms["predicts"], "lookups_rms": rms["looks, then moves"],
              "losing_rms": rms["loses readings"]}, ".2g")  # fmt: skip
     log, ghost = logs["predicts"], {"looks, then moves": logs["looks, then moves"]}

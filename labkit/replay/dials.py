@@ -8,16 +8,11 @@ from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ..errors import OutOfRange, TypeMismatch, UnknownName
-from ..plant import Plant
+from ..plant import EVIDENCE, Plant
 from ..shapes import as_number, shown
 
 _OF_PLANT = {f.name for f in fields(Plant)} - {"name", "gravity_compensation"}
-_UNITS = {
-    "payload": "kg", "stiction": "N m", "viscous": "N m s/rad", "state_delay": "s",
-    "velocity_lag": "s", "state_rate": "Hz", "lost_ticks": "", "velocity_noise": "rad/s",
-    "torque_noise": "N m", "armature": "kg m²", "position_gain": "1/s", "torque_lag": "s",
-    "command_timeout": "s",
-}  # fmt: skip
+_UNITS = {name: source.unit for name, source in EVIDENCE.items()}
 
 
 @dataclass(frozen=True)
@@ -26,15 +21,15 @@ class Dial:
 
     Attributes:
         name: A number of `Plant`, or an argument of a law.
-        low: Its least.
-        high: Its most.
+        min: Its least.
+        max: Its most.
         value: Where it starts.
         unit: Of it.
     """
 
     name: str
-    low: float
-    high: float
+    min: float
+    max: float
     value: float
     unit: str = ""
 
@@ -42,13 +37,6 @@ class Dial:
     def of_plant(self) -> bool:
         """Whether it turns the plant, not a law."""
         return self.name in _OF_PLANT
-
-    def data(self) -> dict[str, Any]:
-        """As the page reads it."""
-        return {
-            "name": self.name, "min": self.low, "max": self.high, "value": self.value,
-            "unit": self.unit,
-        }  # fmt: skip
 
 
 def read_dials(

@@ -23,7 +23,7 @@ def recorded_html(data: Mapping[str, Any], description: str, caption: str) -> st
     Returns:
         HTML; see `viewer_scripts`.
     """
-    return figure_html(compact(data), caption, str(data["alt"]), description)
+    return figure_html(compact(data), description, caption, str(data["alt"]))
 
 
 @cache
@@ -34,9 +34,9 @@ def viewer_scripts() -> tuple[str, ...]:
 
 def figure_html(
     data: str,
+    description: str,
     caption: str,
     alt: str,
-    description: str,
     poster: str | None = None,
     root: str | None = None,
 ) -> str:
@@ -44,9 +44,9 @@ def figure_html(
 
     Args:
         data: What the viewer reads, as JSON.
+        description: A paragraph, opened on demand.
         caption: Text under it.
         alt: One or two sentences for readers who cannot see it.
-        description: A paragraph, opened on demand.
         poster: Address of a picture for print, for phones before the tap and for browsers without
             WebGL.
         root: Address of the folder with the viewer's files, ending in "/"; None if the page loads

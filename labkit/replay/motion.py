@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,7 +12,8 @@ import numpy as np
 from ..baxter import as_robot
 from ..errors import OutOfRange
 from ..robot import SIDES, Robot
-from ..shapes import Array, as_array, locked
+from ..shapes import Array, as_array
+from .figure import compact
 
 STEPS = {  # how fine each channel is kept
     "q": 1e-4,  # rad
@@ -72,29 +72,9 @@ class Motion:
     def __post_init__(self) -> None:
         robot: Robot = as_robot(self.robot)
         object.__setattr__(self, "robot", robot)
-        n = np.shape(self.t)[0] if np.ndim(self.t) else 0
-        if n < 2:
-            raise OutOfRange(f"t has {n} times, and a motion needs at least two")
-        shapes: dict[str, tuple[int, ...]] = {
-            "t": (n,),
-            "q": (n, robot.n),
-            "target_position": (n, 3),
-            "target_rotation": (n, 3, 3),
-            "board_position": (n, 3),
-            "board_rotation": (n, 3, 3),
-            "path": (0 if self.path is None else len(self.path), 3),
-            "error": (n,),
-            "tau": (n, robot.n),
-            "force": (n, 3),
-        }
-        for name, shape in shapes.items():
-            value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, _frozen(value, shape, name))
-        ghosts = {k: _frozen(v, (n, robot.n), f"ghost {k!r}") for k, v in self.ghosts.items()}
-        object.__setattr__(self, "ghosts", ghosts)
-        if not (np.diff(self.t) > 0).all():
-            raise OutOfRange("t does not increase from row to row; is it in the log's order?")
+        if len(self.t) < 2:
+            raise OutOfRange(f"t has {len(self.t)} times, and a motion needs at least two")
+        as_array(self.q, (len(self.t), robot.n), "q")  # an arm that ran away may end at NaN
 
     def data(self, rate: float = 25.0) -> dict[str, Any]:
         """The motion as the viewer reads it: resampled evenly, whole numbers, differences in time.
@@ -140,7 +120,7 @@ class Motion:
 
     def to_json(self, rate: float = 25.0) -> str:
         """Compact JSON of `data(rate)`; ten seconds with torques and two ghosts fit 40 kB."""
-        return json.dumps(self.data(rate), separators=(",", ":"), ensure_ascii=False)
+        return compact(self.data(rate))
 
     @cached_property
     def alt(self) -> str:
@@ -235,10 +215,6 @@ def resampled(x: Array, t: Array, times: Array) -> Array:
         Shape (M, k).
     """
     return np.column_stack([np.interp(times, t, column) for column in x.reshape(len(x), -1).T])
-
-
-def _frozen(value: Any, shape: tuple[int, ...], name: str) -> Array:
-    return locked(np.array(as_array(value, shape, name)))
 
 
 def drawn(robot: Robot) -> dict[str, Any]:

@@ -16,12 +16,12 @@ from typing import Any
 from ..arm import Arm
 from ..driven import Simulated
 from ..log import Log
-from ..run import loop
+from ..run import run_driven
 from .dials import Dial, Dialled
-from .grip import Grip
+from .hand import Hand
+from .pacer import Pacer
 from .pull import Pull
 from .surroundings import Surroundings
-from .wall_clock import WallClock
 from .watch import PATIENCE, Watch, sentence
 
 LONGEST = 120.0
@@ -58,7 +58,7 @@ class Session(Simulated):
         super().__init__(arm, rate)
         self.arm, self._show = arm, show
         self._law, self.around = Dialled(laws, dials), Surroundings(arm, target)
-        self._hand, self._pull, self._thread = Grip(arm), Pull(arm), threading.Thread()
+        self._hand, self._pull, self._thread = Hand(arm), Pull(arm), threading.Thread()
         self._usual, self._q0 = arm.plant, arm.truth().q.copy()
         self._inbox: SimpleQueue[dict[str, Any]] = SimpleQueue()
         self.logs: list[Log] = []
@@ -67,12 +67,14 @@ class Session(Simulated):
         self._steps_left, self._heard, self._limit = 0, 0.0, ""
         self._changes: list[Callable[[], Any]] = []
         self._watch = Watch(self.period, lambda note: show({"kind": "note", "note": note}))
-        self._clock = WallClock()
+        self._clock = Pacer()
 
     # From any thread
 
     def tell(self, message: dict[str, Any]) -> None:
         """Take a message from the page; the thread reads it before its next tick."""
+        if message.get("kind") in (None, "files"):  # not for the arm
+            return
         if self.state == "closed" and self._thread.is_alive():
             self._thread.join(2 * PATIENCE)  # it is on its way out, and reads no more
         self._heard = time.monotonic()
@@ -97,14 +99,17 @@ class Session(Simulated):
     # In the thread
 
     def _main(self) -> None:
-        self.arm.world.owner, self.state = threading.get_ident(), "ready"
+        world = self.arm.world
+        world.put(self._hand)
+        world.owner, self.state = threading.get_ident(), "ready"
         try:
             while self.state != "closed":
                 self._one_run()
             self._picture()
         finally:
+            world.things.remove(self._hand)  # another session may follow with its own
             self.arm.become(self._usual)
-            self.arm.world.owner = None
+            world.owner = None
 
     def _one_run(self) -> None:
         """From a start to whatever ends it: a dial, another law, "keep", an error."""
@@ -116,7 +121,7 @@ class Session(Simulated):
         self.plant = self.arm.plant
         self._clock.set(0.0)
         try:
-            log = loop(self, self.around.target, self._law, LONGEST)
+            log = run_driven(self, self.around.target, self._law, LONGEST)
         except BaseException as error:
             if self.state != "closed":
                 self._rest(error)
@@ -256,13 +261,7 @@ class Session(Simulated):
     def numbers(self) -> dict[str, Any]:
         """The session as the page draws it."""
         return {
-            "kind": "frame",
-            "state": self.state,
-            "note": self.note,
-            "law": self._law.name,
-            "pace": self._clock.pace,
-            "kept": [round(float(log.t[-1]), 1) for log in self.logs],
-            "move": self._hand.move,
-            **self.around.seen(),
-            **self._hand.seen(),
-        }
+            "kind": "frame", "state": self.state, "note": self.note, "law": self._law.name,
+            "pace": self._clock.pace, "kept": [round(float(log.t[-1]), 1) for log in self.logs],
+            "move": self._hand.move, **self.around.seen(), **self._hand.seen(),
+        }  # fmt: skip

@@ -129,7 +129,7 @@ class Surroundings:
                 del self._goals[number]
             else:
                 goal = _middle(old) + way * (FASTEST * seconds / far)
-            world.exchange(old, _moved(old, goal))
+            world.things[number] = _moved(old, goal)
 
 
 def drawn_thing(thing: Any) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from functools import cache
 from typing import Any
 
@@ -13,12 +13,14 @@ from ..arm import Arm
 from ..errors import NothingKept, TypeMismatch
 from ..log import Log
 from ..robot import SIDES
+from ..run import name_of
 from ..shapes import shown
 from .dials import read_dials
+from .figure import compact
 from .motion import drawn
-from .saved import Saved, still
+from .saved import still
 from .session import Session
-from .widget import answer, source
+from .widget import widget_class
 
 
 def live(
@@ -61,7 +63,7 @@ def live(
     """
     if not isinstance(arm, Arm):
         raise TypeMismatch(f"arm is {shown(arm)}, expected a simulated lk.Arm")
-    named = controller if isinstance(controller, Mapping) else {_name(controller): controller}
+    named = controller if isinstance(controller, Mapping) else {name_of(controller): controller}
     for name, given in (*named.items(), ("target", target)):
         if not callable(given):
             raise TypeMismatch(f"{name} is {shown(given)}, expected a function")
@@ -69,9 +71,10 @@ def live(
     found = read_dials(dials, arm.plant, laws)
     widget = _widget_class()()
     widget.session = Session(arm, laws, target, found, rate, widget.send)
+    widget.on_msg(lambda _, message, __: widget.session.tell(message))
     first = widget.session.numbers()
     names = " and ".join(laws)
-    widget.data = json.dumps(
+    widget.data = compact(
         {
             "kind": "live",
             "title": title,
@@ -79,11 +82,10 @@ def live(
             "side": arm.robot.name,
             **({} if arm.robot.name in SIDES else {"robot": drawn(arm.robot)}),
             "laws": list(laws),
-            "dials": [dial.data() for dial in found.values()],
+            "dials": [asdict(dial) for dial in found.values()],
             "joints": [n.removeprefix(f"{arm.robot.name}_") for n in arm.robot.joint_names],
             "first": first,
-        },
-        separators=(",", ":"),
+        }
     )
     widget.words = (
         f"{title}, held by {names}: run this cell, press Start, and pull at the arm with the mouse "
@@ -96,22 +98,10 @@ def live(
 
 @cache
 def _widget_class() -> type[Any]:
-    import anywidget
-    import traitlets
-
-    class Live(Saved, anywidget.AnyWidget):
+    class Live(widget_class()):  # type: ignore[misc]
         """Shows one session and passes on what the hand does."""
 
-        _esm = source()
-        data = traitlets.Unicode().tag(sync=True)
         session: Session
-
-        def __init__(self, **traits: Any) -> None:
-            super().__init__(**traits)
-            self.on_msg(_heard)
-
-        def __repr__(self) -> str:
-            return self.words
 
         @property
         def log(self) -> Log:
@@ -135,14 +125,3 @@ def _widget_class() -> type[Any]:
             super().close()
 
     return Live
-
-
-def _heard(widget: Any, message: Any, buffers: Any) -> None:
-    if message.get("kind") == "files":
-        answer(widget, message, buffers)
-    elif message.get("kind"):
-        widget.session.tell(message)
-
-
-def _name(law: Any) -> str:
-    return getattr(law, "__name__", type(law).__name__)

@@ -26,6 +26,25 @@ TURN = 5e-4
 _LOOK = 0.05  # between two looks, in [s]
 
 
+class _Turns:
+    """Threads change often while an arm is live, and as usual when the last one has ended."""
+
+    _lock, _live, _usual = threading.Lock(), 0, 0.0
+
+    def __enter__(self) -> None:
+        with _Turns._lock:
+            if not _Turns._live:
+                _Turns._usual = sys.getswitchinterval()
+                sys.setswitchinterval(TURN)
+            _Turns._live += 1
+
+    def __exit__(self, *_: object) -> None:
+        with _Turns._lock:
+            _Turns._live -= 1
+            if not _Turns._live:
+                sys.setswitchinterval(_Turns._usual)
+
+
 class _Ended(BaseException):
     """Thrown into a law that does not return; no `except Exception` of a student's stops it."""
 
@@ -76,18 +95,19 @@ class Watch:
 
         Looks are counted, not seconds: where another cell holds Python's lock, this waits too.
         """
-        looks, call, usual = 0, -1, sys.getswitchinterval()
-        sys.setswitchinterval(TURN)
-        while thread.is_alive():
-            time.sleep(_LOOK)
-            looks = looks + 1 if self._within and self._calls == call else 0
-            call = self._calls
-            if looks and looks % round(PATIENCE / _LOOK) == 0:
-                self._say(f"{self._name} has not returned for {PATIENCE:g} s; it is being ended")
-                ctypes.pythonapi.PyThreadState_SetAsyncExc(
-                    ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
-                )
-        sys.setswitchinterval(usual)
+        looks, call = 0, -1
+        with _Turns():
+            while thread.is_alive():
+                time.sleep(_LOOK)
+                looks = looks + 1 if self._within and self._calls == call else 0
+                call = self._calls
+                if looks and looks % round(PATIENCE / _LOOK) == 0:
+                    self._say(
+                        f"{self._name} has not returned for {PATIENCE:g} s; it is being ended"
+                    )
+                    ctypes.pythonapi.PyThreadState_SetAsyncExc(
+                        ctypes.c_ulong(thread.ident or 0), ctypes.py_object(_Ended)
+                    )
 
 
 def sentence(error: BaseException, name: str) -> str:

@@ -28,13 +28,18 @@ def show(motion: Motion) -> Any:
         motion: What to show.
 
     Returns:
-        A widget; assign `.motion = another` to change what it shows.
+        A widget; its ``save("run.html")`` writes a page.
 
     Raises:
         TypeMismatch: It is not a `Motion`.
     """
-    made = _widget_class()(data=_data(motion))
-    made.shows(motion)
+    if not isinstance(motion, Motion):
+        raise TypeMismatch(
+            f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) returns"
+        )
+    made = _replay_class()(data=motion.to_json())
+    made.words = f"{motion.title}. {motion.description}"
+    made.picture = lambda: motion_still(motion)
     return made
 
 
@@ -45,13 +50,13 @@ def source() -> str:
 
 
 @cache
-def _widget_class() -> type[Any]:
-    """The widget's class; anywidget is imported only when a notebook asks for one."""
+def widget_class() -> type[Any]:
+    """What all of them are; anywidget is imported only when a notebook asks for one."""
     import anywidget
     import traitlets
 
-    class Replay(Saved, anywidget.AnyWidget):
-        """Shows one motion; viewer and robot go to the page once, not into the notebook."""
+    class Widget(Saved, anywidget.AnyWidget):
+        """Shows some data; viewer and robot go to the page once, not into the notebook."""
 
         _esm = source()
         data = traitlets.Unicode().tag(sync=True)
@@ -61,23 +66,15 @@ def _widget_class() -> type[Any]:
             self.on_msg(answer)
 
         def __repr__(self) -> str:
-            return f"Replay: {json.loads(self.data)['alt']}"
+            return self.words
 
-        @property
-        def motion(self) -> dict[str, Any]:
-            """What is shown, as the viewer reads it."""
-            data: dict[str, Any] = json.loads(self.data)
-            return data
+    return Widget
 
-        @motion.setter
-        def motion(self, motion: Motion) -> None:
-            self.data = _data(motion)
-            self.shows(motion)
 
-        def shows(self, motion: Motion) -> None:
-            """Remember what to leave in a saved notebook."""
-            self.words = f"{motion.title}. {motion.description}"
-            self.picture = lambda: motion_still(motion)
+@cache
+def _replay_class() -> type[Any]:
+    class Replay(widget_class()):  # type: ignore[misc]
+        """Shows one motion."""
 
         def save(self, path: Any) -> None:
             """Write a page that plays anywhere, without network and kernel, 1.4 MB.
@@ -128,14 +125,6 @@ def save(data: str, words: str, path: Any) -> None:
         f"{scripts}<script>{start}</script></body></html>\n",
         encoding="utf-8",
     )
-
-
-def _data(motion: Motion) -> str:
-    if not isinstance(motion, Motion):
-        raise TypeMismatch(
-            f"motion is {shown(motion)}, expected what lk.replay.motion_of(log, title) returns"
-        )
-    return motion.to_json()
 
 
 def answer(widget: Any, message: Any, _buffers: Any) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from .. import se3
 from ..arm import Arm
 from ..errors import Closed, LabkitError, OutOfRange, TypeMismatch
-from ..shapes import Array, as_number, as_vector, locked, shown
+from ..shapes import Array, as_number, as_random, as_vector, locked, shown
 from ..world import World
 from .board import Board
 from .intrinsics import Intrinsics, without_distortion
@@ -26,10 +26,6 @@ BACKGROUND = 255
 _MARGIN = 4  # pixels around a tag's paper that are drawn with it
 _INSTANTS = 9  # of an exposure that are drawn
 _FINE = 4  # samples of a pixel along either side, where something may hide a tag
-
-
-class CameraBlocked(LabkitError, ValueError):
-    """The camera's eye is inside of something."""
 
 
 class Camera:
@@ -71,7 +67,8 @@ class Camera:
             seed: Of the noise.
 
         Raises:
-            TypeMismatch: The world is not a `World`, or the lens not `Intrinsics`.
+            TypeMismatch: The world is not a `World`, the lens not `Intrinsics`, or the seed not a
+                number.
             OutOfRange: ``noise`` or ``samples`` is not what it may be.
         """
         if not isinstance(world, World):
@@ -87,7 +84,7 @@ class Camera:
         self.blur = as_number(blur, "blur", least=0.0)
         self.exposure = as_number(exposure, "exposure", least=0.0)
         self._wide, self._seen_at = without_distortion(self.intrinsics)
-        self._random = np.random.default_rng(seed)
+        self._random = as_random(seed)
         self._hand: Arm | None = None
         self.place(T_wc)
 
@@ -138,7 +135,6 @@ class Camera:
             Colours in RGB order, shape (height, width, 3), 0 to 255, read-only.
 
         Raises:
-            CameraBlocked: The camera is inside the robot.
             Closed: The world is closed.
         """
         robot, T_wc = self._focus()
@@ -154,7 +150,6 @@ class Camera:
             As `image`; without noise, both are the same within a tag's paper.
 
         Raises:
-            CameraBlocked: The camera is inside the robot.
             Closed: The world is closed.
         """
         robot, T_wc = self._focus()
@@ -176,15 +171,7 @@ class Camera:
         """The robot as it stands now, and where the camera is."""
         if self.world.closed:
             raise Closed("this camera's world was closed; make a new World, and a Camera in it")
-        robot, T_wc = RobotVisuals(self.world), self.T_wc
-        blocker = None if self._hand else robot.around(T_wc[:3, 3])
-        if blocker is not None:
-            x, y, z = T_wc[:3, 3]
-            raise CameraBlocked(
-                f"the camera at ({x:.3g}, {y:.3g}, {z:.3g}) m is inside the robot, near its joint "
-                f"{blocker}; move it out with camera.place(T_wc)"
-            )
-        return robot, T_wc
+        return RobotVisuals(self.world), self.T_wc
 
     def _robot_in(self, robot: RobotVisuals, T_wc: Array, window: Window, depth: float) -> Surface:
         """Those pieces of the robot that reach into a window's cone, up to a depth."""

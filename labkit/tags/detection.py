@@ -26,7 +26,7 @@ from ..errors import LabkitError, OutOfRange, TypeMismatch
 from ..shapes import Array, as_array, as_number, locked, shown
 from .edges import Outline, sharpened
 from .intrinsics import Intrinsics
-from .tag import APRILTAG, Picture, as_picture, pattern, tag_corners
+from .tag import PATTERNS, Picture, as_picture, tag_corners
 
 if TYPE_CHECKING:
     from .camera import Camera
@@ -56,7 +56,6 @@ class Detection:
         corners: Its corners in the picture, clockwise from its upper left, shape (4, 2) in [px].
         noise: Standard deviation of a corner's coordinate, as its edges tell it, in [px].
         T_cm: Pose of the tag in the camera's frame, shape (4, 4).
-        other_T_cm: The pose that fits second best, shape (4, 4).
         error: What is left between the corners and the pose's, root mean square, in [px].
         ratio: How many times worse the other pose fits, at least 1; near 1 the tilt is a guess.
         covariance: Of the position [m] and of the orientation, as a rotation vector [rad], in the
@@ -67,7 +66,6 @@ class Detection:
     corners: Array
     noise: float
     T_cm: Array
-    other_T_cm: Array
     error: float
     ratio: float
     covariance: Array
@@ -77,7 +75,6 @@ def detect_tags(
     image: Any,
     camera: Camera | Intrinsics,
     size: float | Mapping[int, float],
-    dictionary: str = APRILTAG,
 ) -> tuple[Detection, ...]:
     """Find the tags in a picture.
 
@@ -86,7 +83,6 @@ def detect_tags(
         camera: The camera that took it, or its intrinsics.
         size: Side of the black square, in [m]; or a size for each number, and tags of other numbers
             are passed over.
-        dictionary: `tags.APRILTAG` or `tags.ARUCO`.
 
     Returns:
         What was found, by number; empty if there is none.
@@ -94,14 +90,12 @@ def detect_tags(
     Raises:
         TypeMismatch: The image is not a picture, or the camera not a camera.
         OutOfRange: A size is not positive.
-        UnknownName: No such dictionary.
     """
     grey, lens = as_picture(image), _intrinsics(camera)
     sizes = size if isinstance(size, Mapping) else None
     for one in [size] if sizes is None else sizes.values():
         as_number(one, "size", above=0.0)
-    cells = int(pattern(dictionary).markerSize) + 2
-    found = _outlines(grey, dictionary, cells, [] if sizes is None else list(sizes), lens)
+    found = _outlines(grey, [] if sizes is None else list(sizes), lens)
     seen = []
     for number, outline in found:
         side = size if sizes is None else sizes.get(number)
@@ -127,7 +121,7 @@ def find_tag(detections: Sequence[Detection], id: int) -> Detection:
         others = ", ".join(str(d.id) for d in detections) or "none at all"
         raise TagNotFound(
             f"tag {id} is not in the picture (found: {others}); is it in view, large enough, not "
-            "hidden, and of this dictionary?"
+            "hidden, and of AprilTag 36h11?"
         )
     if len(hits) > 1:
         raise DuplicateTag(
@@ -239,7 +233,6 @@ def _detection(id: int, outline: Outline, lens: Intrinsics, size: float) -> Dete
         corners=locked(lens.bent(corners) if any(lens.distortion) else corners),
         noise=float(np.sqrt(outline.covariance.diagonal().mean())),
         T_cm=best,
-        other_T_cm=other,
         error=error,
         ratio=other_error / max(first_error, 1e-9),
         covariance=pose_covariance(best, flat, size, outline.covariance),
@@ -267,29 +260,27 @@ def _intrinsics(camera: Any) -> Intrinsics:
     return lens
 
 
-def _outlines(
-    grey: Picture, dictionary: str, cells: int, wanted: list[int], lens: Intrinsics
-) -> list[tuple[int, Outline]]:
+def _outlines(grey: Picture, wanted: list[int], lens: Intrinsics) -> list[tuple[int, Outline]]:
     """Numbers and outlines.  If one knows what to look for, half of the pixels may be enough."""
     for decimate in (2.0, 0.0) if wanted else (0.0,):
-        found = _numbered(grey, dictionary, decimate)
-        fine = [(number, sharpened(grey, corners, cells, lens)) for number, corners in found]
+        found = _numbered(grey, decimate)
+        fine = [(number, sharpened(grey, corners, lens)) for number, corners in found]
         sharp = [(number, outline) for number, outline in fine if outline is not None]
         if len(sharp) == len(fine) and {number for number, _ in sharp} >= set(wanted):
             break
     return sharp
 
 
-def _numbered(grey: Picture, dictionary: str, decimate: float) -> list[tuple[int, Array]]:
-    found, numbers, _ = _detector(dictionary, decimate).detectMarkers(grey)
+def _numbered(grey: Picture, decimate: float) -> list[tuple[int, Array]]:
+    found, numbers, _ = _detector(decimate).detectMarkers(grey)
     corners = [rough.reshape(4, 2).astype(float) - _APRILTAG_OFFSET for rough in found]
     return list(zip([] if numbers is None else numbers.ravel().tolist(), corners, strict=True))
 
 
 @cache
-def _detector(dictionary: str, decimate: float) -> Any:
+def _detector(decimate: float) -> Any:
     settings = cv2.aruco.DetectorParameters()
     settings.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_APRILTAG
     settings.aprilTagQuadDecimate = decimate
     settings.perspectiveRemovePixelPerCell = 8  # reads small and tilted tags that 4 does not
-    return cv2.aruco.ArucoDetector(pattern(dictionary), settings)
+    return cv2.aruco.ArucoDetector(PATTERNS, settings)

@@ -23,7 +23,7 @@ from scipy.ndimage import map_coordinates
 
 from ..shapes import Array
 from .intrinsics import Intrinsics
-from .tag import Picture
+from .tag import CELLS, Picture
 
 _ROWS, _DEEP = 48, 25
 """Rows across each side, samples along a row.  24 rows leave 0.015 px of error, 48 rows 0.009."""
@@ -56,13 +56,12 @@ class Outline(NamedTuple):
     covariance: Array
 
 
-def sharpened(picture: Picture, corners: Any, cells: int, lens: Intrinsics) -> Outline | None:
+def sharpened(picture: Picture, corners: Any, lens: Intrinsics) -> Outline | None:
     """The corners of a dark square on light ground, found again from its sides.
 
     Args:
         picture: Grey levels, shape (height, width).
         corners: About where they are, shape (4, 2) in [px], in order.
-        cells: How many cells of its pattern a side has: a row may not be longer than a cell.
         lens: The lens; one with distortion makes the sides crooked.
 
     Returns:
@@ -71,7 +70,7 @@ def sharpened(picture: Picture, corners: Any, cells: int, lens: Intrinsics) -> O
     given: Array = lens.straightened(np.asarray(corners, dtype=float))
     found = given
     for _ in range(_STEPS):
-        seen = _sides(picture, found, cells, lens)
+        seen = _sides(picture, found, lens)
         if seen is None:
             return None
         sides = seen
@@ -92,7 +91,7 @@ class _Sides(NamedTuple):
     turn: Array
 
 
-def _sides(picture: Picture, corners: Array, cells: int, lens: Intrinsics) -> _Sides | None:
+def _sides(picture: Picture, corners: Array, lens: Intrinsics) -> _Sides | None:
     """The lines along the sides; None if a side is not seen well."""
     following = np.roll(corners, -1, axis=0)
     along = following - corners
@@ -104,7 +103,7 @@ def _sides(picture: Picture, corners: Array, cells: int, lens: Intrinsics) -> _S
     to_next, to_last = (np.roll(corners, -k, axis=0) - corners for k in (2, 3))
     widths = np.abs([np.einsum("ij,ij->i", x, outward) for x in (to_next, to_last)]).min(axis=0)
     outward *= np.sign(-np.einsum("ij,ij->i", to_next, outward))[:, None]
-    reach = np.clip(0.4 * widths / cells, 0.8, _LONGEST)
+    reach = np.clip(0.4 * widths / CELLS, 0.8, _LONGEST)  # a row is no longer than a cell
     starts = corners[:, None] + _ALONG * (following - corners)[:, None]  # (4, rows, 2)
     places = starts[:, :, None] + (outward * reach[:, None])[:, None, None] * _ACROSS
     seen = places.reshape(-1, 2)

@@ -64,23 +64,6 @@ class Intrinsics:
         """The matrix K, shape (3, 3)."""
         return locked(np.array([[self.fx, 0, self.cx], [0, self.fy, self.cy], [0, 0, 1.0]]))
 
-    def resized(self, factor: float) -> Intrinsics:
-        """The same lens over a sensor with more or fewer pixels.
-
-        Args:
-            factor: How many times as many along each side.
-        """
-        k = as_number(factor, "factor", above=0.0)
-        return Intrinsics(
-            round(self.width * k),
-            round(self.height * k),
-            self.fx * k,
-            self.fy * k,
-            (self.cx + 0.5) * k - 0.5,  # the picture's corner is at -0.5
-            (self.cy + 0.5) * k - 0.5,
-            self.distortion,
-        )
-
     def straightened(self, pixels: Any) -> Array:
         """Where a lens without distortion would show what appears at pixels, shape (n, 2)."""
         if not any(self.distortion):

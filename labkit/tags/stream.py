@@ -7,14 +7,13 @@ arrives, and every chance is drawn from a seed, so a run can be repeated to the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import se3
 from ..errors import OutOfRange
-from ..shapes import Array, as_number, locked
+from ..shapes import Array, as_number, as_random, locked
 from ..trajectory import AnySample
 from .camera import Camera
 from .detection import TagNotFound, detect_tags, find_tag
@@ -29,36 +28,12 @@ class Reading(NamedTuple):
         arrived: When the reading could first be used, in [s].
         T_wm: Where the tag was by this picture, shape (4, 4).
         covariance: Of its position [m] and orientation [rad], world axes, shape (6, 6).
-        ratio: How many times worse the other pose fits; see `Detection`.
     """
 
     stamp: float
     arrived: float
     T_wm: Array
     covariance: Array
-    ratio: float
-
-    @property
-    def age(self) -> float:
-        """How old the picture was when the reading arrived, in [s]."""
-        return self.arrived - self.stamp
-
-
-@dataclass
-class Count:
-    """How the look-ups of one `TagStream` went.
-
-    Attributes:
-        taken: Pictures taken.
-        dropped: Lost on the way, by the dial.
-        unseen: In which the tag was not found.
-        arrived: Readings handed over.
-    """
-
-    taken: int = 0
-    dropped: int = 0
-    unseen: int = 0
-    arrived: int = 0
 
 
 class TagStream:
@@ -67,7 +42,7 @@ class TagStream:
     Attributes:
         camera: The camera.
         tag: The tag.
-        count: How they went so far.
+        unseen: How many pictures so far arrived without the tag.
     """
 
     def __init__(
@@ -97,7 +72,7 @@ class TagStream:
             T_wc: Where the robot believes the camera to be, shape (4, 4); None is where it is, or,
                 in a hand, where the reported joint angles put it.
         """
-        self.camera, self.tag, self.count = camera, tag, Count()
+        self.camera, self.tag, self.unseen = camera, tag, 0
         self._period = 1.0 / as_number(rate, "rate", above=0.0)
         self._delay = as_number(delay, "delay", least=0.0)
         self._jitter = as_number(jitter, "jitter", least=0.0)
@@ -105,7 +80,7 @@ class TagStream:
         if self._dropout > 1.0:
             raise OutOfRange(f"dropout is {dropout:g}; it is a share, from 0 to 1")
         self._blind = tuple((float(a), float(b)) for a, b in blind)
-        self._random = np.random.default_rng(seed)
+        self._random = as_random(seed)
         self._believed = None if T_wc is None else locked(np.array(se3.as_pose(T_wc, "T_wc")))
         self._due: float | None = None
         self._under_way: list[tuple[float, Reading | None]] = []
@@ -132,23 +107,18 @@ class TagStream:
             self._under_way.append((arrives, self._look(now, arrives, lost)))
         here = [reading for arrives, reading in self._under_way if arrives <= now + 1e-9]
         self._under_way = [item for item in self._under_way if item[0] > now + 1e-9]
-        readings = sorted((r for r in here if r is not None), key=lambda r: r.stamp)
-        self.count.arrived += len(readings)
-        return tuple(readings)
+        return tuple(sorted((r for r in here if r is not None), key=lambda r: r.stamp))
 
     def _look(self, now: float, arrives: float, lost: bool) -> Reading | None:
-        self.count.taken += 1
         if lost:
-            self.count.dropped += 1
-            return None
-        if any(a <= now - self._first < b for a, b in self._blind):
-            self.count.unseen += 1
             return None
         try:
-            return detect_once(self.camera, self.tag, self._believed, arrives - now)
+            if not any(a <= now - self._first < b for a, b in self._blind):
+                return detect_once(self.camera, self.tag, self._believed, arrives - now)
         except TagNotFound:
-            self.count.unseen += 1
-            return None
+            pass
+        self.unseen += 1
+        return None
 
 
 def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) -> Reading:
@@ -166,7 +136,7 @@ def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) ->
     """
     now = camera.world.t
     T_wc = camera.reported_T_wc if T_wc is None else se3.as_pose(T_wc, "T_wc")
-    seen = detect_tags(camera.tag_image(), camera, {int(tag.id): tag.size}, tag.dictionary)
+    seen = detect_tags(camera.tag_image(), camera, {int(tag.id): tag.size})
     found = find_tag(seen, tag.id)
     turn = np.kron(np.eye(2), T_wc[:3, :3])
     return Reading(
@@ -174,7 +144,6 @@ def detect_once(camera: Camera, tag: Tag, T_wc: Any = None, age: float = 0.0) ->
         arrived=now + age,
         T_wm=locked(T_wc @ found.T_cm),
         covariance=locked(turn @ found.covariance @ turn.T),
-        ratio=found.ratio,
     )
 
 
@@ -182,7 +151,7 @@ class TagTarget:
     """A target for `run`: what a follower makes of the readings that have arrived.
 
     Attributes:
-        stream: Where the readings come from.
+        lookups: Where the readings come from.
         follower: A function of the time since the run began and of the readings that arrived since
             it was last asked, their times counted from there too; returns a `Sample` or a
             `PoseSample`.  It sees no world, camera or arm.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -78,22 +77,3 @@ def mesh(file: Path, colour: Any) -> Surface:
             sides += [[first, a, b] for a, b in pairwise(rest)]
     corners = np.array(points)[np.array(sides)]
     return Surface(corners, np.tile(np.asarray(colour, dtype=float)[:3], (len(corners), 1)))
-
-
-@dataclass(frozen=True, eq=False)
-class Block:
-    """A plain box to look at, without weight or substance; `World.show` puts it into a world.
-
-    Attributes:
-        half: Half of its edges, shape (3,) in [m].
-        colour: Red, green and blue, from 0 to 1.
-        T: Its pose in the world, shape (4, 4).
-    """
-
-    half: Any
-    colour: Any
-    T: Array
-
-    def surface(self) -> Surface:
-        """Its six faces."""
-        return box(self.half, self.colour).moved(self.T)

@@ -8,28 +8,23 @@ the white border around it does not count.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
-from ..errors import OutOfRange, TypeMismatch, UnknownName
+from ..errors import OutOfRange, TypeMismatch
 from ..shapes import Array, as_number, locked
 
 Picture = NDArray[np.uint8]
 """Grey levels (height, width) or colours (height, width, 3) in RGB order, 0 to 255."""
 
-APRILTAG = "apriltag_36h11"
+PATTERNS = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
 """The tags that robots mostly use, 587 of them, any two differ in at least 11 of 36 bits."""
 
-ARUCO = "aruco_4x4"
-"""250 coarse patterns that a poor camera can still read; they are more easily mistaken."""
-
-_PATTERNS = {APRILTAG: cv2.aruco.DICT_APRILTAG_36h11, ARUCO: cv2.aruco.DICT_4X4_250}
-_INCH = 0.0254
+CELLS = 8
+"""Cells along a side of the black square."""
 
 
 @dataclass(frozen=True)
@@ -37,22 +32,20 @@ class Tag:
     """One tag.
 
     Attributes:
-        id: Its number in the dictionary.
+        id: Its number among the tags of AprilTag 36h11.
         size: Side of the black square, in [m].
-        dictionary: `APRILTAG` or `ARUCO`.
         border: Width of the white border, in cells of the pattern; a detector needs at least one.
     """
 
     id: int = 0
     size: float = 0.1
-    dictionary: str = APRILTAG
     border: int = 1
 
     def __post_init__(self) -> None:
-        count = len(pattern(self.dictionary).bytesList)
+        count = len(PATTERNS.bytesList)
         if not isinstance(self.id, int | np.integer) or not 0 <= self.id < count:
             raise OutOfRange(
-                f"id is {self.id!r}; the tags of {self.dictionary} are numbered 0 to {count - 1}"
+                f"id is {self.id!r}; the tags of AprilTag 36h11 are numbered 0 to {count - 1}"
             )
         as_number(self.size, "size", above=0.0)
         if not isinstance(self.border, int) or self.border < 1:
@@ -62,14 +55,9 @@ class Tag:
             )
 
     @property
-    def cells(self) -> int:
-        """Cells along a side of the black square: 8, or 6 for the 4x4 patterns."""
-        return int(pattern(self.dictionary).markerSize) + 2
-
-    @property
     def paper(self) -> float:
         """Side of the white paper, border included, in [m]."""
-        return self.size * (self.cells + 2 * self.border) / self.cells
+        return self.size * (CELLS + 2 * self.border) / CELLS
 
     @property
     def corners(self) -> Array:
@@ -85,24 +73,9 @@ class Tag:
         Returns:
             Grey levels, shape (n, n), 0 or 255.
         """
-        bits = cv2.aruco.generateImageMarker(pattern(self.dictionary), int(self.id), self.cells)
+        bits = cv2.aruco.generateImageMarker(PATTERNS, int(self.id), CELLS)
         framed: Picture = np.pad(bits, self.border, constant_values=255).astype(np.uint8)
         return framed.repeat(cell, axis=0).repeat(cell, axis=1)
-
-    def save(self, path: str | Path, dpi: float = 300.0) -> Path:
-        """Write a PNG that says how large it is, so that it prints at its true size.
-
-        Args:
-            path: Where to.
-            dpi: About how many pixels to an inch; each cell gets a whole number of them.
-
-        Returns:
-            The path.
-        """
-        cell = max(1, round(self.size / self.cells * dpi / _INCH))
-        exact = cell * self.cells / self.size * _INCH
-        Image.fromarray(self.image(cell)).save(path, format="PNG", dpi=(exact, exact))
-        return Path(path)
 
 
 def tag_corners(size: float) -> Array:
@@ -121,17 +94,6 @@ def tag_corners(size: float) -> Array:
     """
     half = 0.5 * as_number(size, "size", above=0.0)
     return locked(half * np.array([[-1, 1, 0], [1, 1, 0], [1, -1, 0], [-1, -1, 0]], dtype=float))
-
-
-def pattern(dictionary: str) -> Any:
-    """OpenCV's dictionary of that name.
-
-    Raises:
-        UnknownName: There is none.
-    """
-    if dictionary not in _PATTERNS:
-        raise UnknownName("tag dictionary", str(dictionary), _PATTERNS)
-    return cv2.aruco.getPredefinedDictionary(_PATTERNS[dictionary])
 
 
 def as_picture(x: Any) -> Picture:

@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from .. import se3
@@ -34,10 +33,17 @@ THICK = 0.035
 """Radius of a capsule over the length of all of them."""
 
 
-class _Part:
-    """A part of a robot, with a surface in the frame of the joint that carries it."""
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A part of a robot.
 
-    surface: Any
+    Attributes:
+        parent: The joint that carries it.
+        surface: Its triangles, in that joint's moving frame.
+    """
+
+    parent: str
+    surface: Surface
 
     @cached_property
     def ball(self) -> tuple[Array, float]:
@@ -45,62 +51,6 @@ class _Part:
         points = self.surface.corners.reshape(-1, 3)
         centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
         return centre, float(np.linalg.norm(points - centre, axis=1).max())
-
-    @cached_property
-    def _hull(self) -> Array:
-        """Planes of the convex hull, outward normals and offsets, shape (planes, 4)."""
-        return np.asarray(ConvexHull(self.surface.corners.reshape(-1, 3)).equations)
-
-    def encloses(self, point: Array) -> bool:
-        """Whether a point is within the convex hull: the real shells are hollow."""
-        return bool((self._hull[:, :3] @ point + self._hull[:, 3]).max() < -0.002)
-
-
-@dataclass(frozen=True, eq=False)
-class Capsule(_Part):
-    """A link as a rod with round ends.
-
-    Attributes:
-        parent: The joint that carries it.
-        end: Where it ends, in that joint's moving frame, where it begins, shape (3,) in [m].
-        radius: In [m].
-    """
-
-    parent: str
-    end: Array
-    radius: float
-
-    @cached_property
-    def surface(self) -> Surface:
-        """Its triangles, in the joint's moving frame."""
-        around, along = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 13)[1:], np.linspace(0, np.pi, 7))
-        ring = np.array(
-            [np.cos(around) * np.sin(along), np.sin(around) * np.sin(along), np.cos(along)]
-        )
-        ball = self.radius * ring.reshape(3, -1).T
-        return wrapped(np.concatenate([ball, ball + self.end]), COLOUR)
-
-
-@dataclass(frozen=True, eq=False)
-class Piece(_Part):
-    """A mesh of one colour, a part of Baxter.
-
-    Attributes:
-        parent: The joint that carries it.
-        T_jp: Its pose in that joint's moving frame, shape (4, 4).
-        colour: Red, green, blue, opacity, from 0 to 1.
-        file: The mesh's file.
-    """
-
-    parent: str
-    T_jp: Array
-    colour: tuple[float, ...]
-    file: Path
-
-    @cached_property
-    def surface(self) -> Surface:
-        """Its triangles, in the joint's moving frame."""
-        return mesh(self.file, self.colour).moved(self.T_jp)
 
 
 class RobotVisuals:
@@ -115,7 +65,7 @@ class RobotVisuals:
         """Look where the joints of ``world`` are."""
         q = {arm.robot.name: arm.truth().q for arm in world.arms if arm.robot.name in SIDES}
         others = [arm for arm in world.arms if arm.robot.name not in SIDES]
-        self.pieces: tuple[Piece | Capsule, ...] = pieces() if q or not others else ()
+        self.pieces: tuple[Piece, ...] = pieces() if q or not others else ()
         frames = joint_frames({side: robot(side).neutral for side in SIDES} | q)
         poses = [frames[piece.parent] for piece in self.pieces]
         for arm in others:
@@ -135,15 +85,6 @@ class RobotVisuals:
         """Those pieces that are wanted, shape (pieces,), bool, in the world."""
         chosen = np.flatnonzero(wanted)
         return joined(self.pieces[i].surface.moved(self.frames[i]) for i in chosen)
-
-    def around(self, point: Array) -> str | None:
-        """The joint whose link a point of the world, shape (3,) in [m], is inside of, if any."""
-        centres, radii = self.balls
-        for i in np.flatnonzero(np.linalg.norm(centres - point, axis=1) < radii):
-            T = self.frames[i]
-            if self.pieces[i].encloses(T[:3, :3].T @ (point - T[:3, 3])):
-                return self.pieces[i].parent
-        return None
 
 
 def scenery(world: World) -> Surface:
@@ -198,21 +139,30 @@ def _turn(angle: float) -> Array:
 def pieces() -> tuple[Piece, ...]:
     """All of Baxter's pieces."""
     return tuple(
-        Piece(p["parent"], _placed(p), tuple(p["rgba"]), DATA / p["mesh"]) for p in _table("pieces")
+        Piece(p["parent"], mesh(DATA / p["mesh"], p["rgba"]).moved(_placed(p)))
+        for p in _table("pieces")
     )
 
 
 @lru_cache(maxsize=8)
-def capsules(robot: Robot) -> tuple[Capsule, ...]:
+def capsules(robot: Robot) -> tuple[Piece, ...]:
     """A capsule for each link of a robot, from one joint to the next, and to the tip."""
     ends = [*(np.array(body["T_parent"])[:3, 3] for body in robot.bodies), robot.T_hand_tip[:3, 3]]
     radius = THICK * float(sum(np.linalg.norm(end) for end in ends))
     names = ("base", *robot.joint_names)
-    return tuple(Capsule(*link, radius) for link in zip(names, ends, strict=True))
+    return tuple(Piece(name, _capsule(end, radius)) for name, end in zip(names, ends, strict=True))
+
+
+def _capsule(end: Array, radius: float) -> Surface:
+    """A rod with round ends, from the origin to ``end``, shape (3,) in [m]."""
+    around, along = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 13)[1:], np.linspace(0, np.pi, 7))
+    ring = np.array([np.cos(around) * np.sin(along), np.sin(around) * np.sin(along), np.cos(along)])
+    ball = radius * ring.reshape(3, -1).T
+    return wrapped(np.concatenate([ball, ball + end]), COLOUR)
 
 
 @lru_cache(maxsize=8)
-def _balls(parts: tuple[_Part, ...]) -> tuple[Array, Array]:
+def _balls(parts: tuple[Piece, ...]) -> tuple[Array, Array]:
     centres = np.array([[*part.ball[0], 1.0] for part in parts])
     return centres, np.array([part.ball[1] for part in parts])
 

@@ -197,7 +197,7 @@ def given_kp_for_margin(lag, delay, margin_deg):
     """Read off a table of margins, to about a tenth."""
     gains = np.geomspace(2.0, 100.0, 8)
     joint = loop.VelocityJoint(lag, delay)
-    phases = [loop.PDLoop(joint, kp).margins().phase for kp in gains]
+    phases = [loop.margins(joint, kp).phase for kp in gains]
     return float(np.interp(-margin_deg, -np.array(phases), gains))
 
 
@@ -291,7 +291,7 @@ def a_guess(runner):
 my_choose_gains = use("choose_gains", choose_gains, a_guess)
 runner = recordings.Runner(line_trials)
 Kp, Kd = my_choose_gains(runner)
-phase = loop.PDLoop(loop.VelocityJoint(lag, delay), Kp).margins().phase
+phase = loop.margins(loop.VelocityJoint(lag, delay), Kp).phase
 print(f"Kp = {Kp:g} 1/s, Kd = {Kd:g}, chosen with {runner.budget - runner.left} tries")
 print(f"on the line, worst of five seeds: {line_trials.worst(Kp, Kd):.2f} mm")
 print(f"phase margin of Kp alone, on paper: {phase:.0f} degrees")

@@ -38,11 +38,19 @@ def inertia_by_root(M: Any, J: Any) -> Any:
     return np.linalg.pinv(W.T @ W).tolist()
 
 
+def terms(state: lk.State, model: lk.Model) -> Any:
+    """Pose, Jacobian, drift, M, C dq and g."""
+    q, dq = state.q, state.dq
+    M, g = model.mass_matrix(q), model.gravity(q)
+    T, J, drift = model.pose(q), model.tip_jacobian(q), model.tip_jacobian_rate(q, dq) @ dq
+    return T, J, drift, M, model.bias(q, dq) - g, g
+
+
 def impedance_by_terms(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> Any:
-    """With `Model.terms`, diagonal matrices, and inverse dynamics of a joint acceleration."""
-    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    """With diagonal matrices, and inverse dynamics of a joint acceleration."""
+    T, J, drift, M, c, g = terms(state, model)
     K, D = np.diag(stiffness * np.ones(6)), np.diag(damping * np.ones(6))
     Minv = np.linalg.inv(M)
     L = np.linalg.inv(J @ Minv @ J.T)
@@ -69,7 +77,7 @@ def impedance_by_khatib(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> Any:
     """All of the tip's equation of motion, its Coriolis part included, brought over by J^T."""
-    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    T, J, drift, M, c, g = terms(state, model)
     L = np.linalg.inv(J @ np.linalg.inv(M) @ J.T)
     mu = L @ (J @ np.linalg.solve(M, c) - drift)
     F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
@@ -80,7 +88,7 @@ def impedance_by_pseudo_inverse(
     state: lk.State, target: lk.PoseSample, model: lk.Model, *, stiffness: Any, damping: Any
 ) -> Any:
     """The shortest joint acceleration for the tip's, through M; springs and dampers by J^T."""
-    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    T, J, drift, M, c, g = terms(state, model)
     F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
     ddq = np.linalg.pinv(J) @ (target.dtwist - drift)
     return lk.JointTorque(M @ ddq + J.T @ F + c + g)
@@ -107,7 +115,7 @@ def shaped_by_pseudo_inverse(
     damping: Any,
 ) -> Any:
     """The shortest joint acceleration for the tip's, through M, and the hand's share taken off."""
-    T, J, drift, M, c, g = model.terms(state.q, state.dq)
+    T, J, drift, M, c, g = terms(state, model)
     F = stiffness * lk.se3.pose_error(target.pose, T) + damping * (target.twist - J @ state.dq)
     a = target.dtwist + np.linalg.solve(inertia, F + wrench) - drift
     return lk.JointTorque(M @ np.linalg.pinv(J) @ a - J.T @ wrench + c + g)
@@ -124,7 +132,7 @@ def shaped_by_factor(
     damping: Any,
 ) -> Any:
     """The textbook's form, with the factor (Lambda M_d^-1 - I) before the wrench."""
-    T, J, drift, _, c, g = model.terms(state.q, state.dq)
+    T, J, drift, _, c, g = terms(state, model)
     L = model.operational_inertia(state.q)
     share = L @ np.linalg.inv(inertia)
     F = damping * (target.twist - J @ state.dq) + stiffness * lk.se3.pose_error(target.pose, T)

@@ -156,7 +156,7 @@ def read(setup: Setup, poses: Any, seed: int = 0) -> Readings:
                 board.move(_sideways(setup, _T_WC @ T_cm, random))
             corners = setup.intrinsics.project(setup.tag.corners @ T_cm[:3, :3].T + T_cm[:3, 3])
             picture = _covered(camera.tag_image(), corners, setup.cover, random)
-            found = detect_tags(picture, camera, sizes, setup.tag.dictionary)
+            found = detect_tags(picture, camera, sizes)
             if len(found) != 1:
                 continue
             off[i] = corners - found[0].corners

@@ -36,7 +36,7 @@ from labkit.run import Controller
 from labkit.shapes import Array
 from labkit.tags.board import Board
 from labkit.tags.camera import Camera, looking_at
-from labkit.tags.stream import Count, TagStream, TagTarget
+from labkit.tags.stream import TagStream, TagTarget
 from labkit.tags.tag import Tag
 
 from ..tags.following import TagFollower
@@ -104,7 +104,7 @@ def sequential(seed: int) -> Chase:
 
 def closed_loop(
     seed: int, controller: Controller, follower: Any, *, plant: Plant = BAXTER, **dials: Any
-) -> tuple[Log, Array, Count]:
+) -> tuple[Log, Array, int]:
     """Follow the tag with the arm in the picture, which may hide it.
 
     Args:
@@ -115,8 +115,8 @@ def closed_loop(
         **dials: Of the look-ups, as `TagStream` takes them.
 
     Returns:
-        The run; how far the tip was from its place above the true tag, shape (N,) in [m]; and how
-        the look-ups went.
+        The run; how far the tip was from its place above the true tag, shape (N,) in [m]; and in
+        how many pictures the tag was not found.
     """
     with World() as world:
         board, camera = staged(world, seed)
@@ -125,7 +125,7 @@ def closed_loop(
         log = run(arm, TagTarget(lookups, follower), controller, rate=RATE, duration=DURATION)
         goal = np.array([board.pose_at(t)[:3, 3] for t in log.t]) + OFFSET
         tips = metrics.tip_poses(log)[:, :3, 3]
-    return log, np.asarray(np.linalg.norm(goal - tips, axis=1)), lookups.count
+    return log, np.asarray(np.linalg.norm(goal - tips, axis=1)), lookups.unseen
 
 
 def _record(seed: int, rate: float, delay: float, make: Callable[[], Any]) -> Chase:

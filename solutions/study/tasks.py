@@ -11,15 +11,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
-from labkit.baxter import Side, robot
+from labkit.baxter import robot
 from labkit.model import Model
 from labkit.paths import Circle, Line, Polyline, Quintic
 from labkit.shapes import Array, as_array, as_vector, locked
 from labkit.trajectory import Chain, Hold, PosePath, Target, Trajectory
+
+Side = Literal["left", "right"]
 
 V_MAX = 0.2
 """The tip's largest speed, in [m/s]; the report's mean speed."""

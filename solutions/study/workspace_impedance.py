@@ -86,7 +86,9 @@ class WorkspaceImpedance:
     def __call__(self, state: State, target: PoseSample) -> JointTorque:
         """The command at this tick; the target's samples are poses."""
         q, dq, tau_ext = state.q, state.dq, state.tau_ext
-        T_wt, J, drift, M, c, g = self.model.terms(q, dq)
+        T_wt, J, M = self.model.pose(q), self.model.tip_jacobian(q), self.model.mass_matrix(q)
+        drift, g = self.model.tip_jacobian_rate(q, dq) @ dq, self.model.gravity(q)
+        c = self.model.bias(q, dq) - g
         MJ = np.linalg.solve(M, J.T)  # M^-1 J^T
         mobility = J @ MJ  # the inverse of Lambda
         mobility.flat[::7] += self.watch.share(J) * self.damping

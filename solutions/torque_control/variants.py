@@ -52,11 +52,11 @@ def computed_by_newton_euler(
 def computed_by_bias(
     state: lk.State, target: lk.Sample, model: lk.Model, *, kp: Any, kd: Any, arm_compensates: bool
 ) -> lk.JointTorque:
-    """With `Model.terms`."""
-    terms = model.terms(state.q, state.dq)
+    """With `Model.bias`, the weight apart."""
+    M, g = model.mass_matrix(state.q), model.gravity(state.q)
     e, de = target.position - state.q, target.velocity - state.dq
-    tau = terms.M.dot(target.acceleration + kd * de + kp * e) + terms.c
-    return lk.JointTorque(tau + (0.0 if arm_compensates else 1.0) * terms.g)
+    tau = M.dot(target.acceleration + kd * de + kp * e) + model.bias(state.q, state.dq) - g
+    return lk.JointTorque(tau + (0.0 if arm_compensates else 1.0) * g)
 
 
 def gains_by_roots(frequency: Any, damping_ratio: Any) -> Any:

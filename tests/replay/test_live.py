@@ -1,6 +1,7 @@
 """The live session: what a hand, a dial and a bad law do to the arm, without a browser."""
 
 import re
+import sys
 import threading
 import time
 
@@ -9,11 +10,11 @@ import pytest
 
 import labkit as lk
 from labkit.errors import Closed, NothingKept, OutOfRange, TypeMismatch, UnknownName
-from labkit.hand import STRONGEST, Hand
 from labkit.replay.dials import read_dials
-from labkit.replay.grip import FRESH, SLOW_PAGE, STEADY
+from labkit.replay.hand import FRESH, SLOW_PAGE, STEADY, STRONGEST, Hand
+from labkit.replay.pacer import FRAME
 from labkit.replay.session import Session
-from labkit.replay.wall_clock import FRAME
+from labkit.replay.watch import _LOOK, TURN, Watch
 
 READY = np.array(lk.robot("left").ready)
 T_READY = lk.Model("left").pose(READY)
@@ -91,6 +92,7 @@ def test_a_hand_pushes_any_link_as_statics_says():
     for body in (3, 7):
         with lk.Arm("left", TEXTBOOK, q0=READY) as arm:
             hand = Hand(arm)
+            arm.world.put(hand)
             point, force = np.array([0.02, 0.0, 0.05]), np.array([3.0, -8.0, 4.0])
             hand.push(body, point, force)
             lk.run(arm, lk.Hold(READY, 6.0), springy)
@@ -118,9 +120,41 @@ def test_a_hand_is_no_stronger_than_a_person():
     """A pointer dragged across the room pulls with the strongest force, not like a spring."""
     with lk.Arm("left", TEXTBOOK, q0=READY) as arm:
         hand = Hand(arm)
+        arm.world.put(hand)
         hand.take(7, [0, 0, 0], T_READY[:3, 3] + [0.0, 0.0, 2.0])
         lk.run(arm, lk.Hold(READY, 0.05), springy)
         assert np.linalg.norm(hand.force) == pytest.approx(STRONGEST)
+
+
+def test_the_arm_feels_the_hand_in_a_world_without_things(live):
+    """While the hand pulls with 40 N, tau_ext of the law's state is J^T f."""
+    felt = []
+
+    def feeling(state, target):
+        felt.append(state)
+        return springy(state, target)
+
+    session, frames = live({"feeling": feeling})
+    session.tell({"kind": "go"})
+    push(session, [0.0, 0.0, -40.0])
+    until(frames, lambda f: f["force"] and f["t"] > 0.1, lambda: push(session, [0, 0, -40]))
+    session.close()
+    state = max(felt, key=lambda state: np.abs(state.tau_ext).max())
+    expected = lk.Model("left").tip_jacobian(state.q).T @ [0, 0, -40, 0, 0, 0]
+    np.testing.assert_allclose(state.tau_ext, expected, atol=0.05)
+
+
+def test_a_session_that_ended_leaves_no_hand_behind(live):
+    """Another view of the same arm brings its own hand."""
+    session, frames = live({"springs": springy}, things=[lk.Table()])
+    for _ in range(2):
+        session.tell({"kind": "go"})
+        until(frames, lambda f: f["state"] == "running")
+        session.close()
+        frames.clear()
+        assert [type(thing) for thing in session.arm.world.things] == [lk.Table]
+        session = Session(session.arm, {"springs": springy}, lk.Hold(T_READY, 1.0), {}, 200.0,
+                          frames.append)  # fmt: skip
 
 
 def test_a_motor_at_its_torque_limit_is_named(live):
@@ -358,6 +392,23 @@ def test_stop_is_told_and_start_begins_again(live, first):
     frames.clear()
     session.tell({"kind": "go"})
     assert until(frames, lambda f: f["state"] == "running")["note"] == ""
+
+
+def test_the_last_of_two_live_arms_leaves_the_threads_as_they_were():
+    """While one is live, threads change often."""
+    time.sleep(6 * _LOOK)  # the watch of the test before has ended
+    usual, ends = sys.getswitchinterval(), (threading.Event(), threading.Event())
+    for end in ends:
+        thread = threading.Thread(target=end.wait)
+        thread.start()
+        Watch(0.005, print).over(thread)
+        time.sleep(6 * _LOOK)
+    ends[0].set()
+    time.sleep(6 * _LOOK)
+    assert sys.getswitchinterval() == pytest.approx(TURN)
+    ends[1].set()
+    time.sleep(6 * _LOOK)
+    assert sys.getswitchinterval() == pytest.approx(usual)
 
 
 def test_other_cells_are_told_while_the_arm_is_live(live):

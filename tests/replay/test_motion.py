@@ -71,23 +71,13 @@ def test_quaternions_are_the_rotations_without_jumps():
     assert np.abs(np.diff(q, axis=1)).max() < 0.1
 
 
-def test_arrays_are_frozen_copies():
-    t, q = np.linspace(0, 1, 5), np.zeros((5, 7))
-    motion = Motion("left", t, q)
-    q[:] = 1
-    assert not motion.q.any()
-    with pytest.raises(ValueError, match="read-only"):
-        motion.q[0, 0] = 1
-
-
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
         ({"robot": "up"}, "no arm 'up'"),
         ({"q": np.zeros((5, 6))}, "q has shape"),
-        ({"t": np.zeros(5)}, "does not increase"),
-        ({"tau": np.full((5, 7), np.nan)}, "tau holds nan"),
-        ({"ghosts": {"MoveIt": np.zeros((4, 7))}}, "MoveIt"),
+        ({"q": np.full((5, 7), np.nan)}, "q holds nan"),
+        ({"t": [0.0]}, "t has 1 times, and a motion needs at least two"),
     ],
 )
 def test_wrong_input_is_named(change, sentence):

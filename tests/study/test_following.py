@@ -77,7 +77,7 @@ def test_a_tag_on_a_circle_is_followed_whichever_readings_are_lost(lost, least):
             if k % 10 == 0 and stamp >= 0.0 and random.random() >= lost:
                 seen = goal(stamp).position + 2e-4 * random.standard_normal(3)
                 T = lk.se3.pose(np.eye(3), seen)
-                readings = (Reading(stamp, t, T, 4e-8 * np.eye(6), 9.0),)
+                readings = (Reading(stamp, t, T, 4e-8 * np.eye(6)),)
             here = guide(t, readings)
             off.append(here.pose[:3, 3] - goal(t).position)
             assert np.linalg.norm(here.dtwist[:3]) <= 1.01 * guide.acceleration
@@ -131,7 +131,7 @@ def test_a_circling_board_is_followed_within_two_millimetres():
     acceleration = np.linalg.norm(log.target.dtwist[:, :3], axis=1)
     peak = acceleration[settled].max()
     print(f"RMS {rms:.2f} mm, peak {peak / GENTLE:.2f} v^2/R, jump {max(guide.jumps):.1e}")
-    assert lookups.count.unseen <= 0.02 * lookups.count.taken
+    assert lookups.unseen <= 0.02 * 200, "of 10 pictures a second for 20 s"
     assert rms <= 2.0
     assert peak <= 3.0 * GENTLE and acceleration.max() <= guide.acceleration
     assert max(guide.jumps) <= 1e-9
@@ -191,13 +191,12 @@ def test_algorithm_1_jumps_and_lags_where_the_continuous_reference_does_not():
     assert 1e3 * np.sqrt(np.mean(error[log.t >= 5.0] ** 2)) > 100.0
     speeds = np.linalg.norm(log.dq, axis=1)
     assert (speeds[(log.t > 0.6) & (log.t < 1.1)] < 1e-3).all(), "stands while it looks"
-    assert lookups.count.taken == 3
 
 
 def test_a_reading_older_than_what_is_known_is_passed_over():
     scene = circling_board()
     guide = TagFollower(scene.T_wt, scene.offset)
-    reading = Reading(1.0, 1.1, scene.board.T_wm, 1e-6 * np.eye(6), 9.0)
+    reading = Reading(1.0, 1.1, scene.board.T_wm, 1e-6 * np.eye(6))
     guide.learn(reading)
     known = guide.estimate
     guide.learn(reading._replace(stamp=0.5))

@@ -5,12 +5,13 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
+from sights import Block, resized
 
 import labkit as lk
 from labkit import se3
 from labkit.tags.paper import paper
 from labkit.tags.rendering import FAR, NEAR, Window, draw
-from labkit.tags.surface import Block, Surface, box, joined
+from labkit.tags.surface import Surface, box, joined
 
 LENS = lk.Intrinsics(64, 48, 80.0, 90.0, 30.3, 25.1)
 WHOLE = Window(0, 0, LENS.width, LENS.height)
@@ -83,7 +84,7 @@ def test_the_paper_covers_as_many_pixels_as_its_outline_encloses():
 
 def _everywhere(tag, T, lens, n=4):
     """How white each pixel of the picture is, by n^2 points in all of them, on an edge or not."""
-    fine = lens.resized(float(n))
+    fine = resized(lens, float(n))
     share, white = paper(tag, T, fine, Window(0, 0, fine.width, fine.height), 1)
     return (share * white).reshape(lens.height, n, lens.width, n).mean(axis=(1, 3))
 
@@ -115,7 +116,7 @@ def scene():
         for number, place in enumerate(((0.85, 0.15, -0.2), tip + [0.02, 0.03, -0.1])):
             turn = se3.rotation(np.array([0.0, 0.0, 0.3]))
             lk.tags.Board(world, lk.Tag(number), se3.pose(turn, np.array(place)))
-        lens = lk.Intrinsics().resized(0.5)
+        lens = resized(lk.Intrinsics(), 0.5)
         return lk.Camera(world, lk.looking_at((1.6, -0.2, 0.8), (0.7, 0.2, 0.0)), lens).image()
 
 

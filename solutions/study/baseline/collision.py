@@ -18,11 +18,13 @@ import coal
 import numpy as np
 import pinocchio as pin
 
-from labkit.baxter import Side, robot
+from labkit.baxter import robot
 from labkit.errors import JointLimitExceeded, LabkitError, OutOfRange, TypeMismatch
 from labkit.robot import Robot
 from labkit.scene import FACE, Table, Wall
 from labkit.shapes import Array, as_array, as_number, as_vector, shown
+
+from ..tasks import Side
 
 SHAPES = Path(__file__).with_name("baxter_collision.json")
 

@@ -1,4 +1,4 @@
-"""The clock of the wall, beside the simulator's."""
+"""The pacer: a live run keeps the time of the wall."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ LATE = 0.1
 """A loop that is late by more than this, in [s], does not catch up; it goes on from there."""
 
 
-class WallClock:
+class Pacer:
     """Keeps a run in step with the wall, and tells how well it does."""
 
     def __init__(self) -> None:

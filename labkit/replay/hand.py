@@ -10,12 +10,14 @@ or a constant force at that point.
 
 from __future__ import annotations
 
+import time
 from typing import Any
 
 import numpy as np
 
-from .arm import Arm
-from .shapes import Array, as_array
+from ..arm import Arm
+from ..shapes import Array, as_array
+from ..world import World
 
 STIFFNESS = 400.0
 """Of the spring, in [N/m]."""
@@ -26,6 +28,13 @@ DAMPING = 12.0
 STRONGEST = 60.0
 """The most that it pulls, in [N]."""
 
+FRESH, SLOW_PAGE = 0.2, 1.0
+"""A pointer of which nothing was heard for this long, in [s], lets go; where a page says that it is
+slow, after three times its slowest turn of late, but at most after the second of these."""
+
+STEADY = 5.0
+"""A push by a button goes on for this long, in [s], after the last word of it."""
+
 
 class Hand:
     """A hand beside an arm; it pulls from `take` or `push` until `let_go`.
@@ -33,6 +42,8 @@ class Hand:
     Attributes:
         at: Where it holds the arm, world axes, shape (3,) in [m]; None while it holds nothing.
         force: What it did in the last physics step, world axes, shape (3,) in [N].
+        move: The page's number of the last move, with which the picture answers.
+        patience: How long it holds on after the last word of a page, in [s].
     """
 
     at: Array | None
@@ -41,10 +52,9 @@ class Hand:
     _to: Array | None
 
     def __init__(self, arm: Arm) -> None:
-        """A hand that holds nothing yet."""
-        self._arm = arm
+        """A hand that holds nothing yet; ``arm.world.put(hand)`` puts it beside the arm."""
+        self._arm, self.move, self.patience, self.heard = arm, 0, FRESH, 0.0
         self.let_go()
-        arm.world.add(self.act)
 
     def take(self, body: int, point: Any, to: Any) -> None:
         """Pull a point towards a place.
@@ -72,6 +82,24 @@ class Hand:
         self._point, self._to, self.at = None, None, None
         self.force = np.zeros(3)
 
+    def follow(self, message: dict[str, Any]) -> None:
+        """Do what the page says: pull a point to a place, push it, or let go."""
+        slow = min(SLOW_PAGE, max(FRESH, 3.0 * message.get("every", 0.0)))
+        self.heard, self.patience = message["heard"], STEADY if "force" in message else slow
+        self.move = message.get("move", self.move)
+        point = message["link"], message["local"]
+        if "force" in message:
+            self.push(*point, message["force"])
+        elif "to" in message:
+            self.take(*point, message["to"])
+        else:
+            self.let_go()
+
+    def tire(self) -> None:
+        """Let go if nothing was heard for too long."""
+        if time.monotonic() - self.heard > self.patience:
+            self.let_go()
+
     def seen(self) -> dict[str, Any]:
         """What it does, in plain numbers for who draws it."""
         if self.at is None or self._point is None:
@@ -79,7 +107,7 @@ class Hand:
         at, force = self.at.round(4).tolist(), self.force.round(3).tolist()
         return {"at": at, "force": force, "link": self._point[0]}
 
-    def act(self) -> None:
+    def act(self, world: World) -> None:
         """Pull during the next physics step."""
         if self._point is None:
             return
