@@ -225,6 +225,13 @@ def test_a_canvas_name_with_a_number_is_settled_by_the_roster(bare, tmp_path):
     assert counting(bare) == {"eve": "eve's"}
 
 
+def test_a_cup_entry_from_canvas_needs_no_list(bare, tmp_path):
+    """Its name begins with a number, which is not taken for that of Canvas's attachment."""
+    source = zipped(tmp_path / "1.zip", [("hoppergrace_7_4711_10_cup.ipynb", "g")])
+    assert all(one.fine for one in collect(bare, "10_cup", source))
+    assert counting(bare, "10_cup") == {"hoppergrace-7": "g"}
+
+
 def test_one_who_hands_in_before_they_are_in_the_roster_is_brought_there(bare, tmp_path):
     """A late enrolment: the next list has them, and they keep the folder that they got."""
     source = from_moodle(tmp_path / "1.zip", [(("Zoe Park", 5), "x.ipynb", "z")])

@@ -11,7 +11,9 @@ the participant's; a name with an underscore in front is a team's, or somebody e
 
 Canvas writes ``NAME_[LATE_]USER_ATTACHMENT_FILE``.  NAME is in small letters, without spaces, and
 may end in an underscore and a number; then the name can be read in two ways if the file's own name
-begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).
+begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  A number
+below 100 is no attachment's, as Canvas counts the files of a whole school: it is how a file's name
+begins, such as ``10_cup.ipynb``.
 
 Every file comes with all ways to read whose it is, and with the reason for which it is refused.
 Nothing is unpacked, so a name in a download leads nowhere.
@@ -53,7 +55,7 @@ _MOODLE = re.compile(
 _CANVAS = re.compile(
     r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<number>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>[^/]+)"
 )
-_NUMBER_FIRST = re.compile(r"([0-9]+)_([^/]+)")
+_NUMBER_FIRST = re.compile(r"([0-9]{3,})_([^/]+)")
 _OF_A_MAC = re.compile(r"(^|/)(__MACOSX/|\.DS_Store$|\._[^/]*$)")
 """What a Mac puts beside files; it is nobody's work."""
 _ID = re.compile(r"[1-9][0-9]{0,18}")
