@@ -26,7 +26,6 @@ GitHub, or the student's own name.
 
 from __future__ import annotations
 
-import io
 import lzma
 import os
 import re
@@ -41,7 +40,6 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import BinaryIO
 
 from ...errors import LabkitError
 from ..clean import clean_line
@@ -164,16 +162,13 @@ class File:
 
 @contextmanager
 def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
-    """Open a zip, also one with a name that is not in the encoding that it states.
+    """Open a zip.
 
     Raises:
-        LabkitError: It is damaged.
+        LabkitError: It is damaged, or a name is not in the encoding that it states.
     """
     try:
-        try:
-            archive = zipfile.ZipFile(path)
-        except UnicodeDecodeError:
-            archive = zipfile.ZipFile(_without_utf8_flags(path))
+        archive = zipfile.ZipFile(path)
     except _DAMAGED as error:
         said = clean_line(str(error))
         raise LabkitError(f"{path} is damaged: {said}; download it again") from None
@@ -250,20 +245,6 @@ def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
         raise LabkitError(f"damaged: {clean_line(str(error))}") from None
     check_size(len(data), most)
     return data
-
-
-def _without_utf8_flags(path: Path) -> BinaryIO:
-    """A copy in which no name claims to be UTF-8, so that every name can be read."""
-    data = bytearray(path.read_bytes())
-    end = data.rfind(b"PK\5\6")
-    size, _ = struct.unpack_from("<LL", data, end + 12)
-    at = end - size
-    while data[at : at + 4] == b"PK\1\2":
-        local = struct.unpack_from("<L", data, at + 42)[0]
-        data[at + 9] &= ~8
-        data[local + 7] &= ~8
-        at += 46 + sum(struct.unpack_from("<3H", data, at + 28))
-    return io.BytesIO(data)
 
 
 _PARTS = {"{student}": "(?P<student>[^/]+?)", "**": ".*", "*": "[^/]*"}
