@@ -184,9 +184,8 @@ def collect(
     of GitHub Classroom, and any other folder or zip of files, need --named. Every notebook that
     was handed in is kept, in attempts/.
 
-    Exit code: 0 if everything was collected, 1 if a file was not collected, its owner is not
-    certain or it is the notebook of another assignment (named at the end), 2 if nothing could be
-    collected.
+    Exit code: 0 if everything was collected, 1 if a file was not collected or its owner is not
+    certain (named at the end), 2 if nothing could be collected.
     """
     from ..peers.readers import sheet_of
     from ..rules import read_rules

@@ -139,14 +139,6 @@ def that_counts(course: Course, student: str, assignment: str) -> Counted | None
     return counts([one for one in shown if one.seen], assignment) or counts(all, assignment)
 
 
-def late_by(course: Course, student: str, assignment: str, at: datetime) -> bool:
-    """Whether what counts is late, and the time ``at`` at which it was collected makes it so."""
-    due = read_rules(course).due_for(student, assignment)
-    chosen = that_counts(course, student, assignment)
-    seen = chosen and chosen.first
-    return bool(due and seen and seen.when == at > due and (seen.exact or seen.late))
-
-
 def keep(
     course: Course,
     student: str,

@@ -12,7 +12,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 
 from ...course.layout import Course
@@ -20,11 +19,10 @@ from ...errors import LabkitError
 from ..clean import some
 from ..each import Failed, for_student
 from ..grading.results import digest
-from .attempts import Seen, adopt, called, install, keep, late_by, that_counts
+from .attempts import Seen, adopt, called, install, keep, that_counts
 from .enrol import settle
 from .exchange import in_exchange
 from .identity import all_lms_users, alone, places, remember
-from .other_notebook import made_for, released
 from .owner import owner
 from .platforms import File, LmsUser, Named, in_folder, in_zip, open_zip, reader
 from .roster import read_roster
@@ -98,7 +96,7 @@ def collect(
                 else:
                     files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
                 mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
-                yield from _take(course, assignment, source, [_made(x, at, True) for x in mine], at)
+                yield from _take(course, assignment, source, [_made(x, at, True) for x in mine])
         elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
             yield from _take(course, assignment, source, files)
@@ -109,7 +107,7 @@ def collect(
         else:
             with open_zip(source) as archive:
                 files = [_made(file, at, False) for file in in_zip(archive, now)]
-                yield from _take(course, assignment, source, files, at)
+                yield from _take(course, assignment, source, files)
 
 
 def _made(file: File, at: datetime | None, exact: bool) -> File:
@@ -118,11 +116,7 @@ def _made(file: File, at: datetime | None, exact: bool) -> File:
 
 
 def _take(
-    course: Course,
-    assignment: str,
-    source: Path,
-    files: Sequence[File],
-    at: datetime | None = None,
+    course: Course, assignment: str, source: Path, files: Sequence[File]
 ) -> Iterator[Taken]:
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
@@ -155,12 +149,8 @@ def _take(
     by_student: dict[str, list[_HandedIn]] = {}
     for file, named in handed_in:
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
-    asked = released(course)
     for student, mine in sorted(by_student.items()):
-        yield from _keep(course, assignment, student, mine, asked)
-    if at is not None:
-        late = [for_student(x, partial(late_by, course, x, assignment, at)) for x in by_student]
-        yield Taken("", "", f"late by the time given: {late.count(True)} of {len(by_student)}")
+        yield from _keep(course, assignment, student, mine)
 
 
 def _namesakes(people: Iterable[LmsUser]) -> Iterator[Taken]:
@@ -195,11 +185,7 @@ def _known_by_name(
 
 
 def _keep(
-    course: Course,
-    assignment: str,
-    student: str,
-    mine: Sequence[_HandedIn],
-    asked: Mapping[str, frozenset[bytes]],
+    course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     """Keep one student's notebooks, and let the right one count."""
     notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
@@ -207,7 +193,7 @@ def _keep(
         if says := _no_notebook(named):
             yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
     done = for_student(
-        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks, asked))
+        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
     )
     if isinstance(done, Failed):
         done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
@@ -224,11 +210,7 @@ def _no_notebook(named: Named) -> str:
 
 
 def _keep_notebooks(
-    course: Course,
-    assignment: str,
-    student: str,
-    notebooks: Sequence[_HandedIn],
-    asked: Mapping[str, frozenset[bytes]],
+    course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
     there = adopt(course, student, assignment, now)
@@ -259,7 +241,3 @@ def _keep_notebooks(
             says = "taken" + (", in place of an earlier one, which is kept" if before else "")
             says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
         yield Taken(student, seen.file, says + (", late" if seen.late else ""))
-    counted = after.attempt.file.read_bytes() if after else b""
-    if after and (other := made_for(counted, assignment, asked)) != assignment:
-        says = f"this is notebook {other}, not {assignment}; ask the student for the right one"
-        yield Taken(student, after.first.file, says, fine=False)
