@@ -19,10 +19,10 @@ from ..each import Failed, for_student
 from ..lock import WHOLE, exclusive_run
 from ..sandbox.limits import Limits
 from ..sandbox.mounts import NoIsolation
-from ..submission import Submission, students
+from ..submission import Submission, digest, students
 from .executor import executor
 from .grade import hashes
-from .results import Result, Results, digest
+from .results import Result, Results
 from .worker import Task, grade_submission
 
 FAILURE_RATE_ALERT = 0.3

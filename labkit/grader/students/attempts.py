@@ -33,10 +33,9 @@ from ...course.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import safe_name
-from ..grading.results import digest
 from ..rules import read_rules
 from ..sandbox.limits import Limits
-from ..submission import read_file
+from ..submission import digest, read_file
 from ..timestamp import TIMESTAMP, read_stamp, read_time
 from .exchange import SECRET, read_secret
 

@@ -18,7 +18,7 @@ from ...course.layout import Course
 from ...errors import LabkitError
 from ..clean import some
 from ..each import Failed, for_student
-from ..grading.results import digest
+from ..submission import digest
 from .attempts import Seen, adopt, called, install, keep, that_counts
 from .enrol import settle
 from .exchange import in_exchange
@@ -115,9 +115,7 @@ def _made(file: File, at: datetime | None, exact: bool) -> File:
     return file if at is None else replace(file, when=at, exact=exact)
 
 
-def _take(
-    course: Course, assignment: str, source: Path, files: Sequence[File]
-) -> Iterator[Taken]:
+def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
         raise LabkitError(
