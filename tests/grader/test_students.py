@@ -156,19 +156,22 @@ def test_the_folder_is_the_login_or_else_the_name(tmp_path):
     assert [student.id for student in group] == ["Li-Wei-li1", "Li-Wei-li2"]
 
 
-def test_a_student_keeps_the_folder_of_earlier_work(tmp_path):
-    """What was collected before there was a roster is theirs, if nobody else has the name."""
-    entries = listed(
-        tmp_path, "Student,ID,SIS Login ID,Section\nHopper,7,gh,\nKim,8,k1,\nKim,9,k2,\n"
-    )
+def test_nobody_gets_a_folder_in_which_others_work_lies(tmp_path):
+    """Where an older labkit called it by a name: only who alone may be meant gets that folder."""
+    entries = listed(tmp_path, "name,email\nAda Lovelace,al@x\nKim Li,kl@x\nBob,b@x\nzoe,z@x\n")
     collected = {
         "01_paths": {
-            "hopper-7": LmsUser("canvas", "7", "hopper"),
-            "Kim": LmsUser("moodle", "1", "Kim"),
-        }
+            "Ada-Lovelace": LmsUser("moodle", "1", "Ada Lovelace"),
+            "Kim-Li": LmsUser("moodle", "2", "Kim Li"),
+            "Kim-Li-3": LmsUser("moodle", "3", "Kim Li"),
+            "zoe": LmsUser("exchange", "zoe", "zoe"),
+        },
+        "02_model": {"BOB": LmsUser("moodle", "4", "Eve")},
     }
     roster = enrolled(entries, collected=collected)
-    assert [student.id for student in roster.students] == ["hopper-7", "k1", "k2"]
+    assert [student.id for student in roster.students] == [
+        *("Ada-Lovelace", "Kim-Li-kl", "Bob-b", "zoe-z"),
+    ]
 
 
 def test_a_second_list_adds_and_changes_but_takes_nobody_away(tmp_path):

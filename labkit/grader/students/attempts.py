@@ -260,29 +260,6 @@ def install(course: Course, student: str, assignment: str) -> Counted | None:
     return chosen
 
 
-def move(course: Course, assignment: str, old: str, new: str) -> str:
-    """Take a student's work to another folder, once it is known whose it is.
-
-    Returns:
-        What stayed where it was and wants a look, in a sentence; empty if nothing did.
-    """
-    if old in {"", new}:
-        return ""
-    for base in (course.root / FOLDER, course.submitted):
-        source, target = base / old / assignment, base / new / assignment
-        if source.exists() and not target.exists():
-            target.parent.mkdir(parents=True, exist_ok=True)
-            source.rename(target)
-            if not any(source.parent.iterdir()):
-                source.parent.rmdir()
-    there = (
-        *(base / old / assignment for base in (course.root / FOLDER, course.submitted)),
-        course.results / assignment / f"{old}.json",
-    )
-    left = " and ".join(str(path.relative_to(course.root)) for path in there if path.exists())
-    return f"{left} of the same student stays; look what it is, and move it away" if left else ""
-
-
 def called(file: str, assignment: str) -> bool:
     """Whether a file is called as the assignment, whatever number it has."""
     return _REPEATED.sub(".ipynb", file) == f"{assignment}.ipynb"

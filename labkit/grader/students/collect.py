@@ -7,8 +7,7 @@ Whose a file is comes from the platform's own field (``platforms``) and from the
 from __future__ import annotations
 
 import zipfile
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
@@ -16,16 +15,15 @@ from pathlib import Path
 
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..clean import some
 from ..each import Failed, for_student
 from ..submission import digest
 from .attempts import Seen, adopt, called, install, keep, that_counts
-from .enrol import settle
 from .exchange import in_exchange
 from .identity import all_lms_users, alone, places, remember
 from .owner import owner
-from .platforms import File, LmsUser, Named, in_folder, in_zip, open_zip, reader
+from .platforms import File, Named, in_folder, in_zip, open_zip, reader
 from .roster import read_roster
+from .settle import settle
 
 
 @dataclass(frozen=True)
@@ -48,6 +46,10 @@ class Taken:
         return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
+_NO_LIST = (
+    "no class list, so students are known by the platform's numbers alone, which Moodle gives anew "
+    "in each assignment; for one folder a student all term, type: labkit students import LIST.csv"
+)
 _HandedIn = tuple[File, Named]
 """A file, and the one reading of its name that is right."""
 
@@ -134,12 +136,10 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
         else:
             handed_in.append((file, named))
     people = {named.who.key: named.who for _, named in handed_in}
-    there = [path.name for path in course.submitted.glob("*")]
-    found = places(people.values(), assignment, known, roster, there)
+    found = places(people.values(), assignment, known, roster)
     by_folder = {place.folder: people[key] for key, place in found.items()}
     if not roster.students:
-        yield from _namesakes(people.values())
-        yield from _known_by_name(assignment, by_folder, known)
+        yield Taken("", "", _NO_LIST)
     for place in found.values():
         if place.doubt:
             yield Taken(place.folder, "", place.doubt, fine=False)
@@ -149,37 +149,6 @@ def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) 
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
     for student, mine in sorted(by_student.items()):
         yield from _keep(course, assignment, student, mine)
-
-
-def _namesakes(people: Iterable[LmsUser]) -> Iterator[Taken]:
-    called = Counter(one.name for one in people if one.system == "moodle")
-    for name, count in called.items():
-        if count > 1:
-            yield Taken(name, "", f"{count} students are called so; told apart by their number")
-
-
-def _known_by_name(
-    assignment: str, people: Mapping[str, LmsUser], known: Mapping[str, Mapping[str, LmsUser]]
-) -> Iterator[Taken]:
-    """Who is taken for somebody of an earlier assignment by name alone, which people can change.
-
-    Moodle's numbers are new in each assignment, so without a roster there is nothing else to go by.
-    """
-    pairs = [
-        f"{who.name} ({before.number} for {other}, {who.number} for {assignment})"
-        for folder, who in people.items()
-        for other, there in known.items()
-        if other != assignment and who.system == "moodle"
-        if (before := there.get(folder)) is not None and before.number != who.number
-    ]
-    if pairs:
-        yield Taken(
-            "",
-            "",
-            f"{len(pairs)} are known by their name alone, which people can change: "
-            f"{some(pairs, 3)}; `labkit students import` reads the class list, which knows them "
-            "for certain",
-        )
 
 
 def _keep(

@@ -2,13 +2,14 @@
 
 A row is a student of the roster if they share a login, an address or a number; or the name, if
 nobody else has it and nothing speaks against it.  Nobody leaves the roster by a list that does not
-name them.  A student keeps the folder in which work of theirs lies.
+name them.  Who is new gets a folder in which nobody else's work lies, and work of theirs that was
+collected before goes there (``settle``).
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
@@ -18,12 +19,12 @@ from ...errors import LabkitError
 from ..clean import how_many, safe_name, some
 from ..seeds import seed_of
 from .arms import give_arms
-from .attempts import move
 from .class_list import Entry, Student, read_list
-from .identity import all_lms_users, alone, places, remember
+from .identity import all_lms_users, alone, places
 from .list_remarks import about_names, about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
+from .settle import settle
 from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]
@@ -69,21 +70,21 @@ def enrol(
     rows: list[tuple[Entry, str]] = []
     for entry in entries:
         unique = names[same_name(entry.student.name)] == 1
-        # who is new has no folder yet, and until `_folders` an id that no folder can have
-        id = _find(entry, unique, students, by_mark) or f"\n{entry.line}"
+        # who is new is known by their line until `_folders`; no folder's name has a space
+        id = _find(entry, unique, students, by_mark) or f"line {entry.line}"
         student = students.get(id, Student(id))
         known = ("first_name", "last_name") if entry.guessed and student.name else ()
         said = {k: v for k in _FIELDS if (v := getattr(entry.student, k)) and k not in known}
         students[id] = replace(student, **said)
         _index(students[id], by_mark)
         rows.append((entry, id))
-    new = [id for id in students if id not in roster]
+    new = {id for id in students if id not in roster}
     folders = _folders(Roster(tuple(students.values())), new, collected)
     done = {id: replace(s, id=folders.get(id, id)) for id, s in students.items()}
     return Enrolled(
         Roster(tuple(done.values())),
         tuple((entry, done[id]) for entry, id in rows),
-        tuple(done[id] for id in new),
+        tuple(one for id, one in done.items() if id in new),
     )
 
 
@@ -158,24 +159,6 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     return Imported(tuple(told), tuple(left), alike)
 
 
-def settle(course: Course, roster: Roster) -> list[str]:
-    """Bring all work to those whom the roster has come to know since it was collected.
-
-    Returns:
-        What a person should look at, a sentence each.
-    """
-    left: list[str] = []
-    collected = all_lms_users(course)
-    for assignment, people in collected.items():
-        found = places(people.values(), assignment, collected, roster, ())
-        moved = {
-            folder: to for folder, one in people.items() if (to := found[one.key].folder) != folder
-        }
-        left += [move(course, assignment, folder, to) for folder, to in moved.items()]
-        remember(course, assignment, {to: people[folder] for folder, to in moved.items()})
-    return [sentence for sentence in left if sentence]
-
-
 def _marks(one: Student) -> dict[str, str]:
     """What tells a student from others, as far as it is known."""
     return {key: mark.casefold() for key in _KEYS if (mark := getattr(one, key))}
@@ -245,28 +228,26 @@ def _find(
 
 
 def _folders(
-    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, LmsUser]]
+    everybody: Roster, new: Set[str], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> dict[str, str]:
-    """A folder for each new student: the one of their earlier work, or a new one."""
-    used: dict[str, Counter[str]] = {id: Counter() for id in new}
-    for people in collected.values():
+    """A folder for each new student, in which nobody else's work lies."""
+    owners = {student.id.casefold(): {student.id} for student in everybody.students}
+    for assignment, people in collected.items():
+        found = places(people.values(), assignment, collected, everybody)
         for folder, one in people.items():
-            whose = everybody.whose(one)
-            if len(whose) == 1 and whose[0].id in used and folder == safe_name(folder):
-                used[whose[0].id][folder] += 1
-    taken = {student.id.casefold() for student in everybody.students}
+            owners.setdefault(folder.casefold(), set()).add(found[one.key].folder)
     alike = {student.id for group in everybody.namesakes() for student in group}
-    found: dict[str, str] = {}
+    folders: dict[str, str] = {}
     for student in everybody.students:
-        if student.id in used:
+        if student.id in new:
             plain = safe_name(student.login or student.name)
             others = (student.email.partition("@")[0], student.id_number, student.lms_user_id)
             names = chain(
-                (folder for folder, _ in used[student.id].most_common()),
                 [plain] * bool(student.login or student.id not in alike),
                 (safe_name(f"{plain}-{other}") for other in others if other),
                 (f"{plain}-{k}" for k in count(2)),
             )
-            found[student.id] = next(name for name in names if name.casefold() not in taken)
-            taken.add(found[student.id].casefold())
-    return found
+            free = (x for x in names if owners.get(x.casefold(), set()) <= {student.id})
+            folders[student.id] = name = next(free)
+            owners.setdefault(name.casefold(), set()).add(student.id)
+    return folders

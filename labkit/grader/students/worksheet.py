@@ -11,10 +11,11 @@ from ...course.layout import Course
 from ..clean import some
 from ..rules import read_rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, counts, install, keep, move
+from .attempts import Attempt, Counted, attempts, counts, install, keep
 from .class_list import Entry, Student
 from .identity import lms_users, remember
 from .platforms import LmsUser
+from .settle import Move, bring
 
 
 def keep_numbers(
@@ -27,9 +28,9 @@ def keep_numbers(
     """
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
-    left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
+    left = bring(course, (Move(assignment, before.get(x.key, ""), id) for id, x in mine.items()))
     remember(course, assignment, mine)
-    return [sentence for sentence in left if sentence]
+    return left
 
 
 def keep_times(
