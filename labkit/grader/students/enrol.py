@@ -21,7 +21,7 @@ from ..seeds import seed_of
 from .arms import give_arms
 from .class_list import Entry, Student, read_list
 from .identity import all_lms_users, alone, places
-from .list_remarks import about_names, about_namesakes, about_teams
+from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
 from .settle import settle
@@ -60,7 +60,6 @@ def enrol(
     Raises:
         LabkitError: Two rows, or a row and the roster, contradict each other.
     """
-    _refuse_contradictions(entries)
     listed = {(same_name(x.student.name), *_marks(x.student).items()) for x in entries}
     names = Counter(name for name, *_ in listed)
     students = {student.id: student for student in roster.students}
@@ -68,6 +67,7 @@ def enrol(
     for student in roster.students:
         _index(student, by_mark)
     rows: list[tuple[Entry, str]] = []
+    before: dict[object, list[Entry]] = {}
     for entry in entries:
         unique = names[same_name(entry.student.name)] == 1
         # who is new is known by their line until `_folders`; no folder's name has a space
@@ -77,6 +77,7 @@ def enrol(
         said = {k: v for k in _FIELDS if (v := getattr(entry.student, k)) and k not in known}
         students[id] = replace(student, **said)
         _index(students[id], by_mark)
+        _refuse_contradictions(entry, id, before)
         rows.append((entry, id))
     new = {id for id in students if id not in roster}
     folders = _folders(Roster(tuple(students.values())), new, collected)
@@ -145,7 +146,6 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         told.append(f"not in this list, and still in the roster: {still}")
     if len(entries) < len(rows):
         told.append("not taken: Test Student, whom Canvas makes for a teacher's view as a student")
-    told += about_names(before, done.roster)
     told += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
         set_now = f"{how_many(times, 'hand-in time')} set"
@@ -170,38 +170,31 @@ def _shared(one: Student, other: Student) -> list[bool]:
     return [a[key] == b[key] for key in a.keys() & b.keys()]
 
 
-def _refuse_contradictions(entries: Sequence[Entry]) -> None:
-    numbers = Counter(entry.participant for entry in entries if entry.participant)
-    for number, times in numbers.items():
-        if times > 1:
+def _refuse_contradictions(entry: Entry, id: str, rows: dict[object, list[Entry]]) -> None:
+    """Refuse a row that contradicts an earlier one, and add it to these."""
+    who, name, number = entry.student, same_name(entry.student.name), entry.participant
+    for other in rows.setdefault(("participant", number), []) if number else ():
+        raise LabkitError(
+            f"lines {other.line} and {entry.line} are both participant {number}; download the "
+            "worksheet again"
+        )
+    for other in rows.setdefault(("name", name), []) if name else ():
+        if not _shared(who, other.student):
             raise LabkitError(
-                f"participant {number} is in {times} lines; download the worksheet again"
+                f"lines {other.line} and {entry.line} are both {who.name}, and nothing tells them "
+                "apart; give each a login, an address or a number, or delete one"
             )
-    by: dict[tuple[str, object], list[Entry]] = {}
-    for entry in entries:
-        who, name = entry.student, same_name(entry.student.name)
-        for key in {*_marks(who).items(), ("name", name)}:
-            for other in by.get(key, ()) if key[1] else ():
-                shared = _shared(who, other.student)
-                lines = f"lines {other.line} and {entry.line}"
-                if key[0] == "name" and not shared:
-                    raise LabkitError(
-                        f"{lines} are both {who.name}, and nothing tells them apart; give each a "
-                        "login, an address or a number, or delete one"
-                    )
-                if any(shared) and not (all(shared) and same_name(other.student.name) == name):
-                    says = _says(other.student, who)
-                    raise LabkitError(f"{lines} contradict each other: {says}")
-            by.setdefault(key, []).append(entry)
-
-
-def _says(one: Student, other: Student) -> str:
-    pairs = [(getattr(one, k), getattr(other, k)) for k in ("name", *_KEYS)]
-    same = " and ".join(a for a, b in pairs if a and a.casefold() == b.casefold())
-    differ = " and ".join(
-        f"{a} here and {b} there" for a, b in pairs if a and b and a.casefold() != b.casefold()
-    )
-    return f"{same} is in both, with {differ}"
+    for other in rows.setdefault(("id", id), []):
+        alike = same_name(other.student.name) == name
+        pairs = [(getattr(other.student, x), getattr(who, x)) for x in ("name", *_KEYS)[alike:]]
+        differ = [f"{a} and {b}" for a, b in pairs if a and b and a.casefold() != b.casefold()]
+        if differ:
+            raise LabkitError(
+                f"lines {other.line} and {entry.line} are one student by a login, an address or a "
+                f"number, and contradict each other: {', '.join(differ)}; correct the list"
+            )
+    for key in (("participant", number), ("name", name), ("id", id)):
+        rows.setdefault(key, []).append(entry)
 
 
 def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
@@ -217,8 +210,7 @@ def _find(
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
         raise LabkitError(
-            f"line {entry.line} could be {people} of the roster; correct the list, or "
-            "course_private/roster.csv"
+            f"line {entry.line} could be {people}; correct the list, or course_private/roster.csv"
         )
     name = same_name(entry.student.name)
     called = by_mark.get(("name", name), set()) if name and unique and not found else set()
