@@ -139,11 +139,11 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     """
     from ..students.enrol import import_list
 
-    taken = import_list(course, file, assignment)
-    print("\n".join(taken.told))
-    for sentence in (*taken.left, *taken.alike):
+    told, left = import_list(course, file, assignment)
+    print("\n".join(told))
+    for sentence in left:
         print(sentence, file=sys.stderr)
-    return 1 if taken.left else 0
+    return 1 if left else 0
 
 
 @verb("01_paths moodle.zip")

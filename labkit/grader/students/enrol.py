@@ -89,28 +89,19 @@ def enrol(
     )
 
 
-@dataclass(frozen=True)
-class Imported:
-    """What came of `import_list`, in sentences.
-
-    Attributes:
-        told: What was done.
-        left: Work of one student that is in two folders, and hand-in times that are not set.
-        alike: Students whom a download of Moodle's does not tell apart.
-    """
-
-    told: tuple[str, ...]
-    left: tuple[str, ...]
-    alike: tuple[str, ...]
-
-
-def import_list(course: Course, file: Path, assignment: str | None = None) -> Imported:
+def import_list(
+    course: Course, file: Path, assignment: str | None = None
+) -> tuple[list[str], list[str]]:
     """Take a list of students into the course's roster, and bring earlier work to its owners.
 
     Args:
         course: The course.
         file: A CSV file; see `read_list`.
         assignment: Where the file is Moodle's grading worksheet of this assignment.
+
+    Returns:
+        What was done; and what a person should look at: work of one student that is in two folders,
+        and hand-in times that are not set.  A sentence each.
 
     Raises:
         LabkitError: The list does not fit the roster or itself, or it is not a list.
@@ -154,9 +145,9 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
         told.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"
         )
-    known = all_lms_users(course)
-    alike = () if assignment else tuple(about_namesakes(done.roster, known))
-    return Imported(tuple(told), tuple(left), alike)
+    if not assignment:
+        told += about_namesakes(done.roster, all_lms_users(course))
+    return told, left
 
 
 def _marks(one: Student) -> dict[str, str]:
