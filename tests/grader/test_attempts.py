@@ -271,6 +271,17 @@ def test_a_collection_that_was_stopped_is_made_good(bare, tmp_path, monkeypatch)
     assert counting(bare) == {"Ada-Lovelace-101": "second"}
 
 
+def test_a_record_of_an_older_labkit_is_read(bare):
+    """A term goes on with a newer one; the record calls what it holds as it did."""
+    folder = bare.root / "attempts" / "ada" / NAME / "2026-03-01T120000Z-0"
+    folder.mkdir(parents=True)
+    when = {"when": "2026-03-01T12:00:00Z", "origin": "moodle", "number": "1", "file": "x.ipynb"}
+    record = {"file": "x.ipynb", "sha256": "0", "seen": [when]}
+    (folder / "attempt.json").write_text(json.dumps(record))
+    (one,) = attempts(bare, "ada", NAME)
+    assert (one.file, one.hand_ins[0].number) == (folder / "x.ipynb", "1")
+
+
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"seen": [{"when": "soon"}]}', "\x00"])
 def test_a_damaged_record_is_a_sentence_and_costs_nobody_else(bare, tmp_path, text):
     """Whoever's record cannot be read is named; the others' work is taken."""

@@ -139,8 +139,8 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     """
     from ..students.enrol import import_list
 
-    told, left = import_list(course, file, assignment)
-    print("\n".join(told))
+    summary, left = import_list(course, file, assignment)
+    print("\n".join(summary))
     for sentence in left:
         print(sentence, file=sys.stderr)
     return 1 if left else 0

@@ -17,7 +17,7 @@ from ...course.layout import Course
 from ...errors import LabkitError
 from ..each import Failed, for_student
 from ..submission import digest
-from .attempts import Seen, adopt, called, install, keep, that_counts
+from .attempts import HandIn, adopt, called, install, keep, that_counts
 from .exchange import in_exchange
 from .identity import all_lms_users, alone, places, remember
 from .owner import owner
@@ -183,7 +183,7 @@ def _keep_notebooks(
     there = adopt(course, student, assignment, now)
     before = that_counts(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
-    done: list[tuple[Seen, str, bool]] = []
+    done: list[tuple[HandIn, str, bool]] = []
     for file, named in notebooks:
         try:
             data, secret = file.read(), file.secret()
@@ -191,20 +191,20 @@ def _keep_notebooks(
             yield Taken(student, named.file, f"not taken; {error}", fine=False)
             continue
         when = file.when if file.exact else shown  # a download shows them all at once
-        seen = Seen(when, *named.who.key, named.file, file.exact, named.late, now)
-        new = keep(course, student, assignment, data, seen, secret, there)
-        done.append((seen, digest(data), new))
+        hand_in = HandIn(when, *named.who.key, named.file, file.exact, named.late, now)
+        new = keep(course, student, assignment, data, hand_in, secret, there)
+        done.append((hand_in, digest(data), new))
     after = install(course, student, assignment)
-    beside = {x.when: x.file for x in after.attempt.seen} if after else {}
-    for seen, sha256, new in done:
+    beside = {x.when: x.file for x in after.attempt.hand_ins} if after else {}
+    for hand_in, sha256, new in done:
         if after is None or after.attempt.sha256 != sha256:
-            which = beside.get(seen.when, "a later one")
-            if after and which == seen.file:
+            which = beside.get(hand_in.when, "a later one")
+            if after and which == hand_in.file:
                 which = f"another {which}, of {after.first.when:%Y-%m-%d %H:%M %Z},"
             says = f"{'kept' if new else 'there already'}, but {which} counts"
         elif before is not None and before.attempt.sha256 == sha256:
             says = "there already"
         else:
             says = "taken" + (", in place of an earlier one, which is kept" if before else "")
-            says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
-        yield Taken(student, seen.file, says + (", late" if seen.late else ""))
+            says += "" if hand_in.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
+        yield Taken(student, hand_in.file, says + (", late" if hand_in.late else ""))

@@ -131,23 +131,25 @@ def import_list(
     listed = {student.id for _, student in done.rows}
     absent = [str(student) for student in before.students if student.id not in listed]
     everybody = how_many(len(done.roster.students), "student")
-    told = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
+    summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
     if absent:
         still = f"{len(absent)} ({some(absent)})"
-        told.append(f"not in this list, and still in the roster: {still}")
+        summary.append(f"not in this list, and still in the roster: {still}")
     if len(entries) < len(rows):
-        told.append("not taken: Test Student, whom Canvas makes for a teacher's view as a student")
-    told += about_teams(who for entry in entries if (who := entry.student.team))
+        summary.append(
+            "not taken: Test Student, whom Canvas makes for a teacher's view as a student"
+        )
+    summary += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
         set_now = f"{how_many(times, 'hand-in time')} set"
-        told.append(f"{assignment}: {how_many(numbered, 'participant')}; {set_now}")
+        summary.append(f"{assignment}: {how_many(numbered, 'participant')}; {set_now}")
     elif numbered:
-        told.append(
+        summary.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"
         )
     if not assignment:
-        told += about_namesakes(done.roster, all_lms_users(course))
-    return told, left
+        summary += about_namesakes(done.roster, all_lms_users(course))
+    return summary, left
 
 
 def _marks(one: Student) -> dict[str, str]:

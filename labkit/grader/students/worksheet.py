@@ -78,7 +78,7 @@ def keep_times(
 def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) -> datetime | str:
     """When what counts was handed in; or what the worksheet says instead, and what to do."""
     when, first = read_time(said, zone), chosen.first.when
-    others = [x.when for one in all if one is not chosen.attempt for x in one.seen]
+    others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)
     if when is None:
         unread = "which is not a time that labkit can read; take the worksheet in English"
