@@ -11,9 +11,9 @@ the participant's; a name with an underscore in front is a team's, or somebody e
 
 Canvas writes ``NAME_[LATE_]USER_ATTACHMENT_FILE``.  NAME is in small letters, without spaces, and
 may end in an underscore and a number; then the name can be read in two ways if the file's own name
-begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  A number
-below 100 is no attachment's, as Canvas counts the files of a whole school: it is how a file's name
-begins, such as ``10_cup.ipynb``.
+begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  Canvas
+counts the attachments of a whole school, so a number below 100 belongs to the file's own name, as
+in ``10_cup.ipynb``.
 
 Every file comes with all ways to read whose it is, and with the reason for which it is refused.
 Nothing is unpacked, so a name in a download leads nowhere.
