@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import stat
 from collections.abc import Iterable
@@ -138,6 +139,11 @@ def read_file(path: Path, most: int) -> bytes:
         raise LabkitError(
             f"{name} is a link or cannot be opened; hand in the file itself"
         ) from None
+
+
+def digest(data: bytes) -> str:
+    """A name for the contents of a file."""
+    return hashlib.sha256(data).hexdigest()
 
 
 def check_size(size: int, most: int) -> None:

@@ -11,7 +11,8 @@ import sys
 import time
 from datetime import timedelta
 
-from labkit.grader.grading.results import Results, digest
+from labkit.grader.grading.results import Results
+from labkit.grader.submission import digest
 from labkit.grader.terms.release import release
 
 from .courses import ROOT, fresh_course

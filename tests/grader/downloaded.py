@@ -78,6 +78,11 @@ def counting(course, name=NAME):
     return {path.parents[1].name: path.read_text() for path in found}
 
 
+def sentences(found):
+    """What `collect` said of students and files, and what wants a look."""
+    return [str(one) for one in found if one.student or one.file or not one.fine]
+
+
 def kept(course, student, name=NAME):
     """The contents of a student's attempts."""
     folder = Path(course.root, "attempts", student, name)

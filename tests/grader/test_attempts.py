@@ -9,7 +9,7 @@ import zipfile
 from pathlib import Path
 
 import pytest
-from downloaded import NAME, bare_course, counting, from_moodle, handed_in, kept, zipped
+from downloaded import NAME, bare_course, counting, from_moodle, handed_in, kept, sentences, zipped
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from made import notebook_of, result_of
@@ -38,7 +38,7 @@ def shown(path, day, *files):
 
 
 def take(course, source, **options):
-    return [str(one) for one in collect(course, NAME, source, **options)]
+    return sentences(collect(course, NAME, source, **options))
 
 
 def listed(course, *lines):
@@ -65,37 +65,40 @@ def test_in_any_order_the_latest_hand_in_counts(data):
     order = data.draw(st.permutations(range(len(history))))
     order += data.draw(st.lists(st.sampled_from(order), max_size=2))
     last: dict[str, str] = {}
+    numbers = {"Ada": 65, "Bob": 66, "Carl": 67}
     with tempfile.TemporaryDirectory() as folder:
         course, sources = bare_course(Path(folder, "course")), []
         for day, handed_in_that_day in enumerate(history, start=1):
             last = last | handed_in_that_day
-            files = [((who, ord(who[0])), f"{NAME}.ipynb", text) for who, text in last.items()]
+            files = [((who, numbers[who]), f"{NAME}.ipynb", text) for who, text in last.items()]
             when = (2026, 3, day, 12, 0, 0)
             sources.append(from_moodle(Path(folder, f"{day}.zip"), files, when))
         for number in order:
             take(course, sources[number])
-        assert counting(course) == last
+        assert counting(course) == {f"{who}-{numbers[who]}": text for who, text in last.items()}
         for who in last:
             wrote = {that_day[who] for that_day in history if who in that_day}
-            assert kept(course, who) == wrote
+            assert kept(course, f"{who}-{numbers[who]}") == wrote
 
 
 def test_an_older_download_takes_no_newer_hand_ins_place(bare, tmp_path):
     """The lecturer finds last week's zip and collects it; this week's work still counts."""
     new = shown(tmp_path / "new.zip", 8, (f"{NAME}.ipynb", "new"))
     old = shown(tmp_path / "old.zip", 1, (f"{NAME}(2).ipynb", "old"))
-    assert take(bare, new) == [f"Ada-Lovelace: {NAME}.ipynb: taken"]
-    assert take(bare, old) == [f"Ada-Lovelace: {NAME}(2).ipynb: kept, but a later one counts"]
-    assert counting(bare) == {"Ada-Lovelace": "new"}
-    assert kept(bare, "Ada-Lovelace") == {"new", "old"}
+    assert take(bare, new) == [f"Ada-Lovelace-101: {NAME}.ipynb: taken"]
+    assert take(bare, old) == [f"Ada-Lovelace-101: {NAME}(2).ipynb: kept, but a later one counts"]
+    assert counting(bare) == {"Ada-Lovelace-101": "new"}
+    assert kept(bare, "Ada-Lovelace-101") == {"new", "old"}
 
 
 def test_a_newer_hand_in_counts_and_the_earlier_one_is_kept(bare, tmp_path):
     """What was collected first lies where a person can look at it."""
     take(bare, shown(tmp_path / "1.zip", 1, (f"{NAME}.ipynb", "first")))
     said = take(bare, shown(tmp_path / "2.zip", 2, (f"{NAME}.ipynb", "second")))
-    assert said == [f"Ada-Lovelace: {NAME}.ipynb: taken, in place of an earlier one, which is kept"]
-    first, _ = attempts(bare, "Ada-Lovelace", NAME)
+    assert said == [
+        f"Ada-Lovelace-101: {NAME}.ipynb: taken, in place of an earlier one, which is kept"
+    ]
+    first, _ = attempts(bare, "Ada-Lovelace-101", NAME)
     assert first.file.name == f"{NAME}.ipynb"
     assert first.file.parent.name.startswith("2026-03-01T")
     assert first.file.read_text() == "first"
@@ -123,16 +126,16 @@ def test_many_hand_ins_of_one_student_take_no_more_than_their_number(bare, tmp_p
     source = shown(tmp_path / "1.zip", 1, *((name, name) for name in names))
     for _ in range(2):
         said = take(bare, source)
-        assert len(said) == len(names) == len(kept(bare, "Ada-Lovelace"))
+        assert len(said) == len(names) == len(kept(bare, "Ada-Lovelace-101"))
     assert len(read) <= 10 * len(names)
-    assert counting(bare) == {"Ada-Lovelace": names[-1]}
+    assert counting(bare) == {"Ada-Lovelace-101": names[-1]}
 
 
 def test_collected_anew_a_hand_in_loses_a_time_that_nobody_knew(course, tmp_path):
     """As the changelog says: an older labkit took --at for the hand-in's own time."""
     data = notebook_of("ada")
     download = shown(tmp_path / "1.zip", 5, (f"{NAME}.ipynb", data))
-    record_of, who = "attempts/Ada-Lovelace/01_paths/*/attempt.json", "Ada-Lovelace"
+    record_of, who = "attempts/Ada-Lovelace-101/01_paths/*/attempt.json", "Ada-Lovelace-101"
 
     def in_the_gradebook():
         take(course, download)
@@ -156,15 +159,15 @@ def test_an_earlier_work_that_is_handed_in_again_counts_again(bare, tmp_path):
     days = {1: "A", 2: "B", 3: "A"}
     for day in (3, 2, 1):
         take(bare, shown(tmp_path / f"{day}.zip", day, (f"{NAME}.ipynb", days[day])))
-    assert counting(bare) == {"Ada-Lovelace": "A"}
-    assert kept(bare, "Ada-Lovelace") == {"A", "B"}
+    assert counting(bare) == {"Ada-Lovelace-101": "A"}
+    assert kept(bare, "Ada-Lovelace-101") == {"A", "B"}
 
 
 def test_a_hand_in_is_as_old_as_the_first_download_that_shows_it(bare, tmp_path):
     """A download after the deadline does not make late what an earlier one showed."""
     for day in (5, 2):
         take(bare, shown(tmp_path / f"{day}.zip", day, (f"{NAME}.ipynb", "a")))
-    assert install(bare, "Ada-Lovelace", NAME).first.when.day == 2
+    assert install(bare, "Ada-Lovelace-101", NAME).first.when.day == 2
 
 
 def test_of_several_that_were_handed_in_together_the_one_called_as_the_assignment_counts(
@@ -173,9 +176,9 @@ def test_of_several_that_were_handed_in_together_the_one_called_as_the_assignmen
     """A sketch beside it is not taken for it, and is kept; the highest number is the last."""
     names = [f"{NAME}.ipynb", f"{NAME}(2).ipynb", "zz-sketch-9.ipynb", "zz.ipynb"]
     said = take(bare, shown(tmp_path / "1.zip", 1, *((name, name) for name in names)))
-    assert counting(bare) == {"Ada-Lovelace": f"{NAME}(2).ipynb"}
-    assert f"Ada-Lovelace: zz.ipynb: kept, but {NAME}(2).ipynb counts" in said
-    assert kept(bare, "Ada-Lovelace") == set(names)
+    assert counting(bare) == {"Ada-Lovelace-101": f"{NAME}(2).ipynb"}
+    assert f"Ada-Lovelace-101: zz.ipynb: kept, but {NAME}(2).ipynb counts" in said
+    assert kept(bare, "Ada-Lovelace-101") == set(names)
 
 
 def test_files_of_one_download_are_of_one_time(bare, tmp_path):
@@ -185,7 +188,7 @@ def test_files_of_one_download_are_of_one_time(bare, tmp_path):
     with zipfile.ZipFile(tmp_path / "1.zip", "a") as archive:
         archive.writestr(zipfile.ZipInfo(entries[1][0], (2026, 3, 1, 12, 0, 30)), "sketch")
     take(bare, tmp_path / "1.zip")
-    assert counting(bare) == {"Ada": NAME}
+    assert counting(bare) == {"Ada-1": NAME}
 
 
 def test_what_lay_there_before_is_kept_too(bare, tmp_path):
@@ -209,16 +212,16 @@ def test_what_a_person_puts_there_counts_until_something_newer_is_handed_in(bare
     """A lecturer lets the earlier attempt count by copying it back; a download shows no more."""
     take(bare, shown(tmp_path / "1.zip", 1, (f"{NAME}.ipynb", "first")))
     take(bare, shown(tmp_path / "2.zip", 2, (f"{NAME}.ipynb", "second")))
-    path = bare.submitted / "Ada-Lovelace" / NAME / f"{NAME}.ipynb"
+    path = bare.submitted / "Ada-Lovelace-101" / NAME / f"{NAME}.ipynb"
     path.write_text("first")
     take(bare, shown(tmp_path / "3.zip", 3, (f"{NAME}.ipynb", "second")))
-    assert counting(bare) == {"Ada-Lovelace": "first"}
+    assert counting(bare) == {"Ada-Lovelace-101": "first"}
     later = from_moodle(
         tmp_path / "4.zip", [(ADA, f"{NAME}.ipynb", "third")], (2099, 1, 1, 0, 0, 0)
     )
     take(bare, later)
-    assert counting(bare) == {"Ada-Lovelace": "third"}
-    assert kept(bare, "Ada-Lovelace") == {"first", "second", "third"}
+    assert counting(bare) == {"Ada-Lovelace-101": "third"}
+    assert kept(bare, "Ada-Lovelace-101") == {"first", "second", "third"}
 
 
 def test_only_the_exchange_says_when_work_was_handed_in(bare, tmp_path):
@@ -260,10 +263,23 @@ def test_a_collection_that_was_stopped_is_made_good(bare, tmp_path, monkeypatch)
     new = shown(tmp_path / "2.zip", 2, (f"{NAME}.ipynb", "second"))
     with monkeypatch.context() as patch:
         patch.setattr("labkit.grader.students.collect.install", lambda *_: 1 / 0)
-        assert take(bare, new) == ["Ada-Lovelace: not taken; ZeroDivisionError: division by zero"]
-    assert counting(bare) == {"Ada-Lovelace": "first"}
+        assert take(bare, new) == [
+            "Ada-Lovelace-101: not taken; ZeroDivisionError: division by zero"
+        ]
+    assert counting(bare) == {"Ada-Lovelace-101": "first"}
     take(bare, new)
-    assert counting(bare) == {"Ada-Lovelace": "second"}
+    assert counting(bare) == {"Ada-Lovelace-101": "second"}
+
+
+def test_a_record_of_an_older_labkit_is_read(bare):
+    """A term goes on with a newer one; the record calls what it holds as it did."""
+    folder = bare.root / "attempts" / "ada" / NAME / "2026-03-01T120000Z-0"
+    folder.mkdir(parents=True)
+    when = {"when": "2026-03-01T12:00:00Z", "origin": "moodle", "number": "1", "file": "x.ipynb"}
+    record = {"file": "x.ipynb", "sha256": "0", "seen": [when]}
+    (folder / "attempt.json").write_text(json.dumps(record))
+    (one,) = attempts(bare, "ada", NAME)
+    assert (one.file, one.hand_ins[0].number) == (folder / "x.ipynb", "1")
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"seen": [{"when": "soon"}]}', "\x00"])
@@ -275,8 +291,8 @@ def test_a_damaged_record_is_a_sentence_and_costs_nobody_else(bare, tmp_path, te
     both = [(ADA, f"{NAME}.ipynb", "second"), (("Bob", 102), f"{NAME}.ipynb", "bob's")]
     found = list(collect(bare, NAME, from_moodle(tmp_path / "2.zip", both, (2026, 3, 2, 1, 1, 0))))
     (bad,) = [one for one in found if not one.fine]
-    assert bad.student == "Ada-Lovelace" and "is damaged; restore it" in bad.says
-    assert counting(bare) == {"Ada-Lovelace": "first", "Bob": "bob's"}
+    assert bad.student == "Ada-Lovelace-101" and "is damaged; restore it" in bad.says
+    assert counting(bare) == {"Ada-Lovelace-101": "first", "Bob-102": "bob's"}
 
 
 def test_an_attempt_that_was_changed_does_not_count_as_handed_in(bare, tmp_path):
@@ -286,7 +302,7 @@ def test_an_attempt_that_was_changed_does_not_count_as_handed_in(bare, tmp_path)
     (path,) = bare.root.glob("attempts/*/*/*/*.ipynb")
     path.write_text("better")
     with pytest.raises(LabkitError, match="is not as it was handed in"):
-        install(bare, "Ada-Lovelace", NAME)
+        install(bare, "Ada-Lovelace-101", NAME)
 
 
 def test_a_place_that_cannot_be_written_is_a_sentence(bare, tmp_path):

@@ -92,9 +92,9 @@ def test_a_defence_from_the_draw_to_the_term_s_table(course, solved, capsys):
 
 def test_who_had_no_defence_yet_has_the_percentage_of_all_else():
     """The first defence takes nobody else's, and gives nobody a 0; --absent-zero gives one."""
-    ada, bob, eve = (Mark(name, points=10.0, raw=5.0) for name in ("ada", "bob", "eve"))
+    ada, bob, eve = (Mark(Student(name), points=10.0, raw=5.0) for name in ("ada", "bob", "eve"))
     held, waits = replace(ada, raw=8.0), replace(bob, raw=None, missing="no mark for question_1")
-    absent, nothing = replace(eve, raw=None), Mark("zoe", points=10.0)
+    absent, nothing = replace(eve, raw=None), Mark(Student("zoe"), points=10.0)
     weights = {NAME: 1.0, DEFENCE: 2.0}
 
     def percent(*defences):

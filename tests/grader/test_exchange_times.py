@@ -32,7 +32,7 @@ def course(tmp_path):
 def collected(course, inbound):
     """What wants a look, and when the attempt of the one student was handed in."""
     says = [str(x) for x in collect(course, NAME, inbound, unverified=True) if not x.fine]
-    return says, [seen.when for one in attempts(course, "root", NAME) for seen in one.seen]
+    return says, [x.when for one in attempts(course, "root", NAME) for x in one.hand_ins]
 
 
 def at(text):

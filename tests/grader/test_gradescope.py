@@ -128,9 +128,10 @@ def test_a_notebook_of_another_assignment_is_named(course, bundle, sandbox, solv
     assert grade(raw(add(solved, "x = 1")), "bob", bundle, sandbox, QUICK).notes == ()
     hand_in(course, NAME, "ada", other)
     hand_in(course, NAME, "bob", solved)
-    assert main(["grade", NAME, "--course", str(course.root)]) == 0
-    assert f"\nATTENTION: ada: {note}; ask for the right one\n" in (out := capsys.readouterr().out)
-    assert out.count("ATTENTION") == 1
+    assert main(["grade", NAME, "--course", str(course.root)]) == 1
+    said = capsys.readouterr()
+    assert said.err.endswith(f"ATTENTION: ada: {note}; ask for the right one\n")
+    assert (said.out + said.err).count("ATTENTION") == 1
 
 
 def test_a_file_that_cannot_be_graded_says_why(course):

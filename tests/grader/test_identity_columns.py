@@ -16,8 +16,8 @@ ADA = Student("ada", "Ada", "Lovelace", "ada@uni.org", "7", "alovelace", "1001")
 
 
 def row(student="ada", known=None, person=None, email="", first="", last=""):
-    who = (student, first, last, email, "", "", "")
-    return Mark(*who, (), 1.0, 0.0, 2.0, user=known, person=person)
+    who = person or Student(student, first, last, email)
+    return Mark(who, person is not None, raw=1.0, points=2.0, user=known)
 
 
 def table(layout, *marks):

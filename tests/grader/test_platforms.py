@@ -56,12 +56,14 @@ def test_a_file_from_canvas_is_nobody_elses(name, user, attachment, file, late):
     [
         ("hoppergrace_7_99_01_paths-1.ipynb", ["7"]),
         ("hoppergrace_LATE_7_99_10_x.ipynb", ["7"]),
+        ("hoppergrace_7_99_10_cup.ipynb", ["7"]),
+        ("hoppergrace_7_99_2_x.ipynb", ["7"]),  # no attachment has such a number
         ("eve_7_8_100_x.ipynb", ["7", "8"]),  # eve_7 who is user 8, or eve who is 7 with 100_x
         ("anon_12345_3_x.ipynb", []),
         ("anon_aB3x5_3_x.ipynb", []),
         ("../x_7_99_x.ipynb", []),
         ("eve_0_80_lovelaceada_7_99_x.ipynb", []),  # the first numbers, or none
-        ("a_01_77_99_x.ipynb", ["77"]),
+        ("a_01_77_990_x.ipynb", ["77"]),
         ("Ada_Lovelace_7_assignsubmission_file_x.ipynb", []),  # no underscore is Moodle's here
         ("Team_assignsubmission_file_x_42_assignsubmission_file_y.ipynb", []),
         ("Team_assignsubmission_file_5_6_x.ipynb", []),

@@ -51,7 +51,7 @@ def test_one_prediction_goes_all_the_way(tmp_path, monkeypatch, capsys):
     assert main(["feedback", NAME, *there]) == 0
     (page,) = (course.root / "feedback").glob("*/*/*.html")
     html = page.read_text()
-    assert "feedback for Ada-Lovelace" in html and "1 of 14 points." in html
+    assert "feedback for Ada-Lovelace-101" in html and "1 of 14 points." in html
     assert f"<code>{receipt}</code>" in html
     section = html.partition(f'<h2 id="{asked}">')[2].partition("</section>")[0]
     assert "1 of 1 point." in section

@@ -14,7 +14,7 @@ from labkit.__main__ import main
 from labkit.errors import LabkitError
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import Late, read_rules
-from labkit.grader.students.attempts import Seen, install, keep, that_counts
+from labkit.grader.students.attempts import HandIn, install, keep, that_counts
 
 RULES = f"""
 name = "Robot control, winter 2026"
@@ -188,8 +188,9 @@ def test_a_rule_that_nobody_can_follow_is_a_sentence(course, text, says):
 def test_the_latest_in_time_counts_where_the_rules_say_so(course):
     """A late attempt does not take its place; both are kept."""
     for day in (1, 5):
-        seen = Seen(datetime(2026, 11, day, tzinfo=UTC), "exchange", "ada", f"{NAME}.ipynb", True)
-        keep(course, "ada", NAME, notebook_of(f"day {day}"), seen)
+        when = datetime(2026, 11, day, tzinfo=UTC)
+        hand_in = HandIn(when, "exchange", "ada", f"{NAME}.ipynb", exact=True)
+        keep(course, "ada", NAME, notebook_of(f"day {day}"), hand_in)
     (course.root / "course.toml").write_text(RULES)
     assert that_counts(course, "ada", NAME).first.when.day == 5
     (course.root / "course.toml").write_text('counts = "latest in time"\n' + RULES)

@@ -27,6 +27,7 @@ from labkit.grader.marks.mark import Mark, MarkLine
 from labkit.grader.marks.table import mark_of, marks_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.pseudonyms import pseudonyms
+from labkit.grader.students.class_list import Student
 from labkit.grader.students.platforms import LmsUser
 from labkit.grader.submission import students
 from labkit.grader.terms.term import archive
@@ -136,7 +137,8 @@ def test_tables(term, capsys):
 
 def test_nothing_becomes_a_formula():
     """A name that a spreadsheet would run is written as text."""
-    row = Mark("=1+1", "@a", "+b", "-c", "1", "", "", (MarkLine("q", 2.0, 1.0),), 1.0, 0.0, 2.0)
+    who, line = Student("=1+1", "@a", "+b", "-c", "1", id_number="1"), MarkLine("q", 2.0, 1.0)
+    row = Mark(who, lines=(line,), raw=1.0, points=2.0)
     for layout in LAYOUTS.values():
         for cells in csv.reader(io.StringIO(as_csv(layout("x", [row])))):
             assert not [c for c in cells if c[:1] in set("=+@")]
@@ -241,5 +243,5 @@ def test_moodle_layouts():
 
 
 def row(student, *, first="", last="", email="", lms="", known=None):
-    line = MarkLine("q", 2.0, 1.0)
-    return Mark(student, first, last, email, lms, "", "", (line,), 1.0, 0.0, 2.0, user=known)
+    who, line = Student(student, first, last, email, lms, id_number=lms), MarkLine("q", 2.0, 1.0)
+    return Mark(who, lines=(line,), raw=1.0, points=2.0, user=known)

@@ -21,7 +21,9 @@ from labkit.grader.grading.standing import standing
 from labkit.grader.marks.export import LAYOUTS, as_csv
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import record
+from labkit.grader.students.class_list import Student
 from labkit.grader.students.collect import collect
+from labkit.grader.students.roster import Roster, save_roster
 from labkit.grader.submission import students
 from labkit.grader.terms.release import release
 
@@ -119,8 +121,10 @@ class _Clock:
 
 
 def _hand_in(stage: Course, name: str, count: int, download: Path) -> None:
-    """Let a class hand in on Moodle: one zip, as a teacher downloads it."""
+    """Let a class that is in the roster hand in on Moodle: one zip, as a teacher downloads it."""
     make_class(stage, name, PUBLIC_SEED, count)
+    listed = tuple(Student(who, last_name=who) for who in students(stage, name))
+    save_roster(stage, Roster(listed))
     unfinished = download.with_suffix(".new")
     with zipfile.ZipFile(unfinished, "w", zipfile.ZIP_DEFLATED) as archive:
         for number, student in enumerate(students(stage, name), start=1001):

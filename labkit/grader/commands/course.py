@@ -148,11 +148,11 @@ def students(course: Course, action: str, file: Path, assignment: str | None) ->
     """
     from ..students.enrol import import_list
 
-    taken = import_list(course, file, assignment)
-    print("\n".join(taken.told))
-    for sentence in (*taken.left, *taken.alike):
+    summary, left = import_list(course, file, assignment)
+    print("\n".join(summary))
+    for sentence in left:
         print(sentence, file=sys.stderr)
-    return 1 if taken.left else 0
+    return 1 if left else 0
 
 
 @verb("01_paths moodle.zip")
@@ -194,9 +194,8 @@ def collect(
     of GitHub Classroom, and any other folder or zip of files, need --named. Every notebook that
     was handed in is kept, in attempts/.
 
-    Exit code: 0 if everything was collected, 1 if a file was not collected, its owner is not
-    certain or it is the notebook of another assignment (named at the end), 2 if nothing could be
-    collected.
+    Exit code: 0 if everything was collected, 1 if a file was not collected or its owner is not
+    certain (named at the end), 2 if nothing could be collected.
     """
     from ..peers.readers import sheet_of
     from ..rules import read_rules

@@ -103,7 +103,7 @@ def export(
 
     def filled(name: str, marks: list[Mark]) -> list[Mark]:
         """The marks with a 0 for each who is absent, if that is asked for and certain."""
-        strangers = [m.student for m in marks if not (m.absent or m.person)]
+        strangers = [m.student for m in marks if not (m.absent or m.listed)]
         if not absent_zero or not any(m.absent for m in marks):
             return marks
         if strangers:

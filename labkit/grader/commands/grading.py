@@ -14,7 +14,7 @@ import click
 from ...course.cli import verb
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..each import Failures
+from ..each import Failure, Failures
 from .course import of_assignment, of_course
 from .pages import one_student, tell
 
@@ -61,7 +61,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
 
     Each submission is graded in a sandbox of its own. After you have changed a test and released
     the assignment, all submissions are graded again. No mark is lowered unless you add --lower.
-    A notebook of another assignment that was handed in is named at the end.
+    A notebook of another assignment that was handed in is named at the end, with exit code 1.
     """
     from ..grading.batch import GradeOptions, common_failures, grade_class, watch
     from ..grading.changes import changes, summary
@@ -82,7 +82,7 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
             failures.add("not graded", misnamed(course, assignment))
             for one in failures.sift(watch(course, assignment, options), "not graded"):
                 print(_line(one, as_json), flush=True)
-                tell(_other_notebooks([one.result]), said)
+                tell((f"ATTENTION: {x}" for x in _other_notebooks([one.result])), said)
                 recorded = record(course, assignment, [one.result])
                 tell(failures.sift(recorded, "not in the gradebook"), said)
         who = _handed_in(course, assignment, student, failures)
@@ -101,20 +101,20 @@ def grade(course: Course, assignment: str, student: str | None, as_json: bool, *
         tell(failures.sift(recorded, "not in the gradebook"), said)
         everybody = graded if student else list(Results(course, assignment))
         tell((f"ATTENTION: {says}" for says in common_failures(everybody)), said)
-        tell(_other_notebooks(graded), said)
+        failures.add("ATTENTION", _other_notebooks(graded))
         if graded and not as_json:
             tell(_on_top(course, assignment), sys.stdout)
             print(f"isolation: {graded[-1].isolation}\nresults: {course.results / assignment}")
     return failures.code
 
 
-def _other_notebooks(results: Iterable[Result]) -> Iterator[str]:
+def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:
     """Who handed in a notebook that does not belong here."""
     from ..grading.grade import OTHER_NOTEBOOK
 
     for result in results:
         for note in (x for x in result.notes if x.startswith(OTHER_NOTEBOOK)):
-            yield f"ATTENTION: {result.student}: {note}; ask for the right one"
+            yield Failure(result.student, f"{note}; ask for the right one")
 
 
 def _on_top(course: Course, assignment: str) -> Iterator[str]:

@@ -32,7 +32,6 @@ from ..clean import clean_line
 from ..each import Failure, for_student
 from ..grading.grade import parse
 from ..grading.public_evidence import fitting, motion
-from ..grading.results import digest
 from ..grading.worker import in_sandbox
 from ..sandbox.launch import Sandbox
 from ..sandbox.limits import Limits, slowness
@@ -40,7 +39,7 @@ from ..sandbox.mounts import NoIsolation
 from ..sandbox.protocol import Disconnected
 from ..sandbox.session import RemoteFunction, Session, Step
 from ..seeds import seed_of
-from ..submission import Submission, students
+from ..submission import Submission, digest, students
 from ..whys import rank
 
 FOLDER = "cup"

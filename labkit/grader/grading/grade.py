@@ -26,9 +26,10 @@ from ..sandbox.launch import Sandbox
 from ..sandbox.limits import TRICKS, Limits, TextBudget
 from ..sandbox.protocol import Disconnected, ProtocolError
 from ..sandbox.session import RemoteFunction, Session
+from ..submission import digest
 from . import public_evidence
 from .plan import Plan, plan
-from .results import Answer, FailedCell, Hashes, OwnCell, Result, digest, engine, versions
+from .results import Answer, FailedCell, Hashes, OwnCell, Result, engine, versions
 
 ADDED = (
     "this question came after the notebook was handed in, which does not have it; it counts 0 "

@@ -278,11 +278,6 @@ def _refuse(constant: str) -> None:
     raise ValueError(f"{constant} is not a number of JSON")
 
 
-def digest(data: bytes) -> str:
-    """A name for contents."""
-    return hashlib.sha256(data).hexdigest()
-
-
 @cache
 def engine() -> str:
     """A name for the code that grades: another version, another mark."""

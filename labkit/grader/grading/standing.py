@@ -11,8 +11,8 @@ from ...course.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..sandbox.limits import Limits
-from ..submission import Submission, is_name, misnamed, plain_name, students
-from .results import Result, Results, digest
+from ..submission import Submission, digest, is_name, misnamed, plain_name, students
+from .results import Result, Results
 
 
 def standing(

@@ -35,8 +35,10 @@ def nbgrader(assignment: str, marks: Sequence[Mark]) -> list[list[Any]]:
     head = "assignment duedate timestamp student_id last_name first_name email raw_score"
     table: list[list[Any]] = [[*head.split(), "late_submission_penalty", "score", "max_score"]]
     for r in marks:
+        who = r.person
         table.append(
-            [assignment, r.due, r.when, r.student, r.last, r.first, r.email, *r.cells, r.full]
+            [assignment, r.due, r.when, r.student, who.last_name, who.first_name, who.email]
+            + [*r.cells, r.full]
         )
     return table
 
@@ -59,8 +61,8 @@ def canvas(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     table: list[list[Any]] = [["Student", "ID", "SIS User ID", "SIS Login ID", "Section", column]]
     table.append(["    Points Possible", "", "", "", "", marks[0].full if marks else ""])
     for r in marks:
-        name = ", ".join(x for x in (r.last, r.first) if x) or r.student
-        sis = r.id_number if r.person else ""
+        name = ", ".join(filter(None, (r.person.last_name, r.person.first_name))) or r.student
+        sis = r.person.id_number if r.listed else ""
         table.append([name, r.canvas, sis, r.login, "", r.score])
     return table
 
@@ -70,11 +72,11 @@ def moodle(column: str, marks: Sequence[Mark]) -> list[list[Any]]:
     table: list[list[Any]] = [
         ["First name", "Last name", "ID number", "Username", "Email address", column]
     ]
-    table += [
-        [r.first, r.last, r.id_number, r.login, r.email, r.score]
-        for r in marks
-        if r.email or r.id_number or r.login  # otherwise the mark would be nobody's
-    ]
+    for r in marks:
+        who = r.person
+        keys = (who.id_number, r.login, who.email)
+        if any(keys):  # otherwise the mark would be nobody's
+            table.append([who.first_name, who.last_name, *keys, r.score])
     return table
 
 
@@ -117,7 +119,7 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
         marks: By assignment, the same students in each or not.
         weights: Of each assignment in the whole.
     """
-    known = {mark.student: mark for each in marks.values() for mark in each}
+    known = {mark.student: mark.person for each in marks.values() for mark in each}
     cells = {(name, m.student): m for name, each in marks.items() for m in each}
     full = {name: max((m.points for m in each), default=0.0) for name, each in marks.items()}
     table: list[list[Any]] = [["student", "first", "last", "email", "id", *marks, "percent"]]
@@ -132,7 +134,7 @@ def of_term(marks: Mapping[str, Sequence[Mark]], weights: Mapping[str, float]) -
         bonus = sum(weights[n] * x for n, x in scored if isinstance(x, float) and not full[n])
         certain = whole and len(shares) == len(counted)
         percent = round(100 * sum(shares) / whole + bonus, 2) if certain else ""
-        ids = (student, who.first, who.last, who.email, who.id_number)
+        ids = (student, who.first_name, who.last_name, who.email, who.id_number)
         table.append([*ids, *scores, percent])
     return table
 
@@ -172,8 +174,8 @@ def unmatched(layout: str, marks: Sequence[Mark]) -> tuple[list[str], int]:
     """Whom a platform cannot match by a table, and of how many who handed in."""
     once = _participants(marks)
     ways: dict[str, Callable[[Mark], str]] = {
-        "canvas": lambda r: r.canvas or r.id_number or r.login,
-        "moodle": lambda r: r.email or r.id_number or r.login,
+        "canvas": lambda r: r.canvas or r.person.id_number or r.login,
+        "moodle": lambda r: r.person.email or r.person.id_number or r.login,
         "moodle-worksheet": lambda r: r.number("moodle") if r.number("moodle") in once else "",
     }
     if layout not in ways:

@@ -58,11 +58,8 @@ class Mark:
     """One student's mark for an assignment.
 
     Attributes:
-        student: The name of the student's folder.
-        first: First name, if the gradebook knows it.
-        last: Last name.
-        email: Address.
-        lms: Number in the learning platform, if the gradebook knows it.
+        person: The student, as the roster knows them, or else the gradebook.
+        listed: Whether they are in the roster.
         when: When it came in, as text.
         due: When it was due, as text.
         lines: One for each question; none where no mark counts.
@@ -70,7 +67,6 @@ class Mark:
         penalty: What late rules take.
         points: What full marks would be; 0 where neither gradebook nor release says so.
         late: How late it came, in words; empty if it came in time.
-        person: The student as the roster knows them, or None.
         user: How the platform knows the student from which the work was collected, or None.
         result: What the grader found; None where there is no whole result.
         missing: Why no mark counts, and what to do; empty where one does, or nothing came.
@@ -78,11 +74,8 @@ class Mark:
         author: Who handed in the team's report, if that was another member of the team.
     """
 
-    student: str
-    first: str = ""
-    last: str = ""
-    email: str = ""
-    lms: str = ""
+    person: Student
+    listed: bool = False
     when: str = ""
     due: str = ""
     lines: tuple[MarkLine, ...] = ()
@@ -90,12 +83,16 @@ class Mark:
     penalty: float = 0.0
     points: float = 0.0
     late: str = ""
-    person: Student | None = None
     user: LmsUser | None = None
     result: Result | None = None
     missing: str = ""
     remark: str = ""
     author: str = ""
+
+    @property
+    def student(self) -> str:
+        """The name of the student's folder."""
+        return self.person.id
 
     @property
     def absent(self) -> bool:
@@ -130,21 +127,13 @@ class Mark:
     @property
     def login(self) -> str:
         """Their login: the name of the folder, unless that was made from a download or is unfit."""
-        if self.person and self.person.login:
-            return self.person.login
-        if self.user:
-            return self.number("exchange")
-        return "" if self.person or not is_name(self.student) else self.student
+        made = self.user or self.listed or not is_name(self.student)
+        return self.person.login or (self.number("exchange") if made else self.student)
 
     @property
     def canvas(self) -> str:
         """Their number in Canvas, empty if it is not known."""
-        return self.number("canvas") or (self.person.lms_user_id if self.person else self.lms)
-
-    @property
-    def id_number(self) -> str:
-        """The university's number, empty if it is not known."""
-        return self.person.id_number if self.person else self.lms
+        return self.number("canvas") or self.person.lms_user_id
 
     def number(self, system: str) -> str:
         """Their number in a platform, empty if it is not known."""

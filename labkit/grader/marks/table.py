@@ -7,10 +7,11 @@ why: nobody is given a 0 that they did not earn.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
+from ...course.bundle import Bundle
 from ...course.layout import Course
 from ...course.notebook import question_of
 from ..clean import clean_line, clean_text, how_many
@@ -20,12 +21,12 @@ from ..grading.standing import full_marks, grade_again, standing
 from ..nbgrader.gradebook import open_gradebook
 from ..rules import FILE as RULES
 from ..rules import read_rules, settle_lateness
+from ..students.class_list import Student
 from ..students.identity import lms_users
 from ..students.roster import read_roster
 from ..submission import meant, plain_name, students
 from ..whys import settle_whys
 from .mark import Mark, MarkLine
-from .team_reports import for_teams
 
 
 def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterator[Mark]:
@@ -37,7 +38,25 @@ def marks_of(course: Course, assignment: str, only: str | None = None) -> Iterat
         only: One student, by what they handed in themselves; by default all.
     """
     rows = _own_marks(course, assignment, only)
-    yield from rows if only else for_teams(course, assignment, rows)
+    released = not only and (course.bundle / f"{assignment}.json").exists()
+    shared = released and Bundle.of(course, assignment).is_report
+    yield from _of_teams(list(rows)) if shared else rows
+
+
+def _of_teams(rows: Sequence[Mark]) -> Iterator[Mark]:
+    """What one member of a team handed in counts for each who handed in nothing."""
+    reports: dict[str, Mark] = {}
+    for row in rows:
+        if row.person.team and not row.absent:
+            reports.setdefault(row.person.team, row)
+    for row in rows:
+        report = reports.get(row.person.team) if row.absent else None
+        if report is None:
+            yield row
+            continue
+        mine = replace(report, person=row.person, listed=row.listed, user=row.user)
+        remark = f"the team's report, handed in by {report.student}"
+        yield replace(mine, author=report.student, remark=remark)
 
 
 def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Mark]:
@@ -55,8 +74,9 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
         everybody = stand.keys() | there.keys() | listed
         for student in sorted(everybody if only is None else everybody & {only}):
             submission, one = there.get(student), stand.get(student)
-            row = Mark(student, points=full, person=roster.get(student))
-            row = replace(row, user=by_platform.get(student), remark="nothing was handed in")
+            person = roster.get(student) or Student(student)
+            row = Mark(person, student in listed, points=full, user=by_platform.get(student))
+            row = replace(row, remark="nothing was handed in")
             if submission is not None or one is not None:
                 row = _marked(replace(row, remark=""), submission, one, assignment)
             if isinstance(one, Result) and one.rejected and not row.missing:
@@ -64,7 +84,7 @@ def _own_marks(course: Course, assignment: str, only: str | None) -> Iterator[Ma
             elif row.raw is not None and one is not None and student not in handed_in:
                 gone = "nothing of theirs is in submitted/; the mark stays as it was"
                 row = replace(row, remark=gone)
-            yield _named(row)
+            yield row
 
 
 def unknown_extensions(course: Course) -> Iterator[str]:
@@ -80,15 +100,8 @@ def mark_of(result: Result) -> Mark:
     """What a result is worth, where no gradebook has been asked."""
     verdicts = [question.verdict for question in result.questions]
     lines = tuple(MarkLine(v.name, v.points, v.earned) for v in verdicts)
-    return Mark(result.student, lines=lines, raw=result.score, points=result.points, result=result)
-
-
-def _named(row: Mark) -> Mark:
-    """A row with the name that the roster has."""
-    who = row.person
-    if who is None:
-        return row
-    return replace(row, first=who.first_name, last=who.last_name, email=who.email)
+    who = Student(result.student)
+    return Mark(who, lines=lines, raw=result.score, points=result.points, result=result)
 
 
 def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment: str) -> Mark:
@@ -100,15 +113,14 @@ def _marked(row: Mark, submission: Any, one: Result | Failure | None, assignment
     if submission is None:
         why = f"graded and not in the gradebook; {grade_again(assignment, row.student)}"
         return replace(row, missing=row.missing or why)
-    who = submission.student
-    names = (who.first_name, who.last_name, who.email, who.lms_user_id)
-    first, last, email, lms = (clean_line(name or "") for name in names)
+    if not row.listed:
+        who = submission.student
+        names = (who.first_name, who.last_name, who.email, who.lms_user_id)
+        first, last, email, number = (clean_line(name or "") for name in names)
+        person = Student(row.student, first, last, email, number, id_number=number)
+        row = replace(row, person=person)
     row = replace(
         row,
-        first=first,
-        last=last,
-        email=email,
-        lms=lms,
         when=str(submission.timestamp or ""),
         due=str(submission.duedate or ""),
         points=float(submission.max_score),

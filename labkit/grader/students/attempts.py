@@ -1,8 +1,9 @@
 """Attempts: every notebook that was handed in, and the rule by which one of them counts.
 
 Each is kept in ``attempts/STUDENT/ASSIGNMENT/TIME-HASH/`` as it was handed in.  Beside it
-``attempt.json`` says when a platform showed it, and what it was called.  Nothing there is ever
-overwritten or deleted; the same content is the same attempt, however often it comes.
+``attempt.json`` says when it was handed in, or a platform showed it, and what it was called.
+Nothing there is ever overwritten or deleted; the same content is the same attempt, however often it
+comes.
 
 **What counts** is the latest hand-in.  The exchange says when that was.  Moodle and Canvas write no
 hand-in times into a download, only when it was made; so a hand-in is as old as the first download
@@ -22,21 +23,21 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
 import msgspec
+from msgspec.structs import replace
 
 from ...course.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import safe_name
-from ..grading.results import digest
 from ..rules import read_rules
 from ..sandbox.limits import Limits
-from ..submission import read_file
+from ..submission import digest, read_file
 from ..timestamp import TIMESTAMP, read_stamp, read_time
 from .exchange import SECRET, read_secret
 
@@ -47,7 +48,7 @@ _REPEATED = re.compile(r" ?[(-](\d{1,9})\)?\.ipynb$")
 
 
 @dataclass(frozen=True)
-class Seen:
+class HandIn:
     """One time at which a notebook was handed in, or shown by a download.
 
     Attributes:
@@ -69,19 +70,18 @@ class Seen:
     collected: str = ""
 
 
-@dataclass(frozen=True)
-class Attempt:
+class Attempt(msgspec.Struct, frozen=True):
     """One notebook, as it was handed in; ``attempt.json`` holds it, with the name of the file.
 
     Attributes:
         file: The file.
         sha256: The digest of its bytes.
-        seen: When and where it was shown.
+        hand_ins: When and where it was handed in or shown, each time.
     """
 
     file: Path
     sha256: str
-    seen: tuple[Seen, ...]
+    hand_ins: tuple[HandIn, ...] = msgspec.field(name="seen")
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Counted:
     """
 
     attempt: Attempt
-    first: Seen
+    first: HandIn
 
 
 def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ...]:
@@ -110,15 +110,15 @@ def attempts(course: Course, student: str, assignment: str) -> tuple[Attempt, ..
 def counts(all: Sequence[Attempt], assignment: str) -> Counted | None:
     """The attempt that counts; None if there is none."""
     found: list[Counted] = []
-    for origin in sorted({seen.origin for one in all for seen in one.seen}):
-        shown = [(seen, one) for one in all for seen in one.seen if seen.origin == origin]
+    for origin in sorted({x.origin for one in all for x in one.hand_ins}):
+        shown = [(x, one) for one in all for x in one.hand_ins if x.origin == origin]
         shown.sort(key=lambda pair: (pair[0].when, *_rank(pair[0], assignment), pair[1].sha256))
-        at_each_time = {seen.when: (seen, one) for seen, one in shown}
+        at_each_time = {hand_in.when: (hand_in, one) for hand_in, one in shown}
         *earlier, (first, last) = at_each_time.values()
-        for seen, one in reversed(earlier):
+        for hand_in, one in reversed(earlier):
             if one is not last:
                 break
-            first = seen
+            first = hand_in
         found.append(Counted(last, first))
     return max(found, key=lambda x: (x.first.when, x.first.origin == BY_HAND), default=None)
 
@@ -134,17 +134,10 @@ def that_counts(course: Course, student: str, assignment: str) -> Counted | None
     if due is None or rules.counts == "latest":
         return counts(all, assignment)
     shown = (
-        replace(one, seen=tuple(x for x in one.seen if x.when <= due and not x.late)) for one in all
+        replace(one, hand_ins=tuple(x for x in one.hand_ins if x.when <= due and not x.late))
+        for one in all
     )
-    return counts([one for one in shown if one.seen], assignment) or counts(all, assignment)
-
-
-def late_by(course: Course, student: str, assignment: str, at: datetime) -> bool:
-    """Whether what counts is late, and the time ``at`` at which it was collected makes it so."""
-    due = read_rules(course).due_for(student, assignment)
-    chosen = that_counts(course, student, assignment)
-    seen = chosen and chosen.first
-    return bool(due and seen and seen.when == at > due and (seen.exact or seen.late))
+    return counts([one for one in shown if one.hand_ins], assignment) or counts(all, assignment)
 
 
 def keep(
@@ -152,7 +145,7 @@ def keep(
     student: str,
     assignment: str,
     data: bytes,
-    seen: Seen,
+    hand_in: HandIn,
     secret: bytes | None = None,
     there: dict[str, Attempt] | None = None,
 ) -> bool:
@@ -163,7 +156,7 @@ def keep(
         student: Whose.
         assignment: Which.
         data: The notebook.
-        seen: When and where it was shown.
+        hand_in: When and where it was handed in or shown.
         secret: What the exchange knows the hand-in by.
         there: The student's attempts as `adopt` returns them, to which this one is added; they are
             read by default.
@@ -178,16 +171,18 @@ def keep(
     sha256 = digest(data)
     before, new = there.get(sha256), sha256 not in there
     if before is None:
-        name = f"{seen.when:%Y-%m-%dT%H%M%SZ}-{sha256[:16]}"
+        name = f"{hand_in.when:%Y-%m-%dT%H%M%SZ}-{sha256[:16]}"
         folder = course.root / FOLDER / student / assignment / name
-        before = Attempt(folder / f"{safe_name(Path(seen.file).stem)}.ipynb", sha256, ())
+        before = Attempt(folder / f"{safe_name(Path(hand_in.file).stem)}.ipynb", sha256, ())
         _put(before.file, data)
-    newest = max((one.when for one in before.seen if one.origin == "exchange"), default=seen.when)
-    if secret is not None and seen.when >= newest:
+    newest = max(
+        (one.when for one in before.hand_ins if one.origin == "exchange"), default=hand_in.when
+    )
+    if secret is not None and hand_in.when >= newest:
         _put(before.file.parent / SECRET, secret)
-    same = (seen.when, seen.origin, seen.file, seen.exact)
-    if all((x.when, x.origin, x.file, x.exact) != same for x in before.seen):
-        record = replace(before, seen=(*before.seen, seen))
+    same = (hand_in.when, hand_in.origin, hand_in.file, hand_in.exact)
+    if all((x.when, x.origin, x.file, x.exact) != same for x in before.hand_ins):
+        record = replace(before, hand_ins=(*before.hand_ins, hand_in))
         data = msgspec.json.encode(record, enc_hook=lambda file: file.name)
         text = msgspec.json.format(data, indent=1).decode()
         write(before.file.parent / _RECORD, text + "\n")
@@ -228,9 +223,10 @@ def adopt(course: Course, student: str, assignment: str, now: str) -> dict[str, 
             new = digest(data) not in ours
             stated = read_time(read_stamp(folder)) if new else None
             when = stated or datetime.fromtimestamp(int(path.stat().st_mtime), UTC)
-            seen = Seen(when, BY_HAND, "", path.name, exact=stated is not None, collected=now)
+            exact = stated is not None
+            hand_in = HandIn(when, BY_HAND, "", path.name, exact=exact, collected=now)
             secret = read_secret(folder) if new else None
-            keep(course, student, assignment, data, seen, secret, there)
+            keep(course, student, assignment, data, hand_in, secret, there)
     return there
 
 
@@ -254,7 +250,7 @@ def install(course: Course, student: str, assignment: str) -> Counted | None:
     path = folder / f"{assignment}.ipynb"
     same = path.is_file() and path.read_bytes() == data
     secret = read_secret(source.parent)
-    stated = [x.when for x in (chosen.first, *chosen.attempt.seen) if x.exact]
+    stated = [x.when for x in (chosen.first, *chosen.attempt.hand_ins) if x.exact]
     if not stated and chosen.first.late:  # no earlier than this, as far as the platform says
         stated = [chosen.first.when]
     stamp = str(stated[0]).encode() if stated else None
@@ -269,38 +265,15 @@ def install(course: Course, student: str, assignment: str) -> Counted | None:
     return chosen
 
 
-def move(course: Course, assignment: str, old: str, new: str) -> str:
-    """Take a student's work to another folder, once it is known whose it is.
-
-    Returns:
-        What stayed where it was and wants a look, in a sentence; empty if nothing did.
-    """
-    if old in {"", new}:
-        return ""
-    for base in (course.root / FOLDER, course.submitted):
-        source, target = base / old / assignment, base / new / assignment
-        if source.exists() and not target.exists():
-            target.parent.mkdir(parents=True, exist_ok=True)
-            source.rename(target)
-            if not any(source.parent.iterdir()):
-                source.parent.rmdir()
-    there = (
-        *(base / old / assignment for base in (course.root / FOLDER, course.submitted)),
-        course.results / assignment / f"{old}.json",
-    )
-    left = " and ".join(str(path.relative_to(course.root)) for path in there if path.exists())
-    return f"{left} of the same student stays; look what it is, and move it away" if left else ""
-
-
 def called(file: str, assignment: str) -> bool:
     """Whether a file is called as the assignment, whatever number it has."""
     return _REPEATED.sub(".ipynb", file) == f"{assignment}.ipynb"
 
 
-def _rank(seen: Seen, assignment: str) -> tuple[bool, int, str]:
+def _rank(hand_in: HandIn, assignment: str) -> tuple[bool, int, str]:
     """Which of several that were handed in together counts."""
-    match = _REPEATED.search(seen.file)  # the number that a browser or platform put there
-    return called(seen.file, assignment), int(match[1]) if match else 0, seen.collected
+    match = _REPEATED.search(hand_in.file)  # the number that a browser or platform put there
+    return called(hand_in.file, assignment), int(match[1]) if match else 0, hand_in.collected
 
 
 def _by_digest(course: Course, student: str, assignment: str) -> dict[str, Attempt]:

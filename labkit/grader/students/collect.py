@@ -7,27 +7,23 @@ Whose a file is comes from the platform's own field (``platforms``) and from the
 from __future__ import annotations
 
 import zipfile
-from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 
 from ...course.layout import Course
 from ...errors import LabkitError
-from ..clean import some
 from ..each import Failure, for_student
-from ..grading.results import digest
-from .attempts import Seen, adopt, called, install, keep, late_by, that_counts
-from .enrol import settle
+from ..submission import digest
+from .attempts import HandIn, adopt, called, install, keep, that_counts
 from .exchange import in_exchange
 from .identity import all_lms_users, alone, places, remember
-from .other_notebook import made_for, released
 from .owner import owner
-from .platforms import File, LmsUser, Named, in_folder, in_zip, open_zip, reader
+from .platforms import File, Named, in_folder, in_zip, open_zip, reader
 from .roster import read_roster
+from .settle import settle
 
 
 @dataclass(frozen=True)
@@ -50,6 +46,10 @@ class Taken:
         return ": ".join(filter(None, (self.student, self.file, self.says)))
 
 
+_NO_LIST = (
+    "no class list, so students are known by the platform's numbers alone, which Moodle gives anew "
+    "in each assignment; for one folder a student all term, type: labkit students import LIST.csv"
+)
 _HandedIn = tuple[File, Named]
 """A file, and the one reading of its name that is right."""
 
@@ -98,7 +98,7 @@ def collect(
                 else:
                     files = list(in_zip(stack.enter_context(open_zip(source)), now, read))
                 mine = [x for x in files if not any(called(Path(x.label).name, o) for o in others)]
-                yield from _take(course, assignment, source, [_made(x, at, True) for x in mine], at)
+                yield from _take(course, assignment, source, [_made(x, at, True) for x in mine])
         elif source.is_dir():
             files = list(in_exchange(source, assignment, unverified=unverified))
             yield from _take(course, assignment, source, files)
@@ -109,7 +109,7 @@ def collect(
         else:
             with open_zip(source) as archive:
                 files = [_made(file, at, False) for file in in_zip(archive, now)]
-                yield from _take(course, assignment, source, files, at)
+                yield from _take(course, assignment, source, files)
 
 
 def _made(file: File, at: datetime | None, exact: bool) -> File:
@@ -117,13 +117,7 @@ def _made(file: File, at: datetime | None, exact: bool) -> File:
     return file if at is None else replace(file, when=at, exact=exact)
 
 
-def _take(
-    course: Course,
-    assignment: str,
-    source: Path,
-    files: Sequence[File],
-    at: datetime | None = None,
-) -> Iterator[Taken]:
+def _take(course: Course, assignment: str, source: Path, files: Sequence[File]) -> Iterator[Taken]:
     if not files:
         kind = "the inbound folder of nbgrader's exchange" if source.is_dir() else "a zip"
         raise LabkitError(
@@ -142,12 +136,10 @@ def _take(
         else:
             handed_in.append((file, named))
     people = {named.who.key: named.who for _, named in handed_in}
-    there = [path.name for path in course.submitted.glob("*")]
-    found = places(people.values(), assignment, known, roster, there)
+    found = places(people.values(), assignment, known, roster)
     by_folder = {place.folder: people[key] for key, place in found.items()}
     if not roster.students:
-        yield from _namesakes(people.values())
-        yield from _known_by_name(assignment, by_folder, known)
+        yield Taken("", "", _NO_LIST)
     for place in found.values():
         if place.doubt:
             yield Taken(place.folder, "", place.doubt, fine=False)
@@ -155,51 +147,12 @@ def _take(
     by_student: dict[str, list[_HandedIn]] = {}
     for file, named in handed_in:
         by_student.setdefault(found[named.who.key].folder, []).append((file, named))
-    asked = released(course)
     for student, mine in sorted(by_student.items()):
-        yield from _keep(course, assignment, student, mine, asked)
-    if at is not None:
-        late = [for_student(x, partial(late_by, course, x, assignment, at)) for x in by_student]
-        yield Taken("", "", f"late by the time given: {late.count(True)} of {len(by_student)}")
-
-
-def _namesakes(people: Iterable[LmsUser]) -> Iterator[Taken]:
-    called = Counter(one.name for one in people if one.system == "moodle")
-    for name, count in called.items():
-        if count > 1:
-            yield Taken(name, "", f"{count} students are called so; told apart by their number")
-
-
-def _known_by_name(
-    assignment: str, people: Mapping[str, LmsUser], known: Mapping[str, Mapping[str, LmsUser]]
-) -> Iterator[Taken]:
-    """Who is taken for somebody of an earlier assignment by name alone, which people can change.
-
-    Moodle's numbers are new in each assignment, so without a roster there is nothing else to go by.
-    """
-    pairs = [
-        f"{who.name} ({before.number} for {other}, {who.number} for {assignment})"
-        for folder, who in people.items()
-        for other, there in known.items()
-        if other != assignment and who.system == "moodle"
-        if (before := there.get(folder)) is not None and before.number != who.number
-    ]
-    if pairs:
-        yield Taken(
-            "",
-            "",
-            f"{len(pairs)} are known by their name alone, which people can change: "
-            f"{some(pairs, 3)}; `labkit students import` reads the class list, which knows them "
-            "for certain",
-        )
+        yield from _keep(course, assignment, student, mine)
 
 
 def _keep(
-    course: Course,
-    assignment: str,
-    student: str,
-    mine: Sequence[_HandedIn],
-    asked: Mapping[str, frozenset[bytes]],
+    course: Course, assignment: str, student: str, mine: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     """Keep one student's notebooks, and let the right one count."""
     notebooks = [(file, named) for file, named in mine if not _no_notebook(named)]
@@ -207,7 +160,7 @@ def _keep(
         if says := _no_notebook(named):
             yield Taken(student, named.file, f"not taken; {says}", fine=bool(notebooks))
     done = for_student(
-        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks, asked))
+        student, lambda: list(_keep_notebooks(course, assignment, student, notebooks))
     )
     if isinstance(done, Failure):
         done = [Taken(student, "", f"not taken; {done.why}", fine=False)]
@@ -224,17 +177,13 @@ def _no_notebook(named: Named) -> str:
 
 
 def _keep_notebooks(
-    course: Course,
-    assignment: str,
-    student: str,
-    notebooks: Sequence[_HandedIn],
-    asked: Mapping[str, frozenset[bytes]],
+    course: Course, assignment: str, student: str, notebooks: Sequence[_HandedIn]
 ) -> Iterator[Taken]:
     now = str(datetime.now(UTC))
     there = adopt(course, student, assignment, now)
     before = that_counts(course, student, assignment)
     shown = max((file.when for file, _ in notebooks), default=datetime.now(UTC))
-    done: list[tuple[Seen, str, bool]] = []
+    done: list[tuple[HandIn, str, bool]] = []
     for file, named in notebooks:
         try:
             data, secret = file.read(), file.secret()
@@ -242,24 +191,20 @@ def _keep_notebooks(
             yield Taken(student, named.file, f"not taken; {error}", fine=False)
             continue
         when = file.when if file.exact else shown  # a download shows them all at once
-        seen = Seen(when, *named.who.key, named.file, file.exact, named.late, now)
-        new = keep(course, student, assignment, data, seen, secret, there)
-        done.append((seen, digest(data), new))
+        hand_in = HandIn(when, *named.who.key, named.file, file.exact, named.late, now)
+        new = keep(course, student, assignment, data, hand_in, secret, there)
+        done.append((hand_in, digest(data), new))
     after = install(course, student, assignment)
-    beside = {x.when: x.file for x in after.attempt.seen} if after else {}
-    for seen, sha256, new in done:
+    beside = {x.when: x.file for x in after.attempt.hand_ins} if after else {}
+    for hand_in, sha256, new in done:
         if after is None or after.attempt.sha256 != sha256:
-            which = beside.get(seen.when, "a later one")
-            if after and which == seen.file:
+            which = beside.get(hand_in.when, "a later one")
+            if after and which == hand_in.file:
                 which = f"another {which}, of {after.first.when:%Y-%m-%d %H:%M %Z},"
             says = f"{'kept' if new else 'there already'}, but {which} counts"
         elif before is not None and before.attempt.sha256 == sha256:
             says = "there already"
         else:
             says = "taken" + (", in place of an earlier one, which is kept" if before else "")
-            says += "" if seen.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
-        yield Taken(student, seen.file, says + (", late" if seen.late else ""))
-    counted = after.attempt.file.read_bytes() if after else b""
-    if after and (other := made_for(counted, assignment, asked)) != assignment:
-        says = f"this is notebook {other}, not {assignment}; ask the student for the right one"
-        yield Taken(student, after.first.file, says, fine=False)
+            says += "" if hand_in.file == f"{assignment}.ipynb" else f", as {assignment}.ipynb"
+        yield Taken(student, hand_in.file, says + (", late" if hand_in.late else ""))

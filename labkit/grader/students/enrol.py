@@ -2,13 +2,14 @@
 
 A row is a student of the roster if they share a login, an address or a number; or the name, if
 nobody else has it and nothing speaks against it.  Nobody leaves the roster by a list that does not
-name them.  A student keeps the folder in which work of theirs lies.
+name them.  Who is new gets a folder in which nobody else's work lies, and work of theirs that was
+collected before goes there (``settle``).
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, replace
 from itertools import chain, count
 from pathlib import Path
@@ -18,12 +19,12 @@ from ...errors import LabkitError
 from ..clean import how_many, safe_name, some
 from ..seeds import seed_of
 from .arms import give_arms
-from .attempts import move
 from .class_list import Entry, Student, read_list
-from .identity import all_lms_users, alone, places, remember
-from .list_remarks import about_names, about_namesakes, about_teams
+from .identity import all_lms_users, alone, places
+from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
+from .settle import settle
 from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]
@@ -59,7 +60,6 @@ def enrol(
     Raises:
         LabkitError: Two rows, or a row and the roster, contradict each other.
     """
-    _refuse_contradictions(entries)
     listed = {(same_name(x.student.name), *_marks(x.student).items()) for x in entries}
     names = Counter(name for name, *_ in listed)
     students = {student.id: student for student in roster.students}
@@ -67,48 +67,41 @@ def enrol(
     for student in roster.students:
         _index(student, by_mark)
     rows: list[tuple[Entry, str]] = []
+    before: dict[object, list[Entry]] = {}
     for entry in entries:
         unique = names[same_name(entry.student.name)] == 1
-        # who is new has no folder yet, and until `_folders` an id that no folder can have
-        id = _find(entry, unique, students, by_mark) or f"\n{entry.line}"
+        # who is new is known by their line until `_folders`; no folder's name has a space
+        id = _find(entry, unique, students, by_mark) or f"line {entry.line}"
         student = students.get(id, Student(id))
         known = ("first_name", "last_name") if entry.guessed and student.name else ()
         said = {k: v for k in _FIELDS if (v := getattr(entry.student, k)) and k not in known}
         students[id] = replace(student, **said)
         _index(students[id], by_mark)
+        _refuse_contradictions(entry, id, before)
         rows.append((entry, id))
-    new = [id for id in students if id not in roster]
+    new = {id for id in students if id not in roster}
     folders = _folders(Roster(tuple(students.values())), new, collected)
     done = {id: replace(s, id=folders.get(id, id)) for id, s in students.items()}
     return Enrolled(
         Roster(tuple(done.values())),
         tuple((entry, done[id]) for entry, id in rows),
-        tuple(done[id] for id in new),
+        tuple(one for id, one in done.items() if id in new),
     )
 
 
-@dataclass(frozen=True)
-class Imported:
-    """What came of `import_list`, in sentences.
-
-    Attributes:
-        told: What was done.
-        left: Work of one student that is in two folders, and hand-in times that are not set.
-        alike: Students whom a download of Moodle's does not tell apart.
-    """
-
-    told: tuple[str, ...]
-    left: tuple[str, ...]
-    alike: tuple[str, ...]
-
-
-def import_list(course: Course, file: Path, assignment: str | None = None) -> Imported:
+def import_list(
+    course: Course, file: Path, assignment: str | None = None
+) -> tuple[list[str], list[str]]:
     """Take a list of students into the course's roster, and bring earlier work to its owners.
 
     Args:
         course: The course.
         file: A CSV file; see `read_list`.
         assignment: Where the file is Moodle's grading worksheet of this assignment.
+
+    Returns:
+        What was done; and what a person should look at: work of one student that is in two folders,
+        and hand-in times that are not set.  A sentence each.
 
     Raises:
         LabkitError: The list does not fit the roster or itself, or it is not a list.
@@ -138,42 +131,25 @@ def import_list(course: Course, file: Path, assignment: str | None = None) -> Im
     listed = {student.id for _, student in done.rows}
     absent = [str(student) for student in before.students if student.id not in listed]
     everybody = how_many(len(done.roster.students), "student")
-    told = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
+    summary = [f"{FILE}: {everybody}, {len(done.new)} of them new"]
     if absent:
         still = f"{len(absent)} ({some(absent)})"
-        told.append(f"not in this list, and still in the roster: {still}")
+        summary.append(f"not in this list, and still in the roster: {still}")
     if len(entries) < len(rows):
-        told.append("not taken: Test Student, whom Canvas makes for a teacher's view as a student")
-    told += about_names(before, done.roster)
-    told += about_teams(who for entry in entries if (who := entry.student.team))
+        summary.append(
+            "not taken: Test Student, whom Canvas makes for a teacher's view as a student"
+        )
+    summary += about_teams(who for entry in entries if (who := entry.student.team))
     if assignment:
         set_now = f"{how_many(times, 'hand-in time')} set"
-        told.append(f"{assignment}: {how_many(numbered, 'participant')}; {set_now}")
+        summary.append(f"{assignment}: {how_many(numbered, 'participant')}; {set_now}")
     elif numbered:
-        told.append(
+        summary.append(
             "the participants' numbers are those of one assignment; --assignment NAME keeps them"
         )
-    known = all_lms_users(course)
-    alike = () if assignment else tuple(about_namesakes(done.roster, known))
-    return Imported(tuple(told), tuple(left), alike)
-
-
-def settle(course: Course, roster: Roster) -> list[str]:
-    """Bring all work to those whom the roster has come to know since it was collected.
-
-    Returns:
-        What a person should look at, a sentence each.
-    """
-    left: list[str] = []
-    collected = all_lms_users(course)
-    for assignment, people in collected.items():
-        found = places(people.values(), assignment, collected, roster, ())
-        moved = {
-            folder: to for folder, one in people.items() if (to := found[one.key].folder) != folder
-        }
-        left += [move(course, assignment, folder, to) for folder, to in moved.items()]
-        remember(course, assignment, {to: people[folder] for folder, to in moved.items()})
-    return [sentence for sentence in left if sentence]
+    if not assignment:
+        summary += about_namesakes(done.roster, all_lms_users(course))
+    return summary, left
 
 
 def _marks(one: Student) -> dict[str, str]:
@@ -187,38 +163,31 @@ def _shared(one: Student, other: Student) -> list[bool]:
     return [a[key] == b[key] for key in a.keys() & b.keys()]
 
 
-def _refuse_contradictions(entries: Sequence[Entry]) -> None:
-    numbers = Counter(entry.participant for entry in entries if entry.participant)
-    for number, times in numbers.items():
-        if times > 1:
+def _refuse_contradictions(entry: Entry, id: str, rows: dict[object, list[Entry]]) -> None:
+    """Refuse a row that contradicts an earlier one, and add it to these."""
+    who, name, number = entry.student, same_name(entry.student.name), entry.participant
+    for other in rows.setdefault(("participant", number), []) if number else ():
+        raise LabkitError(
+            f"lines {other.line} and {entry.line} are both participant {number}; download the "
+            "worksheet again"
+        )
+    for other in rows.setdefault(("name", name), []) if name else ():
+        if not _shared(who, other.student):
             raise LabkitError(
-                f"participant {number} is in {times} lines; download the worksheet again"
+                f"lines {other.line} and {entry.line} are both {who.name}, and nothing tells them "
+                "apart; give each a login, an address or a number, or delete one"
             )
-    by: dict[tuple[str, object], list[Entry]] = {}
-    for entry in entries:
-        who, name = entry.student, same_name(entry.student.name)
-        for key in {*_marks(who).items(), ("name", name)}:
-            for other in by.get(key, ()) if key[1] else ():
-                shared = _shared(who, other.student)
-                lines = f"lines {other.line} and {entry.line}"
-                if key[0] == "name" and not shared:
-                    raise LabkitError(
-                        f"{lines} are both {who.name}, and nothing tells them apart; give each a "
-                        "login, an address or a number, or delete one"
-                    )
-                if any(shared) and not (all(shared) and same_name(other.student.name) == name):
-                    says = _says(other.student, who)
-                    raise LabkitError(f"{lines} contradict each other: {says}")
-            by.setdefault(key, []).append(entry)
-
-
-def _says(one: Student, other: Student) -> str:
-    pairs = [(getattr(one, k), getattr(other, k)) for k in ("name", *_KEYS)]
-    same = " and ".join(a for a, b in pairs if a and a.casefold() == b.casefold())
-    differ = " and ".join(
-        f"{a} here and {b} there" for a, b in pairs if a and b and a.casefold() != b.casefold()
-    )
-    return f"{same} is in both, with {differ}"
+    for other in rows.setdefault(("id", id), []):
+        alike = same_name(other.student.name) == name
+        pairs = [(getattr(other.student, x), getattr(who, x)) for x in ("name", *_KEYS)[alike:]]
+        differ = [f"{a} and {b}" for a, b in pairs if a and b and a.casefold() != b.casefold()]
+        if differ:
+            raise LabkitError(
+                f"lines {other.line} and {entry.line} are one student by a login, an address or a "
+                f"number, and contradict each other: {', '.join(differ)}; correct the list"
+            )
+    for key in (("participant", number), ("name", name), ("id", id)):
+        rows.setdefault(key, []).append(entry)
 
 
 def _index(student: Student, by_mark: dict[_Mark, set[str]]) -> None:
@@ -234,8 +203,7 @@ def _find(
     if len(found) > 1:
         people = " or ".join(str(students[id]) for id in sorted(found))
         raise LabkitError(
-            f"line {entry.line} could be {people} of the roster; correct the list, or "
-            "course_private/roster.csv"
+            f"line {entry.line} could be {people}; correct the list, or course_private/roster.csv"
         )
     name = same_name(entry.student.name)
     called = by_mark.get(("name", name), set()) if name and unique and not found else set()
@@ -245,28 +213,26 @@ def _find(
 
 
 def _folders(
-    everybody: Roster, new: Sequence[str], collected: Mapping[str, Mapping[str, LmsUser]]
+    everybody: Roster, new: Set[str], collected: Mapping[str, Mapping[str, LmsUser]]
 ) -> dict[str, str]:
-    """A folder for each new student: the one of their earlier work, or a new one."""
-    used: dict[str, Counter[str]] = {id: Counter() for id in new}
-    for people in collected.values():
+    """A folder for each new student, in which nobody else's work lies."""
+    owners = {student.id.casefold(): {student.id} for student in everybody.students}
+    for assignment, people in collected.items():
+        found = places(people.values(), assignment, collected, everybody)
         for folder, one in people.items():
-            whose = everybody.whose(one)
-            if len(whose) == 1 and whose[0].id in used and folder == safe_name(folder):
-                used[whose[0].id][folder] += 1
-    taken = {student.id.casefold() for student in everybody.students}
+            owners.setdefault(folder.casefold(), set()).add(found[one.key].folder)
     alike = {student.id for group in everybody.namesakes() for student in group}
-    found: dict[str, str] = {}
+    folders: dict[str, str] = {}
     for student in everybody.students:
-        if student.id in used:
+        if student.id in new:
             plain = safe_name(student.login or student.name)
             others = (student.email.partition("@")[0], student.id_number, student.lms_user_id)
             names = chain(
-                (folder for folder, _ in used[student.id].most_common()),
                 [plain] * bool(student.login or student.id not in alike),
                 (safe_name(f"{plain}-{other}") for other in others if other),
                 (f"{plain}-{k}" for k in count(2)),
             )
-            found[student.id] = next(name for name in names if name.casefold() not in taken)
-            taken.add(found[student.id].casefold())
-    return found
+            free = (x for x in names if owners.get(x.casefold(), set()) <= {student.id})
+            folders[student.id] = name = next(free)
+            owners.setdefault(name.casefold(), set()).add(student.id)
+    return folders

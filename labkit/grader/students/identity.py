@@ -1,10 +1,10 @@
-"""Whom a platform means: its users, by the folder that holds their work, the same all term.
+"""Whom a platform means: its users, by the folder that holds their work.
 
-A person has the folder that the roster says.  Students who are missing from the
-roster, or are there twice, get folders of their own that nobody else has, and are named.  Without a
-roster Canvas's users and those of the exchange are known by what stays the same all term; Moodle's
-participants have another number in each assignment, so they are known by name, and by the number
-where two have one name.
+A student of the roster has the folder that the roster says, all term.  Who is not in it, or could
+be two of its students, has a folder of their own, and is named.  Such a folder is called by the
+platform's number of the user, so that nobody is taken for somebody else by a name, which people can
+change.  Canvas's users and those of the exchange keep theirs all term; Moodle's participants have
+another number in each assignment, and nothing but a roster joins them.
 
 ``course_private/lms.json`` lists the users whose work was collected, by assignment and by folder.
 Git ignores the file, and it goes with the term.
@@ -14,10 +14,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from contextlib import contextmanager
 from dataclasses import dataclass
-from itertools import chain, count
 
 import msgspec
 
@@ -26,15 +25,12 @@ from ...errors import LabkitError
 from ..atomic import write
 from ..clean import clean_line, safe_name
 from ..lock import locked
+from ..submission import digest
 from .platforms import LmsUser
-from .roster import Roster, same_name
+from .roster import Roster
 
 FILE = "course_private/lms.json"
 _READ_GREEDILY = re.compile(r"([^_/]*)_([0-9]+)_assignsubmission_file")
-_BY_HAND = (
-    "{} has the name of a folder that somebody made by hand, so their work is kept apart; a list "
-    "of students that you import first says whose a folder is"
-)
 
 
 def lms_users(course: Course, assignment: str) -> dict[str, LmsUser]:
@@ -127,7 +123,6 @@ def places(
     assignment: str,
     known: Mapping[str, Mapping[str, LmsUser]],
     roster: Roster,
-    folders: Iterable[str],
 ) -> dict[tuple[str, str], Place]:
     """Where each person's work goes, by `LmsUser.key`.
 
@@ -136,7 +131,6 @@ def places(
         assignment: Which was handed in.
         known: What is known from earlier downloads, by assignment, then by folder.
         roster: The course's; an empty one if none was imported.
-        folders: The names of those that are there.
     """
     named = {one.key: one for one in people}
     before = {  # Moodle's numbers are those of one assignment
@@ -147,8 +141,7 @@ def places(
     }
     everyone = {one.key: one for one in known.get(assignment, {}).values()} | named
     claims = Counter(_claim(one, before.get(key, ""), roster) for key, one in everyone.items())
-    names = Counter(_plain(one).casefold() for one in named.values())
-    owners = _owners(assignment, known, roster, folders)
+    owners = _owners(known, roster)
     found: dict[tuple[str, str], Place] = {}
     for key, one in named.items():
         folder, students = before.get(key, ""), roster.whose(one)
@@ -157,15 +150,9 @@ def places(
         elif len(students) == 1 and claims[_claim(one, folder, roster)] == 1:
             found[key] = Place(students[0].id)
         else:
-            plain = _plain(one)
-            by_hand = not folder and ("folder", plain) in owners.get(plain.casefold(), ())
-            unique = names[plain.casefold()] == 1 and not students
-            folder = folder or _free(one, unique, owners)
+            folder = folder or _apart(one, owners)
             owners.setdefault(folder.casefold(), set()).add(key)
-            if roster.students:
-                found[key] = Place(folder, _doubt(one, len(students)))
-            else:
-                found[key] = Place(folder, _BY_HAND.format(one) * (by_hand and folder != plain))
+            found[key] = Place(folder, _doubt(one, len(students)) if roster.students else "")
     return found
 
 
@@ -186,40 +173,26 @@ def _doubt(one: LmsUser, students: int) -> str:
     return f"{one} has the name of a student, and so has somebody else who handed in; {until}"
 
 
-def _plain(one: LmsUser) -> str:
-    name = safe_name(one.name)
-    return f"{name}-{one.number}" if one.system == "canvas" else name
-
-
-def _all_term(one: LmsUser) -> tuple[str, ...]:
-    """What stays the same from one assignment to the next."""
-    return ("called", *same_name(one.name)) if one.system == "moodle" else one.key
-
-
 def _owners(
-    assignment: str,
-    known: Mapping[str, Mapping[str, LmsUser]],
-    roster: Roster,
-    folders: Iterable[str],
-) -> dict[str, set[tuple[str, ...]]]:
+    known: Mapping[str, Mapping[str, LmsUser]], roster: Roster
+) -> dict[str, set[tuple[str, str]]]:
     """Whose each folder is; file systems may not tell capitals from small letters."""
-    owners: dict[str, set[tuple[str, ...]]] = {}
-    for name, people in known.items():
+    owners = {student.id.casefold(): {("roster", student.id)} for student in roster.students}
+    for people in known.values():
         for folder, one in people.items():
-            owner = one.key if name == assignment else _all_term(one)
-            owners.setdefault(folder.casefold(), set()).add(owner)
-    for student in roster.students:
-        owners.setdefault(student.id.casefold(), set()).add(("roster", student.id))
-    for folder in folders:
-        owners.setdefault(folder.casefold(), {("folder", folder)})
+            owners.setdefault(folder.casefold(), set()).add(one.key)
     return owners
 
 
-def _free(one: LmsUser, unique: bool, owners: Mapping[str, set[tuple[str, ...]]]) -> str:
-    """The name of a folder that is nobody else's."""
-    plain, mine = _plain(one), {one.key, _all_term(one)}
-    if one.system == "exchange":
-        mine.add(("folder", one.number))  # nbgrader's own collect calls it after the user
-    numbered = [f"{plain}-{one.number}"] * (one.system == "moodle")
-    names = chain([plain] * unique, numbered, (f"{plain}-{k}" for k in count(2)))
-    return next(name for name in names if owners.get(name.casefold(), set()) <= mine)
+def _apart(one: LmsUser, owners: Mapping[str, Set[tuple[str, str]]]) -> str:
+    """A folder that nobody else has, called by the platform's number."""
+    name, number = safe_name(one.name), one.number
+    if one.system in {"moodle", "canvas"}:
+        folder = f"{name}-{number}"
+    elif safe_name(number) == number == number.lower():
+        folder = number  # as nbgrader's own collect calls it
+    else:
+        folder = f"{name}-{digest(number.encode())[:8]}"
+    while not owners.get(folder.casefold(), set()) <= {one.key}:
+        folder += f"-{one.system}"
+    return folder

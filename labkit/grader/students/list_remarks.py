@@ -6,21 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from ..clean import how_many, some
-from .class_list import Student
 from .platforms import LmsUser
 from .roster import FILE, Roster
-
-
-def about_names(before: Roster, after: Roster) -> Iterator[str]:
-    """Who has another name than before."""
-    pairs = [(old, new) for new in after.students if (old := before.get(new.id)) and old.name]
-    changed = [f"{a} is now {_in_columns(b)}" for a, b in pairs if _in_columns(a) != _in_columns(b)]
-    if changed:
-        yield f"names that this list changed: {len(changed)} ({some(changed)})"
-
-
-def _in_columns(one: Student) -> str:
-    return f"first name {one.first_name!r}, last name {one.last_name!r}"
 
 
 def about_teams(named: Iterable[str]) -> Iterator[str]:

@@ -11,7 +11,9 @@ the participant's; a name with an underscore in front is a team's, or somebody e
 
 Canvas writes ``NAME_[LATE_]USER_ATTACHMENT_FILE``.  NAME is in small letters, without spaces, and
 may end in an underscore and a number; then the name can be read in two ways if the file's own name
-begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).
+begins with a number too (github.com/instructure/canvas-lms, ``lib/content_zipper.rb``).  Canvas
+counts the attachments of a whole school, so a number below 100 belongs to the file's own name, as
+in ``10_cup.ipynb``.
 
 Every file comes with all ways to read whose it is, and with the reason for which it is refused.
 Nothing is unpacked, so a name in a download leads nowhere.
@@ -24,7 +26,6 @@ GitHub, or the student's own name.
 
 from __future__ import annotations
 
-import io
 import lzma
 import os
 import re
@@ -39,7 +40,6 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
-from typing import BinaryIO
 
 from ...errors import LabkitError
 from ..clean import clean_line
@@ -53,7 +53,7 @@ _MOODLE = re.compile(
 _CANVAS = re.compile(
     r"(?P<name>\w*?)_(?P<late>LATE_)?(?P<number>[0-9]+)_(?P<attachment>[0-9]+)_(?P<file>[^/]+)"
 )
-_NUMBER_FIRST = re.compile(r"([0-9]+)_([^/]+)")
+_NUMBER_FIRST = re.compile(r"([0-9]{3,})_([^/]+)")
 _OF_A_MAC = re.compile(r"(^|/)(__MACOSX/|\.DS_Store$|\._[^/]*$)")
 """What a Mac puts beside files; it is nobody's work."""
 _ID = re.compile(r"[1-9][0-9]{0,18}")
@@ -162,16 +162,13 @@ class File:
 
 @contextmanager
 def open_zip(path: Path) -> Iterator[zipfile.ZipFile]:
-    """Open a zip, also one with a name that is not in the encoding that it states.
+    """Open a zip.
 
     Raises:
-        LabkitError: It is damaged.
+        LabkitError: It is damaged, or a name is not in the encoding that it states.
     """
     try:
-        try:
-            archive = zipfile.ZipFile(path)
-        except UnicodeDecodeError:
-            archive = zipfile.ZipFile(_without_utf8_flags(path))
+        archive = zipfile.ZipFile(path)
     except _DAMAGED as error:
         said = clean_line(str(error))
         raise LabkitError(f"{path} is damaged: {said}; download it again") from None
@@ -248,20 +245,6 @@ def _read(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
         raise LabkitError(f"damaged: {clean_line(str(error))}") from None
     check_size(len(data), most)
     return data
-
-
-def _without_utf8_flags(path: Path) -> BinaryIO:
-    """A copy in which no name claims to be UTF-8, so that every name can be read."""
-    data = bytearray(path.read_bytes())
-    end = data.rfind(b"PK\5\6")
-    size, _ = struct.unpack_from("<LL", data, end + 12)
-    at = end - size
-    while data[at : at + 4] == b"PK\1\2":
-        local = struct.unpack_from("<L", data, at + 42)[0]
-        data[at + 9] &= ~8
-        data[local + 7] &= ~8
-        at += 46 + sum(struct.unpack_from("<3H", data, at + 28))
-    return io.BytesIO(data)
 
 
 _PARTS = {"{student}": "(?P<student>[^/]+?)", "**": ".*", "*": "[^/]*"}

@@ -11,10 +11,11 @@ from ...course.layout import Course
 from ..clean import some
 from ..rules import read_rules
 from ..timestamp import read_time
-from .attempts import Attempt, Counted, attempts, counts, install, keep, move
+from .attempts import Attempt, Counted, attempts, counts, install, keep
 from .class_list import Entry, Student
 from .identity import lms_users, remember
 from .platforms import LmsUser
+from .settle import Move, bring
 
 
 def keep_numbers(
@@ -27,9 +28,9 @@ def keep_numbers(
     """
     mine = {s.id: LmsUser("moodle", e.participant, s.name) for e, s in rows if e.participant}
     before = {one.key: folder for folder, one in lms_users(course, assignment).items()}
-    left = [move(course, assignment, before.get(x.key, ""), id) for id, x in mine.items()]
+    left = bring(course, (Move(assignment, before.get(x.key, ""), id) for id, x in mine.items()))
     remember(course, assignment, mine)
-    return [sentence for sentence in left if sentence]
+    return left
 
 
 def keep_times(
@@ -77,7 +78,7 @@ def keep_times(
 def _time(said: str, zone: ZoneInfo, chosen: Counted, all: Sequence[Attempt]) -> datetime | str:
     """When what counts was handed in; or what the worksheet says instead, and what to do."""
     when, first = read_time(said, zone), chosen.first.when
-    others = [x.when for one in all if one is not chosen.attempt for x in one.seen]
+    others = [x.when for one in all if one is not chosen.attempt for x in one.hand_ins]
     earlier = max((x for x in others if x < first), default=None)
     if when is None:
         unread = "which is not a time that labkit can read; take the worksheet in English"

@@ -1,0 +1,96 @@
+"""Brings work and marks to the student whose they are, once the roster has come to know it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ...course.layout import Course
+from ..grading.results import Results
+from ..nbgrader.gradebook import open_gradebook
+from .attempts import FOLDER
+from .identity import all_lms_users, places, remember
+from .roster import Roster
+
+_WORK = (FOLDER, "submitted")
+_MADE_OF_IT = ("autograded", "feedback")
+
+
+@dataclass(frozen=True)
+class Move:
+    """The work of one assignment, which goes from one folder to another."""
+
+    assignment: str
+    old: str
+    new: str
+
+
+def settle(course: Course, roster: Roster) -> list[str]:
+    """Bring all work to those whom the roster has come to know since it was collected.
+
+    Returns:
+        What a person should look at, a sentence each.
+    """
+    left: list[str] = []
+    collected = all_lms_users(course)
+    for assignment, people in collected.items():
+        found = places(people.values(), assignment, collected, roster)
+        moved = {folder: found[one.key].folder for folder, one in people.items()}
+        left += bring(course, [Move(assignment, old, new) for old, new in moved.items()])
+        remember(course, assignment, {moved[x]: who for x, who in people.items() if moved[x] != x})
+    return left
+
+
+def bring(course: Course, moves: Iterable[Move]) -> list[str]:
+    """Take work from one folder to another, and then its marks, also those by hand.
+
+    Nothing that is there is overwritten.
+
+    Returns:
+        What stayed where it was and wants a look, a sentence each.
+    """
+    moves = [move for move in moves if move.old and move.old != move.new]
+    for move in moves:
+        for base in (*_WORK, *_MADE_OF_IT):
+            source = course.root / base / move.old / move.assignment
+            target = course.root / base / move.new / move.assignment
+            if source.exists() and not target.exists():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                source.rename(target)
+                if not any(source.parent.iterdir()):
+                    source.parent.rmdir()
+    _bring_marks(course, [move for move in moves if not _work(course, move)])
+    said: list[str] = []
+    for move in moves:
+        result = Results(course, move.assignment).path(move.old)
+        left = [*_work(course, move), *[result] * result.exists()]
+        if left:
+            names = " and ".join(str(path.relative_to(course.root)) for path in left)
+            said.append(f"{names} of the same student stays; look what it is, and move it away")
+    return said
+
+
+def _work(course: Course, move: Move) -> list[Path]:
+    """What was handed in and is still in the old folder."""
+    folders = [course.root / base / move.old / move.assignment for base in _WORK]
+    return [path for path in folders if path.exists()]
+
+
+def _bring_marks(course: Course, moves: Sequence[Move]) -> None:
+    for move in moves:
+        results = Results(course, move.assignment)
+        result = results.get(move.old)
+        if result is not None and not results.path(move.new).exists():
+            results.keep(replace(result, student=move.new))
+            results.path(move.old).unlink()
+    if not moves or not (course.root / "gradebook.db").exists():
+        return
+    with open_gradebook(course) as book:
+        for assignment, old, new in ((x.assignment, x.old, x.new) for x in moves):
+            there = {one.student.id: one for one in book.assignment_submissions(assignment)}
+            if old in there and new not in there:
+                there[old].student = book.update_or_create_student(new)
+                book.db.commit()
+                if not book.find_student(old).submissions:
+                    book.remove_student(old)
