@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from .verdict import Difference, Kind
 
 COMMITTED = "committed before the arm answers"
@@ -40,7 +42,7 @@ class _Form:
         """Whether two predictions are the same one."""
         if isinstance(answer, str):
             return letters(answer) == letters(other)
-        return bool(answer == other)
+        return np.array_equal(answer, other)
 
     def distance(self, answer: Any, expected: Any) -> float:
         """Zero for one of this form, else infinite."""
@@ -122,7 +124,7 @@ class Number(_Form):
 
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction; "" if nothing is."""
-        if isinstance(said, bool) or not isinstance(said, int | float):
+        if isinstance(said, bool) or not isinstance(said, int | float | np.integer | np.floating):
             example = "with a point, such as 8.5" if "," in str(said) else f"({self.unit})"
             return f"it is {said!r}; write one number {example}"
         if not self.least <= said <= self.most:

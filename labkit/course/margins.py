@@ -6,7 +6,7 @@ and seeds of the noise these distances spread; the margin is how many of their s
 lie between their mean and the tolerance.  Logarithms are compared, since distances spread over
 decades.  Where nothing spreads there is no sigma.
 
-A run is made once for each function, however many draws ask for it.
+A run of the arm is made once for each function, however many draws ask for it.
 """
 
 from __future__ import annotations

@@ -60,6 +60,8 @@ def related(
     question: Question, calls: Sequence[Call], given: list[Parts], expected: list[Parts]
 ) -> str:
     """How the one wrong part of an answer, or all of it, is related to the right one."""
+    if len(set(map(len, expected))) > 1:
+        return ""
     parts: list[tuple[Sequence[Array], Sequence[Array]]] = list(
         zip(zip(*given, strict=True), zip(*expected, strict=True), strict=True)
     )
@@ -109,7 +111,7 @@ def _relations(
     if all_near(a, [-x for x in b]):
         yield "has the other sign"
     for name in given[0]:
-        x = [g[name] for g in given]
+        x = [g.get(name) for g in given]
         if all(
             isinstance(y, np.ndarray) and y.shape == z.shape for y, z in zip(x, a, strict=True)
         ) and all_near(a, x):
@@ -172,7 +174,7 @@ def _factors(factors: Array, given: Sequence[Mapping[str, Any]]) -> Iterator[str
             yield f"is what it should be, divided by {words}"
     if np.ptp(factors) > 1e-6 * np.abs(factors).max():
         for name in given[0]:
-            x = [g[name] for g in given]
+            x = [g.get(name) for g in given]
             if all(isinstance(y, float | int) and y > 0 for y in x):
                 for words, power in _POWERS.items():
                     if np.allclose(factors, np.power(x, power), rtol=1e-6):

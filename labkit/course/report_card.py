@@ -30,7 +30,7 @@ Functions = Mapping[str, Sequence[Callable[..., Any]]]
 
 DRAWS = 20
 HANGS = 600.0
-"""Seconds after which one call of an answer is stopped; no limit, a guard against endless ones."""
+"""Seconds after which one call of an answer is stopped, because it may be endless."""
 NEAREST = 3.0
 """Sigmas that must lie between every answer and the tolerance."""
 LARGEST_PART = 0.6

@@ -96,6 +96,16 @@ def test_only_the_wrong_parts_of_an_answer_are_spoken_of():
     assert "your `ds` has the other sign, and" in seen(parts, lambda x, d: (x, -x / d, x * x / d))
 
 
+def test_calls_of_several_forms_are_compared_all_the_same():
+    """Answers with more parts in one call than in another, and calls that leave an argument out."""
+    several = Problem("f", 1, "x", lambda n: (1.0,) * n, (Trial("any", (call(2), call(3))),))
+    assert seen(several, lambda n: (2.0,) * n) == ""
+    trial = Trial("any", (call(2.0, d=3.0), call(5.0)))
+    some = Problem("f", 1, "x", lambda x, d=1.0: x * d, (trial,))
+    assert seen(some, lambda x, d=1.0: 2.0 * x * d).endswith("is 2 times what it should be.")
+    assert seen(some, lambda x, d=1.0: x * d * d + x * (d == 1.0)) == ""
+
+
 def test_nothing_is_said_of_what_is_not_seen():
     """Of an answer without any relation to the right one nothing is said, nor of a right one."""
     assert seen(SCALED, lambda x, d: np.array([np.cos(x + d), 1.3])) == ""

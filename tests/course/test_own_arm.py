@@ -94,6 +94,16 @@ def test_what_students_get_names_no_number(tmp_path, monkeypatch):
         my_arm("merlin")
 
 
+@pytest.mark.parametrize("text", ["", "[]", "{{", '{"%s": "AAAA"}', '{"%s": 3}'])
+def test_a_damaged_file_of_arms_is_a_sentence(tmp_path, monkeypatch, text):
+    """It is named, and where another one comes from."""
+    (who,) = Arms(7, {"kestrel": "kestrel"}).sealed()
+    (tmp_path / FILE).write_text(text.replace("%s", who))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(LabkitError, match=r"arms\.json is damaged; put the arms\.json that your"):
+        my_arm("kestrel")
+
+
 def test_a_number_is_judged_against_ones_own_arm():
     """The demonstration's number is right for the demonstration, and for nobody else."""
     demo, other = draw(2019, DEMO), draw(7, "kestrel")
