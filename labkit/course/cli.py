@@ -71,9 +71,9 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
 @click.option("--forum", is_flag=True, help="Print a summary to copy into a forum.")
 def submit_check(notebook: Path, forum: bool) -> int:
     """Check before you hand in: is the notebook complete?"""
-    from .before_handing_in import look
+    from .before_handing_in import examine
 
-    found = look(notebook)
+    found = examine(notebook)
     print(found.for_the_forum() if forum else found)
     return 1 if found.problems else 0
 

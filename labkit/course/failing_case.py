@@ -24,7 +24,7 @@ def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
         LabkitError: The last check stopped at no call of the function.
     """
     question = desk().question(name)
-    last = desk().seen.get(name)
+    last = desk().checked.get(name)
     stopped = {test.name: test.call for test in last[1].tests if test.call} if last else {}
     for test in question.tests:
         for one in test.cases:

@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
-from .advice import told
+from .advice import full_description
 from .equivalence import Judge
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
@@ -215,7 +215,7 @@ def _failure(error: BaseException) -> _Failure:
     cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
     kind = cause.kind if isinstance(cause, NoAnswer) else type(cause).__name__
     known = isinstance(error, NoAnswer) or (isinstance(error, LabkitError) and error.__cause__)
-    sentence = str(error) if known else told(error)
+    sentence = str(error) if known else full_description(error)
     log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
     return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
 

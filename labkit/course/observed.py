@@ -24,7 +24,7 @@ LONGEST = 3.0
 """Seconds that are spent on asking a function again."""
 
 
-def explained(question: Question, verdict: Verdict, tried: Tried, function: Function) -> Verdict:
+def diagnosed(question: Question, verdict: Verdict, tried: Tried, function: Function) -> Verdict:
     """The verdict on a wrong answer with what is seen of it, unless it is a known mistake.
 
     Args:

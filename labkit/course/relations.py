@@ -119,9 +119,9 @@ def _relations(
     if len({x.shape for x in b}) == 1 and b[0].ndim and not joined:
         yield from _matrices(a, b) if b[0].ndim == 2 else ()
         yield from _rows(a, b)
-    told = [(factor(x, y), g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
-    if len(told) > 1 and all(times for times, _ in told):
-        yield from _factors(np.array([times for times, _ in told]), [g for _, g in told])
+    pairs = [(factor(x, y), g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
+    if len(pairs) > 1 and all(times for times, _ in pairs):
+        yield from _factors(np.array([times for times, _ in pairs]), [g for _, g in pairs])
 
 
 def _matrices(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:

@@ -70,7 +70,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Card:
+class ReportCard:
     """The whole card.
 
     Attributes:
@@ -121,7 +121,7 @@ def make(
     variants: Functions | None = None,
     progress: Callable[[Row], None] = lambda row: None,
     draws: int = DRAWS,
-) -> Card:
+) -> ReportCard:
     """Mark everything that is known of some assignments.
 
     Args:
@@ -153,7 +153,7 @@ def make(
         )
         rows.append(_row(name, problem, seed, draws, *more))
         progress(rows[-1])
-    return Card(seed, draws, tuple(rows))
+    return ReportCard(seed, draws, tuple(rows))
 
 
 def _asked(course: Course, assignment: str, only: str) -> Sequence[Problem]:
@@ -253,7 +253,7 @@ def functions_from(file: Path, table: str) -> Functions:
     return found
 
 
-def write(card: Card, folder: Path) -> tuple[Path, Path]:
+def write(card: ReportCard, folder: Path) -> tuple[Path, Path]:
     """Write ``report_card.json`` and ``report_card.md`` into a folder; returns both paths."""
     folder.mkdir(parents=True, exist_ok=True)
     table, page = folder / "report_card.json", folder / "report_card.md"
@@ -262,7 +262,7 @@ def write(card: Card, folder: Path) -> tuple[Path, Path]:
     return table, page
 
 
-def markdown(card: Card) -> str:
+def markdown(card: ReportCard) -> str:
     """The card as a page."""
     data = card.data()
     nearest = [f"{margin:.2f} ({row.assignment}/{row.question})" for margin, row in card.nearest]

@@ -24,7 +24,7 @@ from .gaps import calculated
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, message, waits, wrapped
 from .notebook import verdict_metadata
-from .observed import explained
+from .observed import diagnosed
 from .question import Question
 from .reply import Here
 from .serialize import read_question
@@ -39,7 +39,7 @@ class Desk:
 
     def __init__(self, questions: dict[str, Question]) -> None:
         self.questions = questions
-        self.seen: dict[str, tuple[Any, Verdict]] = {}
+        self.checked: dict[str, tuple[Any, Verdict]] = {}
         self.attempted: set[str] = set()
         self.committed: dict[str, Any] = {}
         self.chosen: dict[str, Any] = {}
@@ -84,14 +84,14 @@ class Desk:
                     here = Here(function, question.withheld)
                     tried = try_public(question, here)
                     verdict, found = mark(question, here, tried), tried.evidence(question)
-                    verdict = explained(question, verdict, tried, here)
+                    verdict = diagnosed(question, verdict, tried, here)
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""
             raise KeyboardInterrupt(
                 f"{name} was stopped{where}; does every loop in it come to its end?"
             ) from None
-        self.seen[name] = (function, verdict)
+        self.checked[name] = (function, verdict)
         if verdict.outcome is not Outcome.NOT_ATTEMPTED:
             self.attempted.add(name)
         return verdict, out.text, found
@@ -101,9 +101,11 @@ class Desk:
         code = getattr(function, "__code__", None)
         steps = dis.get_instructions(code) if code else ()
         called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
-        seen = {other: verdict for other, (_, verdict) in self.seen.items() if other != name}
+        verdicts = {other: verdict for other, (_, verdict) in self.checked.items() if other != name}
         return tuple(
-            other for other in dict.fromkeys(called) if other in seen and not seen[other].right
+            other
+            for other in dict.fromkeys(called)
+            if other in verdicts and not verdicts[other].right
         )
 
 
@@ -242,7 +244,7 @@ def use(
     if name in _unfinished:
         print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
         return given
-    known, verdict = desk().seen.get(name, (None, None))
+    known, verdict = desk().checked.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
     wrong = verdict.outcome is Outcome.WRONG

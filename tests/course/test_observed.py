@@ -7,7 +7,7 @@ import labkit as lk
 from labkit.course import mark
 from labkit.course.judges import Close
 from labkit.course.marking import try_public
-from labkit.course.observed import explained
+from labkit.course.observed import diagnosed
 from labkit.course.problem import Problem, Trial, call
 
 
@@ -36,7 +36,7 @@ def seen(problem, function):
     """What a student reads of an answer."""
     question = problem.question(1).public()
     tried = try_public(question, function)
-    mistake = explained(question, mark(question, function, tried), tried, function).mistake
+    mistake = diagnosed(question, mark(question, function, tried), tried, function).mistake
     return mistake.says if mistake else ""
 
 
