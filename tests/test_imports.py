@@ -67,7 +67,7 @@ ORDER = [
         "course.seed",
         "course.outcomes",
     },
-    {"course.judges", "course.withheld", "course.forms", "course.unfinished", "course.factors"},
+    {"course.judges", "course.withheld", "course.forms", "course.unfinished"},
     {"course.baxter_cup", "course.bugs"},
     {"course.own_arm"},
     {"course.equivalence"},

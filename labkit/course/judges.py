@@ -130,7 +130,7 @@ class Close:
         bad = off > self.atol + self.rtol * np.abs(b)
         if not bad.any():
             return None
-        times = _times(a, b)
+        times = factor(a, b)
         if b.size <= FEW:
             return Difference(Kind.NUMBERS, part, expected=value(b), found=value(a), times=times)
         at = np.unravel_index(int(np.argmax(np.where(bad, off, -1.0))), b.shape)
@@ -261,11 +261,11 @@ def _refused(error: LabkitError) -> Difference:
     return Difference(Kind.REFUSED, found=str(error))
 
 
-def _times(a: Array, b: Array) -> float | None:
-    """The one factor by which all numbers are off; None where there is none."""
+def factor(a: Array, b: Array) -> float | None:
+    """What all numbers of b are multiplied by to give a; None where there is no such factor."""
     size = float(np.vdot(b, b))
     if not size:
         return None
-    factor = float(np.vdot(b, a)) / size
+    times = float(np.vdot(b, a)) / size
     near = 1e-9 * float(np.abs(b).max())
-    return factor if np.allclose(a, factor * b, rtol=1e-6, atol=near) else None
+    return times if np.allclose(a, times * b, rtol=1e-6, atol=near) else None

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..errors import ControllerError
-from .differences import sentence, words
-from .factors import likely_cause
+from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
 from .question import Loop, Question, Test, Tuned
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict

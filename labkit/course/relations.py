@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..shapes import Array
+from .judges import factor
 from .probes import arguments
 from .question import Call, Question
 
@@ -110,30 +111,15 @@ def _relations(
         yield f"is {float(a[0]):.5g}, whatever it is called with"
     if all_near(a, [-x for x in b]):
         yield "has the other sign"
-    for name in given[0]:
-        x = [g.get(name) for g in given]
-        if all(
-            isinstance(y, np.ndarray) and y.shape == z.shape for y, z in zip(x, a, strict=True)
-        ) and all_near(a, x):
-            yield f"is `{name}` itself"
     if len({x.shape for x in b}) == 1 and b[0].ndim and not joined:
-        yield from _matrices(a, b) if b[0].ndim == 2 else ()
+        yield from _exchanged_rows(a, b) if b[0].ndim == 2 else ()
         yield from _rows(a, b)
     pairs = [(factor(x, y), g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
     if len(pairs) > 1 and all(times for times, _ in pairs):
         yield from _factors(np.array([times for times, _ in pairs]), [g for _, g in pairs])
 
 
-def _matrices(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
-    if b[0].shape[0] == b[0].shape[1]:
-        if all_near(a, [x.T for x in b]):
-            yield "is the transpose of what it should be"
-        if all(np.linalg.cond(x) < 1e9 for x in b) and all_near(
-            a, [np.asarray(np.linalg.inv(x), dtype=float) for x in b]
-        ):
-            yield "is the inverse of what it should be"
-        if all_near(a, [np.diag(np.diag(x)) for x in b]):
-            yield "has zeros beside the diagonal, and on it, it is right"
+def _exchanged_rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
     rows = range(len(b[0]))
     for order in permutations(rows) if len(rows) <= 6 else ():
         if order != tuple(rows) and all_near(a, [x[list(order)] for x in b]):
@@ -157,13 +143,6 @@ def _rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
             yield f"is right but for {which}, which {be} zero"
         if all_near(c, [-x for x in d]):
             yield f"is right but for {which}, which {have} the other sign"
-
-
-def factor(a: Array, b: Array) -> float:
-    """What all numbers of b are multiplied by to give a; 0 if there is no such factor."""
-    size = float(np.vdot(b, b))
-    times = float(np.vdot(b, a)) / size if size else 0.0
-    return times if _near(a, times * b) else 0.0
 
 
 def _factors(factors: Array, given: Sequence[Mapping[str, Any]]) -> Iterator[str]:
