@@ -67,7 +67,8 @@ ORDER = [
         "course.seed",
         "course.outcomes",
     },
-    {"course.judges", "course.withheld", "course.forms", "course.unfinished"},
+    {"course.forms"},
+    {"course.judges", "course.withheld", "course.unfinished"},
     {"course.baxter_cup", "course.bugs"},
     {"course.own_arm"},
     {"course.equivalence"},
@@ -87,7 +88,6 @@ ORDER = [
     {"course.student"},
     {
         "course.before_handing_in",
-        "course.failing_case",
         "course.layout",
         "course.solved",
         "course.refusals",

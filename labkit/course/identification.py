@@ -86,21 +86,7 @@ class Identification:
 
 def personal(question: Question, arm: OwnArm) -> Question:
     """The question with what is true of somebody's arm; any other question as it is."""
-    judge = question.judge
-    expected: Any
-    if isinstance(judge, Measured):
-        expected = judge.expected(arm)
-    elif isinstance(judge, Found | Telling):
-        expected = judge.expected(arm.bugs)
-    else:
+    if not isinstance(question.judge, Measured | Found | Telling):
         return question
-    tests = tuple(
-        replace(
-            test,
-            cases=tuple(
-                replace(case, expected=expected) if case.hidden else case for case in test.cases
-            ),
-        )
-        for test in question.tests
-    )
-    return replace(question, tests=tests)
+    expected = question.judge.expected(arm)
+    return question.with_cases(lambda c: replace(c, expected=expected) if c.hidden else c)

@@ -16,6 +16,7 @@ from ..control import COMMANDS
 from ..errors import LabkitError
 from ..shapes import Array, as_array, as_gains
 from ..trajectory import PoseSample, Sample
+from .forms import RightOrWrong
 from .verdict import Difference, Kind, Value
 
 FEW = 9
@@ -173,17 +174,13 @@ class AtMost:
                 return Difference(Kind.MEASURE, name, (), float(limit), value(answer[name]))
         return None
 
-    def same(self, answer: dict[str, float], other: dict[str, float]) -> bool:
-        """Whether two runs measure the same."""
-        return Close().same(answer, other)
-
     def distance(self, answer: dict[str, float], expected: dict[str, float]) -> float:
         """The largest ratio of a measure to its limit."""
         return max(answer[name] / limit for name, limit in expected.items())
 
 
 @dataclass(frozen=True)
-class Gains:
+class Gains(RightOrWrong):
     """A pair (kp, kd) of which many are right; a run tells how good they are.
 
     Each is one number or one for each joint, none below 0.
@@ -206,10 +203,6 @@ class Gains:
         except (LabkitError, TypeError, ValueError):
             return False
         return bool(((a <= 1.5 * b) & (b <= 1.5 * a)).all())
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """Zero for such a pair, else infinite."""
-        return 0.0 if self(answer, expected) is None else float("inf")
 
     @staticmethod
     def _read(answer: Any) -> Array:

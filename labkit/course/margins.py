@@ -162,7 +162,4 @@ def remembering(questions: Sequence[Question]) -> list[Question]:
     def case(x: Case) -> Any:
         return x if isinstance(x, Call | Choice) else Remembered(x, memory)
 
-    return [
-        replace(q, tests=tuple(replace(t, cases=tuple(map(case, t.cases))) for t in q.tests))
-        for q in questions
-    ]
+    return [question.with_cases(case) for question in questions]

@@ -60,10 +60,12 @@ class Tried:
     Attributes:
         results: One for each test, as far as its public cases tell.
         answers: What came back from each case that was asked.
+        failing: The first call that is not right, if there is one.
     """
 
     results: tuple[TestResult, ...]
     answers: Mapping[Case, Any]
+    failing: Call | None = None
 
     @property
     def outcome(self) -> Outcome:
@@ -146,15 +148,17 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
     Where one fails, all public calls are made, by which a known mistake can be told.
     """
     answers: dict[Case, Any] = {}
-    results = tuple(
-        _try(test, [c for c in test.cases if not c.hidden], question, function, answers)
-        for test in question.tests
-    )
+    results, failing = [], None
+    for test in question.tests:
+        cases = [case for case in test.cases if not case.hidden]
+        results.append(_try(test, cases, question, function, answers))
+        stopped = next(reversed(answers)) if results[-1].difference else None
+        failing = failing or (stopped if isinstance(stopped, Call) else None)
     if _outcome(results) in (Outcome.WRONG, Outcome.ERROR):
         for call in question.calls:
             if call not in answers:
                 answers[call] = _answer(call, function)
-    return Tried(results, answers)
+    return Tried(tuple(results), answers, failing)
 
 
 def _outcome(results: Sequence[TestResult]) -> Outcome:

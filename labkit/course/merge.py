@@ -114,8 +114,10 @@ def _beside(cell: dict[str, Any]) -> dict[str, Any]:
     code = cell["cell_type"] == "code"
     lines = [BESIDE, *cell["source"].splitlines()]
     text = "\n".join(f"{'#' if code else '>'} {line}".rstrip() for line in lines)
-    made = {"cell_type": "code" if code else "markdown", "metadata": {}, "source": text}
-    return made | ({"outputs": [], "execution_count": None} if code else {})
+    made: dict[str, Any] = {"metadata": {}, "source": text}
+    if code:
+        return made | {"cell_type": "code", "outputs": [], "execution_count": None}
+    return made | {"cell_type": "markdown"}
 
 
 def _answer(mine: Cells, name: str) -> str | None:

@@ -142,13 +142,6 @@ def message(
     return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
 
 
-def tell(
-    question: Question, verdict: Verdict, printed: str = "", leans_on: Sequence[str] = ()
-) -> str:
-    """The same as lines of text, the verdict first."""
-    return str(message(question, verdict, printed, leans_on))
-
-
 def summary(verdict: Verdict) -> list[str]:
     """A verdict for a teacher's page: its head, and after a failure the mistake and each test."""
     lines = [head(verdict)]

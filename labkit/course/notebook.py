@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,7 @@ from .identification import Identification
 from .predictions import Prediction
 from .question import Question
 from .serialize import read_record, record_data
-from .source import look
+from .unfinished import defined_in
 from .verdict import Verdict
 
 Cell = Mapping[str, Any]
@@ -122,13 +121,7 @@ def by_hand(cell: Cell) -> bool:
 
 def defines(cell: Cell, name: str) -> bool:
     """Whether a code cell defines a function, a class or a value of that name."""
-    if cell["cell_type"] != "code":
-        return False
-    found = look(cell["source"])
-    if found["broken"]:
-        pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
-        return bool(re.search(pattern, cell["source"], re.MULTILINE))
-    return name in found["binds"]
+    return cell["cell_type"] == "code" and name in defined_in(cell["source"])
 
 
 def checks(cell: Cell, name: str) -> bool:

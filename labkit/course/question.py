@@ -291,13 +291,12 @@ class Question:
 
     def public(self) -> Question:
         """The same question without its hidden cases."""
-        return replace(
-            self,
-            tests=tuple(
-                replace(test, cases=tuple(case for case in test.cases if not case.hidden))
-                for test in self.tests
-            ),
-        )
+        return self.with_cases(lambda case: None if case.hidden else case)
+
+    def with_cases(self, change: Callable[[Case], Case | None]) -> Question:
+        """The same question with each case changed, and without those that are changed to None."""
+        tests = (replace(t, cases=tuple(filter(None, map(change, t.cases)))) for t in self.tests)
+        return replace(self, tests=tuple(tests))
 
 
 def in_brief(x: Any) -> str:

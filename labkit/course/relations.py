@@ -114,9 +114,10 @@ def _relations(
     if len({x.shape for x in b}) == 1 and b[0].ndim and not joined:
         yield from _exchanged_rows(a, b) if b[0].ndim == 2 else ()
         yield from _rows(a, b)
-    pairs = [(factor(x, y), g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
-    if len(pairs) > 1 and all(times for times, _ in pairs):
-        yield from _factors(np.array([times for times, _ in pairs]), [g for _, g in pairs])
+    moved = [(x, y, g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
+    factors = list(filter(None, (factor(x, y) for x, y, _ in moved)))
+    if 1 < len(factors) == len(moved):
+        yield from _factors(np.array(factors), [g for _, _, g in moved])
 
 
 def _exchanged_rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
@@ -153,8 +154,8 @@ def _factors(factors: Array, given: Sequence[Mapping[str, Any]]) -> Iterator[str
             yield f"is what it should be, divided by {words}"
     if np.ptp(factors) > 1e-6 * np.abs(factors).max():
         for name in given[0]:
-            x = [g.get(name) for g in given]
-            if all(isinstance(y, float | int) and y > 0 for y in x):
+            x = [g[name] for g in given if name in g]
+            if len(x) == len(given) and all(isinstance(y, float | int) and y > 0 for y in x):
                 for words, power in _POWERS.items():
                     if np.allclose(factors, np.power(x, power), rtol=1e-6):
                         yield f"is what it should be, {words.format(name)}"

@@ -8,8 +8,8 @@ little, where only hidden cases reject a mistake, or where an answer comes neare
 
 from __future__ import annotations
 
-import importlib.util
 import json
+import runpy
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -235,15 +235,11 @@ def functions_from(file: Path, table: str) -> Functions:
     Raises:
         LabkitError: There is no such file, it does not run, or there is no such dict in it.
     """
-    spec = importlib.util.spec_from_file_location("answers_from_outside", file)
-    if spec is None or spec.loader is None or not file.exists():
-        raise LabkitError(f"{file} is not a Python file; give one with a dict {table}")
-    module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        names = runpy.run_path(str(file))
     except (Exception, SystemExit) as error:
         raise LabkitError(f"{file} does not run: {type(error).__name__}: {error}") from error
-    found: Functions | None = getattr(module, table, None)
+    found: Functions | None = names.get(table)
     form = f"write {table} = {{question: [functions]}}"
     if not isinstance(found, dict):
         raise LabkitError(f"{file} has no dict {table}; {form}")

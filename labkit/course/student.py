@@ -15,7 +15,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ..errors import UnknownName
+from ..errors import LabkitError, UnknownName
 from .advice import line_of
 from .calling import heard
 from .card import card
@@ -25,7 +25,7 @@ from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, message, waits, wrapped
 from .notebook import verdict_metadata
 from .observed import diagnosed
-from .question import Question
+from .question import Call, Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
@@ -40,6 +40,7 @@ class Desk:
     def __init__(self, questions: dict[str, Question]) -> None:
         self.questions = questions
         self.checked: dict[str, tuple[Any, Verdict]] = {}
+        self.failing: dict[str, Call | None] = {}
         self.attempted: set[str] = set()
         self.committed: dict[str, Any] = {}
         self.chosen: dict[str, Any] = {}
@@ -74,6 +75,7 @@ class Desk:
             KeyboardInterrupt: The student stopped it; says in which line.
         """
         question = self.question(name)
+        self.failing[name] = None
         cells = map(look, cells_run(function))
         used = withheld_tools(cells, name, question.withheld)
         student = shell().user_ns if shell() else getattr(function, "__globals__", {})
@@ -85,6 +87,7 @@ class Desk:
                     tried = try_public(question, here)
                     verdict, found = mark(question, here, tried), tried.evidence(question)
                     verdict = diagnosed(question, verdict, tried, here)
+                    self.failing[name] = tried.failing
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""
@@ -184,6 +187,25 @@ def check(name: str, function: Callable[..., Any]) -> float:
     says = message(question, verdict, printed, desk().leaning(name, function), lost)
     _say(says, verdict, found if verdict.mistake else None)
     return Points(verdict.earned)
+
+
+def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """The arguments of the call at which the last check of a question stopped, to try it yourself.
+
+    Args:
+        name: The question's name.
+
+    Returns:
+        (args, kwargs), for ``function(*args, **kwargs)``.
+
+    Raises:
+        UnknownName: No such question.
+        LabkitError: The last check stopped at no call of the function.
+    """
+    call = desk().failing.get(desk().question(name).name)
+    if call is None:
+        raise LabkitError(f"the last check of {name} stopped at no call of it; run its check first")
+    return call.args, dict(call.kwargs)
 
 
 def hint(name: str, level: int = 1) -> None:
