@@ -291,10 +291,9 @@ def _judge(question: Question, test: Test) -> Judge:
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:
-    if isinstance(answer, Raised) or isinstance(known, Raised):
-        return (
-            isinstance(answer, Raised) and isinstance(known, Raised) and answer.kind == known.kind
-        )
+    kind, known_kind = (x.kind if isinstance(x, Raised) else None for x in (answer, known))
+    if kind is not None or known_kind is not None:
+        return kind == known_kind
     try:
         return judge.same(answer, known)
     except Exception:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ..errors import ControllerError
 from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
-from .question import Loop, Question, Test, Tuned
+from .question import Loop, Question, Test, Tuned, in_points
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import spoken
 
@@ -33,7 +33,7 @@ _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 
 def head(verdict: Verdict) -> str:
     """The verdict in one line."""
-    points = f"{verdict.points:g} point{'' if verdict.points == 1 else 's'}"
+    points = in_points(verdict.points)
     says = word(verdict)
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"

@@ -299,6 +299,11 @@ class Question:
         return replace(self, tests=tuple(tests))
 
 
+def in_points(points: float) -> str:
+    """Points as one would write them: "1 point", "2.5 points"."""
+    return f"{points:g} point{'' if points == 1 else 's'}"
+
+
 def in_brief(x: Any) -> str:
     """A number, or a vector or matrix of them, as one would write it by hand."""
     a = np.asarray(x, dtype=float)
