@@ -181,14 +181,10 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
     """The known mistake that gives just these answers on the public calls, if there is one."""
     for mistake in question.mistakes:
-        if (
-            answers
-            and len(answers) == len(mistake.answers)
-            and all(
-                _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
-            )
-        ):
-            return mistake
+        if answers and len(answers) == len(mistake.answers):
+            pairs = zip(answers, mistake.answers, strict=True)
+            if all(_same(question.judge, given, known) for given, known in pairs):
+                return mistake
     return None
 
 
