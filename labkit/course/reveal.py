@@ -117,7 +117,7 @@ def _controls(name: str, form: Form) -> None:
     again = "click into the cell above this line and press Shift+Enter once more to commit."
     note = widgets.HTML(f"Choose; then {again}")  # a label would not break its line
     parts = _inputs(form, widgets)
-    waiting = list(parts)  # for a hand: where a slider stands at first, nobody has put it
+    waiting = list(parts)  # for a hand: where a slider is at first, nobody has put it
 
     def changed(change: Any) -> None:
         if change["owner"] in waiting:
