@@ -136,7 +136,7 @@ def test_ctrl_c_is_not_a_traceback(monkeypatch, capsys):
     def stopped(notebook):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("labkit.course.before_handing_in.look", stopped)
+    monkeypatch.setattr("labkit.course.before_handing_in.examine", stopped)
     assert main(["submit-check", "01_paths.ipynb"]) == 130
     assert capsys.readouterr().err == "labkit submit-check: stopped\n"
 
@@ -154,7 +154,7 @@ def test_a_missing_package_of_instructors_is_a_sentence(package, monkeypatch, ca
     def missing(notebook):
         raise ModuleNotFoundError(name=f"{package}.exc")
 
-    monkeypatch.setattr("labkit.course.before_handing_in.look", missing)
+    monkeypatch.setattr("labkit.course.before_handing_in.examine", missing)
     if package == "sqlalchemy":
         assert main(["submit-check", "x"]) == 2
         assert "pip install 'labkit[instructor]'" in capsys.readouterr().err

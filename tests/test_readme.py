@@ -11,7 +11,7 @@ import pytest
 import labkit
 from labkit.course.layout import Course
 from labkit.course.marking import mark
-from labkit.course.messages import tell
+from labkit.course.messages import message
 from labkit.course.student import Desk
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,7 +47,7 @@ def test_the_message_shown_is_what_the_check_says():
     exec(code, names)
     desk = Desk.beside(ROOT / "assignments/03_velocity_control")
     question = desk.question("joint_velocity_pd")
-    told = iter(tell(question, mark(question, names[question.name])).splitlines())
+    told = iter(str(message(question, mark(question, names[question.name]))).splitlines())
     for line in said.splitlines():
         assert line == "  …" or line in told, line
 

@@ -12,7 +12,7 @@ from IPython.display import HTML
 
 from labkit.course.layout import Course
 from labkit.course.marking import mark
-from labkit.course.messages import tell
+from labkit.course.messages import message
 from labkit.course.student import Desk
 from solutions.study import campaign
 from solutions.study.grid import pick
@@ -68,7 +68,9 @@ def a_mistake() -> HTML:
     code = inspect.getsource(wrong).replace(wrong.__name__, question.name)
     code = code.replace(f'    """{wrong.__doc__}"""\n', "")
     code = re.sub(r": [\w.]+(?=[,)])|(?<=\)) -> [\w.]+(?=:\n)", "", code, count=5)
-    return HTML(_typed(code, "A student's answer") + _typed(tell(question, verdict), "The check's"))
+    return HTML(
+        _typed(code, "A student's answer") + _typed(str(message(question, verdict)), "The check's")
+    )
 
 
 def _typed(text: str, label: str) -> str:

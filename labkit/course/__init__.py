@@ -8,7 +8,6 @@ from __future__ import annotations
 from .baxter_cup import cup
 from .bugs import Found, Telling
 from .equivalence import AtTip, Response, TipTorque
-from .failing_case import case
 from .forms import Choose, Curve, Measured, Number, Rank
 from .identification import Identification
 from .judges import AtMost, Close, Gains, Within
@@ -20,7 +19,7 @@ from .receipt import hand_in
 from .reply import NoAnswer
 from .reveal import predict
 from .serialize import question_data, read_question
-from .student import check, hint, use
+from .student import case, check, hint, use
 from .verdict import Outcome, TestResult, Verdict
 
 __all__ = [

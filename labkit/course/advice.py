@@ -54,12 +54,12 @@ def remedy(error: BaseException) -> str:
         return f"left of the @ are {a} columns, right of it {b} rows; these must be equal"
     if isinstance(error, TypeError) and "argument" in text and "()" in text:
         return "leave the names in the function's first line as they were given"
-    return next((way_out for words, way_out in _WAYS_OUT.items() if words in text), "")
+    return next((todo for words, todo in _REMEDIES.items() if words in text), "")
 
 
 _ARRAYS = {"State": "state.q", "Sample": "target.position", "PoseSample": "target.pose"}
 """What is mostly meant where one of these is used as an array."""
-_WAYS_OUT = {
+_REMEDIES = {
     "does not have enough dimensions": "@ needs arrays on both sides; for a number write *",
     "operands could not be broadcast": "+, - and * go element by element, so sizes must be equal; "
     "the product of matrices is @",
@@ -83,18 +83,18 @@ _WAYS_OUT = {
 """What to do about an exception, by words of its message."""
 
 
-def explained(error: BaseException) -> str:
+def description(error: BaseException) -> str:
     """What the exception says, the line that raised it, and the remedy."""
     text = str(error)
     if isinstance(error, ValueError) and "gufunc" in text:
         text = "sizes that do not match"
-    line, way_out = line_of(error), remedy(error)
+    line, todo = line_of(error), remedy(error)
     where = f"in the line `{line}`" if line else ""
     sentence = ", ".join(part for part in (text, where) if part)
-    return f"{sentence}; {way_out}" if way_out else sentence
+    return f"{sentence}; {todo}" if todo else sentence
 
 
-def told(error: BaseException) -> str:
-    """The exception in one sentence: its type, and what `explained` says."""
-    sentence = explained(error)
+def full_description(error: BaseException) -> str:
+    """The exception in one sentence: its type, and `description`."""
+    sentence = description(error)
     return f"{type(error).__name__}: {sentence}" if sentence else type(error).__name__

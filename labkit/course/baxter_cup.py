@@ -104,13 +104,13 @@ def cup_run(
         Chain([*tour.parts, lap]), ready
     )  # fmt: skip
     plant = replace(known, payload=float(random.uniform(*LOAD)))
-    way = random.standard_normal(3)
+    direction = random.standard_normal(3)
     begins = float(random.uniform(0.1, 0.9)) * tour.duration
-    push = Push(FORCE * way / np.linalg.norm(way), start=begins, duration=PUSHED)
-    told = _as_seen(wanted, tour.duration)
+    push = Push(FORCE * direction / np.linalg.norm(direction), start=begins, duration=PUSHED)
+    given = _sampled_and_delayed(wanted, tour.duration)
     with Arm("left", plant, seed, q0=ready, world=World(things=[push])) as arm:
         try:
-            log = run(arm, told, make(model), rate, wanted.duration)
+            log = run(arm, given, make(model), rate, wanted.duration)
         except Diverged as error:
             return CupRun(seed, np.inf, cast(Log, error.log))
     tips = np.array([model.pose(q)[:3, 3] for q in log.q])
@@ -133,17 +133,17 @@ def _tour(T_wt: Array, random: np.random.Generator) -> tuple[Chain, Trajectory]:
     return Chain(legs), Trajectory(PosePath(Circle(p, centre), R), Quintic(LAP))
 
 
-def _as_seen(wanted: Target, since: float) -> Target:
+def _sampled_and_delayed(wanted: Target, since: float) -> Target:
     """A target that is known in full at first, and from then on by pictures, which have an age."""
 
-    def told(t: float) -> AnySample:
+    def given(t: float) -> AnySample:
         if t < since:
             return wanted(t)
         shown = max(since, np.floor((t - AGE) * PICTURES) / PICTURES)
         place, first, second = wanted(shown)
         return type(wanted(t))(place, 0.0 * first, 0.0 * second)
 
-    return told
+    return given
 
 
 def _place(model: Model, sample: AnySample) -> Array:

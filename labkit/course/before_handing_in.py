@@ -32,7 +32,7 @@ from .notebook import (
 )
 from .own_arm import arms_for, opens_the_public_arm
 from .serialize import decode
-from .source import look as look_at
+from .source import look
 from .verdict import Outcome, Verdict
 from .withheld import withheld_tools
 
@@ -98,7 +98,7 @@ class HandIn:
         return "\n".join(["```", *lines, *self.lines, "```"])
 
 
-def look(path: Path) -> HandIn:
+def examine(path: Path) -> HandIn:
     """Look through a notebook that is about to be handed in.
 
     Args:
@@ -195,7 +195,7 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
     ids = Counter(map(grade_id, cells))
     if not any(defines(cell, question) for cell in cells):
         homes = [cell for cell in cells if grade_id(cell) == question]
-        magic = next((x for x in (look_at(cell["source"])["magic"] for cell in homes) if x), "")
+        magic = next((x for x in (look(cell["source"])["magic"] for cell in homes) if x), "")
         problems.append(
             f"the cell of {question} begins with %%{magic}, which keeps what it defines to itself; "
             "take that line away"
@@ -215,7 +215,7 @@ def _cells_of(cells: list[dict[str, Any]], question: str, name: str) -> tuple[li
 def _verdict(cells: list[dict[str, Any]], question: Mapping[str, Any]) -> Verdict | None:
     """What the question's check said last, or what the answer's text says by now."""
     name = question["name"]
-    found = [look_at(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+    found = [look(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
     tools = withheld_tools(found, name, decode(question["withheld"]))
     if tools:
         points = float(question["points"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .question import Question
+from .question import Question, in_points
 
 WORDS, WHY_POINTS = (25, 80), 2.0
 """The fewest and the most words of a why, and its points."""
@@ -16,15 +16,24 @@ RUBRIC = (
 def brief_of_why(name: str, points: float, asks: str) -> str:
     """The text above a why, with what a person marks it by."""
     least, most = WORDS
-    head = f"**Why? `{name}`** · {points:g} points · {least} to {most} words of your own"
+    head = f"**Why? `{name}`** · {in_points(points)} · {least} to {most} words of your own"
     return f"{head}\n\n{asks}\n\n{RUBRIC}"
+
+
+def heading(does: str, name: str, points: float, core: bool) -> str:
+    """The first line of a brief: what to do, its points, and whether it belongs to the core."""
+    return f"**{does}: `{name}`** · {in_points(points)} · {'core' if core else 'extension'}"
+
+
+def where_hints_are(name: str) -> str:
+    """The line of a brief that says how to get a hint."""
+    return f'- Stuck? `hint("{name}", 1)` in a new cell (Esc, B): it is free.'
 
 
 def brief(question: Question) -> str:
     """The text above a stub: the task, the points, how it is tried, what is withheld."""
-    points = f"{question.points:g} point{'' if question.points == 1 else 's'}"
-    part = "core" if question.core else "extension"
-    lines = [f"**Your turn: `{question.name}`** · {points} · {part}", "", question.asks]
+    head = heading("Your turn", question.name, question.points, question.core)
+    lines = [head, "", question.asks]
     also = list(dict.fromkeys(test.also for test in question.tests if test.also))
     gates = [test.name for test in question.tests if not test.weight]
     must = f"- To earn any points your function must pass: {'; '.join(gates)}."
@@ -35,5 +44,5 @@ def brief(question: Question) -> str:
         names = " or ".join(f"`{name.replace('labkit.', 'lk.')}`" for name in question.withheld)
         lines.append(f"- Write it yourself: the answer may not use {names}.")
     if question.hints:
-        lines.append(f'- Stuck? `hint("{question.name}", 1)` in a new cell (Esc, B): it is free.')
+        lines.append(where_hints_are(question.name))
     return "\n".join(lines)

@@ -18,7 +18,7 @@ from ..plant import Plant
 from ..run import run
 from ..shapes import Array, as_array
 from ..trajectory import Chain, Hold, Sample, Trajectory
-from .forms import Choose
+from .forms import Choose, RightOrWrong
 from .verdict import Difference, Kind
 
 PLANT = Plant(name="textbook", armature=0.05, viscous=0.7, velocity_noise=0.01)
@@ -172,7 +172,7 @@ CLEAR = 5.0
 
 
 @dataclass(frozen=True)
-class Found:
+class Found(RightOrWrong):
     """What is said of a misbehaving run: its cause, and when it first shows.
 
     Attributes:
@@ -195,22 +195,14 @@ class Found:
             return None
         return Difference(Kind.VALUE, expected=str(expected), found=str(answer))
 
-    def same(self, answer: Any, other: Any) -> bool:
-        """Whether two answers are the same one."""
-        return bool(answer == other)
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """Zero if it is right, else infinite."""
-        return 0.0 if self(answer, expected) is None else float("inf")
-
-    def expected(self, bugs: tuple[Bug, ...]) -> tuple[str, float]:
-        """What is right for somebody's runs."""
-        bug = bugs[self.number]
+    def expected(self, arm: Any) -> tuple[str, float]:
+        """What is right for the runs of somebody's `OwnArm`."""
+        bug: Bug = arm.bugs[self.number]
         return bug.cause, bug.shows()
 
 
 @dataclass(frozen=True)
-class Telling:
+class Telling(RightOrWrong):
     """An experiment that tells the cause of a run from the next suspect; both runs are made.
 
     Attributes:
@@ -241,14 +233,7 @@ class Telling:
             return Difference(Kind.VALUE, expected=str(expected), found=str(one))
         return None
 
-    def same(self, answer: Any, other: Any) -> bool:
-        """Never: there are many."""
-        return False
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """Zero if it tells them apart, else infinite."""
-        return 0.0 if self(answer, expected) is None else float("inf")
-
-    def expected(self, bugs: tuple[Bug, ...]) -> str:
-        """The right first suspect."""
-        return bugs[self.number].cause
+    def expected(self, arm: Any) -> str:
+        """The right first suspect for the runs of somebody's `OwnArm`."""
+        bug: Bug = arm.bugs[self.number]
+        return bug.cause

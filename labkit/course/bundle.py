@@ -52,7 +52,12 @@ class Bundle:
             raise LabkitError(f"{path} is damaged: {error}; {remedy}") from None
         seed = data.get("seed", PUBLIC_SEED)
         check_stamp(data, str(path), f"type: labkit release {assignment} --seed {seed}")
-        checks, asked = sum(c["kind"] == "check" for c in data["cells"]), len(data["questions"])
+        try:
+            checks, asked = sum(c["kind"] == "check" for c in data["cells"]), len(data["questions"])
+        except (KeyError, TypeError):
+            raise LabkitError(
+                f"{path} is damaged: it lists no cells or questions; {remedy}"
+            ) from None
         if checks != asked:
             raise LabkitError(f"{path} is damaged: {asked} questions, {checks} checks; {remedy}")
         return cls(data, Arms.of(course.root))
@@ -66,7 +71,7 @@ class Bundle:
         if all(own is q for own, q in zip(questions, self.questions, strict=True)):
             return self
         own_hash = hashlib.sha256(f"{self.data['hash']} {arm}".encode()).hexdigest()
-        bundle = Bundle({**self.data, "hash": own_hash})
+        bundle = Bundle({**self.data, "hash": own_hash}, self.arms)
         bundle.__dict__["questions"] = questions
         return bundle
 

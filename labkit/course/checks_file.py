@@ -22,11 +22,15 @@ def read_checks(folder: Path) -> dict[str, Any]:
     remedy = "fetch the assignment's whole folder again"
     try:
         data: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
-    except (FileNotFoundError, ValueError) as error:
+        if not isinstance(data, dict):
+            raise TypeError
+        check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
+        if not isinstance(data["assignment"], str) or not isinstance(data["questions"], list):
+            raise TypeError
+    except (FileNotFoundError, KeyError, TypeError, ValueError) as error:
         there = "no" if isinstance(error, FileNotFoundError) else "only a damaged"
         raise LabkitError(
             f"there is {there} {FILE} in {folder.name!r}; it came with the notebook and belongs "
             f"beside it, so {remedy}"
         ) from None
-    check_stamp(data, f"{FILE} in {folder.name!r}", remedy)
     return data

@@ -71,9 +71,9 @@ def verb(example: str) -> Callable[[Callable[..., int]], Verb]:
 @click.option("--forum", is_flag=True, help="Print a summary to copy into a forum.")
 def submit_check(notebook: Path, forum: bool) -> int:
     """Check before you hand in: is the notebook complete?"""
-    from .before_handing_in import look
+    from .before_handing_in import examine
 
-    found = look(notebook)
+    found = examine(notebook)
     print(found.for_the_forum() if forum else found)
     return 1 if found.problems else 0
 
@@ -93,7 +93,7 @@ def merge(mine: Path, new: Path, to: Path) -> int:
 
     MINE is the notebook that you worked in; NEW is the corrected one from your instructor.
     """
-    from .merge import merge
+    from .merge import BESIDE, merge
     from .notebook import read_cells
 
     cells, released = read_cells(mine), read_cells(new)
@@ -103,9 +103,12 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     if not _is_valid(release):
         raise LabkitError(f"{new.name} is not a release; fetch the assignment's folder again")
     notebook = release | {"cells": merge(cells, released)}
+    both = sum(BESIDE in cell["source"] for cell in notebook["cells"])
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
     print(f"{to}: the new release with your work; look through it, then run all its cells")
+    if both:
+        print(f"where the new release changed what you may have changed too, it says: {BESIDE}")
     return 0
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from ..control import COMMANDS
 from ..shapes import Array
-from .factors import likely_cause
 from .question import in_brief
 from .verdict import Difference, Kind, Value
 
@@ -23,6 +23,17 @@ _MEASURES = {
     "worst_mm": ("the worst error", " mm"),
 }
 """Measures of a run in words, with their units."""
+
+_CAUSES = {
+    -1.0: "the same with the other sign",
+    math.degrees(1.0): "these look like degrees; use radians",
+    math.radians(1.0): "these look like degrees taken for radians",
+    1e3: "a thousand times too large: millimetres for metres?",
+    1e-3: "a thousand times too small",
+    2.0: "twice what is expected",
+    0.5: "half of what is expected",
+}
+"""The likely cause if all numbers are wrong by the same factor."""
 
 
 def sentence(d: Difference) -> str:
@@ -91,6 +102,17 @@ def words(d: Difference) -> tuple[str, str, str, str]:
         case Kind.OTHER:
             text = "the answer cannot be compared with the expected one"
     return text, "", "", ""
+
+
+def likely_cause(d: Difference) -> str:
+    """The likely cause of a factor; a single number may be twice or half of another by chance."""
+    if d.times is None:
+        return ""
+    single = isinstance(d.expected, float) and not d.at
+    for factor, means in _CAUSES.items():
+        if math.isclose(d.times, factor, rel_tol=1e-6) and not (single and factor in (2.0, 0.5)):
+            return means
+    return ""
 
 
 def _instead(d: Difference) -> str:

@@ -12,7 +12,7 @@ from ..errors import OutOfRange
 from ..shapes import Array
 from .bugs import Found, Telling
 from .forms import Form, Measured
-from .judges import AtMost, Close, Gains, Within, value
+from .judges import Close, Gains, Within, value
 from .verdict import Difference, Kind, Value
 
 MOST_COEFFICIENTS = 50
@@ -137,4 +137,4 @@ class AtTip:
         return float(np.max(off / (self.atol + self.rtol * scale)))
 
 
-Judge = Close | Within | AtMost | Response | Gains | AtTip | Form | Measured | Found | Telling
+Judge = Close | Within | Response | Gains | AtTip | Form | Measured | Found | Telling

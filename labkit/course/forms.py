@@ -10,6 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from .verdict import Difference, Kind
 
 COMMITTED = "committed before the arm answers"
@@ -24,7 +26,23 @@ def letters(said: Any) -> str:
     return said.strip().lower() if isinstance(said, str) else ""
 
 
-class _Form:
+class RightOrWrong:
+    """What judges share that measure no distance: an answer is right or wrong, equal or not."""
+
+    def __call__(self, answer: Any, expected: Any) -> Difference | None:
+        """None if it is right, else how it differs."""
+        raise NotImplementedError
+
+    def same(self, answer: Any, other: Any) -> bool:
+        """Whether two answers, right or wrong, are the same one."""
+        return np.array_equal(answer, other)
+
+    def distance(self, answer: Any, expected: Any) -> float:
+        """Zero if it is right, else infinite."""
+        return 0.0 if self(answer, expected) is None else float("inf")
+
+
+class _Form(RightOrWrong):
     """What the four forms share: a prediction of the right form is accepted, whatever it says."""
 
     def problem(self, said: Any) -> str:
@@ -40,11 +58,7 @@ class _Form:
         """Whether two predictions are the same one."""
         if isinstance(answer, str):
             return letters(answer) == letters(other)
-        return bool(answer == other)
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """Zero for one of this form, else infinite."""
-        return float("inf") if self.problem(answer) else 0.0
+        return super().same(answer, other)
 
 
 @dataclass(frozen=True)
@@ -122,7 +136,7 @@ class Number(_Form):
 
     def problem(self, said: Any) -> str:
         """What is wrong with the form of a prediction; "" if nothing is."""
-        if isinstance(said, bool) or not isinstance(said, int | float):
+        if isinstance(said, bool) or not isinstance(said, int | float | np.integer | np.floating):
             example = "with a point, such as 8.5" if "," in str(said) else f"({self.unit})"
             return f"it is {said!r}; write one number {example}"
         if not self.least <= said <= self.most:
@@ -175,7 +189,7 @@ Form = Choose | Rank | Number | Curve
 
 
 @dataclass(frozen=True)
-class Measured:
+class Measured(RightOrWrong):
     """A measured number, within a tolerance of the arm's; without an expected one, any plausible.
 
     Attributes:
@@ -200,16 +214,6 @@ class Measured:
         if expected is None or abs(answer - expected) <= self.tolerance:
             return None
         return Difference(Kind.NUMBERS, expected=float(expected), found=float(answer))
-
-    def same(self, answer: Any, other: Any) -> bool:
-        """Whether two numbers are the same one."""
-        return bool(answer == other)
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """How far it is off, in tolerances."""
-        if self(answer, None) is not None:
-            return float("inf")
-        return 0.0 if expected is None else abs(answer - expected) / self.tolerance
 
     def expected(self, arm: object) -> float:
         """What is right for somebody's `OwnArm`."""

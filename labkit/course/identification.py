@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Any
 
+from .brief import heading, where_hints_are
 from .bugs import Found, Telling
 from .forms import OWN_ARM, Measured
 from .own_arm import OwnArm
@@ -63,17 +64,15 @@ class Identification:
 
     def brief(self) -> str:
         """The text above the place for the answer."""
-        points = f"{self.points:g} point{'' if self.points == 1 else 's'}"
-        where = "core" if self.core else "extension"
-        hint = f'- Stuck? `hint("{self.name}", 1)`.' if self.hints else ""
         near = ""
         if isinstance(self.judge, Measured):
             near = f" It counts if it is off by at most {self.judge.tolerance:g} {self.judge.unit}."
         form = (
             f"- Write {self.form}.{near} Type values, not a calculation: the cell is not run again."
         )
-        head = f"**Find out: `{self.name}`** · {points} · {where}"
-        return "\n".join([head, "", self.asks, "", form, *filter(None, [hint])])
+        hints = [where_hints_are(self.name)] if self.hints else []
+        head = heading("Find out", self.name, self.points, self.core)
+        return "\n".join([head, "", self.asks, "", form, *hints])
 
     def cell(self) -> str:
         """The cell that the student fills in."""
@@ -86,21 +85,7 @@ class Identification:
 
 def personal(question: Question, arm: OwnArm) -> Question:
     """The question with what is true of somebody's arm; any other question as it is."""
-    judge = question.judge
-    expected: Any
-    if isinstance(judge, Measured):
-        expected = judge.expected(arm)
-    elif isinstance(judge, Found | Telling):
-        expected = judge.expected(arm.bugs)
-    else:
+    if not isinstance(question.judge, Measured | Found | Telling):
         return question
-    tests = tuple(
-        replace(
-            test,
-            cases=tuple(
-                replace(case, expected=expected) if case.hidden else case for case in test.cases
-            ),
-        )
-        for test in question.tests
-    )
-    return replace(question, tests=tests)
+    expected = question.judge.expected(arm)
+    return question.with_cases(lambda c: replace(c, expected=expected) if c.hidden else c)

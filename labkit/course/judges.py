@@ -16,6 +16,7 @@ from ..control import COMMANDS
 from ..errors import LabkitError
 from ..shapes import Array, as_array, as_gains
 from ..trajectory import PoseSample, Sample
+from .forms import RightOrWrong
 from .verdict import Difference, Kind, Value
 
 FEW = 9
@@ -130,7 +131,7 @@ class Close:
         bad = off > self.atol + self.rtol * np.abs(b)
         if not bad.any():
             return None
-        times = _times(a, b)
+        times = factor(a, b)
         if b.size <= FEW:
             return Difference(Kind.NUMBERS, part, expected=value(b), found=value(a), times=times)
         at = np.unravel_index(int(np.argmax(np.where(bad, off, -1.0))), b.shape)
@@ -173,17 +174,13 @@ class AtMost:
                 return Difference(Kind.MEASURE, name, (), float(limit), value(answer[name]))
         return None
 
-    def same(self, answer: dict[str, float], other: dict[str, float]) -> bool:
-        """Whether two runs measure the same."""
-        return Close().same(answer, other)
-
     def distance(self, answer: dict[str, float], expected: dict[str, float]) -> float:
         """The largest ratio of a measure to its limit."""
         return max(answer[name] / limit for name, limit in expected.items())
 
 
 @dataclass(frozen=True)
-class Gains:
+class Gains(RightOrWrong):
     """A pair (kp, kd) of which many are right; a run tells how good they are.
 
     Each is one number or one for each joint, none below 0.
@@ -206,10 +203,6 @@ class Gains:
         except (LabkitError, TypeError, ValueError):
             return False
         return bool(((a <= 1.5 * b) & (b <= 1.5 * a)).all())
-
-    def distance(self, answer: Any, expected: Any) -> float:
-        """Zero for such a pair, else infinite."""
-        return 0.0 if self(answer, expected) is None else float("inf")
 
     @staticmethod
     def _read(answer: Any) -> Array:
@@ -261,11 +254,11 @@ def _refused(error: LabkitError) -> Difference:
     return Difference(Kind.REFUSED, found=str(error))
 
 
-def _times(a: Array, b: Array) -> float | None:
-    """The one factor by which all numbers are off; None where there is none."""
+def factor(a: Array, b: Array) -> float | None:
+    """What all numbers of b are multiplied by to give a; None where there is no such factor."""
     size = float(np.vdot(b, b))
     if not size:
         return None
-    factor = float(np.vdot(b, a)) / size
+    times = float(np.vdot(b, a)) / size
     near = 1e-9 * float(np.abs(b).max())
-    return factor if np.allclose(a, factor * b, rtol=1e-6, atol=near) else None
+    return times if np.allclose(a, times * b, rtol=1e-6, atol=near) else None

@@ -6,7 +6,7 @@ and seeds of the noise these distances spread; the margin is how many of their s
 lie between their mean and the tolerance.  Logarithms are compared, since distances spread over
 decades.  Where nothing spreads there is no sigma.
 
-A run is made once for each function, however many draws ask for it.
+A run of the arm is made once for each function, however many draws ask for it.
 """
 
 from __future__ import annotations
@@ -162,7 +162,4 @@ def remembering(questions: Sequence[Question]) -> list[Question]:
     def case(x: Case) -> Any:
         return x if isinstance(x, Call | Choice) else Remembered(x, memory)
 
-    return [
-        replace(q, tests=tuple(replace(t, cases=tuple(map(case, t.cases))) for t in q.tests))
-        for q in questions
-    ]
+    return [question.with_cases(case) for question in questions]

@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import Diverged, LabkitError
 from ..log import Log
 from ..shapes import Array
-from .advice import told
+from .advice import full_description
 from .equivalence import Judge
 from .judges import AtMost, Close, numbers
 from .question import Call, Case, Choice, Loop, Mistake, Question, Raised, Test, Tuned
@@ -60,10 +60,12 @@ class Tried:
     Attributes:
         results: One for each test, as far as its public cases tell.
         answers: What came back from each case that was asked.
+        failing: The first call that is not right, if there is one.
     """
 
     results: tuple[TestResult, ...]
     answers: Mapping[Case, Any]
+    failing: Call | None = None
 
     @property
     def outcome(self) -> Outcome:
@@ -146,15 +148,17 @@ def try_public(question: Question, function: Callable[..., Any]) -> Tried:
     Where one fails, all public calls are made, by which a known mistake can be told.
     """
     answers: dict[Case, Any] = {}
-    results = tuple(
-        _try(test, [c for c in test.cases if not c.hidden], question, function, answers)
-        for test in question.tests
-    )
+    results, failing = [], None
+    for test in question.tests:
+        cases = [case for case in test.cases if not case.hidden]
+        results.append(_try(test, cases, question, function, answers))
+        stopped = next(reversed(answers)) if results[-1].difference else None
+        failing = failing or (stopped if isinstance(stopped, Call) else None)
     if _outcome(results) in (Outcome.WRONG, Outcome.ERROR):
         for call in question.calls:
             if call not in answers:
                 answers[call] = _answer(call, function)
-    return Tried(results, answers)
+    return Tried(tuple(results), answers, failing)
 
 
 def _outcome(results: Sequence[TestResult]) -> Outcome:
@@ -177,14 +181,10 @@ def _outcome(results: Sequence[TestResult]) -> Outcome:
 def recognise(question: Question, answers: list[Any]) -> Mistake | None:
     """The known mistake that gives just these answers on the public calls, if there is one."""
     for mistake in question.mistakes:
-        if (
-            answers
-            and len(answers) == len(mistake.answers)
-            and all(
-                _same(question.judge, a, b) for a, b in zip(answers, mistake.answers, strict=True)
-            )
-        ):
-            return mistake
+        if answers and len(answers) == len(mistake.answers):
+            pairs = zip(answers, mistake.answers, strict=True)
+            if all(_same(question.judge, given, known) for given, known in pairs):
+                return mistake
     return None
 
 
@@ -215,7 +215,7 @@ def _failure(error: BaseException) -> _Failure:
     cause = error.__cause__ if isinstance(error, LabkitError) and error.__cause__ else error
     kind = cause.kind if isinstance(cause, NoAnswer) else type(cause).__name__
     known = isinstance(error, NoAnswer) or (isinstance(error, LabkitError) and error.__cause__)
-    sentence = str(error) if known else told(error)
+    sentence = str(error) if known else full_description(error)
     log = error.log if isinstance(error, Diverged) and isinstance(error.log, Log) else None
     return _Failure(kind, sentence, log, cause.tool if isinstance(cause, Withheld) else "")
 
@@ -287,10 +287,9 @@ def _judge(question: Question, test: Test) -> Judge:
 
 
 def _same(judge: Judge, answer: Any, known: Any) -> bool:
-    if isinstance(answer, Raised) or isinstance(known, Raised):
-        return (
-            isinstance(answer, Raised) and isinstance(known, Raised) and answer.kind == known.kind
-        )
+    kind, known_kind = (x.kind if isinstance(x, Raised) else None for x in (answer, known))
+    if kind is not None or known_kind is not None:
+        return kind == known_kind
     try:
         return judge.same(answer, known)
     except Exception:

@@ -9,12 +9,17 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import LabkitError
-from .notebook import about, defines, grade_id
+from .notebook import about, defines, grade_id, is_edited, released
 from .source import is_stub, plain
 
+Cells = list[dict[str, Any]]
 
-def merge(mine: list[dict[str, Any]], new: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The new release's cells with the student's answers, and the cells that they added.
+BESIDE = "Here your notebook said what follows; copy what you still need of it."
+"""Above a student's text of a cell that the new release changed too, or does not have."""
+
+
+def merge(mine: Cells, new: Cells) -> Cells:
+    """The new release's cells with the student's answers and edits, and the cells that they added.
 
     Args:
         mine: The student's cells.
@@ -23,7 +28,8 @@ def merge(mine: list[dict[str, Any]], new: list[dict[str, Any]]) -> list[dict[st
     Returns:
         The new release, in its order.  An answer is found by the function that it defines, else by
         the question that its cell was made for; a cell of the student's own follows the cell that
-        it followed.
+        it followed.  Any other cell that they changed stays as they wrote it where the new release
+        did not change it; else their text follows the new one as a comment, below `BESIDE`.
 
     Raises:
         LabkitError: The new notebook is not a release, or none of the student's cells answers any
@@ -32,7 +38,7 @@ def merge(mine: list[dict[str, Any]], new: list[dict[str, Any]]) -> list[dict[st
     if not new or not all(isinstance(cell.get("id"), str) for cell in new):
         raise LabkitError("the new notebook is not a release; fetch the assignment's folder again")
     merged = copy.deepcopy(new)
-    home = _homes(new)
+    home = _homes(mine, new)
     asked = [cell for cell in merged if _is_asked(cell)]
     answers = [_answer(mine, grade_id(cell)) for cell in asked]
     if asked and not any(_cells_for(mine, grade_id(cell)) for cell in asked):
@@ -44,32 +50,41 @@ def merge(mine: list[dict[str, Any]], new: list[dict[str, Any]]) -> list[dict[st
         if answer is not None:
             cell["source"] = answer
     anchor = -1
-    after: dict[int, list[dict[str, Any]]] = {}
+    after: dict[int, Cells] = {}
+    given = {"", *(cell["source"].strip() for cell in new)}
     for cell in mine:
         place = home(cell)
-        if place is not None:
-            anchor = place
-        elif _is_own(cell, new):
-            number = sum(map(len, after.values()))
-            after.setdefault(anchor, []).append(copy.deepcopy(cell) | {"id": f"own-{number:04d}"})
+        anchor = anchor if place is None else place
+        own = _is_own(cell, new)
+        if cell["source"].strip() in given or not (own or is_edited(cell)):
+            continue
+        if place is not None and _takes(merged[place], cell):
+            merged[place]["source"] = cell["source"]
+            continue
+        number = sum(map(len, after.values()))
+        kept = copy.deepcopy(cell) if own else _beside(cell)
+        after.setdefault(anchor, []).append(kept | {"id": f"own-{number:04d}"})
     result = after.get(-1, [])
     for k, cell in enumerate(merged):
         result += [cell, *after.get(k, [])]
     return result
 
 
-def _homes(new: list[dict[str, Any]]) -> Callable[[dict[str, Any]], int | None]:
+def _homes(mine: Cells, new: Cells) -> Callable[[dict[str, Any]], int | None]:
     """A function that tells where in the new release a released cell belongs.
 
     Ids count the cells of a release, so where a question was added they mean other cells from there
-    on; what a cell is for and what it says are better signs.
+    on; what a cell is for, the text that was given and what it says are better signs.
     """
     purposes = {grade_id(cell): k for k, cell in enumerate(new) if grade_id(cell)}
+    texts = {released(cell): k for k, cell in enumerate(new) if released(cell)}
     sources = {cell["source"]: k for k, cell in enumerate(new)}
-    ids = {cell["id"]: k for k, cell in enumerate(new)}
+    known = {released(cell) for cell in mine} - {""}
+    ids = {cell["id"]: k for k, cell in enumerate(new) if released(cell) not in known}
 
     def home(cell: dict[str, Any]) -> int | None:
-        for found in (purposes.get(grade_id(cell)), sources.get(cell["source"])):
+        text = None if _is_own(cell, new) else texts.get(released(cell))
+        for found in (purposes.get(grade_id(cell)), text, sources.get(cell["source"])):
             if found is not None:
                 return found
         return ids.get(str(cell.get("id")))
@@ -81,20 +96,37 @@ def _is_asked(cell: dict[str, Any]) -> bool:
     return bool(about(cell).get("solution"))
 
 
-def _is_own(cell: dict[str, Any], new: list[dict[str, Any]]) -> bool:
+def _is_own(cell: dict[str, Any], new: Cells) -> bool:
     """Whether the student added a cell; one of an older release has an id of the release's form."""
     stem = new[0]["id"].rpartition("-")[0]
-    released = re.fullmatch(rf"{re.escape(stem)}-\d+", str(cell.get("id", "")))
-    return not grade_id(cell) and not released and bool(cell["source"].strip())
+    of_release = re.fullmatch(rf"{re.escape(stem)}-\d+", str(cell.get("id", "")))
+    return not grade_id(cell) and not of_release and bool(cell["source"].strip())
 
 
-def _answer(mine: list[dict[str, Any]], name: str) -> str | None:
+def _takes(there: dict[str, Any], cell: dict[str, Any]) -> bool:
+    """Whether a cell of the new release has the text that the student was given, and still has."""
+    same = released(there) == released(cell) and there["cell_type"] == cell["cell_type"]
+    return bool(released(cell)) and same and not is_edited(there)
+
+
+def _beside(cell: dict[str, Any]) -> dict[str, Any]:
+    """What a student wrote into a released cell, as a cell that is read and not run."""
+    code = cell["cell_type"] == "code"
+    lines = [BESIDE, *cell["source"].splitlines()]
+    text = "\n".join(f"{'#' if code else '>'} {line}".rstrip() for line in lines)
+    made: dict[str, Any] = {"metadata": {}, "source": text}
+    if code:
+        return made | {"cell_type": "code", "outputs": [], "execution_count": None}
+    return made | {"cell_type": "markdown"}
+
+
+def _answer(mine: Cells, name: str) -> str | None:
     """The last cell in which something was written, which is the one that counts in marking."""
     sources = [str(cell["source"]) for cell in _cells_for(mine, name)]
     return next((source for source in reversed(sources) if not _is_unwritten(source)), None)
 
 
-def _cells_for(mine: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+def _cells_for(mine: Cells, name: str) -> Cells:
     """The cells that define an answer, else those that were made for it."""
     defining = [cell for cell in mine if defines(cell, name)]
     return defining or [cell for cell in mine if grade_id(cell) == name]

@@ -7,10 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ..errors import ControllerError
-from .differences import sentence, words
-from .factors import likely_cause
+from .differences import likely_cause, sentence, words
 from .forms import COMMITTED, OWN_ARM
-from .question import Loop, Question, Test, Tuned
+from .question import Loop, Question, Test, Tuned, in_points
 from .verdict import Difference, Kind, Misconception, Outcome, TestResult, Verdict
 from .withheld import spoken
 
@@ -34,7 +33,7 @@ _SHORT = {Outcome.RIGHT: "passed", Outcome.NOT_TRIED: "not tried here"}
 
 def head(verdict: Verdict) -> str:
     """The verdict in one line."""
-    points = f"{verdict.points:g} point{'' if verdict.points == 1 else 's'}"
+    points = in_points(verdict.points)
     says = word(verdict)
     if verdict.withheld:
         says += f": {uses(verdict.withheld)}"
@@ -141,13 +140,6 @@ def message(
             tests = [named(test) for test in verdict.tests]
             numbers = _numbers(question, verdict)
     return Message(head(verdict), helps, tests, numbers, _printed(printed), hint)
-
-
-def tell(
-    question: Question, verdict: Verdict, printed: str = "", leans_on: Sequence[str] = ()
-) -> str:
-    """The same as lines of text, the verdict first."""
-    return str(message(question, verdict, printed, leans_on))
 
 
 def summary(verdict: Verdict) -> list[str]:

@@ -8,8 +8,8 @@ that name with "-check".
 
 from __future__ import annotations
 
+import hashlib
 import json
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,7 +21,7 @@ from .identification import Identification
 from .predictions import Prediction
 from .question import Question
 from .serialize import read_record, record_data
-from .source import look
+from .unfinished import defined_in
 from .verdict import Verdict
 
 Cell = Mapping[str, Any]
@@ -30,6 +30,8 @@ KERNEL = {"display_name": "Python 3 (ipykernel)", "language": "python", "name": 
 _CHECK = "-check"
 _OUTPUT = "labkit"
 """Under this name the output of a check holds its verdict."""
+_RELEASED = "released"
+"""Under this name a cell that students may change holds a hash of the text that they were given."""
 
 
 def read_cells(path: Path, text: bytes | None = None) -> list[dict[str, Any]]:
@@ -65,8 +67,28 @@ def read_cells(path: Path, text: bytes | None = None) -> list[dict[str, Any]]:
 
 
 def kind(cell: Cell) -> str:
-    """Which of the five kinds a released cell is of; "" for any other."""
+    """Which of the six kinds a released cell is of; "" for any other."""
     return str(_metadata(cell).get("lab", ""))
+
+
+def released(cell: Cell) -> str:
+    """A short hash of the text with which a walk or a brief was released; "" for any other cell."""
+    found = _metadata(cell).get(_RELEASED)
+    return found if isinstance(found, str) else ""
+
+
+def _hashed(source: str) -> str:
+    return hashlib.sha256(source.strip().encode(errors="surrogatepass")).hexdigest()[:12]
+
+
+def is_edited(cell: Cell) -> bool:
+    """Whether a student changed a walk or a brief, as far as can be told.
+
+    Of a notebook that an older labkit released nothing can be told; there each walk may be changed.
+    """
+    if released(cell):
+        return released(cell) != _hashed(cell["source"])
+    return kind(cell) == "walk"
 
 
 def grade_id(cell: Cell) -> str:
@@ -99,13 +121,7 @@ def by_hand(cell: Cell) -> bool:
 
 def defines(cell: Cell, name: str) -> bool:
     """Whether a code cell defines a function, a class or a value of that name."""
-    if cell["cell_type"] != "code":
-        return False
-    found = look(cell["source"])
-    if found["broken"]:
-        pattern = rf"^(def|class)\s+{name}\b|^{name}\s*="
-        return bool(re.search(pattern, cell["source"], re.MULTILINE))
-    return name in found["binds"]
+    return cell["cell_type"] == "code" and name in defined_in(cell["source"])
 
 
 def checks(cell: Cell, name: str) -> bool:
@@ -281,6 +297,8 @@ def _cell(kind: str, source: str, lab: str, nbgrader: dict[str, Any]) -> dict[st
     if nbgrader:
         metadata |= {"nbgrader": nbgrader, "deletable": False}
         metadata["editable"] = not nbgrader["locked"]
+    else:
+        metadata[_RELEASED] = _hashed(source)
     cell = {"cell_type": kind, "metadata": metadata, "source": source}
     return cell | ({"outputs": [], "execution_count": None} if kind == "code" else {})
 

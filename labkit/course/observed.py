@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from .judges import factor
 from .marking import Tried
 from .probes import arrays, exchanges, variations
 from .question import Call, Case, Question
-from .relations import Parts, all_near, factor, related, same_form
+from .relations import Parts, all_near, related, same_form
 from .verdict import Misconception, Outcome, Verdict
 
 Function = Callable[..., Any]
@@ -24,7 +25,7 @@ LONGEST = 3.0
 """Seconds that are spent on asking a function again."""
 
 
-def explained(question: Question, verdict: Verdict, tried: Tried, function: Function) -> Verdict:
+def diagnosed(question: Question, verdict: Verdict, tried: Tried, function: Function) -> Verdict:
     """The verdict on a wrong answer with what is seen of it, unless it is a known mistake.
 
     Args:
@@ -124,5 +125,5 @@ def _share(given: list[Parts], expected: list[Parts], right: list[Parts]) -> str
     g, e, r = (
         np.concatenate([x.ravel() for parts in z for x in parts]) for z in (given, expected, right)
     )
-    times = factor(g - r, e - r)
+    times = factor(g - r, e - r) or 0.0
     return next((says for value, says in _SHARES.items() if abs(times - value) < 1e-6), "")

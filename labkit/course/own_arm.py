@@ -1,7 +1,7 @@
 """An arm of one's own: no two handles have the same one; who knows the secret draws it again.
 
 Payload, stiction, lag and a wall follow from the HMAC of the handle under the term's secret.  What
-students get holds each number as a sealed text, so that nobody reads one by accident.  A
+students get holds each arm as a sealed text, so that nobody reads a number by accident.  A
 student who unseals it has missed the experiment, and the grader cannot tell.
 """
 
@@ -238,14 +238,18 @@ def _unsealed(handle: str) -> OwnArm:
             f"there is no {FILE} here or in the two folders above; your instructor hands it out "
             f"with the notebooks of your course. To practise, take lk.my_arm({DEMO!r})"
         )
-    arms = json.loads(file.read_text(encoding="utf-8"))
-    text = arms.get(_hashed(handle))
-    if text is None:
+    try:
+        text = json.loads(file.read_text(encoding="utf-8")).get(_hashed(handle))
+        if text is not None:
+            sealed = json.loads(_mixed(base64.b64decode(text), handle))
+            return OwnArm(**sealed | {"bugs": tuple(Bug(**bug) for bug in sealed["bugs"])})
+    except (AttributeError, KeyError, TypeError, ValueError):
         raise LabkitError(
-            f"{FILE} has no arm for {handle!r}; write your handle as your course gave it to you"
-        )
-    sealed = json.loads(_mixed(base64.b64decode(text), handle))
-    return OwnArm(**sealed | {"bugs": tuple(Bug(**bug) for bug in sealed["bugs"])})
+            f"{file} is damaged; put the {FILE} that your instructor handed out in its place"
+        ) from None
+    raise LabkitError(
+        f"{FILE} has no arm for {handle!r}; write your handle as your course gave it to you"
+    )
 
 
 def _hashed(handle: str) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .forms import COMMITTED, Choose, Form, Rank
-from .question import Call, Question, Test
+from .question import Call, Question, Test, in_points
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,8 @@ class Prediction:
         """The text above the place for the prediction."""
         form = self.form
         options = form.options.items() if isinstance(form, Choose | Rank) else ()
-        head = f"**Predict first: `{self.name}`** · 1 point for committing, right or wrong"
+        earns = f"{in_points(self.points)} for committing, right or wrong"
+        head = f"**Predict first: `{self.name}`** · {earns}"
         lines = [head, "", self.asks, "", *(f"- ({letter}) {text}" for letter, text in options)]
         mouse = "run the cell, choose with the mouse, and run the same cell again"
         how = f"Write {form.how}, in place of `None`; or {mouse}."

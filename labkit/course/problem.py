@@ -84,8 +84,6 @@ class Problem:
         wrong: Known mistakes.
         variants: Right answers in another form; every one must pass.
         expected: What to compare with, where that is not the answer's own output.
-        free_share: Share of the points that the notebook's stand-in, or the public cases learnt by
-            heart, may earn.  Say why where it is above 0.
         core: Whether it belongs to the core path; else it is an extension.
         outcomes: What it is evidence of, names of `outcomes.OUTCOMES`.
     """
@@ -101,7 +99,6 @@ class Problem:
     wrong: tuple[Wrong, ...] = ()
     variants: tuple[Callable[..., Any], ...] = ()
     expected: Callable[..., Any] | None = None
-    free_share: float = 0.0
     core: bool = True
     outcomes: tuple[str, ...] = ()
 

@@ -291,13 +291,17 @@ class Question:
 
     def public(self) -> Question:
         """The same question without its hidden cases."""
-        return replace(
-            self,
-            tests=tuple(
-                replace(test, cases=tuple(case for case in test.cases if not case.hidden))
-                for test in self.tests
-            ),
-        )
+        return self.with_cases(lambda case: None if case.hidden else case)
+
+    def with_cases(self, change: Callable[[Case], Case | None]) -> Question:
+        """The same question with each case changed, and without those that are changed to None."""
+        tests = (replace(t, cases=tuple(filter(None, map(change, t.cases)))) for t in self.tests)
+        return replace(self, tests=tuple(tests))
+
+
+def in_points(points: float) -> str:
+    """Points as one would write them: "1 point", "2.5 points"."""
+    return f"{points:g} point{'' if points == 1 else 's'}"
 
 
 def in_brief(x: Any) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from .before_handing_in import HandIn, look
+from .before_handing_in import HandIn, examine
 from .messages import wrapped
 from .notebook import read_cells
 from .student import shell
@@ -30,7 +30,7 @@ def hand_in(name: str) -> None:
         LabkitError: The file is missing or is not a notebook.
     """
     path = Path.cwd() / f"{name}.ipynb"
-    found = look(path)
+    found = examine(path)
     sources = [cell["source"] for cell in read_cells(path)]
     saved = datetime.fromtimestamp(path.stat().st_mtime, UTC).astimezone()
     lines = [

@@ -8,11 +8,9 @@ is drawn; the other answers are right there.
 from __future__ import annotations
 
 import ast
-import dis
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from types import CodeType
 from typing import Any
 
 from ..control import JointTorque
@@ -24,12 +22,14 @@ from .problem import Problem
 from .question import Call, Question
 from .reply import Here
 from .serialize import encode
-from .source import look, names_defined
+from .source import look, needed
 from .verdict import Outcome
 from .withheld import withheld_tools, withhold
 
 USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"
 """Takes the place of the notebook's, since the other parts are right."""
+STAND_IN = "the_stand_in"
+"""What a stand-in is called where it is tried alone."""
 
 
 def refusals(
@@ -58,21 +58,18 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
                 f"the test {test.name!r} carries {question.points * test.weight / whole:g} of "
                 f"{question.points:g} points and has no hidden case; give its Trial a maker of them"
             )
-    most = problem.free_share * question.points
     earned = _earned(question, by_heart(question))
-    if earned > most:
+    if earned > 0.0:
         yield (
             f"an answer that memorises its public cases earns {earned:g} of {question.points:g} "
-            f"points; the problem's free_share allows {most:g}. Give the tests that "
-            "pay hidden cases"
+            "points; give the tests that pay hidden cases"
         )
     earned = 0.0 if text is None else _stand_in_earns(question, text)
-    if earned > most:
+    if earned > 0.0:
         yield (
             "the stand-in that the notebook uses until a student has an answer, the third argument "
-            f"of use(), earns {earned:g} of {question.points:g} points; the problem's free_share "
-            f"allows {most:g}. Make the stand-in worse than the answer, or withhold the tool that "
-            "it uses"
+            f"of use(), earns {earned:g} of {question.points:g} points; make the stand-in worse "
+            "than the answer, or withhold the tool that it uses"
         )
     yield from _alike(question, problem)
 
@@ -123,9 +120,9 @@ def _key(args: tuple[Any, ...], kwargs: Mapping[str, Any]) -> str:
 
 def _stand_in_earns(question: Question, text: str) -> float:
     """What the stand-in is worth as an answer; withheld tools count nothing."""
-    if withheld_tools([look(text)], question.name, question.withheld):
+    if withheld_tools([look(text)], STAND_IN, question.withheld):
         return 0.0
-    function = _run(question.name, text)
+    function = _run(text)
     with withhold(question.withheld, function.__globals__):
         return _earned(question, Here(function, question.withheld))
 
@@ -139,7 +136,7 @@ def _earned(question: Question, function: Callable[..., Any]) -> float:
 
 
 def stand_ins(source: Notebook) -> dict[str, str]:
-    """The stand-in of each question that has one, as Python text that defines it by that name.
+    """The stand-in of each question that has one, as Python text that defines `STAND_IN`.
 
     Args:
         source: The notebook with its solution regions.
@@ -151,36 +148,20 @@ def stand_ins(source: Notebook) -> dict[str, str]:
         for node in ast.walk(statement):
             match node:
                 case ast.Call(ast.Name("use"), [ast.Constant(str() as name), _, given, *_]):
-                    found[name] = _text(name, given, statements[:k])
+                    found[name] = _text(given, statements[:k])
     return found
 
 
-def _run(name: str, text: str) -> Callable[..., Any]:
-    """The function of that name which a text defines."""
-    names: dict[str, Any] = {"__name__": f"the stand-in of {name}"}
-    exec(text, names)
-    function: Callable[..., Any] = names[name]
-    return function
-
-
-def _text(name: str, given: ast.expr, before: Sequence[ast.stmt]) -> str:
+def _text(given: ast.expr, before: Sequence[ast.stmt]) -> str:
     """The stand-in as a function of its own, after all that it needs from what stands before."""
-    call = f"return ({ast.unparse(given)})(*args, **kwargs)"
-    parts = [f"def {name}(*args, **kwargs):\n    {call}\n"]
-    wanted = set(_needs(parts[0]))
-    for statement in reversed(before):
-        if not wanted.isdisjoint({*names_defined(statement)} - {"use"}):
-            parts.append(ast.unparse(statement))
-            wanted.update(_needs(parts[-1]))
-    return "\n\n".join([USE, *reversed(parts)])
+    made = f"def {STAND_IN}(*args, **kwargs):\n    return ({ast.unparse(given)})(*args, **kwargs)"
+    source = "\n".join([*map(ast.unparse, before), made])
+    return "\n\n".join([USE, *needed(source, STAND_IN, ["use"])])
 
 
-def _needs(text: str) -> Iterator[str]:
-    """The names that a statement takes from outside, its functions' bodies included."""
-    waiting = [compile(text, "", "exec")]
-    while waiting:
-        code = waiting.pop()
-        waiting += [x for x in code.co_consts if isinstance(x, CodeType)]
-        yield from (
-            x.argval for x in dis.get_instructions(code) if x.opname in ("LOAD_GLOBAL", "LOAD_NAME")
-        )
+def _run(text: str) -> Callable[..., Any]:
+    """The stand-in that a text defines."""
+    names: dict[str, Any] = {"__name__": STAND_IN}
+    exec(text, names)
+    function: Callable[..., Any] = names[STAND_IN]
+    return function

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..shapes import Array
+from .judges import factor
 from .probes import arguments
 from .question import Call, Question
 
@@ -60,6 +61,8 @@ def related(
     question: Question, calls: Sequence[Call], given: list[Parts], expected: list[Parts]
 ) -> str:
     """How the one wrong part of an answer, or all of it, is related to the right one."""
+    if len(set(map(len, expected))) > 1:
+        return ""
     parts: list[tuple[Sequence[Array], Sequence[Array]]] = list(
         zip(zip(*given, strict=True), zip(*expected, strict=True), strict=True)
     )
@@ -108,30 +111,16 @@ def _relations(
         yield f"is {float(a[0]):.5g}, whatever it is called with"
     if all_near(a, [-x for x in b]):
         yield "has the other sign"
-    for name in given[0]:
-        x = [g[name] for g in given]
-        if all(
-            isinstance(y, np.ndarray) and y.shape == z.shape for y, z in zip(x, a, strict=True)
-        ) and all_near(a, x):
-            yield f"is `{name}` itself"
     if len({x.shape for x in b}) == 1 and b[0].ndim and not joined:
-        yield from _matrices(a, b) if b[0].ndim == 2 else ()
+        yield from _exchanged_rows(a, b) if b[0].ndim == 2 else ()
         yield from _rows(a, b)
-    told = [(factor(x, y), g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
-    if len(told) > 1 and all(times for times, _ in told):
-        yield from _factors(np.array([times for times, _ in told]), [g for _, g in told])
+    moved = [(x, y, g) for x, y, g in zip(a, b, given, strict=True) if x.any() or y.any()]
+    factors = list(filter(None, (factor(x, y) for x, y, _ in moved)))
+    if 1 < len(factors) == len(moved):
+        yield from _factors(np.array(factors), [g for _, _, g in moved])
 
 
-def _matrices(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
-    if b[0].shape[0] == b[0].shape[1]:
-        if all_near(a, [x.T for x in b]):
-            yield "is the transpose of what it should be"
-        if all(np.linalg.cond(x) < 1e9 for x in b) and all_near(
-            a, [np.asarray(np.linalg.inv(x), dtype=float) for x in b]
-        ):
-            yield "is the inverse of what it should be"
-        if all_near(a, [np.diag(np.diag(x)) for x in b]):
-            yield "has zeros beside the diagonal, and on it, it is right"
+def _exchanged_rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
     rows = range(len(b[0]))
     for order in permutations(rows) if len(rows) <= 6 else ():
         if order != tuple(rows) and all_near(a, [x[list(order)] for x in b]):
@@ -157,13 +146,6 @@ def _rows(a: Sequence[Array], b: Sequence[Array]) -> Iterator[str]:
             yield f"is right but for {which}, which {have} the other sign"
 
 
-def factor(a: Array, b: Array) -> float:
-    """What all numbers of b are multiplied by to give a; 0 if there is no such factor."""
-    size = float(np.vdot(b, b))
-    times = float(np.vdot(b, a)) / size if size else 0.0
-    return times if _near(a, times * b) else 0.0
-
-
 def _factors(factors: Array, given: Sequence[Mapping[str, Any]]) -> Iterator[str]:
     for words, value in _FACTORS.items():
         if np.allclose(factors, value, rtol=1e-6):
@@ -172,8 +154,8 @@ def _factors(factors: Array, given: Sequence[Mapping[str, Any]]) -> Iterator[str
             yield f"is what it should be, divided by {words}"
     if np.ptp(factors) > 1e-6 * np.abs(factors).max():
         for name in given[0]:
-            x = [g[name] for g in given]
-            if all(isinstance(y, float | int) and y > 0 for y in x):
+            x = [g[name] for g in given if name in g]
+            if len(x) == len(given) and all(isinstance(y, float | int) and y > 0 for y in x):
                 for words, power in _POWERS.items():
                     if np.allclose(factors, np.power(x, power), rtol=1e-6):
                         yield f"is what it should be, {words.format(name)}"

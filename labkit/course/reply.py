@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import LabkitError, TypeMismatch
-from .advice import explained
+from .advice import description
 from .calling import ArgumentChanged, call
 from .serialize import decode_answer, encode
 from .withheld import Withheld
@@ -107,7 +107,7 @@ def kind(error: BaseException) -> str:
 def sentence(error: BaseException) -> str:
     """What an exception says, whatever its author made of it."""
     try:
-        return explained(error)[:LONGEST]
+        return description(error)[:LONGEST]
     except BaseException:
         return "(its message cannot be shown)"
 

@@ -8,8 +8,8 @@ little, where only hidden cases reject a mistake, or where an answer comes neare
 
 from __future__ import annotations
 
-import importlib.util
 import json
+import runpy
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -30,7 +30,7 @@ Functions = Mapping[str, Sequence[Callable[..., Any]]]
 
 DRAWS = 20
 HANGS = 600.0
-"""Seconds after which one call of an answer is stopped; no limit, a guard against endless ones."""
+"""Seconds after which one call of an answer is stopped, because it may be endless."""
 NEAREST = 3.0
 """Sigmas that must lie between every answer and the tolerance."""
 LARGEST_PART = 0.6
@@ -70,7 +70,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Card:
+class ReportCard:
     """The whole card.
 
     Attributes:
@@ -121,7 +121,7 @@ def make(
     variants: Functions | None = None,
     progress: Callable[[Row], None] = lambda row: None,
     draws: int = DRAWS,
-) -> Card:
+) -> ReportCard:
     """Mark everything that is known of some assignments.
 
     Args:
@@ -153,7 +153,7 @@ def make(
         )
         rows.append(_row(name, problem, seed, draws, *more))
         progress(rows[-1])
-    return Card(seed, draws, tuple(rows))
+    return ReportCard(seed, draws, tuple(rows))
 
 
 def _asked(course: Course, assignment: str, only: str) -> Sequence[Problem]:
@@ -235,15 +235,11 @@ def functions_from(file: Path, table: str) -> Functions:
     Raises:
         LabkitError: There is no such file, it does not run, or there is no such dict in it.
     """
-    spec = importlib.util.spec_from_file_location("answers_from_outside", file)
-    if spec is None or spec.loader is None or not file.exists():
-        raise LabkitError(f"{file} is not a Python file; give one with a dict {table}")
-    module = importlib.util.module_from_spec(spec)
     try:
-        spec.loader.exec_module(module)
+        names = runpy.run_path(str(file))
     except (Exception, SystemExit) as error:
         raise LabkitError(f"{file} does not run: {type(error).__name__}: {error}") from error
-    found: Functions | None = getattr(module, table, None)
+    found: Functions | None = names.get(table)
     form = f"write {table} = {{question: [functions]}}"
     if not isinstance(found, dict):
         raise LabkitError(f"{file} has no dict {table}; {form}")
@@ -253,7 +249,7 @@ def functions_from(file: Path, table: str) -> Functions:
     return found
 
 
-def write(card: Card, folder: Path) -> tuple[Path, Path]:
+def write(card: ReportCard, folder: Path) -> tuple[Path, Path]:
     """Write ``report_card.json`` and ``report_card.md`` into a folder; returns both paths."""
     folder.mkdir(parents=True, exist_ok=True)
     table, page = folder / "report_card.json", folder / "report_card.md"
@@ -262,7 +258,7 @@ def write(card: Card, folder: Path) -> tuple[Path, Path]:
     return table, page
 
 
-def markdown(card: Card) -> str:
+def markdown(card: ReportCard) -> str:
     """The card as a page."""
     data = card.data()
     nearest = [f"{margin:.2f} ({row.assignment}/{row.question})" for margin, row in card.nearest]

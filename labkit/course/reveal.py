@@ -36,7 +36,7 @@ def predict(name: str, said: Any = None, *, truth: Any = None) -> Any:
         _reveal(name, form, truth)
         return None
     first = place.committed.get(name)
-    if name in place.revealed and first is not None and said != first:
+    if name in place.revealed and first is not None and not form.same(first, said):
         print(wrapped(f"The answer was shown, so your first prediction stays: {first!r}."))
         _write_down(name, first)
         return first

@@ -10,7 +10,7 @@ import ast
 import re
 import symtable
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
@@ -137,18 +137,24 @@ def imported(node: ast.AST) -> dict[str, str]:
     return {}
 
 
-def names_defined(node: ast.stmt) -> list[str]:
-    """The names that a statement of a module gives a meaning to."""
-    if isinstance(node, ast.FunctionDef | ast.ClassDef):
-        return [node.name]
-    if isinstance(node, ast.ImportFrom) and node.module == "__future__":
-        return []
-    if isinstance(node, ast.Import | ast.ImportFrom):
-        return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
-    targets = node.targets if isinstance(node, ast.Assign) else []
-    targets = [node.target] if isinstance(node, ast.AnnAssign) else targets
-    parts = [x for target in targets for x in ast.walk(target) if isinstance(x, ast.Name)]
-    return [x.id for x in parts if isinstance(x.ctx, ast.Store)]
+def needed(source: str, name: str, given: Collection[str] = ()) -> list[str]:
+    """The statements of a module that a name's meaning hangs on, as they are written, in order.
+
+    Args:
+        source: Of the module.
+        name: Which.
+        given: Names that get their meaning from elsewhere.
+    """
+    lines = source.split("\n")
+    texts = [_text(part, lines) for part in _parts(ast.parse(source).body)]
+    scopes = [symtable.symtable(text, "", "exec") for text in texts]
+    wanted, found, before = {name}, set[int](), -1
+    while before < len(found):
+        before = len(found)
+        found = {k for k, scope in enumerate(scopes) if not wanted.isdisjoint(_own(scope))}
+        wanted.update(*(_from_elsewhere(scopes[k]) for k in found))
+        wanted.difference_update(given)
+    return [texts[k] for k in sorted(found)]
 
 
 def _parts(body: list[ast.stmt]) -> list[list[ast.stmt]]:
@@ -162,6 +168,12 @@ def _parts(body: list[ast.stmt]) -> list[list[ast.stmt]]:
     return parts
 
 
+def _text(part: list[ast.stmt], lines: list[str]) -> str:
+    """Statements as they are written, with their decorators."""
+    first = min(x.lineno for x in [part[0], *getattr(part[0], "decorator_list", ())])
+    return "\n".join(lines[first - 1 : part[-1].end_lineno])
+
+
 def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
     """What a statement at a cell's top level gives a meaning to, and what it leans on.
 
@@ -170,9 +182,7 @@ def _definition(part: list[ast.stmt], lines: list[str]) -> dict[str, Any]:
         names of these that it imports itself ``mean``, "*" for all of a module; whether it is a
         ``stub``.
     """
-    first = min(x.lineno for x in [part[0], *getattr(part[0], "decorator_list", ())])
-    text = "\n".join(lines[first - 1 : part[-1].end_lineno])
-    scope = symtable.symtable(text, "", "exec")
+    scope = symtable.symtable(_text(part, lines), "", "exec")
     binds, outside = _own(scope), set(_from_elsewhere(scope))
     mean: dict[str, str] = {}
     chains: set[str] = set()

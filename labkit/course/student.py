@@ -15,7 +15,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from ..errors import UnknownName
+from ..errors import LabkitError, UnknownName
 from .advice import line_of
 from .calling import heard
 from .card import card
@@ -24,8 +24,8 @@ from .gaps import calculated
 from .marking import Mismatch, mark, not_counted, try_public
 from .messages import HEADS, Message, message, waits, wrapped
 from .notebook import verdict_metadata
-from .observed import explained
-from .question import Question
+from .observed import diagnosed
+from .question import Call, Question
 from .reply import Here
 from .serialize import read_question
 from .source import look
@@ -39,7 +39,8 @@ class Desk:
 
     def __init__(self, questions: dict[str, Question]) -> None:
         self.questions = questions
-        self.seen: dict[str, tuple[Any, Verdict]] = {}
+        self.checked: dict[str, tuple[Any, Verdict]] = {}
+        self.failing: dict[str, Call | None] = {}
         self.attempted: set[str] = set()
         self.committed: dict[str, Any] = {}
         self.chosen: dict[str, Any] = {}
@@ -74,6 +75,7 @@ class Desk:
             KeyboardInterrupt: The student stopped it; says in which line.
         """
         question = self.question(name)
+        self.failing[name] = None
         cells = map(look, cells_run(function))
         used = withheld_tools(cells, name, question.withheld)
         student = shell().user_ns if shell() else getattr(function, "__globals__", {})
@@ -84,14 +86,15 @@ class Desk:
                     here = Here(function, question.withheld)
                     tried = try_public(question, here)
                     verdict, found = mark(question, here, tried), tried.evidence(question)
-                    verdict = explained(question, verdict, tried, here)
+                    verdict = diagnosed(question, verdict, tried, here)
+                    self.failing[name] = tried.failing
         except KeyboardInterrupt as stop:
             line = line_of(stop)
             where = f" in the line `{line}`" if line else ""
             raise KeyboardInterrupt(
                 f"{name} was stopped{where}; does every loop in it come to its end?"
             ) from None
-        self.seen[name] = (function, verdict)
+        self.checked[name] = (function, verdict)
         if verdict.outcome is not Outcome.NOT_ATTEMPTED:
             self.attempted.add(name)
         return verdict, out.text, found
@@ -101,9 +104,11 @@ class Desk:
         code = getattr(function, "__code__", None)
         steps = dis.get_instructions(code) if code else ()
         called = [step.argval for step in steps if step.opname == "LOAD_GLOBAL"]
-        seen = {other: verdict for other, (_, verdict) in self.seen.items() if other != name}
+        verdicts = {other: verdict for other, (_, verdict) in self.checked.items() if other != name}
         return tuple(
-            other for other in dict.fromkeys(called) if other in seen and not seen[other].right
+            other
+            for other in dict.fromkeys(called)
+            if other in verdicts and not verdicts[other].right
         )
 
 
@@ -184,6 +189,25 @@ def check(name: str, function: Callable[..., Any]) -> float:
     return Points(verdict.earned)
 
 
+def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
+    """The arguments of the call at which the last check of a question stopped, to try it yourself.
+
+    Args:
+        name: The question's name.
+
+    Returns:
+        (args, kwargs), for ``function(*args, **kwargs)``.
+
+    Raises:
+        UnknownName: No such question.
+        LabkitError: The last check stopped at no call of the function.
+    """
+    call = desk().failing.get(desk().question(name).name)
+    if call is None:
+        raise LabkitError(f"the last check of {name} stopped at no call of it; run its check first")
+    return call.args, dict(call.kwargs)
+
+
 def hint(name: str, level: int = 1) -> None:
     """Print a hint, from 1 (the idea) to 3 (nearly there).  It is free, and nobody is told.
 
@@ -242,7 +266,7 @@ def use(
     if name in _unfinished:
         print(wrapped(f"[stand-in] {_NOT_RUN.format(name=name)}"))
         return given
-    known, verdict = desk().seen.get(name, (None, None))
+    known, verdict = desk().checked.get(name, (None, None))
     if known is not function or verdict is None:
         verdict, *_ = desk().verdict(name, function)
     wrong = verdict.outcome is Outcome.WRONG

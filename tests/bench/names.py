@@ -10,7 +10,7 @@ from collections import Counter
 from pathlib import Path
 
 from labkit.course import student
-from labkit.course.messages import tell
+from labkit.course.messages import message
 from labkit.course.verdict import Kind, Outcome
 from tests.answers import AUTHORS, TOPICS, read
 
@@ -42,7 +42,7 @@ def told(desk, answer):
     except Exception as error:
         return None, f"the cell stops: {type(error).__name__}: {error}"
     verdict, printed, _ = desk.verdict(answer.question, function)
-    return verdict, tell(desk.question(answer.question), verdict, printed)
+    return verdict, str(message(desk.question(answer.question), verdict, printed))
 
 
 FORM = (Kind.TYPE, Kind.PARTS, Kind.KEY, Kind.NOTHING, Kind.CHANGED, Kind.REFUSED)

@@ -16,7 +16,7 @@ from labkit.course.baxter_cup import (
     MARKS,
     PICTURES,
     PUBLIC_SEEDS,
-    _as_seen,
+    _sampled_and_delayed,
     _tour,
     cup_run,
 )
@@ -49,14 +49,14 @@ def test_the_tour_stays_in_its_box_and_joins_the_tags_circle(seed):
 
 def test_of_the_tag_only_the_last_picture_is_known():
     """Before the tag all is told; then a place up to a picture older than its age, and no speed."""
-    told = _as_seen(lambda t: Sample(np.array([t]), np.ones(1), np.ones(1)), 2.0)
-    assert told(1.9).velocity == 1.0
+    given = _sampled_and_delayed(lambda t: Sample(np.array([t]), np.ones(1), np.ones(1)), 2.0)
+    assert given(1.9).velocity == 1.0
     for t in np.linspace(2.2, 8.0, 500):
-        sample = told(t)
+        sample = given(t)
         age = t - sample.position[0]
         assert AGE - 1e-9 <= age <= AGE + 1 / PICTURES + 1e-9
         assert sample.velocity == sample.acceleration == 0.0
-    assert told(2.01).position == 2.0
+    assert given(2.01).position == 2.0
 
 
 @pytest.mark.slow

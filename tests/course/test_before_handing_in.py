@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from labkit import LabkitError
-from labkit.course.before_handing_in import HandIn, look
+from labkit.course.before_handing_in import HandIn, examine
 from labkit.course.forms import OWN_ARM
 from labkit.course.notebook import PLACEHOLDER, verdict_metadata
 from labkit.course.own_arm import FILE
@@ -41,7 +41,7 @@ def edited(path, change):
 
 def test_an_untouched_notebook_is_whole_and_not_run(folder):
     """The release itself has nothing to mend, and says that nothing was run."""
-    found = look(folder / "01_paths.ipynb")
+    found = examine(folder / "01_paths.ipynb")
     assert found.problems == ()
     assert set(found.verdicts.values()) == {None}
     assert "  bang_bang: not run" in str(found).splitlines()
@@ -71,7 +71,7 @@ def test_what_is_not_yet_right_is_named(folder):
                 cell["outputs"] = [output("witness", Outcome.WRONG)]
         return cells
 
-    found = look(edited(folder / "01_paths.ipynb", change))
+    found = examine(edited(folder / "01_paths.ipynb", change))
     assert any(note.startswith("not yet right: witness;") for note in found.notes)
     assert "  witness: not yet right. 0 of 2 points." in str(found).splitlines()
 
@@ -89,7 +89,7 @@ def test_a_verdict_older_than_its_function_is_told(folder):
                     cell["execution_count"] = check
             return cells
 
-        return look(edited(folder / "01_paths.ipynb", change)).notes
+        return examine(edited(folder / "01_paths.ipynb", change)).notes
 
     assert any(note.startswith("changed since it was checked: witness;") for note in ran(9, 8))
     assert not any(note.startswith("changed") for note in ran(8, 9))
@@ -106,7 +106,7 @@ def answered(folder, name, source, outputs=()):
                 cell["outputs"] = list(outputs)
         return cells
 
-    return look(edited(folder / "01_paths.ipynb", change))
+    return examine(edited(folder / "01_paths.ipynb", change))
 
 
 CIRCLE = "def circle(s, start, centre):\n    return lk.Circle(start, centre)(s)"
@@ -161,7 +161,7 @@ def test_odd_outputs_are_passed_over(folder, odd):
         cells[-1]["outputs"] = odd
         return [*cells, {"cell_type": "code", "source": "1", "metadata": {"nbgrader": [1]}}]
 
-    assert look(edited(folder / "01_paths.ipynb", change)).verdicts["circle"] is None
+    assert examine(edited(folder / "01_paths.ipynb", change)).verdicts["circle"] is None
 
 
 @pytest.mark.parametrize("odd", ["lots", None, [1], {}])
@@ -174,14 +174,14 @@ def test_odd_points_in_a_cell_are_nobodys_concern(folder, odd):
         return cells
 
     path = folder / "01_paths.ipynb"
-    before = str(look(path))
-    assert str(look(edited(path, change))) == before
+    before = str(examine(path))
+    assert str(examine(edited(path, change))) == before
 
 
 def test_another_name_is_to_be_mended(folder):
     """A notebook that a browser renamed is told its right name."""
     path = (folder / "01_paths.ipynb").rename(folder / "01_paths(3).ipynb")
-    assert look(path).problems == (
+    assert examine(path).problems == (
         "the file is called 01_paths(3).ipynb; rename it to 01_paths.ipynb",
     )
 
@@ -194,7 +194,7 @@ def test_missing_and_doubled_cells_are_named(folder):
         kept = [c for c in cells if "def bang_bang" not in "".join(c["source"])]
         return [*kept, stub]
 
-    problems = look(edited(folder / "01_paths.ipynb", change)).problems
+    problems = examine(edited(folder / "01_paths.ipynb", change)).problems
     assert any(text.startswith("no cell defines bang_bang") for text in problems)
     assert any("circle is there 2 times" in text for text in problems)
 
@@ -207,7 +207,7 @@ def test_a_given_cell_that_is_gone_and_an_error_are_named(folder):
         kept[-1]["outputs"] = [{"output_type": "error", "ename": "NameError", "evalue": "no lk"}]
         return kept
 
-    problems = look(edited(folder / "01_paths.ipynb", change)).problems
+    problems = examine(edited(folder / "01_paths.ipynb", change)).problems
     assert any(text.startswith("no cell defines") and "lk" in text for text in problems)
     assert any("ended with an error (NameError: no lk)" in text for text in problems)
 
@@ -221,7 +221,7 @@ def test_an_answer_turned_into_text_is_told_how_to_turn_it_back(folder):
                 cell["cell_type"] = "markdown"
         return cells
 
-    problems = look(edited(folder / "01_paths.ipynb", change)).problems
+    problems = examine(edited(folder / "01_paths.ipynb", change)).problems
     assert any("press Esc and then Y" in text for text in problems)
 
 
@@ -234,7 +234,7 @@ def with_texts_of(folder, words):
                 cell["source"] = "word " * words
         return cells
 
-    return look(edited(folder / "01_paths.ipynb", change))
+    return examine(edited(folder / "01_paths.ipynb", change))
 
 
 def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
@@ -242,7 +242,7 @@ def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
     folder = Path(shutil.copytree(ASSIGNMENT.parent / "05_impedance", tmp_path / "05_impedance"))
     path = folder / "05_impedance.ipynb"
     (folder / FILE).write_text("{}")
-    assert not [text for text in look(path).problems if "public arm" in text]
+    assert not [text for text in examine(path).problems if "public arm" in text]
 
     def measured(cells):
         for cell in cells:
@@ -251,23 +251,23 @@ def test_numbers_of_the_public_arm_are_named_where_ones_own_was_due(tmp_path):
                 cell["outputs"] = [output("my_wall", Outcome.RIGHT, tests=(test,))]
         return cells
 
-    (problem,) = look(edited(path, measured)).problems
+    (problem,) = examine(edited(path, measured)).problems
     assert problem == (
         'HANDLE is "demo", the public arm, and my_wall will be judged by an arm of your own; set '
         "HANDLE to the name that your instructor gave you, and measure again"
     )
     path.write_text(path.read_text().replace('HANDLE = \\"demo\\"', 'HANDLE = \\"ada\\"'))
-    assert not look(path).problems
+    assert not examine(path).problems
     path.write_text(path.read_text().replace('HANDLE = \\"ada\\"', 'HANDLE = \\" Demo \\"'))
-    assert look(path).problems
+    assert examine(path).problems
     (folder / FILE).unlink()
-    assert not look(path).problems
+    assert not examine(path).problems
 
 
 def test_words_of_a_text_are_counted_without_the_placeholder(folder):
     """A text that nobody has written has no words; a written one has a line."""
     assert PLACEHOLDER in (ASSIGNMENT.parents[1] / "nbgrader_config.py").read_text()
-    found = look(folder / "01_paths.ipynb")
+    found = examine(folder / "01_paths.ipynb")
     assert found.texts and set(found.texts.values()) == {0}
     assert any(f"{name} has 0 words; it needs" in str(found) for name in found.texts)
     found = with_texts_of(folder, 30)
@@ -285,7 +285,7 @@ def test_a_text_that_is_too_long_is_named_with_its_limit(folder):
 
 def test_the_forum_block_holds_verdicts_and_no_answer(folder):
     """The block for the forum has a line for each question and none of the code."""
-    block = look(folder / "01_paths.ipynb").for_the_forum()
+    block = examine(folder / "01_paths.ipynb").for_the_forum()
     assert "witness: not run" in block
     assert "def " not in block
 
@@ -296,7 +296,7 @@ def test_a_damaged_file_is_a_sentence(folder, text):
     path = folder / "01_paths.ipynb"
     path.write_text(text)
     with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
-        look(path)
+        examine(path)
 
 
 @pytest.mark.parametrize("cell", [1, {"source": "x"}, {"cell_type": "code", "metadata": {}}])
@@ -304,13 +304,13 @@ def test_a_notebook_with_a_cell_that_is_none_is_a_sentence(folder, cell):
     path = folder / "01_paths.ipynb"
     path.write_text(json.dumps({"cells": [cell]}))
     with pytest.raises(LabkitError, match="not a notebook, or was cut off"):
-        look(path)
+        examine(path)
 
 
 def test_a_cell_may_come_without_metadata(folder):
     path = folder / "01_paths.ipynb"
     path.write_text(json.dumps({"cells": [{"cell_type": "code", "source": ["def bang_bang(t):"]}]}))
-    found = look(path)
+    found = examine(path)
     assert not any("no cell defines bang_bang" in text for text in found.problems)
 
 
@@ -320,7 +320,7 @@ def test_a_notebook_without_its_questions_is_a_sentence(folder):
     for text, says in (("{", "only a damaged"), (None, "no")):
         file.unlink() if text is None else file.write_text(text)
         with pytest.raises(LabkitError, match=rf"there is {says} checks\.json in .*whole folder"):
-            look(folder / "01_paths.ipynb")
+            examine(folder / "01_paths.ipynb")
 
 
 def test_an_empty_cell_leaves_the_receipt_as_it_is():
@@ -330,7 +330,7 @@ def test_an_empty_cell_leaves_the_receipt_as_it_is():
 
 def test_the_last_word_says_whether_to_hand_in(folder):
     """A file saved just now is handed in; one that lacks what ran last is saved first."""
-    blank = look(folder / "01_paths.ipynb")
+    blank = examine(folder / "01_paths.ipynb")
     found = replace(blank, verdicts=dict.fromkeys(blank.verdicts, object()))
     clean = replace(found, notes=())
     says = [

@@ -9,7 +9,7 @@ from questions import DOUBLE, double, square
 
 from labkit.course.card import card
 from labkit.course.marking import mark
-from labkit.course.messages import message, tell
+from labkit.course.messages import message
 
 
 def stub(x):
@@ -30,7 +30,7 @@ def words(page):
 def test_the_card_holds_the_words_of_the_plain_text(function):
     """Nothing that is said in text is missing on the card, and the text is the text."""
     found = shown(function, printed="a print of mine")
-    assert found["text/plain"] == tell(DOUBLE, mark(DOUBLE, function), "a print of mine")
+    assert found["text/plain"] == str(message(DOUBLE, mark(DOUBLE, function), "a print of mine"))
     page = words(found["text/html"])
     for line in found["text/plain"].replace("`", " ").split("\n"):
         if line.strip() != "Where it fails:":

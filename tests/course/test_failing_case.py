@@ -41,3 +41,17 @@ def test_without_a_failing_call_there_is_a_sentence(beside):
     check("orientation_error", lk.se3.orientation_error)
     with pytest.raises(LabkitError, match="stopped at no call"):
         case("orientation_error")
+
+
+def test_the_function_is_not_asked_again_for_its_failing_call(beside):
+    """What a check saw is kept; a function that then answers otherwise is not asked."""
+    calls = []
+
+    def orientation_error(R_wd, R_wt):
+        calls.append(R_wd)
+        raise NotImplementedError
+
+    check("orientation_error", orientation_error)
+    asked = len(calls)
+    args, _ = case("orientation_error")
+    assert args[0] is not None and len(calls) == asked

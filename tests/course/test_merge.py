@@ -9,8 +9,8 @@ import pytest
 
 from labkit import LabkitError
 from labkit.__main__ import main
-from labkit.course.merge import merge
-from labkit.course.notebook import read_cells
+from labkit.course.merge import BESIDE, merge
+from labkit.course.notebook import is_edited, read_cells, released
 
 ASSIGNMENT = Path(__file__).resolve().parents[2] / "assignments" / "01_paths"
 
@@ -107,3 +107,78 @@ def test_merging_an_untouched_notebook_gives_the_new_release(folder):
     """Without any work of the student's, the merge is the new release."""
     cells = read_cells(folder / "01_paths.ipynb")
     assert merge(cells, cells) == cells
+
+
+VELOCITY = ASSIGNMENT.parent / "03_velocity_control/03_velocity_control.ipynb"
+
+
+def walk(cells, begins):
+    """The cell whose text begins so."""
+    return next(cell for cell in cells if cell["source"].startswith(begins))
+
+
+def test_a_given_cell_that_the_student_changed_stays_as_they_wrote_it():
+    """With HANDLE = "zoe" again "demo" the arm would be the public one."""
+    new = read_cells(VELOCITY)
+    mine = copy.deepcopy(new)
+    cell = walk(mine, 'HANDLE = "demo"')
+    cell["source"] = cell["source"].replace("demo", "zoe")
+    brief = walk(mine, "**Your turn: `decay_rate`")
+    brief["source"] += "\n\nAsk Ada about this."
+    new[0]["source"] += "\n\nCorrected."
+    moved = new[:3] + [dict(new[3], source="added", metadata={"lab": "walk"})] + new[3:]
+    for release in (new, [dict(c, id=f"03-velocity-control-{k}") for k, c in enumerate(moved)]):
+        merged = merge(mine, release)
+        assert len(merged) == len(release)
+        changed = [(a, b) for a, b in zip(release, merged, strict=True) if a != b]
+        assert [b["source"] for _, b in changed] == [brief["source"], cell["source"]]
+
+
+def test_what_student_and_release_changed_stands_beside(tmp_path, capsys):
+    """The release's cell runs; the student's text is below it as a comment, and merge says so."""
+    paths = {}
+    for name, was, now in (("mine", '"demo"', '"zoe"'), ("new", "(HANDLE)", "(HANDLE, 1)")):
+        data = json.loads(VELOCITY.read_text())
+        cell = next(c for c in data["cells"] if c["source"][0].startswith("HANDLE ="))
+        cell["source"] = "".join(cell["source"]).replace(was, now)
+        if name == "new":
+            cell["metadata"]["released"] = "0123456789ab"
+        paths[name] = tmp_path / f"{name}.ipynb"
+        paths[name].write_text(json.dumps(data))
+    to = tmp_path / "merged.ipynb"
+    assert main(["merge", str(paths["mine"]), str(paths["new"]), "--to", str(to)]) == 0
+    assert BESIDE in capsys.readouterr().out
+    merged, new = read_cells(to), read_cells(paths["new"])
+    at = merged.index(walk(merged, 'HANDLE = "demo"'))
+    assert "my_arm(HANDLE, 1)" in merged[at]["source"]
+    assert merged[at + 1]["source"].startswith(f'# {BESIDE}\n# HANDLE = "zoe"  # in a course')
+    assert [*merged[: at + 1], *merged[at + 2 :]] == new
+
+
+def test_of_an_older_notebook_no_change_is_lost():
+    """Where no hash tells who changed a cell, both texts are there."""
+    new = read_cells(VELOCITY)
+    mine = copy.deepcopy(new)
+    for cell in mine:
+        cell["metadata"].pop("released", None)
+    cell = walk(mine, 'HANDLE = "demo"')
+    cell["source"] = 'HANDLE = "zoe"'
+    walk(mine, "# ").update(source="A note of mine.")
+    merged = merge(mine, new)
+    added = [c["source"] for c in merged if c not in new]
+    assert added == [f"> {BESIDE}\n> A note of mine.", f'# {BESIDE}\n# HANDLE = "zoe"']
+
+
+def test_a_copy_that_was_pasted_and_changed_is_the_students_own():
+    """A pasted cell has the hash of what was copied, and an id of its own."""
+    new = read_cells(VELOCITY)
+    pasted = dict(walk(new, 'HANDLE = "demo"'), id="0badcafe", source='HANDLE = "zoe"')
+    merged = merge([*new, pasted], new)
+    assert [c for c in merged if c not in new] == [pasted | {"id": "own-0000"}]
+
+
+@pytest.mark.parametrize("path", sorted(ASSIGNMENT.parent.glob("*/*.ipynb")), ids=lambda p: p.stem)
+def test_no_cell_of_a_release_is_changed(path):
+    """Each hash is that of the text beside it."""
+    cells = read_cells(path)
+    assert any(map(released, cells)) and not any(map(is_edited, cells))

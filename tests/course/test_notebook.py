@@ -279,9 +279,10 @@ def test_a_missing_file_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path / "elsewhere")
     with pytest.raises(LabkitError, match=r"no checks\.json in 'elsewhere'.*whole folder"):
         check("double", double)
-    Path("checks.json").write_text('{"assignment": ')
-    with pytest.raises(LabkitError, match=r"only a damaged checks\.json in 'elsewhere'"):
-        check("double", double)
+    for text in ('{"assignment": ', "[]", json.dumps(stamp() | {"assignment": "x"})):
+        Path("checks.json").write_text(text)
+        with pytest.raises(LabkitError, match=r"only a damaged checks\.json in 'elsewhere'"):
+            check("double", double)
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import labkit as lk
 from labkit.course import mark
 from labkit.course.judges import Close
 from labkit.course.marking import try_public
-from labkit.course.observed import explained
+from labkit.course.observed import diagnosed
 from labkit.course.problem import Problem, Trial, call
 
 
@@ -36,7 +36,7 @@ def seen(problem, function):
     """What a student reads of an answer."""
     question = problem.question(1).public()
     tried = try_public(question, function)
-    mistake = explained(question, mark(question, function, tried), tried, function).mistake
+    mistake = diagnosed(question, mark(question, function, tried), tried, function).mistake
     return mistake.says if mistake else ""
 
 
@@ -94,6 +94,16 @@ def test_only_the_wrong_parts_of_an_answer_are_spoken_of():
     assert "each of your `ds` and your `dds`" in says and "the rest is right" in says
     assert "multiplied by `d`" in says
     assert "your `ds` has the other sign, and" in seen(parts, lambda x, d: (x, -x / d, x * x / d))
+
+
+def test_calls_of_several_forms_are_compared_all_the_same():
+    """Answers with more parts in one call than in another, and calls that leave an argument out."""
+    several = Problem("f", 1, "x", lambda n: (1.0,) * n, (Trial("any", (call(2), call(3))),))
+    assert seen(several, lambda n: (2.0,) * n) == ""
+    trial = Trial("any", (call(2.0, d=3.0), call(5.0)))
+    some = Problem("f", 1, "x", lambda x, d=1.0: x * d, (trial,))
+    assert seen(some, lambda x, d=1.0: 2.0 * x * d).endswith("is 2 times what it should be.")
+    assert seen(some, lambda x, d=1.0: x * d * d + x * (d == 1.0)) == ""
 
 
 def test_nothing_is_said_of_what_is_not_seen():

@@ -23,7 +23,7 @@ from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.differences import sentence
 from labkit.course.identification import personal
 from labkit.course.layout import Course
-from labkit.course.messages import tell
+from labkit.course.messages import message
 from labkit.course.own_arm import APART, DEMO, FILE, RANGES, Arms, draw
 from labkit.course.reply import Here
 from labkit.errors import LabkitError
@@ -94,6 +94,16 @@ def test_what_students_get_names_no_number(tmp_path, monkeypatch):
         my_arm("merlin")
 
 
+@pytest.mark.parametrize("text", ["", "[]", "{{", '{"%s": "AAAA"}', '{"%s": 3}'])
+def test_a_damaged_file_of_arms_is_a_sentence(tmp_path, monkeypatch, text):
+    """It is named, and where another one comes from."""
+    (who,) = Arms(7, {"kestrel": "kestrel"}).sealed()
+    (tmp_path / FILE).write_text(text.replace("%s", who))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(LabkitError, match=r"arms\.json is damaged; put the arms\.json that your"):
+        my_arm("kestrel")
+
+
 def test_a_number_is_judged_against_ones_own_arm():
     """The demonstration's number is right for the demonstration, and for nobody else."""
     demo, other = draw(2019, DEMO), draw(7, "kestrel")
@@ -143,10 +153,10 @@ def test_an_arm_at_rest_does_not_feel_its_load(monkeypatch):
 
 def test_a_bug_is_found_by_its_cause_and_its_time():
     """The wrong cause, or a time that is far off, is not found."""
-    bugs = draw(7, "kestrel").bugs
-    assert len({bug.cause for bug in bugs}) == 3 and len(CAUSES) * len(MOVES) >= 12
+    arm = draw(7, "kestrel")
+    assert len({bug.cause for bug in arm.bugs}) == 3 and len(CAUSES) * len(MOVES) >= 12
     judge = Found(0)
-    cause, shows = judge.expected(bugs)
+    cause, shows = judge.expected(arm)
     assert judge((cause, shows + 0.1), (cause, shows)) is None
     assert judge((cause, shows + 0.3), (cause, shows)) is not None
     wrong = next(letter for letter in CAUSES if letter != cause)
@@ -172,10 +182,10 @@ def test_a_number_of_ones_own_arm_is_not_called_right_where_the_arm_is_not_known
     """A check says when the number is judged; one of a wrong form is still wrong."""
     judge = Measured("payload", "kg", 0.0, 3.0, 0.01)
     asked = Identification("m", "?", judge, 0.3, "one number", 3.0).question().public()
-    says = tell(asked, mark(asked, lambda: 1.0))
+    says = str(message(asked, mark(asked, lambda: 1.0)))
     assert says.startswith("m: a possible answer. When it is marked, it earns 3 points if it is")
     assert "right" not in says
-    assert "not yet right" in tell(asked, mark(asked, lambda: 7.0))
+    assert "not yet right" in str(message(asked, mark(asked, lambda: 7.0)))
 
 
 def test_how_near_a_measured_number_has_to_be_is_said_above_its_cell():

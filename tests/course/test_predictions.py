@@ -1,5 +1,6 @@
 """Predictions: what counts as one, what is shown when, and what a grader makes of it."""
 
+import numpy as np
 import pytest
 
 from labkit.course import Choose, Curve, Number, Outcome, Prediction, Rank, mark, predict
@@ -64,6 +65,23 @@ def test_the_first_prediction_stays(place):
     predict("x", "b")
     predict("x", truth="a")
     assert predict("x", "a") == "b"
+
+
+def test_an_array_after_the_reveal_is_compared_with_the_first_prediction(place, monkeypatch):
+    """It is another prediction, or the same one, and no error."""
+    curve = FORMS[3][0]
+    made = desk.Desk({"y": Prediction("y", "?", curve, [0.0, 0.0]).question()})
+    monkeypatch.setattr("labkit.course.reveal.desk", lambda: made)
+    made.committed["y"], made.revealed = [0.1, 0.2], {"y"}
+    assert predict("y", np.array([0.3, 0.4])) == [0.1, 0.2]
+    assert predict("y", [0.1, 0.2]) == [0.1, 0.2]
+
+
+@pytest.mark.parametrize("said", [np.int64(3), np.float32(3.0), np.float64(3.0)])
+def test_a_number_of_numpys_is_a_number(said):
+    """In the notebook as in a grader."""
+    assert Number("mm", 0.0, 9.0).problem(said) == ""
+    assert verdict(Number("mm", 0.0, 9.0), said).earned == 1.0
 
 
 def test_one_run_after_the_mouse_commits_and_writes_it_down(place, monkeypatch, capsys):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.course.advice import told
+from labkit.course.advice import full_description
 
 STATE = lk.State(0.0, np.zeros(7), np.zeros(7))
 SAMPLE = lk.Sample(*np.zeros((3, 7)))
@@ -35,11 +35,11 @@ def test_a_usual_slip_has_a_way_out(does, remedy):
     """What Python and numpy say is followed by what to do."""
     with pytest.raises(Exception) as caught:
         does()
-    assert remedy in told(caught.value)
+    assert remedy in full_description(caught.value)
 
 
 def test_the_line_is_the_students():
     """The last line outside labkit is quoted, not the one in labkit that raised."""
     with pytest.raises(lk.LabkitError) as caught:
         lk.JointVelocity(np.zeros((3, 1)))
-    assert "in the line `lk.JointVelocity(np.zeros((3, 1)))`" in told(caught.value)
+    assert "in the line `lk.JointVelocity(np.zeros((3, 1)))`" in full_description(caught.value)

@@ -12,7 +12,7 @@ import labkit as lk
 from labkit.course import Call, Close, Outcome, Question, Test
 from labkit.course.calling import ArgumentChanged, call
 from labkit.course.marking import mark
-from labkit.course.messages import tell, why
+from labkit.course.messages import message, why
 from labkit.course.reply import Here, NoAnswer, answer, reply
 from labkit.course.withheld import Withheld
 from labkit.errors import LabkitError
@@ -102,7 +102,7 @@ def test_an_answer_that_changes_its_argument_is_wrong_every_time():
     for _ in range(2):
         verdict = mark(SEGMENTS, Here(pops, ()))
         assert verdict.outcome is Outcome.WRONG
-        words = " ".join(tell(SEGMENTS, verdict).split())
+        words = " ".join(str(message(SEGMENTS, verdict)).split())
         assert " pops changes the list `durations` that it is given; work on a copy" in words
     assert mark(SEGMENTS, Here(lambda durations, t: durations[0], ())).outcome is Outcome.RIGHT
 
@@ -187,7 +187,7 @@ ODD = [
 def test_no_answer_is_too_odd(make):
     """Whatever comes back, there is a verdict and a sentence, and it is short enough to read."""
     verdict = mark(DOUBLE, Here(lambda x: make(), ()))
-    words = tell(DOUBLE, verdict)
+    words = str(message(DOUBLE, verdict))
     assert verdict.outcome in (Outcome.WRONG, Outcome.ERROR)
     assert len(words) < 3000 and max(map(len, words.splitlines())) < 300
 
@@ -204,7 +204,7 @@ def test_no_exception_is_too_odd(error):
     """Whatever is raised is an error of the student's code, told in a sentence."""
     verdict = mark(DOUBLE, Here(throw(error), ()))
     assert verdict.outcome is Outcome.ERROR
-    assert len(tell(DOUBLE, verdict)) < 3000
+    assert len(str(message(DOUBLE, verdict))) < 3000
 
 
 def test_an_answer_is_judged_as_the_data_that_a_grader_gets():

@@ -2,7 +2,7 @@
 
 import pytest
 
-from labkit.course.source import look
+from labkit.course.source import look, needed
 from labkit.course.withheld import withheld_tools
 
 WITHHELD = (
@@ -88,3 +88,36 @@ def test_what_use_chose_is_not_suspected():
     assert found(walk, "def g(s): return lk.Circle(s)", "def f(s): return my_g(s)") == (
         "labkit.Circle",
     )
+
+
+MODULE = """\
+import numpy as np, math
+from pathlib import (
+    Path,
+)
+SCALE = 2.0; OTHER = 3.0
+def mass(x):
+    return Path(x)
+@property
+def helper(x):  # as it is written
+    mass = SCALE * x
+    return mass
+def f(x: float) -> float:
+    return helper(x) + given(x) + f(0)
+def given(x):
+    return np.pi
+f.name = mass
+"""
+
+
+def test_a_name_needs_what_its_definition_takes_from_outside():
+    """No module's function of a local name; whole statements, in order; nothing that is given."""
+    parts = needed(MODULE, "f", ["given"])
+    assert parts[0] == "SCALE = 2.0; OTHER = 3.0"
+    assert [part.splitlines()[0] for part in parts[1:]] == [
+        "@property",
+        "def f(x: float) -> float:",
+    ]
+    assert "# as it is written" in parts[1]
+    assert needed(MODULE, "mass")[0] == "from pathlib import (\n    Path,\n)"
+    assert needed(MODULE, "nothing") == []

@@ -7,14 +7,14 @@ from questions import CALLS, DOUBLE, HIDDEN, double, square
 
 from labkit.course import Call, Test
 from labkit.course.marking import mark, not_counted
-from labkit.course.messages import head, message, summary, tell
+from labkit.course.messages import head, message, summary
 
 COMPLETE = replace(DOUBLE, tests=(*DOUBLE.tests[:2], Test("negative", CALLS[2:])))
 """The same question without anything to be tried later."""
 
 
 def said(function, question=DOUBLE, **more):
-    return tell(question, mark(question, function), **more)
+    return str(message(question, mark(question, function), **more))
 
 
 def stub(x):
@@ -31,7 +31,7 @@ def test_the_verdict_comes_first():
 
 def test_what_will_be_lost_is_said_beside_the_verdict():
     """An answer that is there now, and will not be when it is marked, is told why."""
-    lines = tell(COMPLETE, mark(COMPLETE, double)).splitlines()
+    lines = str(message(COMPLETE, mark(COMPLETE, double))).splitlines()
     told = str(message(COMPLETE, mark(COMPLETE, double), lost="it is calculated")).splitlines()
     assert told == [lines[0], "  But it is calculated.", *lines[1:]]
 
@@ -111,7 +111,7 @@ def test_the_number_that_is_farthest_off_is_named():
 def test_a_withheld_tool_is_an_outcome_of_its_own():
     """An answer that uses one is not counted, whatever it gives; the sentence names the tool."""
     verdict = not_counted(DOUBLE, ("labkit.Circle", "numpy.multiply"))
-    words = " ".join(tell(DOUBLE, verdict).split())
+    words = " ".join(str(message(DOUBLE, verdict)).split())
     assert words.startswith(
         "double: not counted: uses lk.Circle and numpy.multiply, which this question asks you to "
         "write. 0 of 4 points. "

@@ -50,6 +50,7 @@ def test_the_grader_asks_for_ones_own_number(course):
     expected = {}
     for student in ("ada", "bob", "eve", "mallory"):
         mine = bundle.of_student(student)
+        assert mine.arms == bundle.arms
         (asked,) = (q for q in mine.questions if q.name == "my_payload")
         (hidden,) = (c for test in asked.tests for c in test.cases if c.hidden)
         expected[student] = (hidden.expected, mine.data["hash"])

@@ -18,7 +18,7 @@ import labkit as lk
 from labkit.control import springs
 from labkit.course import Call, Close, Loop, Question, Test, Tuned
 from labkit.course.forms import Number
-from labkit.course.judges import AtMost
+from labkit.course.judges import Gains
 from labkit.course.marking import mark, try_public
 from labkit.course.predictions import Prediction
 from labkit.course.verdict import Misconception, Outcome
@@ -150,7 +150,7 @@ def test_gains_that_were_chosen_are_seen_at_work():
     """A run with chosen gains is a run like any other."""
     loop = line(0.1)
     question = Question(
-        "gains", 1.0, "Choose.", AtMost(), (Test("t", (Tuned((), loop, {"max_mm": 1.0}),)),)
+        "gains", 1.0, "Choose.", Gains(), (Test("t", (Tuned((), loop, {"max_mm": 1.0}),)),)
     )
     (run,) = answered(question, lambda: (40.0, 6.0 * np.ones(7))).runs
     assert run["limits"] == {"max_mm": 1.0}

@@ -136,7 +136,7 @@ def test_written(card, tmp_path):
 
 def test_what_cannot_be_read_is_a_sentence(tmp_path):
     """A missing file, a file without the dicts, a question that nobody asks."""
-    with pytest.raises(LabkitError, match="is not a Python file"):
+    with pytest.raises(LabkitError, match="does not run: FileNotFoundError"):
         functions_from(tmp_path / "none.py", "MISTAKES")
     (tmp_path / "empty.py").write_text("x = 1\n")
     with pytest.raises(LabkitError, match="no dict VARIANTS"):

@@ -115,7 +115,7 @@ def test_a_bundle_of_another_version_is_refused(course):
         Bundle.of(course, NAME)
 
 
-@pytest.mark.parametrize("text", ["[1]", "{", "questions"])
+@pytest.mark.parametrize("text", ["[1]", "{", json.dumps(stamp()), "questions"])
 def test_a_bundle_that_is_not_whole_is_refused(course, text):
     """Nobody is graded by one that has lost its questions."""
     path = course.bundle / f"{NAME}.json"

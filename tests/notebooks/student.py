@@ -112,7 +112,7 @@ def run_here(name, parts, folder, monkeypatch, *, shortest=0.1):
     text = "\n".join(cell.source for cell in notebook.cells)
     return Sheet(
         out.getvalue(),
-        {key: verdict.earned for key, (_, verdict) in desk.desk().seen.items()},
+        {key: verdict.earned for key, (_, verdict) in desk.desk().checked.items()},
         tuple(q for q in questions(name) if f'use("{q}"' in text),
     )
 

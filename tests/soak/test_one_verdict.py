@@ -14,7 +14,7 @@ import pytest
 from handmade import put, raw
 
 from labkit.course import question_data
-from labkit.course.before_handing_in import look
+from labkit.course.before_handing_in import examine
 from labkit.course.bundle import Bundle
 from labkit.course.layout import Course
 from labkit.course.notebook import manifest, source_notebook, verdict_in
@@ -142,7 +142,7 @@ def test_three_verdicts_are_one(assignment, sandbox, tmp_path):
                 said[name] = seen(verdict_in(output[0]))
         file = tmp_path / f"{assignment}.ipynb"
         file.write_bytes(raw(notebook))
-        verdicts = look(file).verdicts  # also of predictions, which have no right answer
+        verdicts = examine(file).verdicts  # also of predictions, which have no right answer
         repeated = {name: seen(verdicts[name]) for name in said}
         result = grade(raw(notebook), "ada", bundle, sandbox, Limits())
         counted = {q.verdict.name: seen(q.verdict) for q in result.questions}

@@ -12,11 +12,23 @@ from functools import cache
 from types import ModuleType
 from typing import Any
 
-from labkit.course.source import names_defined
-
 LAMBDA = "<lambda>"
 Key = tuple[str, str]
 """A definition, its module and its name there."""
+
+
+def names_defined(node: ast.stmt) -> list[str]:
+    """The names that a statement of a module gives a meaning to."""
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return [node.name]
+    if isinstance(node, ast.ImportFrom) and node.module == "__future__":
+        return []
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return [alias.asname or alias.name.partition(".")[0] for alias in node.names]
+    targets = node.targets if isinstance(node, ast.Assign) else []
+    targets = [node.target] if isinstance(node, ast.AnnAssign) else targets
+    parts = [x for target in targets for x in ast.walk(target) if isinstance(x, ast.Name)]
+    return [x.id for x in parts if isinstance(x.ctx, ast.Store)]
 
 
 @dataclass
