@@ -13,7 +13,7 @@ import sys
 import time
 from pathlib import Path
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))

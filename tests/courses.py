@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 
 ROOT = Path(__file__).parents[1]
 

@@ -11,7 +11,7 @@ import zlib
 
 import nbformat
 
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.notebook import check_id, grade_id
 from labkit.course.serialize import question_data
 from labkit.grader.nbgrader.gradebook import quiet_database

@@ -8,7 +8,7 @@ import pytest
 from courses import ROOT
 
 from labkit.__main__ import main, program
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 
 VERBS = program().commands
 WARMUP = ROOT / "assignments/00_warmup/00_warmup.ipynb"

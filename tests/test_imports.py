@@ -64,7 +64,6 @@ ORDER = [
         "course.advice",
         "course.calling",
         "course.seed",
-        "course.outcomes",
     },
     {"course.forms"},
     {"course.judges", "course.withheld", "course.unfinished"},
@@ -77,20 +76,19 @@ ORDER = [
     {"course.predictions", "course.identification"},
     {"course.reply", "course.notebook", "course.card", "course.checks_file"},
     {"course.gaps", "course.marking", "course.probes"},
-    {"course.relations", "course.problem"},
+    {"course.relations"},
     {"course.observed"},
     {"course.student"},
     {
         "course.before_handing_in",
-        "course.layout",
-        "course.solved",
-        "course.refusals",
     },
     {"course.merge", "course.receipt", "course.reveal"},
-    {"course.bundle", "course.margins"},
-    {"course.release", "course.report_card"},
     {"course.cli"},
     {"course"},
+    {"course.authoring", "course.authoring.problem", "course.authoring.outcomes"},
+    {"course.authoring.layout", "course.authoring.solved", "course.authoring.refusals"},
+    {"course.authoring.bundle", "course.authoring.margins"},
+    {"course.authoring.release", "course.authoring.report_card"},
 ]
 """Lab and course from the ground up; each module imports from sets before its own alone."""
 LEVEL = {name: i for i, names in enumerate(ORDER) for name in names}

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import labkit
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.course.marking import mark
 from labkit.course.messages import message
 from labkit.course.student import Desk

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from IPython.display import HTML
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.course.marking import mark
 from labkit.course.messages import message
 from labkit.course.student import Desk

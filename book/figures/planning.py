@@ -8,9 +8,9 @@ from pathlib import Path
 import nbformat
 from IPython.display import HTML
 
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.outcomes import OUTCOMES
 from labkit.course.identification import Identification
-from labkit.course.layout import Course
-from labkit.course.outcomes import OUTCOMES
 
 from .front import NOTEBOOKS, hours
 from .page import holds, number, table

@@ -10,7 +10,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from ..course.layout import Course
+from ..course.authoring.layout import Course
 from ..errors import LabkitError
 from .clean import clean_line
 

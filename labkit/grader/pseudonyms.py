@@ -7,7 +7,7 @@ import secrets
 from collections.abc import Callable
 from functools import partial
 
-from ..course.layout import Course
+from ..course.authoring.layout import Course
 from .atomic import write
 
 FILE = "course_private/pseudonyms.key"

@@ -21,7 +21,7 @@ import msgspec
 from nbgrader.plugins import LateSubmissionPlugin
 from traitlets.utils.importstring import import_item
 
-from ..course.layout import UNRELEASED, Course
+from ..course.authoring.layout import UNRELEASED, Course
 from ..errors import LabkitError
 from .nbgrader_api import nbgrader_api
 

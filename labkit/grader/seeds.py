@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from ..course.layout import Course
+from ..course.authoring.layout import Course
 from ..course.seed import PUBLIC_SEED
 from ..errors import LabkitError
 

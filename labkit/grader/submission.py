@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
 
-from ..course.layout import Course
+from ..course.authoring.layout import Course
 from ..errors import LabkitError
 from .clean import clean_line, some
 from .each import Failure

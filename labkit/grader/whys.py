@@ -11,8 +11,8 @@ from collections.abc import Iterable
 from functools import partial
 from typing import Any
 
-from ..course.bundle import Bundle
-from ..course.layout import Course
+from ..course.authoring.bundle import Bundle
+from ..course.authoring.layout import Course
 
 DRAWN = 2
 """So many whys of each student a person marks, of all those that the term handed out."""

@@ -11,7 +11,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call, Choice
-from labkit.course.problem import call
+from labkit.course.authoring.problem import call
 from labkit.recordings import LINE, Trials, read_trials
 
 Random = np.random.Generator

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from labkit.course import Close, Response
-from labkit.course.problem import Problem, Trial, Wrong, call
+from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
 

@@ -9,7 +9,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call, Loop
-from labkit.course.problem import call
+from labkit.course.authoring.problem import call
 from labkit.course.question import Case
 
 Random = np.random.Generator

@@ -9,7 +9,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import AtTip, Call, Close, Loop, TipTorque
-from labkit.course.problem import Problem, Trial, Wrong, call
+from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
 

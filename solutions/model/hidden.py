@@ -10,7 +10,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call
-from labkit.course.problem import call
+from labkit.course.authoring.problem import call
 
 Random = np.random.Generator
 MODEL = lk.Model("left")

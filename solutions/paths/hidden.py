@@ -8,7 +8,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call
-from labkit.course.problem import call
+from labkit.course.authoring.problem import call
 
 Random = np.random.Generator
 

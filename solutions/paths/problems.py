@@ -6,7 +6,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Close, Within
-from labkit.course.problem import Problem, Trial, Wrong, call
+from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
 

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.problem import Problem
 from labkit.course.marking import mark
-from labkit.course.problem import Problem
 from labkit.course.seed import PUBLIC_SEED
 from labkit.course.verdict import Verdict
 from labkit.recordings import DATA

@@ -9,7 +9,7 @@ import numpy as np
 
 from labkit import Sample, se3
 from labkit.course import Call
-from labkit.course.problem import call
+from labkit.course.authoring.problem import call
 from labkit.shapes import Array
 from labkit.tags.tag import tag_corners
 

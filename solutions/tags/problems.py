@@ -6,7 +6,7 @@ import numpy as np
 
 from labkit import Sample, se3
 from labkit.course import Close
-from labkit.course.problem import Problem, Trial, Wrong, call
+from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, following, hidden, mistakes, variants
 

@@ -10,7 +10,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call, Loop, Tuned
-from labkit.course.problem import call
+from labkit.course.authoring.problem import call
 from labkit.course.question import Case
 
 from .answers import choose_gains

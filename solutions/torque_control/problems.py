@@ -8,7 +8,7 @@ import numpy as np
 
 import labkit as lk
 from labkit.course import Call, Close, Gains, Loop, Tuned
-from labkit.course.problem import Problem, Trial, Wrong, call
+from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
 

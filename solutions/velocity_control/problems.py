@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from labkit.course import Close
-from labkit.course.problem import Problem, Trial, Wrong, call
+from labkit.course.authoring.problem import Problem, Trial, Wrong, call
 
 from . import answers, hidden, mistakes, variants
 from .hidden import (

@@ -5,7 +5,7 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 
 ROOT = Path(__file__).parents[2]
 

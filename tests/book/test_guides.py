@@ -13,7 +13,7 @@ import pytest
 from book_pages import ROOT
 from handmade import put
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.nbgrader.gradebook import open_gradebook
 from labkit.grader.rules import FILE, read_rules
 from labkit.grader.terms.term import PERSONAL_FILES

@@ -5,10 +5,10 @@ import pytest
 
 import labkit as lk
 from labkit.course import mark
+from labkit.course.authoring.problem import Problem, Trial, call
 from labkit.course.judges import Close
 from labkit.course.marking import try_public
 from labkit.course.observed import diagnosed
-from labkit.course.problem import Problem, Trial, call
 
 
 def law(state, target, *, kp, kd):

@@ -19,10 +19,10 @@ from labkit.course import (
     my_arm,
     own_arm,
 )
+from labkit.course.authoring.layout import Course
 from labkit.course.bugs import CAUSES, MOVES, Bug, tells_apart
 from labkit.course.differences import sentence
 from labkit.course.identification import personal
-from labkit.course.layout import Course
 from labkit.course.messages import message
 from labkit.course.own_arm import APART, DEMO, FILE, RANGES, Arms, draw
 from labkit.course.reply import Here

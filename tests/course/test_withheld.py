@@ -12,7 +12,7 @@ import pytest
 from pinocchio import pinocchio_pywrap_default as lower
 
 import labkit as lk
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.course.withheld import Withheld, find, withhold
 
 COURSE = Course.here(Path(__file__))

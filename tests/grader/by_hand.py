@@ -33,7 +33,7 @@ def with_hand_marked(path, questions, predictions):
 
 def author(monkeypatch):
     """Let `labkit release` find these cells in the assignment's source."""
-    monkeypatch.setattr("labkit.course.release.source_notebook", with_hand_marked)
+    monkeypatch.setattr("labkit.course.authoring.release.source_notebook", with_hand_marked)
 
 
 def written_in(notebook, name, text):

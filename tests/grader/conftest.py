@@ -9,8 +9,8 @@ import shutil
 import pytest
 from handmade import ROOT
 
-from labkit.course.bundle import Bundle
-from labkit.course.layout import Course
+from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
 from labkit.grader.sandbox.launch import Sandbox
 from labkit.grader.terms.release import release
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from handmade import ROOT
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.timestamp import read_time
 
 NAME = "01_paths"

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from handmade import hand_in
 
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.verdict import Difference, Kind, Outcome, TestResult, Verdict
 from labkit.grader.grading.grade import hashes, rejection
 from labkit.grader.grading.results import Answer, Result, Results

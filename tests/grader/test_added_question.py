@@ -11,7 +11,7 @@ import pytest
 from handmade import QUICK, ROOT, hand_in
 
 from labkit.__main__ import main
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.course.merge import merge
 from labkit.course.notebook import read_cells
 from labkit.errors import LabkitError
@@ -196,7 +196,7 @@ def test_a_release_that_is_refused_leaves_the_gradebook_alone(marked, monkeypatc
         raise LabkitError("keep it whole")
 
     become(True)
-    monkeypatch.setattr("labkit.course.release.solution_notebook", refused)
+    monkeypatch.setattr("labkit.course.authoring.release.solution_notebook", refused)
     with pytest.raises(LabkitError, match="keep it whole"):
         release(course, NAME, SEED)
     assert marks(course) == before

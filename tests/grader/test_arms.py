@@ -10,7 +10,7 @@ from handmade import hand_in, put
 
 from labkit.__main__ import main
 from labkit.course import my_arm
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.own_arm import FILE, HANDLES, Arms
 from labkit.errors import LabkitError
 from labkit.grader.feedback.explain import explain

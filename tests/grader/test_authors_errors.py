@@ -8,8 +8,8 @@ import nbformat
 import pytest
 from handmade import ROOT
 
-from labkit.course.layout import Course
-from labkit.course.problem import Problem, Trial, call
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.problem import Problem, Trial, call
 from labkit.errors import LabkitError
 from labkit.grader.terms import release
 

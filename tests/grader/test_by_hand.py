@@ -14,8 +14,8 @@ from handmade import ROOT, hand_in, nbgrader, raw
 from made import NAME, notebook_of, result_of
 
 from labkit.__main__ import main
-from labkit.course.bundle import Bundle
-from labkit.course.layout import Course
+from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
 from labkit.grader.grading.plan import plan
 from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader.gradebook import open_gradebook, record

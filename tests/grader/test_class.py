@@ -20,7 +20,7 @@ from plain_nbgrader import grade_with_nbgrader, pack_hidden
 from processes import below, child, wait_until_gone
 
 from labkit.__main__ import main
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.grading.batch import (
     GradedSubmission,
     GradeOptions,

@@ -13,9 +13,9 @@ from handmade import ROOT
 
 import labkit as lk
 from labkit.__main__ import main
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.outcomes import OUTCOMES
 from labkit.course.bugs import CLEAR, tells_apart
-from labkit.course.layout import Course
-from labkit.course.outcomes import OUTCOMES
 from labkit.grader.terms.concepts import LAYOUTS, asked, items
 
 COURSE = Course(ROOT)

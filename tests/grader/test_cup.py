@@ -11,8 +11,8 @@ from handmade import hand_in
 
 from labkit import Sample, State
 from labkit.__main__ import main
+from labkit.course.authoring.layout import CUP, DEFENCE
 from labkit.course.baxter_cup import MARKS, PUBLIC_SEEDS
-from labkit.course.layout import CUP, DEFENCE
 from labkit.grader.cup import entries as cup
 from labkit.grader.cup.entries import A_DAY, SEEDS, Entry, entries, latest, play, seeds
 from labkit.grader.cup.table import as_text, give_bonus, page
@@ -43,7 +43,7 @@ from labkit.course import cup
 def look(model):
     found = list(pathlib.Path("COURSE").rglob("*"))
     from labkit.grader import cup as cups
-    from labkit.course.layout import Course
+    from labkit.course.authoring.layout import Course
     secret = cups.seeds(Course(pathlib.Path("COURSE")), False)
     return lambda state, target: lk.JointVelocity(secret[0] + len(found) + 0.0 * state.q)
 

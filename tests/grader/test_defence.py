@@ -15,7 +15,7 @@ from made import NAME, result_of
 
 import labkit as lk
 from labkit.__main__ import main
-from labkit.course.layout import DEFENCE
+from labkit.course.authoring.layout import DEFENCE
 from labkit.course.marking import try_public
 from labkit.course.question import Loop
 from labkit.grader.defence.draw import ASKED, Asked, draw

@@ -8,7 +8,7 @@ import inspect
 import pytest
 from handmade import ROOT
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.defence.edits import MOST, edits, shown
 
 LAW = '''import numpy as np

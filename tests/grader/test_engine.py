@@ -10,7 +10,7 @@ import pytest
 from handmade import FULL, QUICK, add, cell_of, put, raw
 
 from labkit.course import Call, Loop, question_data, read_question
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.judges import Close
 from labkit.course.marking import mark
 from labkit.course.messages import why

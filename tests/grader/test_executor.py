@@ -15,7 +15,7 @@ import pytest
 from handmade import FULL, QUICK, add, hand_in
 from processes import below, child, running, wait_until_gone
 
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.errors import LabkitError
 from labkit.grader.grading import executor as pools
 from labkit.grader.grading import worker

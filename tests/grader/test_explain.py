@@ -9,7 +9,7 @@ from handmade import hand_in, put
 from made import WHY, notebook_of, result_of
 
 from labkit.__main__ import main
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.errors import LabkitError, UnknownName
 from labkit.grader.feedback.explain import explain
 from labkit.grader.grading.results import Results

@@ -18,7 +18,7 @@ from handmade import FULL, QUICK, ROOT, add, hand_in, raw
 from made import NAME, WHY, result_of
 
 from labkit.__main__ import main
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.cli import FOR_INSTRUCTORS
 from labkit.course.own_arm import HANDLES, Arms
 from labkit.grader.gradescope import run as gradescope

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from labkit.course.layout import Course
-from labkit.course.solved import inlined
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.solved import inlined
 from labkit.course.source import look
 from labkit.course.withheld import withheld_tools
 from labkit.grader.grading.plan import plan

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import labkit as lk
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from tests.synthetic.inline import inline
 
 COURSE = Course.here(Path(__file__))

@@ -9,8 +9,8 @@ from courses import copied
 from handmade import nbgrader
 from plain_nbgrader import grade_with_nbgrader, pack_hidden
 
-from labkit.course.layout import Course
-from labkit.course.solved import inlined
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.solved import inlined
 from labkit.grader.terms.release import release
 
 COURSE = Course.here(Path(__file__))

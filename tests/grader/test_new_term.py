@@ -10,8 +10,8 @@ from courses import copied
 
 from labkit import LabkitError
 from labkit.__main__ import main
-from labkit.course.bundle import Bundle
-from labkit.course.layout import Course
+from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
 from labkit.course.own_arm import Arms
 from labkit.course.seed import PUBLIC_SEED
 from labkit.errors import UnknownName

@@ -14,7 +14,7 @@ from downloaded import from_moodle
 from handmade import ROOT, cell_of, hand_in, raw
 
 from labkit.__main__ import main
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.marking import all_alike
 from labkit.course.verdict import Outcome
 from labkit.errors import LabkitError

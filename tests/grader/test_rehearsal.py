@@ -9,7 +9,7 @@ import pytest
 from courses import copied
 from handmade import ROOT
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.grading.batch import GradeOptions
 from labkit.grader.grading.results import Results

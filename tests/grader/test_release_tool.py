@@ -10,12 +10,12 @@ from courses import copied
 
 from labkit.__main__ import main
 from labkit.course import read_question
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.problem import _none
+from labkit.course.authoring.refusals import refusals, stand_ins
+from labkit.course.authoring.solved import inlined, solution_notebook
 from labkit.course.brief import brief
-from labkit.course.layout import Course
 from labkit.course.notebook import source_notebook
-from labkit.course.problem import _none
-from labkit.course.refusals import refusals, stand_ins
-from labkit.course.solved import inlined, solution_notebook
 from labkit.errors import LabkitError
 from labkit.grader.terms.release import FORBIDDEN, release
 

@@ -5,11 +5,12 @@ from pathlib import Path
 import pytest
 
 from labkit.__main__ import main
-from labkit.course import Outcome, report_card
-from labkit.course.layout import Course
+from labkit.course import Outcome
+from labkit.course.authoring import report_card
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.refusals import by_heart
+from labkit.course.authoring.report_card import functions_from, make, markdown, write
 from labkit.course.marking import mark
-from labkit.course.refusals import by_heart
-from labkit.course.report_card import functions_from, make, markdown, write
 from labkit.errors import LabkitError, UnknownName
 
 COURSE = Course.here(Path(__file__))

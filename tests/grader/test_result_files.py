@@ -18,7 +18,7 @@ from made import changed as changed_in
 
 import labkit
 from labkit.__main__ import main
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.errors import LabkitError
 from labkit.formats import FORMAT, stamp
 from labkit.grader import atomic as module

@@ -10,9 +10,9 @@ from contextlib import closing
 import pytest
 from handmade import FULL, QUICK, ROOT, add, cell_of, put, raw
 
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
 from labkit.course.equivalence import MOST_COEFFICIENTS, Ratio
-from labkit.course.layout import Course
 from labkit.course.messages import why
 from labkit.course.reply import NoAnswer
 from labkit.errors import OutOfRange

@@ -11,12 +11,13 @@ import zipfile
 import pytest
 from handmade import ROOT
 
-from labkit.grader.terms.student_bundle import student_bundle
+from labkit.grader.terms.student_bundle import NOT_FOR_STUDENTS, student_bundle
 
 ALONE = """
 import sys
 sys.meta_path = [finder for finder in sys.meta_path if "Editable" not in str(finder)]
 import labkit as lk
+import labkit.course
 from labkit.__main__ import main
 lk.ready()
 main(["--help"])
@@ -51,13 +52,14 @@ def unpacked(released, tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_students_labkit_is_todays_without_the_grader(unpacked):
-    """The wheel has each of labkit's modules that git has, but the grader's, and no other."""
+def test_students_labkit_is_todays_without_the_instructors_half(unpacked):
+    """The wheel has each of labkit's modules that git has, but the instructor's, and no other."""
     listed = subprocess.run(
         ["git", "-C", str(ROOT), "ls-files", "labkit"], capture_output=True, text=True, check=True
     )
     wanted = {name for name in listed.stdout.splitlines() if name.endswith(".py")}
-    wanted = {name for name in wanted if not name.startswith("labkit/grader/")}
+    instructors = tuple(f"{folder}/" for folder in NOT_FOR_STUDENTS)
+    wanted = {name for name in wanted if not name.startswith(instructors)}
     found = {str(p.relative_to(unpacked / "wheel")) for p in unpacked.glob("wheel/labkit/**/*.py")}
     assert found == wanted
 
@@ -108,7 +110,8 @@ def test_pip_takes_the_zip_as_it_is(unpacked, tmp_path):
     command = [sys.executable, "-m", "pip", *words, str(unpacked / "lab.zip")]
     subprocess.run(command, check=True, cwd=tmp_path)
     assert (tmp_path / "there/labkit/run.py").exists()
-    assert not (tmp_path / "there/labkit/grader").exists()
+    for folder in NOT_FOR_STUDENTS:
+        assert not (tmp_path / "there" / folder).exists()
 
 
 @pytest.mark.slow

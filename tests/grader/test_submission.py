@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from handmade import ROOT
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.errors import LabkitError
 from labkit.grader.submission import Submission, none_of, read_file
 

@@ -14,7 +14,7 @@ from handmade import QUICK
 from made import said_by_hand, saying
 
 from labkit.__main__ import main
-from labkit.course.outcomes import OUTCOMES
+from labkit.course.authoring.outcomes import OUTCOMES
 from labkit.course.serialize import encode
 from labkit.course.verdict import Outcome
 from labkit.grader.feedback.class_report import report
@@ -43,7 +43,7 @@ def term(released, tmp_path_factory):
     """A course with a small class, graded and recorded."""
     import shutil
 
-    from labkit.course.layout import Course
+    from labkit.course.authoring.layout import Course
 
     root = tmp_path_factory.mktemp("term") / "course"
     shutil.copytree(released.root, root, symlinks=True)

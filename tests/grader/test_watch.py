@@ -9,7 +9,7 @@ from handmade import hand_in
 from made import NAME, notebook_of, result_of
 
 from labkit.__main__ import main
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.own_arm import Arms
 from labkit.grader.each import Failure
 from labkit.grader.grading import batch, worker

@@ -8,7 +8,7 @@ import pytest
 from handmade import QUICK, add, put, raw
 from ways import WAYS, Way
 
-from labkit.course.bundle import Bundle
+from labkit.course.authoring.bundle import Bundle
 from labkit.course.verdict import Outcome
 from labkit.grader.feedback.class_report import report
 from labkit.grader.feedback.page import page

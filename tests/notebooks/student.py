@@ -14,9 +14,9 @@ import nbformat
 
 import labkit
 from labkit.course import student as desk
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.solved import inlined
 from labkit.course.checks_file import FILE
-from labkit.course.layout import Course
-from labkit.course.solved import inlined
 
 matplotlib.use("Agg")
 COURSE = Course.here(Path(__file__))

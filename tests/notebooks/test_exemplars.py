@@ -7,7 +7,7 @@ import jupytext
 import numpy as np
 import pytest
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.course.own_arm import DEMO, draw
 from labkit.course.seed import PUBLIC_SEED
 

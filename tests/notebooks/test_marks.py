@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from labkit.course import Call, Choice, Loop, Outcome, Tuned, fingerprint
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.report_card import rejected_below
 from labkit.course.marking import mark, recognise
-from labkit.course.report_card import rejected_below
 
 COURSE = Course.here(Path(__file__))
 NAMES = [name for name in COURSE.names() if COURSE.problems(name)]

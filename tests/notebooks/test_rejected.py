@@ -13,9 +13,9 @@ from scipy import stats
 
 import labkit as lk
 from labkit.course import Outcome
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.report_card import rejected_below
 from labkit.course.marking import mark
-from labkit.course.report_card import rejected_below
 from solutions.comparison.hidden import RESERVE, UNSEEN, UNSEEN_LIMIT, stiffer
 
 COURSE = Course.here(Path(__file__))

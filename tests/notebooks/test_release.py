@@ -13,7 +13,7 @@ import pytest
 from courses import copied
 
 from labkit.course import question_data
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.course.notebook import source_notebook
 from labkit.course.serialize import encode
 from labkit.grader.terms.release import FORBIDDEN, release

@@ -15,7 +15,7 @@ from typing import Any
 
 from downloaded import written_at
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 
 from . import hostile
 from .attacks.place import handed_out, solved_code

@@ -9,7 +9,7 @@ import pytest
 from soak.attacks.place import release_into
 from soak.commands import worker
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.grading import batch
 
 

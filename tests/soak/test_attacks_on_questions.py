@@ -9,7 +9,7 @@ import pytest
 from soak.attacks.attack import code_cell
 from soak.attacks.place import ROOT
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.grading.batch import GradedSubmission, GradeOptions, grade_class
 from labkit.grader.terms.release import release
 

@@ -17,7 +17,7 @@ from soak.attacks.place import NAME, ROOT, place
 from soak.attacks.shown import MARKUP
 
 from labkit.__main__ import main
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 
 pytestmark = pytest.mark.usefixtures("kept_worker")
 soak = pytest.mark.soak

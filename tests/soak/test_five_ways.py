@@ -15,7 +15,7 @@ from made import NAME, result_of
 from soak.attacks.place import full_marks
 
 from labkit.__main__ import main
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.grading.results import Results
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
 from labkit.grader.terms.release import release

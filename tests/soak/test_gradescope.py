@@ -13,8 +13,8 @@ from attacks import CLASSES
 from autograder import graded, installed, packed, unpacked
 from handmade import ROOT, add, put, raw
 
-from labkit.course.bundle import Bundle
-from labkit.course.layout import Course
+from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
 from labkit.grader.grading.grade import grade
 from labkit.grader.sandbox import mounts
 from labkit.grader.sandbox.apart import alive

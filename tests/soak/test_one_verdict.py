@@ -14,9 +14,9 @@ import pytest
 from handmade import put, raw
 
 from labkit.course import question_data
+from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
 from labkit.course.before_handing_in import examine
-from labkit.course.bundle import Bundle
-from labkit.course.layout import Course
 from labkit.course.notebook import manifest, source_notebook, verdict_in
 from labkit.course.withheld import find
 from labkit.grader.grading.grade import grade

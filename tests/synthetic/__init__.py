@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from labkit.course.bundle import Bundle
-from labkit.course.layout import Course
+from labkit.course.authoring.bundle import Bundle
+from labkit.course.authoring.layout import Course
+from labkit.course.authoring.problem import Problem
 from labkit.course.marking import mark
 from labkit.course.notebook import grade_id
 from labkit.course.predictions import Prediction
-from labkit.course.problem import Problem
 from labkit.course.question import Question
 from labkit.errors import LabkitError
 from labkit.grader.atomic import write

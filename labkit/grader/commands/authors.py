@@ -7,8 +7,8 @@ from pathlib import Path
 
 import click
 
+from ...course.authoring.layout import Course
 from ...course.cli import PATH, verb
-from ...course.layout import Course
 from ...course.seed import PUBLIC_SEED
 from .course import SEED, names, of_course
 
@@ -55,7 +55,7 @@ def report_card(
     01_paths/circle. Without a NAME all assignments are tried. The exit code is 1 where a check is
     wrong, or an answer comes nearer to its tolerance than three sigma.
     """
-    from ...course.report_card import functions_from, make, write
+    from ...course.authoring.report_card import functions_from, make, write
 
     card = make(
         course,

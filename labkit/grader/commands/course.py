@@ -12,8 +12,8 @@ from zoneinfo import ZoneInfo
 
 import click
 
+from ...course.authoring.layout import CUP, DEFENCE, Course
 from ...course.cli import PATH, verb
-from ...course.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
 
 SEED = click.IntRange(min=0)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from ...course.authoring.layout import CUP, UNRELEASED, Course
 from ...course.cli import verb
-from ...course.layout import CUP, UNRELEASED, Course
 from ...errors import LabkitError
 from ..clean import some
 from ..each import Failure, Failures

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ...course.authoring.layout import Course
 from ...course.cli import verb
-from ...course.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, Failures
 from .course import of_assignment, of_course
@@ -119,7 +119,7 @@ def _other_notebooks(results: Iterable[Result]) -> Iterator[Failure]:
 
 def _on_top(course: Course, assignment: str) -> Iterator[str]:
     """What the points that are printed leave out."""
-    from ...course.bundle import Bundle
+    from ...course.authoring.bundle import Bundle
 
     if by_hand := Bundle.of(course, assignment).by_hand:
         yield f"not included: {by_hand:g} points that are marked by hand"

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, TextIO
 
 import click
 
+from ...course.authoring.layout import Course
 from ...course.cli import PATH, verb
-from ...course.layout import Course
 from ...errors import LabkitError
 from ..clean import how_many, some
 from ..each import Failure, Failures
@@ -95,7 +95,7 @@ def class_report(
 
     The report counts mistakes by their names. Students have pseudonyms unless you add --names.
     """
-    from ...course.bundle import Bundle
+    from ...course.authoring.bundle import Bundle
     from ..feedback.class_report import FEWEST, for_jplag, report
     from ..marks.table import marks_of
     from ..pseudonyms import pseudonyms

@@ -6,8 +6,8 @@ import sys
 
 import click
 
+from ...course.authoring.layout import Course
 from ...course.cli import verb
-from ...course.layout import Course
 from ...errors import LabkitError
 from .course import SEED, names, of_course
 from .pages import tell

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from ...control import Command, State
+from ...course.authoring.layout import CUP, Course
 from ...course.baxter_cup import MARKS, CupRun, cup_run
 from ...course.judges import Close
-from ...course.layout import CUP, Course
 from ...course.own_arm import Arms
 from ...course.question import Question
 from ...course.serialize import read_record, record_data

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ...course.layout import CUP, Course
+from ...course.authoring.layout import CUP, Course
 from ...course.own_arm import Arms
 from ..nbgrader.gradebook import open_gradebook
 from ..nbgrader.unreleased import enter

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
 
-from ...course.bundle import Bundle
-from ...course.layout import Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...course.marking import Tried, recognise, try_public
 from ...course.question import Call, Loop, Question, Tuned
 from ...course.verdict import Misconception, Outcome

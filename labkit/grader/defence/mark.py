@@ -7,7 +7,7 @@ from typing import Any
 
 from nbgrader.api import MissingEntry
 
-from ...course.layout import DEFENCE, Course
+from ...course.authoring.layout import DEFENCE, Course
 from ...errors import LabkitError
 from ..nbgrader.autograded_notebook import as_typed
 from ..nbgrader.gradebook import open_gradebook

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ..atomic import write
 from ..feedback.page import error_over_time, measures, number_by_number
 from ..pages import file, render_page

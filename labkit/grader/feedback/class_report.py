@@ -10,10 +10,10 @@ from pathlib import Path
 from statistics import mean, median
 from typing import Any, NamedTuple
 
+from ...course.authoring.outcomes import OUTCOMES
+from ...course.authoring.problem import Problem
 from ...course.forms import Form
 from ...course.messages import uses
-from ...course.outcomes import OUTCOMES
-from ...course.problem import Problem
 from ...course.question import Question
 from ...course.verdict import Outcome, Verdict
 from ..clean import clean_line

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain
 
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...course.bugs import Found, Telling
-from ...course.bundle import Bundle
 from ...course.forms import Measured
-from ...course.layout import Course
 from ...course.messages import line as of_test
 from ...course.messages import summary, wrapped
 from ...course.own_arm import DEMO

@@ -7,7 +7,7 @@ from typing import Any
 
 from nbconvert import HTMLExporter
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..marks.table import marks_of
 from ..peers.readers import reviews

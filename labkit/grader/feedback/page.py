@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from markupsafe import Markup
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...course.messages import GATE, foretells, why, word
 from ...errors import LabkitError
 from ...metrics import SETTLED

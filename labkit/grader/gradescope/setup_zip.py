@@ -8,8 +8,8 @@ import tempfile
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
-from ...course.bundle import Bundle
-from ...course.layout import Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...course.own_arm import HANDLES, Arms
 from ..pages import TEMPLATES
 from ..students.class_list import Student

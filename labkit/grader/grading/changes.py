@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from ...course.bundle import Bundle
-from ...course.layout import Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..submission import Submission

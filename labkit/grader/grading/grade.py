@@ -12,7 +12,7 @@ from contextlib import closing, suppress
 from dataclasses import replace
 from typing import Any, cast
 
-from ...course.bundle import Bundle
+from ...course.authoring.bundle import Bundle
 from ...course.marking import Tried, all_alike, mark, not_counted, try_public
 from ...course.messages import uses
 from ...course.own_arm import opens_the_public_arm

@@ -16,7 +16,7 @@ from typing import Any, TypedDict
 
 import labkit
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...course.serialize import read_record, record_data
 from ...course.verdict import Points, Verdict
 from ...errors import LabkitError

@@ -6,8 +6,8 @@ import shlex
 from collections.abc import Iterator
 from functools import partial
 
-from ...course.bundle import Bundle
-from ...course.layout import CUP, DEFENCE, Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import CUP, DEFENCE, Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..sandbox.limits import Limits

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from typing import TypeVar
 
-from ...course.bundle import Bundle
-from ...course.layout import Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...course.own_arm import Arms
 from ...errors import LabkitError
 from ..sandbox.cgroup import MEMORY, limit_memory

@@ -25,7 +25,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
-from ...course.layout import DEFENCE
+from ...course.authoring.layout import DEFENCE
 from ..clean import no_formula, some
 from .mark import Mark
 

@@ -18,8 +18,8 @@ from nbconvert.exporters import NotebookExporter
 from nbgrader.converters.base import NbGraderException
 from nbgrader.preprocessors import NbGraderPreprocessor
 
-from ...course.bundle import Bundle
-from ...course.layout import Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..grading.batch import GradeOptions, grade_aside

@@ -12,7 +12,7 @@ from typing import Any
 
 import nbformat
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...course.messages import summary
 from ...course.notebook import Notebook, about, by_hand, grade_id, kind, question_of
 from ...errors import LabkitError

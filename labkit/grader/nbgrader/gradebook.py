@@ -17,8 +17,8 @@ from typing import Any
 from sqlalchemy import text as sql
 from sqlalchemy.exc import DatabaseError, OperationalError, SAWarning
 
-from ...course.bundle import Bundle
-from ...course.layout import Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...course.notebook import about, by_hand, grade_id, question_of, read_cells
 from ...errors import LabkitError
 from ..atomic import write

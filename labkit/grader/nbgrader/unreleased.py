@@ -7,7 +7,7 @@ from typing import Any
 
 import nbformat
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ..atomic import write
 from .autograded_notebook import as_text
 

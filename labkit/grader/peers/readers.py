@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...course.notebook import read_cells
 from ...errors import LabkitError
 from ..clean import clean_text

@@ -15,8 +15,8 @@ from typing import Any
 import nbformat
 from nbformat import v4
 
-from ...course.bundle import Bundle
-from ...course.layout import Course
+from ...course.authoring.bundle import Bundle
+from ...course.authoring.layout import Course
 from ...course.notebook import Notebook, grade_id, read_cells
 from ...errors import LabkitError
 from ..atomic import write

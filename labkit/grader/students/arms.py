@@ -6,7 +6,7 @@ import json
 import re
 from collections.abc import Sequence
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...course.own_arm import DEMO, FILE, HANDLES, Arms
 from ..atomic import write
 from .roster import Roster

@@ -31,7 +31,7 @@ from typing import Annotated
 import msgspec
 from msgspec.structs import replace
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import safe_name

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..each import Failure, for_student
 from ..submission import digest

@@ -15,7 +15,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ..clean import clean_line
 from ..each import Failure, for_student
 from ..sandbox.limits import Limits

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import msgspec
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import clean_line, safe_name

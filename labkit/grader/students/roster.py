@@ -12,7 +12,7 @@ import unicodedata
 from dataclasses import asdict, dataclass, fields
 from functools import cached_property
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..atomic import write
 from ..clean import from_no_formula, no_formula, safe_name

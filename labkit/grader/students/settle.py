@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ..grading.results import Results
 from ..nbgrader.gradebook import open_gradebook
 from .attempts import FOLDER

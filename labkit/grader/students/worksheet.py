@@ -7,7 +7,7 @@ from dataclasses import replace
 from datetime import datetime
 from zoneinfo import ZoneInfo
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ..clean import some
 from ..rules import read_rules
 from ..timestamp import read_time

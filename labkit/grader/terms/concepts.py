@@ -16,8 +16,8 @@ from typing import Any, Literal
 
 import msgspec
 
-from ...course.layout import Course
-from ...course.outcomes import OUTCOMES
+from ...course.authoring.layout import Course
+from ...course.authoring.outcomes import OUTCOMES
 from ...errors import LabkitError
 from ..pages import file, render, render_page
 

@@ -6,7 +6,7 @@ import os
 import re
 from pathlib import Path
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from .term import PERSONAL_FILES
 
 _RESULT = re.compile(r"(.+)-((?:[0-9a-f]{8}-){2}[0-9a-f]{8}|--)\.json")

@@ -16,10 +16,10 @@ from pathlib import Path
 
 import nbformat
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
+from ...course.authoring.problem import Problem
+from ...course.authoring.release import Prepared, prepare, write
 from ...course.notebook import BLANK, about, by_hand, grade_id, manifest
-from ...course.problem import Problem
-from ...course.release import Prepared, prepare, write
 from ...course.source import look
 from ...errors import LabkitError
 from ..nbgrader.gradebook import migrate

@@ -19,13 +19,13 @@ from pathlib import Path
 import jupytext
 import nbformat
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...errors import LabkitError
 from ..pages import render
 from ..students.arms import without_arms
 from .release import FORBIDDEN
 
-GRADER = "labkit/grader"
+NOT_FOR_STUDENTS = ("labkit/grader", "labkit/course/authoring")
 """What students' labkit comes without."""
 STUDENT = ".ci/student"
 """What they get besides labkit and notebooks."""
@@ -99,7 +99,7 @@ def student_folder(
     if book is None and (course.root / BOOK / "index.html").exists():
         shutil.copytree(course.root / BOOK, top / "book")
         book = "book/index.html"
-    wheel(course.root, top, without=GRADER)
+    wheel(course.root, top)
     (top / "START.html").write_text(
         render("start.html.j2", names=names, book=book), encoding="utf-8"
     )
@@ -135,13 +135,12 @@ def _first_prediction(folder: Path, name: str) -> tuple[str, str] | None:
     return (name, found[1]) if found else None
 
 
-def wheel(root: Path, to: Path, without: str | None = None) -> None:
-    """Build labkit's wheel from a copy: beside its sources lies what earlier builds left.
+def wheel(root: Path, to: Path) -> None:
+    """Build the students' wheel from a copy: beside its sources lies what earlier builds left.
 
     Args:
         root: The course's folder, a checkout.
         to: The folder to write to.
-        without: A folder that is left out.
 
     Raises:
         LabkitError: It could not be built.
@@ -150,8 +149,8 @@ def wheel(root: Path, to: Path, without: str | None = None) -> None:
         copy = Path(folder)
         unwanted = shutil.ignore_patterns("__pycache__")
         shutil.copytree(root / "labkit", copy / "labkit", ignore=unwanted)
-        if without:
-            shutil.rmtree(copy / without)
+        for name in NOT_FOR_STUDENTS:
+            shutil.rmtree(copy / name)
         for name in ("pyproject.toml", "README.md", "LICENSE"):
             shutil.copy(root / name, copy)
         words = ["wheel", "--quiet", "--no-deps", "-w", str(to), str(copy)]

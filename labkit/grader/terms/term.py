@@ -11,7 +11,7 @@ from datetime import UTC, date, datetime
 from pathlib import Path
 from typing import Any
 
-from ...course.layout import Course
+from ...course.authoring.layout import Course
 from ...course.own_arm import FILE as ARMS
 from ...course.own_arm import HANDLES
 from ...course.seed import PUBLIC_SEED

@@ -20,7 +20,7 @@ from soak.attacks.place import NAME, Place
 from soak.attacks.undefended import COMMANDS, started
 
 from labkit.__main__ import main
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.grader.each import Failure
 from labkit.grader.grading.batch import GradeOptions, grade_class
 from labkit.grader.sandbox.limits import Limits

@@ -18,7 +18,7 @@ import numpy
 from soak.attacks.attack import CANARY, Attack, Notebook
 from soak.attacks.others import VICTIM
 
-from labkit.course.layout import Course
+from labkit.course.authoring.layout import Course
 from labkit.course.notebook import about, grade_id, kind
 from labkit.grader.terms.release import release
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..errors import LabkitError, UnknownName
+from ...errors import LabkitError, UnknownName
 
 if TYPE_CHECKING:
-    from .identification import Identification
-    from .predictions import Prediction
+    from ..identification import Identification
+    from ..predictions import Prediction
     from .problem import Problem
 
 

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from ..errors import LabkitError
-from ..formats import check_stamp, stamp
-from .identification import personal
+from ...errors import LabkitError
+from ...formats import check_stamp, stamp
+from ..identification import personal
+from ..own_arm import Arms
+from ..question import Question
+from ..seed import PUBLIC_SEED
+from ..serialize import question_data, read_question
 from .layout import Course
-from .own_arm import Arms
-from .question import Question
-from .seed import PUBLIC_SEED
-from .serialize import question_data, read_question
 
 
 @dataclass(frozen=True)

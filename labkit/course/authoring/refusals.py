@@ -13,18 +13,18 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from ..control import JointTorque
-from .equivalence import Judge, TipTorque
-from .judges import Within
-from .marking import fingerprint, mark, recognise
-from .notebook import Notebook
+from ...control import JointTorque
+from ..equivalence import Judge, TipTorque
+from ..judges import Within
+from ..marking import fingerprint, mark, recognise
+from ..notebook import Notebook
+from ..question import Call, Question
+from ..reply import Here
+from ..serialize import encode
+from ..source import look, needed
+from ..verdict import Outcome
+from ..withheld import withheld_tools, withhold
 from .problem import Problem
-from .question import Call, Question
-from .reply import Here
-from .serialize import encode
-from .source import look, needed
-from .verdict import Outcome
-from .withheld import withheld_tools, withhold
 
 USE = "def use(name, function, given, yours=None, **options):\n    return yours or function\n"
 """Takes the place of the notebook's, since the other parts are right."""

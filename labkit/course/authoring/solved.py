@@ -6,10 +6,10 @@ import copy
 import inspect
 from collections.abc import Mapping
 
-from ..errors import LabkitError
-from .notebook import Notebook, grade_id, kind
+from ...errors import LabkitError
+from ..notebook import Notebook, grade_id, kind
+from ..source import needed
 from .problem import Problem
-from .source import needed
 
 
 def solution_notebook(source: Notebook, problems: Mapping[str, Problem]) -> Notebook:

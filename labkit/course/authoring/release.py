@@ -16,17 +16,17 @@ from pathlib import Path
 
 import nbformat
 
-from ..errors import LabkitError
-from ..formats import stamp
+from ...errors import LabkitError
+from ...formats import stamp
+from ..checks_file import FILE
+from ..notebook import Notebook, kind, manifest, source_notebook
+from ..question import Question
+from ..serialize import question_data
+from ..withheld import find
 from .bundle import write_bundle
-from .checks_file import FILE
 from .layout import Course
-from .notebook import Notebook, kind, manifest, source_notebook
-from .question import Question
 from .refusals import refusals
-from .serialize import question_data
 from .solved import solution_notebook
-from .withheld import find
 
 
 @dataclass(frozen=True)

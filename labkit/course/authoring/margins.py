@@ -18,10 +18,10 @@ from typing import Any
 
 import numpy as np
 
-from .judges import AtMost
+from ..judges import AtMost
+from ..question import Call, Case, Choice, Loop, Question, Tuned
+from ..serialize import encode
 from .problem import Problem
-from .question import Call, Case, Choice, Loop, Question, Tuned
-from .serialize import encode
 
 ROUNDING = 1e-3
 """Distances below this, in tolerances, are rounding, and count as this much."""

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from .equivalence import Judge
-from .judges import Close
-from .marking import fingerprint
-from .probes import probed
-from .question import Call, Case, Mistake, Question, Test
+from ..equivalence import Judge
+from ..judges import Close
+from ..marking import fingerprint
+from ..probes import probed
+from ..question import Call, Case, Mistake, Question, Test
 
 CLOSE = Close()
 

@@ -15,15 +15,15 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import LabkitError, UnknownName
-from .calling import heard
+from ...errors import LabkitError, UnknownName
+from ..calling import heard
+from ..marking import mark
+from ..question import Question
+from ..reply import Here
+from ..verdict import Outcome
 from .layout import Course
 from .margins import least, remembering
-from .marking import mark
 from .problem import Problem
-from .question import Question
-from .reply import Here
-from .verdict import Outcome
 
 Functions = Mapping[str, Sequence[Callable[..., Any]]]
 """Functions by their question, its name, or "assignment/name" where two assignments ask it."""
