@@ -16,7 +16,7 @@ ASSIGNMENT ?= 01_paths
 SECOND := .venv-313/bin
 ON_SECOND := -m "not slow and not soak and not pybullet"
 
-.PHONY: help demo test test-313 wheels zip quick soak count record lab release grade book book-zip book-pdf film vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
+.PHONY: help demo test test-313 wheels zip dev quick soak count record lab release grade book book-zip book-pdf film vendor campaign campaign-engines bench tag-bench report-card doctor lint types format clean
 
 help: ## list the verbs
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -35,6 +35,8 @@ test-313: .venv-313/.made ## on Python 3.13 without PyBullet: the lab, Run All, 
 
 wheels: .venv/.dev ## on which systems pip can install what a student needs
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python .ci/wheels.py
+
+dev: for-all .venv/.dev ## make the environment, .venv, and nothing else
 
 quick: for-all .venv/.dev ## the quick tests, with Python alone
 	@PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/python -m pytest -n 2 --quick -m "not slow and not soak" --ignore tests/book --ignore tests/replay --ignore tests/soak
@@ -71,7 +73,7 @@ vendor: .venv/.dev ## make the book's browser files again (node 20)
 	@sh .ci/need.sh node:nodejs npm:npm
 	@PYTHON="$(CURDIR)/$(BIN)/python" sh book/_tools/vendor.sh
 
-campaign: .venv/.course ## every controller on every task: build/campaign.json
+campaign: .venv/.course ## the compared controllers on every task: build/campaign.json
 	@$(BIN)/python -m solutions.study
 
 campaign-engines: .venv/.course ## the campaign on both engines, and where they differ

@@ -1,4 +1,4 @@
-r"""The report's tasks, each a composition of the parts in `motion` and `paths`.
+r"""The report's tasks, each a composition of the parts in `trajectory` and `paths`.
 
 Nothing here is new mathematics: a line is ``Trajectory(PosePath(Line), Quintic)``, a circle the
 same with `Circle`, and the square a `Chain` of four lines, so that the tip stops at each corner and

@@ -259,6 +259,18 @@ def test_known_mistakes_must_be_told_apart():
     assert "'nothing wrong' gives the right answers on all public calls" in sentence
 
 
+def test_a_known_mistake_must_give_an_answer():
+    """A slip in a mistake's own function would name every answer with such a slip."""
+
+    def slips(*args):
+        return undefined_here(args)  # noqa: F821
+
+    problem = PROBLEMS["joint_error"]
+    broken = replace(problem.wrong[0], name="no turn", function=slips)
+    (sentence,) = refused(PROBLEMS | {problem.name: replace(problem, wrong=(broken,))})
+    assert "its known mistake 'no turn' raises NameError on each public call" in sentence
+
+
 def test_a_solved_cell_brings_only_what_it_needs():
     """A variable of the answer's own is no function of its module that has the same name."""
     (coriolis,) = (p for p in COURSE.problems("02_model") if p.name == "coriolis")
@@ -274,7 +286,7 @@ def test_a_release_with_a_reason_against_it_writes_nothing(tmp_path, monkeypatch
     before = {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}
     bare = with_trials("inverse_transform", lambda k, t: replace(t, hidden=_none))
     monkeypatch.setattr(Course, "problems", lambda self, name: tuple(bare.values()))
-    with pytest.raises(LabkitError, match=rf"^{NAME} is not released:") as caught:
+    with pytest.raises(LabkitError, match=rf"^{NAME}.py:\n") as caught:
         release(course, NAME, 1)
     assert str(caught.value).count("inverse_transform: ") == 3
     assert before == {p: p.read_bytes() for p in course.root.rglob("*") if p.is_file()}

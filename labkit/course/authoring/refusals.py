@@ -18,7 +18,7 @@ from ..equivalence import Judge, TipTorque
 from ..judges import Within
 from ..marking import fingerprint, mark, recognise
 from ..notebook import Notebook
-from ..question import Call, Question
+from ..question import Call, Question, Raised
 from ..reply import Here
 from ..serialize import encode
 from ..source import look, needed
@@ -77,6 +77,12 @@ def _reasons(problem: Problem, question: Question, text: str | None) -> Iterator
 def _alike(question: Question, problem: Problem) -> Iterator[str]:
     """Known mistakes that are not told from another one, or from a right answer."""
     for mistake in question.mistakes:
+        if mistake.answers and all(isinstance(x, Raised) for x in mistake.answers):
+            kinds = ", ".join(sorted({x.kind for x in mistake.answers}))
+            yield (
+                f"its known mistake {mistake.name!r} raises {kinds} on each public call, so that "
+                "any answer that does so would be taken for it; correct the mistake's function"
+            )
         other = recognise(question, list(mistake.answers))
         if other is not mistake:
             yield (

@@ -111,6 +111,8 @@ def _by_the_grader(
     elif hidden:
         yield "\nThe hidden case that decided; do not show it before the term ends:"
         yield from (wrapped(f"  {of_test(test)}") for test in now.tests if test.name in hidden)
+    elif shown.outcome is Outcome.NOT_COUNTED:
+        pass  # the tool that it uses did
     elif not shown.right:
         yield "\nThe tests that the student has seen decided this mark; no hidden case did."
     if (shown.right, shown.earned) != (now.right, now.earned):

@@ -138,9 +138,9 @@ def prepared(course: Course, name: str, seed: int) -> Prepared:
     except (LabkitError, MemoryError):
         raise
     except Exception as error:
-        raise LabkitError(f"{name} is not released: {_where(course, error)}") from error
+        raise LabkitError(_where(course, error)) from error
     if reasons := [*_unreadable(made), *_sums(made)]:
-        raise LabkitError("\n".join([f"{name} is not released; {path.name}:", *reasons]))
+        raise LabkitError("\n".join([f"{path.name}:", *reasons]))
     return made
 
 
@@ -172,7 +172,7 @@ def _where(course: Course, error: Exception) -> str:
         asked = frame.f_locals.get("self")
         question = asked.name if isinstance(asked, Problem) else question
     of = f"the question {question}: " if question else ""
-    return f"{of}{place or 'somewhere'}: {said}; correct it"
+    return f"{of}{place}{': ' * bool(place)}{said}; correct it"
 
 
 def _unreadable(made: Prepared) -> Iterator[str]:
