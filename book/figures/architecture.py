@@ -22,7 +22,7 @@ LAYERS = (
     ("The arm", ("sensors", "springs", "motors", "arm")),
     (
         "The loop, and what it did",
-        ("log", "driven", "hand", "run", "metrics", "recordings", "loop"),
+        ("log", "driven", "run", "metrics", "recordings", "loop"),
     ),
     ("What sees, draws and shows", ("tags", "plotting", "replay")),
     ("What judges", ("course",)),
