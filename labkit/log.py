@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 from math import prod
+from pathlib import Path
 from typing import Any
 from zipfile import BadZipFile
 
@@ -68,7 +69,7 @@ class Log:
         """Write the log, its robot and its plant to a file, which `load` reads.
 
         Args:
-            path: Where to; its name should end in ".npz".
+            path: Where to; a name without ".npz" at its end gets it.
             single: Keep the numbers in single precision: half the size, good to a micrometre.
         """
         columns = {name: getattr(self, name) for name in _ROWS}
@@ -96,6 +97,11 @@ class Log:
         Raises:
             LabkitError: The file cannot be read, holds no log, or holds that of another labkit.
         """
+        path = Path(path)
+        if not path.exists() and not path.suffix:
+            path = path.with_suffix(".npz")  # as `save` called it
+        if not path.exists():
+            raise LabkitError(f"there is no file {path}; log.save(...) writes one")
         try:
             with np.load(path) as file:
                 about = json.loads(str(file["about"]))

@@ -8,7 +8,7 @@ WORDS, WHY_POINTS = (25, 80), 2.0
 """The fewest and the most words of a why, and its points."""
 RUBRIC = (
     "- 2 points: the right cause, and how it leads to what you saw. 1 point: the right cause, but "
-    "a step is missing or wrong. 0 points: another cause, or what you saw told once more."
+    "a step is missing or wrong. 0 points: another cause, or only a repetition of what you saw."
 )
 """How a person marks a why."""
 

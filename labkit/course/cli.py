@@ -106,7 +106,10 @@ def merge(mine: Path, new: Path, to: Path) -> int:
     both = sum(BESIDE in cell["source"] for cell in notebook["cells"])
     text = json.dumps(notebook, indent=1, ensure_ascii=False) + "\n"
     to.write_text(text, encoding="utf-8", errors="replace")  # a lone surrogate is not text
-    print(f"{to}: the new release with your work; look through it, then run all its cells")
+    print(
+        f"{to}: the new release with your work; look through it, put it in the place of "
+        f"{mine.name}, and run all its cells"
+    )
     if both:
         print(f"where the new release changed what you may have changed too, it says: {BESIDE}")
     return 0

@@ -115,36 +115,51 @@ def _controls(name: str, form: Form) -> None:
     from IPython.display import display
 
     again = "click into the cell above this line and press Shift+Enter once more to commit."
-    note = widgets.HTML(f"Choose; then {again}")  # a label would not break its line
+    note = widgets.HTML(f"{_what_to_do(form)}; then {again}")  # a label would not break its line
     parts = _inputs(form, widgets)
-    waiting = list(parts)  # a slider counts once a hand has moved it
+    draft = desk().drafts.setdefault(name, [None] * len(parts))  # None waits for a hand
 
-    def changed(change: Any) -> None:
-        if change["owner"] in waiting:
-            waiting.remove(change["owner"])
-        values = [_number(part.value) for part in parts]
-        said = values if isinstance(form, Curve) else values[0]
+    def show() -> None:
+        """Take what the controls say if all of them have been set, and say what is missing."""
         desk().chosen.pop(name, None)
-        if found := form.problem(said):
+        waiting = [part.description for part, x in zip(parts, draft, strict=True) if x is None]
+        said = [*map(_number, draft)] if isinstance(form, Curve) else _number(draft[0])
+        if isinstance(form, Curve) and waiting:
+            note.value = f"Still to set: the {escape(form.height)} at {', '.join(waiting)}."
+        elif found := form.problem(said):
             note.value = escape(found)
-        elif waiting:
-            places = ", ".join(part.description for part in waiting)
-            note.value = f"Set the other heights too; these still wait: {places}."
         else:
             desk().chosen[name] = said
             note.value = f"{escape(form.words(said))}: not committed yet; {again}"
 
-    for part in parts:
+    def changed(change: Any) -> None:
+        draft[parts.index(change["owner"])] = change["new"]
+        show()
+
+    for part, value in zip(parts, draft, strict=True):
+        if value is not None:
+            part.value = value
         part.observe(changed, "value")
+    if any(value is not None for value in draft):
+        show()
     box = widgets.HBox if isinstance(form, Curve) else widgets.VBox
     display(widgets.VBox([box(parts), note]))
+
+
+def _what_to_do(form: Form) -> str:
+    match form:
+        case Choose():
+            return "Choose"
+        case Curve(_, along, height):
+            return escape(f"Set each slider to the {height} where the {along} is its number")
+    return escape(f"Type {form.how}")
 
 
 def _number(said: Any) -> Any:
     """A number as it was written or pulled, without the noise of its last digits; else as it is."""
     try:
         return round(float(said), 9)
-    except ValueError:
+    except (TypeError, ValueError):
         return said
 
 

@@ -44,6 +44,7 @@ class Desk:
         self.attempted: set[str] = set()
         self.committed: dict[str, Any] = {}
         self.chosen: dict[str, Any] = {}
+        self.drafts: dict[str, list[Any]] = {}
         self.revealed: set[str] = set()
 
     @classmethod

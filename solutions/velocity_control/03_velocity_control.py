@@ -186,7 +186,7 @@ else:
     lk.plotting.show(
         "Error of one joint with kp = 3 and more and more D. What is left after 1.5 s: "
         + ", ".join(f"{100 * share:.0f} % at kd = {kd:g}" for kd, share in shares.items())
-        + ". Dotted: exp(-r t) with your rate."
+        + (". Dotted: exp(-r t) with your rate." if my_decay_rate is decay_rate else ".")
     )
 
 # %%
@@ -283,7 +283,7 @@ else:
         "Joint speed for 10 cm/s of the tip in its worst direction, over the elbow's angle; the arm is "
         f"straight at {straight:.2f} rad, because the elbow's axis is beside the upper arm. The most, in rad/s: "
         + ", ".join(f"{speed:.3g} with {name}" for name, speed in speeds.items())
-        + ". Without damping the speeds become absurd near this pose; with damping the joints give up there."
+        + ". Without damping the speeds become absurd near this pose; with damping the tip hardly moves there."
     )
 
 # %%
@@ -387,7 +387,7 @@ def posture_velocity(J, dq_wish):
 
 
 # %% [markdown]
-# The tip holds its place while the elbow swings from side to side.
+# With your part the tip holds its place while the elbow swings from side to side.
 
 # %%
 def stays(J, dq_wish):
@@ -510,8 +510,9 @@ lk.replay.show(
 
 # %% [markdown]
 # Now the same in real time, and you can push. Press *Start* and try to drag the arm off its circle. You hardly
-# can: velocity mode is stiff. However hard you pull, the motors give all they have to keep the speed. Now choose
-# a kp and raise *state_delay* until the arm begins to swing.
+# can: velocity mode is stiff, and the motors give all they have to keep the speed. Only where a motor reaches its
+# torque limit does the arm give way: push at the tip with 60 N along +y. Now choose
+# a kp of 30 and raise *state_delay* until the arm begins to swing.
 # Repeat this with half the kp: how much more delay can the arm bear? (The sentence below the picture begins with
 # what moves the arm: your controller, or a stand-in. The stand-in has no kp.)
 
@@ -522,7 +523,7 @@ def circling(state, target, kp):
 
 view = lk.live(
     lk.Arm("left", lk.BAXTER, q0=q0), {joint_law: circling}, joints, title="Velocity control",
-    kp=(0.0, 30.0, 5.0), state_delay=(0.0, 0.1), payload=(0.0, 1.0),
+    kp=(0.0, 30.0, 5.0), state_delay=(0.0, 0.2), payload=(0.0, 1.0),
 )
 view
 

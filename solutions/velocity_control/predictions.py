@@ -14,9 +14,9 @@ PREDICTIONS = (
     Prediction(
         "worst_elbow",
         "The elbow stretches from 0.8 rad to 0 while the tip must move at 10 cm/s in its hardest "
-        "direction. At which angle of the elbow do the joints turn fastest, without damping? (The upper arm is "
-        "36 cm long. At e1 = 0 the forearm is parallel to it, but the elbow's axis is 7 cm off the "
-        "line of the upper arm, on the side to which the forearm bends.)",
+        "direction. At which angle of the elbow do the joints turn fastest, without damping? (At e1 = 0 the "
+        "elbow's axis is 36 cm in front of the shoulder's and 7 cm below it, and the wrist's axis is 37 cm in front "
+        "of the elbow's and 1 cm below it. A larger e1 bends the forearm downwards.)",
         Number("rad", 0.0, 0.8),
         truth=0.16,
     ),

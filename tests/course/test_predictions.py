@@ -126,7 +126,10 @@ def test_a_curve_waits_for_each_of_its_sliders(monkeypatch):
     predict("x")
     box, note = shown[0].children
     box.children[0].value = 0.2
-    assert made.chosen == {} and note.value.endswith("these still wait: 1.")
+    assert made.chosen == {} and note.value == "Still to set: the e [rad] at 1."
+    predict("x")
+    box, note = shown[1].children
+    assert box.children[0].value == 0.2 and note.value.startswith("Still to set")
     box.children[1].value = 0.9
     box.children[1].value = 0.5
     assert made.chosen == {"x": [0.2, 0.5]} and "not committed yet" in note.value

@@ -23,6 +23,7 @@ from labkit.grader.marks.mark import MarkLine
 from labkit.grader.marks.table import mark_of
 from labkit.grader.nbgrader.gradebook import record
 from labkit.grader.nbgrader.markup import clean
+from labkit.grader.students.class_list import Student
 
 MARKDOWN = [
     "<script>alert(1)</script>",
@@ -192,7 +193,8 @@ def test_a_report_on_its_authors_page_is_rendered(course):
 
 def test_a_page_has_the_students_name_and_their_folder(course):
     """The name is whose page it is, the folder in brackets is the handle of their arm."""
-    mark = replace(mark_of(result := result_of(course, "bh7")), first="Bob", last="Hope")
+    bob = Student("bh7", "Bob", "Hope")
+    mark = replace(mark_of(result := result_of(course, "bh7")), person=bob)
     assert "<h1>01_paths: feedback for Bob Hope (bh7)</h1>" in page(result, mark)
     assert "<h1>01_paths: feedback for bh7</h1>" in page(result)
 
