@@ -110,8 +110,8 @@ types: .venv/.dev
 format: .venv/.dev ## put the code in order
 	@$(BIN)/ruff check --fix . && $(BIN)/ruff format .
 
-clean: ## forget everything that was made
-	rm -rf .venv .venv-313 build dist book/_build book/generated autograded feedback results gradebook.db
+clean: ## forget what was made, but nothing of students: not their work, marks or hidden cases
+	rm -rf .venv .venv-313 dist book/_build book/generated build/[!c]* build/campaign*
 
 # Environments: a student's, an instructor's, a developer's, each one more than the one before.
 

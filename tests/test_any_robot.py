@@ -163,7 +163,7 @@ def test_a_log_of_any_robot_is_saved_and_loaded(robot, model, tmp_path):
 @pytest.mark.parametrize("harm", [b"", b"PK", b"not a log"])
 def test_a_file_that_is_no_log_is_a_sentence(tmp_path, harm):
     path = tmp_path / "run.npz"
-    with pytest.raises(LabkitError, match=r"there is no file .*run\.npz; log\.save\(\.\.\.\) writes one"):
+    with pytest.raises(LabkitError, match=r"there is no file .*run\.npz; log\.save"):
         lk.Log.load(path)
     path.write_bytes(harm)
     with pytest.raises(LabkitError, match=r"run\.npz is not a log that labkit saved"):

@@ -32,7 +32,9 @@ from made import notebook_of, result_of
 from test_platforms import FILES, TEXTS
 
 from labkit.__main__ import main
+from labkit.course.authoring.layout import DEFENCE
 from labkit.errors import LabkitError
+from labkit.grader.defence.mark import await_mark, give_mark
 from labkit.grader.grading.results import Results
 from labkit.grader.marks.table import marks_of
 from labkit.grader.nbgrader.gradebook import open_gradebook, record
@@ -323,6 +325,8 @@ def test_marks_go_with_the_work(course, tmp_path):
     with open_gradebook(course) as book:
         book.find_grade("circle-check", NAME, NAME, "Ada-Lovelace-42").manual_score = 1.5
         book.db.commit()
+    await_mark(course, "Ada-Lovelace-42", ())
+    give_mark(course, "Ada-Lovelace-42", (3, 2, 1))
     (before,) = marks_of(course, NAME)
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
     _, left = import_list(course, tmp_path / "list.csv")
@@ -332,6 +336,8 @@ def test_marks_go_with_the_work(course, tmp_path):
     assert mark.score == before.score != result.score and not mark.missing
     assert [results.students(), (results.read("ada") or result).score] == [["ada"], result.score]
     assert (course.root / "autograded" / "ada" / NAME / f"{NAME}.ipynb").exists()
+    (defence,) = marks_of(course, DEFENCE)
+    assert (defence.student, defence.score) == ("ada", 6.0)
     with open_gradebook(course) as book:
         assert [one.id for one in book.students] == ["ada"]
 

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -245,7 +244,7 @@ def test_what_an_older_labkit_archived_is_forgotten(course):
 
 
 def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
-    """What is there is said, with both commands; --yes archives it and says how to return."""
+    """What is there is said; --yes archives it, and the command that is told returns to it."""
     words = ["term", "new", "00_warmup", "--course", str(course.root)]
     assert main(words) == 0
     said = capsys.readouterr().out
@@ -273,21 +272,24 @@ def test_a_term_with_students_does_not_end_by_mistake(course, capsys):
     said = capsys.readouterr().out
     (old,) = term.archives(course)
     assert "archived: 2 students, 1 submission, 1 graded mark" in said
-    assert f"course_private/{old.folder.name}; to return" in said
+    command = f"labkit term return {old.folder.name}"
+    assert f"to return to it, type: {command}\n" in said
     assert str(seeds.seed_of(course)) not in said, "the terminal may be projected"
-    commands = [line.strip() for line in said.splitlines() if line.startswith("    ")]
-    assert commands.pop() == "labkit release 00_warmup"
     rules.write_text("# of the new term\n")
-    subprocess.run(["sh", "-e"], cwd=course.root, input="\n".join(commands).encode(), check=True)
-    assert not [x for x in old.folder.rglob("*") if x.is_file()], "the archive is back, whole"
-    assert rules.read_text() == "# of the last term\n"
-    (undone,) = (x for x in term.archives(course) if x.folder.name.endswith("-undone"))
+    save_roster(course, Roster((Student("zoe", "Zoe"),)))
+    newer = course.submitted / "zoe/00_warmup/00_warmup.ipynb"
+    newer.parent.mkdir(parents=True)
+    newer.write_text("{}")
+    assert main(["term", "return", "archive-nope", "--course", str(course.root)]) == 2
+    assert f"name one archive: {old.folder.name}" in capsys.readouterr().err
+    assert main([*command.split()[1:], "--course", str(course.root)]) == 0
+    assert not newer.exists() and rules.read_text() == "# of the last term\n"
+    (undone,) = term.archives(course)
+    assert (undone.folder / newer.relative_to(course.root)).exists()
     assert (undone.folder / rules.name).read_text() == "# of the new term\n", "all is kept"
-    assert "undone: ended" in str(undone) and (undone.folder / "build/course/bundle").is_dir()
-    save_roster(Course(undone.folder), Roster((Student("zoe", "Zoe"),)))
+    assert "1 handed in" in str(undone) and (undone.folder / "build/course/bundle").is_dir()
     assert main(["term", "forget", "--student", "zoe", "--yes", "--course", str(course.root)]) == 0
     assert "zoe" not in read_roster(Course(undone.folder))
-    assert main(["release", "00_warmup", "--course", str(course.root)]) == 0
     again = json.loads((course.bundle / "00_warmup.json").read_text())["hash"]
     assert again == json.loads(record)["bundles"]["00_warmup"], "results stay valid"
     assert hand_in.exists() and result.exists() and str(seeds.seed_of(course)) == seed

@@ -14,7 +14,11 @@ from .pages import tell
 
 
 @verb("new 01_paths")
-@click.argument("action", type=click.Choice(["new", "list", "forget"]), metavar="new|list|forget")
+@click.argument(
+    "action",
+    type=click.Choice(["new", "list", "return", "forget"]),
+    metavar="new|list|return|forget",
+)
 @names
 @click.option(
     "--seed",
@@ -55,19 +59,21 @@ def term(
             with a new seed; refuses, without --yes, if the last term has
             students, submissions or marks
     list    lists the terms that are stored
+    return  returns to the archived term NAME; the term under way is archived
     forget  lists what it would delete: terms that ended some YEARS ago, or
             everything of one student; with --yes it deletes them
 
     The law may say how long marks must be kept.
     """  # noqa: D301
     from ..terms.forget import entries_of, forget, left_by_hand, places_of, unknown
+    from ..terms.older import relocate
     from ..terms.term import (
         about,
         archives,
         new_term,
         old_rules,
         refuse_running,
-        restore_commands,
+        restore,
         running,
     )
 
@@ -78,12 +84,21 @@ def term(
         record = new_term(course, seed, names)
         if record["archived"]:
             print(f"archived: {there or 'files without students'}")
-            tell(restore_commands(course, record["archived"]), sys.stdout)
+            print(f"to return to it, type: labkit term return {record['archived']}")
         print(f"a new term begins, released: {', '.join(record['bundles'])}")
         print("its secret seed is in course_private/term.json; keep a copy")
         tell(filter(None, [old_rules(course)]), sys.stdout)
     elif action == "list":
         print("\n".join(about(course)))
+    elif action == "return":
+        stored = {one.folder.name: one.folder for one in archives(course)}
+        if len(names) != 1 or names[0] not in stored:
+            raise LabkitError(f"name one archive: {', '.join(stored) or 'there is none'}")
+        relocate(Course(stored[names[0]]), archived=True)
+        undone, released = restore(course, stored[names[0]])
+        if undone:
+            print(f"archived: course_private/{undone.name}")
+        print(f"the term of {names[0]} is under way again, released: {', '.join(released)}")
     else:
         if (student is None) == (older is None):
             raise LabkitError("say what to forget: --older YEARS, or --student NAME")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from ...course.authoring.layout import Course
 from ..grading.results import Results
@@ -92,5 +93,21 @@ def _bring_marks(course: Course, moves: Sequence[Move]) -> None:
             if old in there and new not in there:
                 there[old].student = book.update_or_create_student(new)
                 book.db.commit()
-                if not book.find_student(old).submissions:
-                    book.remove_student(old)
+        for old, new in {(x.old, x.new) for x in moves}:
+            _bring_the_rest(course, book, old, new)
+
+
+def _bring_the_rest(course: Course, book: Any, old: str, new: str) -> None:
+    """What belongs to no file, such as the mark of a defence, and then the empty name."""
+    if old not in {one.id for one in book.students}:
+        return
+    if any((course.root / base / old).exists() for base in _WORK):
+        return  # somebody's work is there still
+    student = book.update_or_create_student(new)
+    there = {one.name for one in student.submissions}
+    for one in list(book.find_student(old).submissions):
+        if one.name not in there:
+            one.student = student
+    book.db.commit()
+    if not book.find_student(old).submissions:
+        book.remove_student(old)

@@ -21,7 +21,7 @@ from ..atomic import write
 from ..clean import how_many
 from ..rules import FILE as RULES
 from ..rules import read_rules
-from ..seeds import seed_of
+from ..seeds import seed_for, seed_of
 from ..students import attempts, identity, roster
 from .release import release
 
@@ -114,7 +114,9 @@ def archive(course: Course) -> Path | None:
     there = [name for name in PERSONAL_FILES if (course.root / name).exists()]
     if not there:
         return None
-    folder = _private(course) / _stamp()
+    folder = _private(course) / datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
+    while folder.exists():  # two in one second
+        folder = folder.with_name(f"{folder.name}-2")
     folder.mkdir(parents=True)
     for name in (*there, *[_TERM] * course.term.exists()):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -124,33 +126,28 @@ def archive(course: Course) -> Path | None:
     return folder
 
 
-def _stamp() -> str:
-    """What an archive that is made now is called."""
-    return datetime.now(UTC).strftime("archive-%Y-%m-%d-%H%M%S")
+def restore(course: Course, old: Path) -> tuple[Path | None, list[str]]:
+    """Return to an archived term; the one under way becomes an archive.
 
+    Args:
+        course: The course.
+        old: The archive's folder, laid out as a course is.
 
-def restore_commands(course: Course, folder: str) -> Iterator[str]:
-    """Where the last term is now, and the commands that return to it, a line each.
-
-    The term under way becomes an archive by them, which `archives` lists.
+    Returns:
+        The new archive, None if there was nothing of a term, and the released assignments.
     """
-    last, new = Course(_private(course) / folder), Path("course_private", f"{_stamp()}-undone")
-    old = last.root.relative_to(course.root)
-    names = sorted(x.stem for x in last.bundle.glob("*.json"))
-    yield f"the last term is in {old}; to return to it, type in the course's folder:"
-    yield f"    mkdir -p {new}/build/course {new}/course_private"
-    yield from _moves(course, Path(), new)
-    yield from _moves(last, old, Path())
-    yield f"    labkit release {' '.join(names)}".rstrip()
-
-
-def _moves(term: Course, start: Path, to: Path) -> Iterator[str]:
-    """The commands that move a term from one folder to another, which is laid out alike."""
-    by_place: dict[Path, list[str]] = {}
-    for name in map(Path, (*PERSONAL_FILES, _TERM, RULES)):
-        if (term.root / name).exists():
-            by_place.setdefault(name.parent, []).append(str(start / name))
-    yield from (f"    mv {' '.join(files)} {to / place}" for place, files in by_place.items())
+    undone = archive(course)
+    for name in (*PERSONAL_FILES, _TERM, RULES):
+        if (old / name).exists():
+            (course.root / name).unlink(missing_ok=True)  # the rules, which an archive copies
+            (course.root / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.move(old / name, course.root / name)
+    if not any(path.is_file() for path in old.rglob("*")):
+        shutil.rmtree(old)
+    released = sorted(path.stem for path in course.bundle.glob("*.json"))
+    for name in released:
+        release(course, name, seed_for(course, name))
+    return undone, released
 
 
 def old_rules(course: Course) -> str:
