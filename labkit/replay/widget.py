@@ -76,6 +76,9 @@ def _replay_class() -> type[Any]:
     class Replay(widget_class()):  # type: ignore[misc]
         """Shows one motion."""
 
+        def __repr__(self) -> str:
+            return f"Replay: {self.words}"
+
         def save(self, path: Any) -> None:
             """Write a page that plays anywhere, without network and kernel, 1.4 MB.
 
