@@ -197,7 +197,7 @@ def case(name: str) -> tuple[tuple[Any, ...], dict[str, Any]]:
         name: The question's name.
 
     Returns:
-        (args, kwargs), for ``function(*args, **kwargs)``.
+        Its arguments: a tuple of those by place, and a dictionary of those by name.
 
     Raises:
         UnknownName: No such question.
