@@ -38,7 +38,7 @@ def photograph(page: Page, address: str, to: Path) -> None:
     page.evaluate(f"{LIVE}.pause(true)")
     page.evaluate(f"{LIVE}.sessions.forEach((session) => session.restart())")
     page.evaluate(f"{LIVE}.live({AFTER})")
-    page.wait_for_timeout(1000)  # the stage draws when it is told that its size has changed
+    page.wait_for_timeout(1000)  # the stage draws again after its size has changed
     stage = page.locator(".lk-live .lk-canvas")
     seen = np.asarray(Image.open(io.BytesIO(stage.screenshot(timeout=0))).convert("RGB"))
     seen = seen[: 2 * HIGH, : 2 * WIDE]
