@@ -31,6 +31,7 @@ def test_a_ur5_draws_the_circle_and_its_log_is_kept(ran):
     assert log.robot.n == 6
     for each in (log, names["log"]):
         assert lk.metrics.summary(each).max_mm < 10.0
+    assert 2.0 < lk.metrics.summary(log).rms_mm < 10.0, "the page says: some millimetres"
 
 
 def test_bringing_an_arm_takes_a_dozen_lines():
