@@ -121,6 +121,32 @@ def test_a_mark_that_is_missing_is_an_empty_cell(marked, capsys, fault):
     assert (rows["bob"]["score"], rows["carl"]["score"]) == ("11.0", "0.0")
 
 
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        ({"points": 5}, "circle was 4 points then and is 5 points now"),
+        ({"name": "ellipse"}, "circle was 4 points then and is not asked now"),
+    ],
+)
+def test_a_mark_of_an_earlier_release_is_an_empty_cell(marked, capsys, change, says):
+    """Between a release with other points or questions and the next grading, no mark counts.
+
+    A rejected file has no question that could be another one: its 0 stays.
+    """
+    path = marked.bundle / f"{NAME}.json"
+    data = json.loads(path.read_text())
+    (circle,) = [q for q in data["questions"] if q["name"] == "circle"]
+    circle.update(change)
+    path.write_text(json.dumps(data))
+    code, out, err = verb(marked, capsys, "export")
+    assert code == 1
+    assert f"no mark: ada: graded before the last release: {says}; {GRADE} --lower" in err
+    rows = table(out)
+    assert [rows[who]["score"] for who in ("ada", "bob", "carl")] == ["", "", "0.0"]
+    code, _, err = verb(marked, capsys, "feedback")
+    assert (code, err.count("no page: ")) == (1, 2)
+
+
 def test_tables_of_a_class_that_is_whole_say_nothing(marked, capsys):
     """Exit 0 and no word on stderr, but for a file that was rejected: its 0 is explained.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 
 from ...course.authoring.bundle import Bundle
@@ -27,19 +27,22 @@ def standing(
 
     Yields:
         In order of name, the result; or why none counts and what to type: the submission is not
-        graded, another one was handed in since, or the result file is damaged.
+        graded, another one was handed in since, the release has other questions or points since,
+        or the result file is damaged.
     """
     if assignment in {CUP, DEFENCE}:
         return  # marked by verbs of their own, and without a result
     results = Results(course, assignment)
     handed_in = set(students(course, assignment))
+    released = _released(course, assignment)
     if student is None:
         yield from misnamed(course, assignment)
     for name in sorted(handed_in | set(results.students())):
         if not is_name(name):
             yield Failure(plain_name(name), f"a file in {results.folder} has this name; delete it")
         elif student in {None, name}:
-            yield for_student(name, partial(_counts, course, results, name, name in handed_in))
+            step = partial(_counts, course, results, name, name in handed_in, released)
+            yield for_student(name, step)
 
 
 def full_marks(course: Course, assignment: str) -> float:
@@ -55,7 +58,20 @@ def grade_again(assignment: str, student: str) -> str:
     return f"type: labkit grade {assignment} --student {shlex.quote(student)}"
 
 
-def _counts(course: Course, results: Results, student: str, is_handed_in: bool) -> Result:
+def _released(course: Course, assignment: str) -> Mapping[str, float] | None:
+    """The points of each question as they were released last; None where nothing is released."""
+    if not (course.bundle / f"{assignment}.json").exists():
+        return None
+    return {q["name"]: q["points"] for q in Bundle.of(course, assignment).data["questions"]}
+
+
+def _counts(
+    course: Course,
+    results: Results,
+    student: str,
+    is_handed_in: bool,
+    released: Mapping[str, float] | None,
+) -> Result:
     assignment = results.folder.name
     remedy = grade_again(assignment, student)
     if not is_handed_in:
@@ -70,4 +86,14 @@ def _counts(course: Course, results: Results, student: str, is_handed_in: bool) 
         data, _, _ = Submission.of(course, assignment, student).read(Limits().notebook)
         if digest(data) != result.hashes["submission"]:
             raise LabkitError(f"handed in again and not graded since; {remedy}")
+        graded = {q.verdict.name: q.verdict.points for q in result.questions}
+        if released is not None and not result.rejected and graded != released:
+            raise LabkitError(f"{_changed(graded, released)}; {remedy} --lower")
     return result
+
+
+def _changed(graded: Mapping[str, float], released: Mapping[str, float]) -> str:
+    """How the questions of a result differ from those of the release, in a sentence."""
+    name = min(x for x in {*graded, *released} if graded.get(x) != released.get(x))
+    was, now = (f"{x[name]:g} points" if name in x else "not asked" for x in (graded, released))
+    return f"graded before the last release: {name} was {was} then and is {now} now"
