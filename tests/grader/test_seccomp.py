@@ -113,8 +113,9 @@ USES = {
     "asyncio": "import asyncio\nasync def f():\n    await asyncio.sleep(0.01)\n"
     "    p = await asyncio.create_subprocess_exec('true')\n    return await p.wait()\n"
     "assert asyncio.run(f()) == 0",
-    "files": "import os, shutil, tempfile, mmap, sqlite3, zipfile\nopen('a', 'w').write('x')\n"
-    "shutil.copy2('a', 'b')\nshutil.copytree('.', 'd', ignore=lambda *x: ['d', 'here'])\n"
+    "files": "import os, shutil, tempfile, mmap, sqlite3, zipfile\nos.mkdir('own')\n"
+    "os.chdir('own')\nopen('a', 'w').write('x')\n"  # a course below /tmp lies in what is above
+    "shutil.copy2('a', 'b')\nshutil.copytree('.', 'd', ignore=lambda *x: ['d'])\n"
     "os.rename('b', 'c')\nos.symlink('c', 'e')\nos.truncate('c', 0)\nos.utime('c')\nos.chmod('c', 0o600)\n"
     "with tempfile.TemporaryDirectory() as t:\n    zipfile.ZipFile(t + '/z', 'w').write('a')\n"
     "mmap.mmap(-1, 4096)[:1] = b'x'\nsqlite3.connect(':memory:').execute('create table t(x)')\n"
