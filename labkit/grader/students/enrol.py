@@ -24,7 +24,7 @@ from .identity import all_lms_users, alone, places
 from .list_remarks import about_namesakes, about_teams
 from .platforms import LmsUser
 from .roster import FILE, Roster, read_roster, same_name, save_roster, tell_gradebook
-from .settle import settle
+from .settle import settle, strangers
 from .worksheet import keep_numbers, keep_times
 
 _Mark = tuple[str, object]
@@ -100,8 +100,8 @@ def import_list(
         assignment: Where the file is Moodle's grading worksheet of this assignment.
 
     Returns:
-        What was done; and what a person should look at: work of one student that is in two folders,
-        and hand-in times that are not set.  A sentence each.
+        What was done; and what a person should look at: work of one student that was in two
+        folders, work of nobody in the roster, and hand-in times that are not set.  A sentence each.
 
     Raises:
         LabkitError: The list does not fit the roster or itself, or it is not a list.
@@ -123,6 +123,12 @@ def import_list(
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
         left = settle(course, done.roster)
+        if alone_there := strangers(course, done.roster):
+            left.append(
+                f"work of nobody in the roster: {some(alone_there)}; import a list that has them. "
+                "If it is the second folder of a student, copy what should count to "
+                "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb, and move the other folder away"
+            )
         times = 0
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
