@@ -102,7 +102,7 @@ def test_a_folder_of_nobody_in_the_roster_is_named(bare, tmp_path):
     people = [(("Ada Lovelace", 1), "x.ipynb", "1"), (("Ada King", 2), "x.ipynb", "2")]
     take(bare, from_moodle(tmp_path / "1.zip", people))
     (tmp_path / "list.csv").write_text("name,login\nAda Lovelace,ada\n")
-    _, (said,) = import_list(bare, tmp_path / "list.csv")
+    (_, said), _ = import_list(bare, tmp_path / "list.csv")
     assert said.startswith("work of nobody in the roster: Ada-King-2; import a list")
     assert "perhaps theirs too: Ada-King-2; look" in " ".join(left_by_hand(bare, "ada"))
 

@@ -101,7 +101,7 @@ def import_list(
 
     Returns:
         What was done; and what a person should look at: work of one student that was in two
-        folders, work of nobody in the roster, and hand-in times that are not set.  A sentence each.
+        folders, and hand-in times that are not set.  A sentence each.
 
     Raises:
         LabkitError: The list does not fit the roster or itself, or it is not a list.
@@ -123,12 +123,6 @@ def import_list(
         tell_gradebook(course, done.roster)
         give_arms(course, done.roster, seed_of(course))
         left = settle(course, done.roster)
-        if alone_there := strangers(course, done.roster):
-            left.append(
-                f"work of nobody in the roster: {some(alone_there)}; import a list that has them. "
-                "If it is the second folder of a student, copy what should count to "
-                "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb, and move the other folder away"
-            )
         times = 0
         if assignment:
             left += keep_numbers(course, assignment, done.rows)
@@ -141,6 +135,12 @@ def import_list(
     if absent:
         still = f"{len(absent)} ({some(absent)})"
         summary.append(f"not in this list, and still in the roster: {still}")
+    if others := strangers(course, done.roster):
+        summary.append(
+            f"work of nobody in the roster: {some(others)}; import a list that has them. If one is "
+            "a student's second folder, copy what should count to "
+            "submitted/STUDENT/ASSIGNMENT/ASSIGNMENT.ipynb, and move the folder away"
+        )
     if len(entries) < len(rows):
         summary.append(
             "not taken: Test Student, whom Canvas makes for a teacher's view as a student"
