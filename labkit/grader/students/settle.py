@@ -161,12 +161,12 @@ def _bring_marks(course: Course, moves: Sequence[Move]) -> list[str]:
         results = Results(course, move.assignment)
         mine, other = results.get(move.old), results.get(move.new)
         now = Submission.of(course, move.assignment, move.new).read(Limits().notebook)[0]
-        there = results.path(move.new).exists()
+        alone = not results.path(move.new).exists()
         counts = mine is not None and mine.hashes["submission"] == digest(now)
-        kept[move] = move.old if counts or not there else move.new
+        kept[move] = move.old if counts or alone else move.new
         if mine is not None and kept[move] == move.old:
             results.keep(replace(mine, student=move.new))
-        if mine is not None and (other is not None or not there):
+        if mine is not None and (other is not None or alone):
             results.path(move.old).unlink()
     if not moves or not (course.root / "gradebook.db").exists():
         return []
